@@ -1,0 +1,75 @@
+//! The one error of the program: a line that names the file and the remedy.
+
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+/// The result of everything that can fail on what the user gave.
+pub type Result<T> = std::result::Result<T, Error>;
+
+/// What was wrong, where, and what to do about it. It displays as one line:
+/// `scenes/cornell.toml:12: unknown key "colour"; did you mean "color"?`.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct Error {
+    /// The file, if one is to blame.
+    pub file: Option<PathBuf>,
+    /// The line in it, from 1.
+    pub line: Option<usize>,
+    /// The fault and its remedy, without a full stop.
+    pub message: String,
+}
+
+impl Error {
+    /// A fault that no file is to blame for.
+    pub fn new(message: impl Into<String>) -> Self {
+        Error {
+            file: None,
+            line: None,
+            message: message.into(),
+        }
+    }
+
+    /// A fault of a file.
+    pub fn file(file: &Path, message: impl Into<String>) -> Self {
+        Error {
+            file: Some(file.to_owned()),
+            line: None,
+            message: message.into(),
+        }
+    }
+
+    /// A fault of one line of a file, counted from 1.
+    pub fn line(file: &Path, line: usize, message: impl Into<String>) -> Self {
+        Error {
+            file: Some(file.to_owned()),
+            line: Some(line),
+            message: message.into(),
+        }
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if let Some(file) = &self.file {
+            write!(out, "{}", one_line(&file.to_string_lossy()))?;
+            if let Some(line) = self.line {
+                write!(out, ":{line}")?;
+            }
+            out.write_str(": ")?;
+        }
+        out.write_str(&one_line(&self.message))
+    }
+}
+
+/// Escapes what would break the line or steer a terminal: names come from hostile files.
+fn one_line(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let escaped: Box<dyn Iterator<Item = char>> = if c.is_control() {
+                Box::new(c.escape_default())
+            } else {
+                Box::new(std::iter::once(c))
+            };
+            escaped
+        })
+        .collect()
+}

@@ -1,0 +1,4 @@
+//! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
+
+pub mod error;
+pub mod scene;

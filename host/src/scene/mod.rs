@@ -1,0 +1,155 @@
+//! A scene in world units, as the files describe it and before anything is packed for a device.
+
+use glam::Vec3;
+
+/// All that a picture is made from. Everything in it is finite and in range: [`load`] refuses the rest.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Every surface, merged and transformed to world units.
+    pub mesh: Mesh,
+    /// What the mesh's materials index; never empty.
+    pub materials: Vec<Material>,
+    /// In file order, which is the order of their sums.
+    pub lights: Vec<Light>,
+    /// Never empty; a bare mesh gets one that frames it.
+    pub cameras: Vec<Camera>,
+    /// What a ray that leaves the scene sees.
+    pub background: Background,
+    /// Ambient light, linear RGB; times a material's ambient colour.
+    pub ambient: Vec3,
+    /// What the scene file asks of a rendering; the command line has the last word.
+    pub settings: Settings,
+}
+
+/// An indexed triangle mesh.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Mesh {
+    /// Vertex positions in world units.
+    pub positions: Vec<Vec3>,
+    /// Vertex normals of unit length; a zero stands for "flat here". As many as positions, or none at all.
+    pub normals: Vec<Vec3>,
+    /// Three vertices each, counter-clockwise seen from the front.
+    pub triangles: Vec<[u32; 3]>,
+    /// One index into [`Scene::materials`] a triangle.
+    pub materials: Vec<u32>,
+}
+
+/// The thesis' illumination model (chapters 3.1 and 3.3); colours are linear RGB in [0, 1].
+#[derive(Debug, Clone, PartialEq)]
+pub struct Material {
+    /// By this name a scene file overrides it.
+    pub name: String,
+    /// Answer to the scene's ambient light.
+    pub ambient: Vec3,
+    /// Lambert's diffuse colour.
+    pub diffuse: Vec3,
+    /// Phong's specular colour.
+    pub specular: Vec3,
+    /// Phong's exponent, at least 0.
+    pub shininess: f32,
+    /// Share of the mirrored ray that an opaque surface adds.
+    pub reflection: Vec3,
+    /// What of the light passes, weighted by Fresnel's equations; zero is opaque.
+    pub transmission: Vec3,
+    /// Index of refraction of the inside, in [1, 4]; of use where `transmission` is not zero.
+    pub ior: f32,
+    /// A second diffuse colour in cells of a checkerboard.
+    pub checker: Option<Checker>,
+}
+
+/// A procedural checkerboard over the surface's two major axes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Checker {
+    /// The colour of every second cell; the others have the material's diffuse colour.
+    pub colour: Vec3,
+    /// A cell's edge in world units.
+    pub size: f32,
+}
+
+/// A light without extent; `colour` is linear RGB times intensity, at least 0.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Light {
+    /// Shines every way from a place.
+    Point {
+        /// World units.
+        position: Vec3,
+        /// Linear RGB times intensity.
+        colour: Vec3,
+    },
+    /// Shines one way from infinitely far.
+    Directional {
+        /// The way light travels; not zero.
+        direction: Vec3,
+        /// Linear RGB times intensity.
+        colour: Vec3,
+    },
+    /// Shines into a cone.
+    Spot {
+        /// World units.
+        position: Vec3,
+        /// A point on the cone's axis; not the position.
+        target: Vec3,
+        /// Linear RGB times intensity.
+        colour: Vec3,
+        /// Half the angle of the full cone in degrees, in (0, 90).
+        outer: f32,
+        /// Half the angle of the cone of full light, in [0, outer].
+        inner: f32,
+    },
+}
+
+/// A pinhole camera.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Camera {
+    /// By this name the command line picks it.
+    pub name: String,
+    /// World units.
+    pub eye: Vec3,
+    /// Where it looks; not the eye.
+    pub target: Vec3,
+    /// Not along the view.
+    pub up: Vec3,
+    /// Vertical field of view in degrees, in (0, 180).
+    pub fov: f32,
+}
+
+/// What a ray that hits nothing returns, linear RGB.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Background {
+    /// The same every way.
+    Colour(Vec3),
+    /// From the horizon (and below it) to straight up.
+    Gradient {
+        /// At the horizon and below.
+        horizon: Vec3,
+        /// Straight up.
+        zenith: Vec3,
+    },
+}
+
+/// A scene file's `[render]` table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Settings {
+    /// Image width and height in pixels.
+    pub size: (u32, u32),
+    /// Samples along a pixel's edge.
+    pub samples: u32,
+    /// The most times a ray is followed on.
+    pub bounces: u32,
+    /// A ray whose every weight is less is not followed.
+    pub min_contribution: f32,
+    /// Skip triangles seen from behind.
+    pub culling: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Settings {
+            size: (512, 512),
+            samples: 1,
+            bounces: 5,
+            min_contribution: 1.0 / 1024.0,
+            culling: false,
+        }
+    }
+}

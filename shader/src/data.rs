@@ -1,0 +1,320 @@
+//! Every record that lives in device memory, once, for the host and for the kernels.
+//!
+//! A record is made of 16-byte words of three numbers and an integer. Numbers travel as their bits,
+//! so that an index never passes through a float register (a small integer is a subnormal float,
+//! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
+//! a power of two so that every coordinate, cameras included, lies in [-1, 1].
+
+use bytemuck::{Pod, Zeroable};
+use glam::{UVec4, Vec3};
+
+/// Three numbers and an integer in the 16 bytes that a GPU loads at once.
+#[inline(always)]
+pub fn pack(v: Vec3, word: u32) -> UVec4 {
+    UVec4::new(v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), word)
+}
+
+/// The three numbers of a packed word.
+#[inline(always)]
+pub fn numbers(q: UVec4) -> Vec3 {
+    Vec3::new(
+        f32::from_bits(q.x),
+        f32::from_bits(q.y),
+        f32::from_bits(q.z),
+    )
+}
+
+/// The most triangles a leaf holds (thesis chapter 6: "less than six").
+pub const MAX_LEAF: u32 = 5;
+/// Entries of a traversal stack; `eyerays-bvh` builds no tree that needs more.
+pub const STACK: usize = 64;
+/// Half a box's padding in the normalised scene; see `intersect::triangle` for the bound it covers.
+pub const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;
+
+/// A reference to a node: a pair of children, or a run of triangles.
+///
+/// Bits 0 to 2 count the triangles of a leaf (1 to [`MAX_LEAF`]), 0 for an inner node; bits 3 to 31
+/// are the index of the child pair or of the first triangle.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct NodeRef(pub u32);
+
+impl NodeRef {
+    /// The largest index a reference holds.
+    pub const MAX_INDEX: u32 = (1 << 29) - 1;
+    /// The pair that traversal starts with.
+    pub const ROOT: NodeRef = NodeRef(0);
+
+    /// The inner node whose children are pair `pair`.
+    #[inline(always)]
+    pub fn inner(pair: u32) -> Self {
+        NodeRef(pair << 3)
+    }
+
+    /// The leaf of `count` triangles from `first` on.
+    #[inline(always)]
+    pub fn leaf(first: u32, count: u32) -> Self {
+        NodeRef((first << 3) | count)
+    }
+
+    /// Is this a run of triangles?
+    #[inline(always)]
+    pub fn is_leaf(self) -> bool {
+        self.0 & 7 != 0
+    }
+
+    /// The child pair, or the first triangle of the run.
+    #[inline(always)]
+    pub fn index(self) -> u32 {
+        self.0 >> 3
+    }
+
+    /// How many triangles a leaf has left; 0 for an inner node.
+    #[inline(always)]
+    pub fn count(self) -> u32 {
+        self.0 & 7
+    }
+
+    /// The same run without its first triangle; `count() == 0` once it is used up.
+    #[inline(always)]
+    pub fn rest(self) -> Self {
+        NodeRef(self.0.wrapping_add(8 - 1))
+    }
+}
+
+/// The boxes of two siblings in one 64-byte block (thesis figure 6.1). A leaf's box bounds its
+/// triangles' own boxes ([`Triangle::bounds`]), an inner node's box bounds its children's.
+///
+/// A tree of one triangle has one pair, whose right child is [`NodePair::EMPTY`].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct NodePair {
+    /// Least corner of the left box, and the left [`NodeRef`].
+    pub left_min: UVec4,
+    /// Greatest corner of the left box; the integer is 0.
+    pub left_max: UVec4,
+    /// Least corner of the right box, and the right [`NodeRef`].
+    pub right_min: UVec4,
+    /// Greatest corner of the right box; the integer is 0.
+    pub right_max: UVec4,
+}
+
+impl NodePair {
+    /// The right child of a tree of one triangle: a point outside the scene. Its reference is the
+    /// first triangle, so that a ray that does meet it finds nothing new.
+    pub const EMPTY: (Vec3, Vec3, NodeRef) = (Vec3::splat(2.0), Vec3::splat(2.0), NodeRef(1));
+
+    /// A pair of (least corner, greatest corner, reference).
+    pub fn new(left: (Vec3, Vec3, NodeRef), right: (Vec3, Vec3, NodeRef)) -> Self {
+        NodePair {
+            left_min: pack(left.0, left.2.0),
+            left_max: pack(left.1, 0),
+            right_min: pack(right.0, right.2.0),
+            right_max: pack(right.1, 0),
+        }
+    }
+
+    /// The left child's reference.
+    #[inline(always)]
+    pub fn left(&self) -> NodeRef {
+        NodeRef(self.left_min.w)
+    }
+
+    /// The right child's reference.
+    #[inline(always)]
+    pub fn right(&self) -> NodeRef {
+        NodeRef(self.right_min.w)
+    }
+}
+
+/// A triangle in leaf order.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Triangle {
+    /// First vertex, and the primitive's number in the scene (which decides ties).
+    pub a: UVec4,
+    /// Second vertex, and the material's index.
+    pub b: UVec4,
+    /// Third vertex, and [`Triangle::TRANSPARENT`] or 0.
+    pub c: UVec4,
+}
+
+impl Triangle {
+    /// The flag of a triangle that casts no shadow (thesis 3.2: opaque objects do).
+    pub const TRANSPARENT: u32 = 1;
+
+    /// A record of three vertices in the normalised scene.
+    pub fn new(vertices: [Vec3; 3], primitive: u32, material: u32, flags: u32) -> Self {
+        let [a, b, c] = vertices;
+        Triangle {
+            a: pack(a, primitive),
+            b: pack(b, material),
+            c: pack(c, flags),
+        }
+    }
+
+    /// The vertices in the normalised scene.
+    #[inline(always)]
+    pub fn vertices(&self) -> [Vec3; 3] {
+        [numbers(self.a), numbers(self.b), numbers(self.c)]
+    }
+
+    /// The primitive's number in the scene, whatever the order of the leaves.
+    #[inline(always)]
+    pub fn primitive(&self) -> u32 {
+        self.a.w
+    }
+
+    /// The index of the material.
+    #[inline(always)]
+    pub fn material(&self) -> u32 {
+        self.b.w
+    }
+
+    /// Does light pass?
+    #[inline(always)]
+    pub fn is_transparent(&self) -> bool {
+        self.c.w & Self::TRANSPARENT != 0
+    }
+
+    /// The triangle's own box (least, greatest corner): its extent and [`BOX_PADDING`] around it.
+    /// A hit must lie in it, so every box above must contain it exactly.
+    #[inline(always)]
+    pub fn bounds(&self) -> (Vec3, Vec3) {
+        let [a, b, c] = self.vertices();
+        (
+            Vec3::new(
+                least(a.x, b.x, c.x) - BOX_PADDING,
+                least(a.y, b.y, c.y) - BOX_PADDING,
+                least(a.z, b.z, c.z) - BOX_PADDING,
+            ),
+            Vec3::new(
+                greatest(a.x, b.x, c.x) + BOX_PADDING,
+                greatest(a.y, b.y, c.y) + BOX_PADDING,
+                greatest(a.z, b.z, c.z) + BOX_PADDING,
+            ),
+        )
+    }
+}
+
+/// Compare-select, since a device's own minimum may treat zeros and NaN its own way.
+#[inline(always)]
+fn least(a: f32, b: f32, c: f32) -> f32 {
+    let ab = if a < b { a } else { b };
+    if ab < c { ab } else { c }
+}
+
+#[inline(always)]
+fn greatest(a: f32, b: f32, c: f32) -> f32 {
+    let ab = if a > b { a } else { b };
+    if ab > c { ab } else { c }
+}
+
+/// The vertex normals of a triangle in leaf order, bound only where a mesh is smooth.
+/// Three zeros stand for a flat triangle. The integers are 0.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Normals {
+    /// Normal at the first vertex, of unit length.
+    pub a: UVec4,
+    /// Normal at the second vertex.
+    pub b: UVec4,
+    /// Normal at the third vertex.
+    pub c: UVec4,
+}
+
+/// A surface's answer to light: ambient, Lambert, Phong (thesis 3.1), mirror and glass (3.3).
+/// Colours are linear RGB in [0, 1].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Material {
+    /// Ambient colour times the scene's ambient light.
+    pub ambient: UVec4,
+    /// Diffuse colour.
+    pub diffuse: UVec4,
+    /// Specular colour; the integer is the Phong exponent's bits.
+    pub specular: UVec4,
+    /// Mirror colour; the integer is the bits of the index of refraction, 0 for an opaque surface.
+    pub reflection: UVec4,
+    /// Colour of what passes.
+    pub transmission: UVec4,
+    /// The checker's second diffuse colour; the integer is the bits of cells per unit, 0 for none.
+    pub checker: UVec4,
+}
+
+/// A light without extent.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Light {
+    /// Position, or the direction towards a directional light; the integer is its kind.
+    pub position: UVec4,
+    /// Colour times intensity; the integer is the bits of the cosine of a spot's inner angle.
+    pub colour: UVec4,
+    /// The axis a spot points along, of unit length; the integer is the bits of the cosine of its
+    /// outer angle.
+    pub axis: UVec4,
+}
+
+impl Light {
+    /// [`Light::position`] is a place; light goes every way.
+    pub const POINT: u32 = 0;
+    /// [`Light::position`] is the unit direction towards the light.
+    pub const DIRECTIONAL: u32 = 1;
+    /// [`Light::position`] is a place; light fades from the inner to the outer cone.
+    pub const SPOT: u32 = 2;
+}
+
+/// What a launch renders: one sample of every pixel of a region.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Frame {
+    /// Camera position; the integer is the image's width in pixels.
+    pub eye: UVec4,
+    /// Step to the right for half a sample's width on the image plane; the image's height.
+    pub right: UVec4,
+    /// Step up for half a sample's height; samples along a pixel's edge.
+    pub up: UVec4,
+    /// To the centre of the image plane, at distance one; this launch's sample within the pixel.
+    pub forward: UVec4,
+    /// Background at the horizon and below; the bounce limit.
+    pub bottom: UVec4,
+    /// Background straight up; how many lights there are.
+    pub top: UVec4,
+    /// The region's left and top pixel, its width and height.
+    pub region: UVec4,
+    /// Bits of a sample's share of its pixel, bits of the least contribution that is followed,
+    /// slots a launch has room for, and the number of pending rays a slot has room for.
+    pub limits: UVec4,
+}
+
+/// Which effects a scene asks for; a kernel holds no instruction for the others.
+#[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
+pub struct Features(pub u32);
+
+impl Features {
+    /// Some mesh has vertex normals.
+    pub const SMOOTH: u32 = 1 << 0;
+    /// Some material is a checker.
+    pub const CHECKER: u32 = 1 << 1;
+    /// Some material is a mirror or reflects as glass, and bounces are allowed.
+    pub const REFLECTION: u32 = 1 << 2;
+    /// Some material lets light pass.
+    pub const REFRACTION: u32 = 1 << 3;
+    /// Some light is a spot.
+    pub const SPOT: u32 = 1 << 4;
+    /// Some light is directional.
+    pub const DIRECTIONAL: u32 = 1 << 5;
+    /// Some material has a Phong highlight.
+    pub const SPECULAR: u32 = 1 << 6;
+    /// Triangles seen from behind are skipped.
+    pub const CULLING: u32 = 1 << 7;
+    /// The background is a gradient.
+    pub const GRADIENT: u32 = 1 << 8;
+    /// This launch follows secondary rays: its slots come from a queue.
+    pub const SECONDARY: u32 = 1 << 9;
+
+    /// Is the effect asked for?
+    #[inline(always)]
+    pub fn has(self, bit: u32) -> bool {
+        self.0 & bit != 0
+    }
+}

@@ -17,11 +17,7 @@ pub fn pack(v: Vec3, word: u32) -> UVec4 {
 /// The three numbers of a packed word.
 #[inline(always)]
 pub fn numbers(q: UVec4) -> Vec3 {
-    Vec3::new(
-        f32::from_bits(q.x),
-        f32::from_bits(q.y),
-        f32::from_bits(q.z),
-    )
+    Vec3::new(f32::from_bits(q.x), f32::from_bits(q.y), f32::from_bits(q.z))
 }
 
 /// The most triangles a leaf holds (thesis chapter 6: "less than six").
@@ -145,11 +141,7 @@ impl Triangle {
     /// A record of three vertices in the normalised scene.
     pub fn new(vertices: [Vec3; 3], primitive: u32, material: u32, flags: u32) -> Self {
         let [a, b, c] = vertices;
-        Triangle {
-            a: pack(a, primitive),
-            b: pack(b, material),
-            c: pack(c, flags),
-        }
+        Triangle { a: pack(a, primitive), b: pack(b, material), c: pack(c, flags) }
     }
 
     /// The vertices in the normalised scene.

@@ -1,4 +1,16 @@
 #![cfg_attr(target_arch = "spirv", no_std)]
 //! Everything a ray of Eyerays meets, written once: rust-gpu compiles it to SPIR-V, rustc to native code.
 
+pub mod buffer;
+pub mod camera;
 pub mod data;
+#[cfg(target_arch = "spirv")]
+pub mod entry;
+pub mod intersect;
+pub mod launch;
+pub mod ray;
+pub mod real;
+pub mod scene;
+pub mod shade;
+pub mod stage;
+pub mod traverse;

@@ -1,0 +1,83 @@
+//! A ray, ready for boxes and triangles, and what it has hit.
+
+use crate::real::{Real, TINY, V3};
+
+/// A ray (or one a lane) with what its box and triangle tests share.
+#[derive(Clone, Copy)]
+pub struct Ray<R: Real> {
+    /// Where it starts, in the normalised scene.
+    pub origin: V3<R>,
+    /// One over the direction; a component below 2^-60 counts as 2^-60, so that no infinity arises.
+    pub inverse: V3<R>,
+    /// The shear that turns the direction into the third axis.
+    pub shear: Shear<R>,
+}
+
+/// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
+#[derive(Clone, Copy)]
+pub struct Shear<R: Real> {
+    /// How far the first axis moves along the ray.
+    pub x: R,
+    /// How far the second axis moves along the ray.
+    pub y: R,
+    /// Is the direction's greatest component its first?
+    x_major: R::Mask,
+    /// Is it its second?
+    y_major: R::Mask,
+}
+
+impl<R: Real> Ray<R> {
+    /// A ray; `direction` needs no unit length (t counts in its lengths), but must not be zero.
+    #[inline(always)]
+    pub fn new(origin: V3<R>, direction: V3<R>) -> Self {
+        let d = direction.map(|c| c.flush(TINY));
+        let size = d.abs();
+        let x_major = size.y.le(size.x) & size.z.le(size.x);
+        let y_major = !x_major & size.z.le(size.y);
+        let inverse = d.map(|c| {
+            let least = R::select(c.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
+            R::splat(1.0).div(R::select(c.same(R::splat(0.0)), least, c))
+        });
+        let mut shear = Shear { x: d.x, y: d.y, x_major, y_major };
+        let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
+        shear.x = (cycled.x * along).flush(TINY);
+        shear.y = (cycled.y * along).flush(TINY);
+        Ray { origin, inverse, shear }
+    }
+}
+
+impl<R: Real> Shear<R> {
+    /// Cycles the axes so that the ray's major one is the third; keeps handedness.
+    #[inline(always)]
+    pub fn cycle(&self, v: V3<R>) -> V3<R> {
+        let pick = |x, y, z| R::select(self.x_major, x, R::select(self.y_major, y, z));
+        V3::new(pick(v.y, v.z, v.x), pick(v.z, v.x, v.y), pick(v.x, v.y, v.z))
+    }
+}
+
+/// The closest hit so far (or one a lane).
+#[derive(Clone, Copy)]
+pub struct Hit<R: Real> {
+    /// Distance in lengths of the ray's direction. Nothing beyond counts.
+    pub t: R,
+    /// Weight of the triangle's second vertex.
+    pub u: R,
+    /// Weight of the third.
+    pub v: R,
+    /// Where the triangle lies in leaf order; [`Hit::NOTHING`] if there is none.
+    pub slot: R::Index,
+    /// The triangle's number in the scene, which decides ties.
+    pub primitive: R::Index,
+}
+
+impl<R: Real> Hit<R> {
+    /// The slot of a miss.
+    pub const NOTHING: u32 = u32::MAX;
+
+    /// No hit up to `limit`.
+    #[inline(always)]
+    pub fn none(limit: R) -> Self {
+        let nothing = R::index(Self::NOTHING);
+        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), slot: nothing, primitive: nothing }
+    }
+}

@@ -1,0 +1,67 @@
+//! `f64`: the reference that errors are measured against, from the same kernels.
+
+use super::{Real, Scalar, V3};
+
+impl Real for f64 {
+    type Mask = bool;
+    type Index = u32;
+    const ROUNDOFF: f64 = 1.0 / (1u64 << 53) as f64;
+
+    fn splat(x: f32) -> f64 {
+        f64::from(x)
+    }
+    fn div(self, divisor: f64) -> f64 {
+        self / divisor
+    }
+    fn sqrt(self) -> f64 {
+        f64::sqrt(self)
+    }
+    fn lt(self, other: f64) -> bool {
+        self < other
+    }
+    fn le(self, other: f64) -> bool {
+        self <= other
+    }
+    fn same(self, other: f64) -> bool {
+        self == other
+    }
+    fn select(mask: bool, a: f64, b: f64) -> f64 {
+        if mask { a } else { b }
+    }
+    fn abs(self) -> f64 {
+        f64::abs(self)
+    }
+    fn index(i: u32) -> u32 {
+        i
+    }
+    fn precedes(i: u32, other: u32) -> bool {
+        i < other
+    }
+    fn select_index(mask: bool, a: u32, b: u32) -> u32 {
+        if mask { a } else { b }
+    }
+}
+
+/// Three doubles and an integer, in host memory alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Record(f64, f64, f64, u32);
+
+impl Scalar for f64 {
+    type Record = Record;
+
+    fn store(v: V3<f64>, word: u32) -> Record {
+        Record(v.x, v.y, v.z, word)
+    }
+    fn load(r: Record) -> (V3<f64>, u32) {
+        (V3::new(r.0, r.1, r.2), r.3)
+    }
+    fn pow(self, exponent: f64) -> f64 {
+        self.powf(exponent)
+    }
+    fn floor_index(self) -> i32 {
+        self.clamp(-8_388_608.0, 8_388_608.0).floor() as i32
+    }
+    fn is_finite(self) -> bool {
+        f64::is_finite(self)
+    }
+}

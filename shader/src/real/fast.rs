@@ -1,0 +1,86 @@
+//! `f32` with the device's own division, root and power: faster, and not the same on every device.
+
+use super::single::{comparisons, records};
+use super::{Real, Scalar, V3};
+use crate::data;
+use core::ops::{Add, Mul, Neg, Sub};
+use glam::{UVec4, Vec3};
+#[cfg(target_arch = "spirv")]
+use spirv_std::num_traits::Float;
+
+/// A single number at the device's own speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(transparent)]
+pub struct Fast(pub f32);
+
+#[inline(always)]
+fn inner(x: Fast) -> f32 {
+    x.0
+}
+
+macro_rules! operator {
+    ($trait:ident, $name:ident, $op:tt) => {
+        impl $trait for Fast {
+            type Output = Fast;
+            #[inline(always)]
+            fn $name(self, other: Fast) -> Fast {
+                Fast(self.0 $op other.0)
+            }
+        }
+    };
+}
+operator!(Add, add, +);
+operator!(Sub, sub, -);
+operator!(Mul, mul, *);
+
+impl Neg for Fast {
+    type Output = Fast;
+    #[inline(always)]
+    fn neg(self) -> Fast {
+        Fast(-self.0)
+    }
+}
+
+impl Real for Fast {
+    type Mask = bool;
+    type Index = u32;
+    const ROUNDOFF: Fast = Fast(<f32 as Real>::ROUNDOFF);
+
+    comparisons!(Fast, inner);
+
+    #[inline(always)]
+    fn div(self, divisor: Fast) -> Fast {
+        Fast(self.0 / divisor.0)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> Fast {
+        Fast(self.0.sqrt())
+    }
+
+    #[inline(always)]
+    fn min(self, other: Fast) -> Fast {
+        Fast(self.0.min(other.0))
+    }
+
+    #[inline(always)]
+    fn max(self, other: Fast) -> Fast {
+        Fast(self.0.max(other.0))
+    }
+}
+
+impl Scalar for Fast {
+    records!(Fast, inner);
+
+    #[inline(always)]
+    fn pow(self, exponent: Fast) -> Fast {
+        // A device's power of zero may be NaN.
+        if exponent.0 == 0.0 {
+            Fast(1.0)
+        } else if self.0 <= 0.0 {
+            Fast(0.0)
+        } else {
+            Fast(self.0.powf(exponent.0))
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The one numeric trait of the kernels, and its machines.
+//!
+//! | machine | is | `div`, `sqrt`, `pow` |
+//! | --- | --- | --- |
+//! | `f32` | exact: a GPU lane or one ray on the CPU, the same bits on both | correctly rounded; stated error |
+//! | [`Fast`] | `f32` at the device's own speed | the device's |
+//! | `f64` | the reference picture, on the CPU | the standard library's |
+
+#[cfg(not(target_arch = "spirv"))]
+mod double;
+mod fast;
+mod power;
+mod single;
+pub mod soft;
+mod vector;
+
+pub use fast::Fast;
+pub use vector::V3;
+
+use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
+
+/// One truth value a lane.
+pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
+    /// Does it hold in any lane of this value?
+    fn any(self) -> bool;
+}
+
+impl Mask for bool {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self
+    }
+}
+
+/// A number, or one a lane: all that traversal and intersection ask of arithmetic.
+///
+/// Exact implementations use `+ - *`, comparisons and bit operations alone, since Vulkan promises
+/// correct rounding for nothing else; `div` and `sqrt` decide every operand themselves.
+pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
+    /// What a comparison returns.
+    type Mask: Mask;
+    /// An unsigned 32-bit integer a lane: ids and counts are no floats.
+    type Index: Copy;
+
+    /// Unit roundoff: half the distance from 1 to the next number.
+    const ROUNDOFF: Self;
+
+    /// The same number in every lane.
+    fn splat(x: f32) -> Self;
+    /// The quotient; zero where it would be subnormal.
+    fn div(self, divisor: Self) -> Self;
+    /// The square root; zero for a subnormal.
+    fn sqrt(self) -> Self;
+    /// `self < other`; false for NaN.
+    fn lt(self, other: Self) -> Self::Mask;
+    /// `self <= other`; false for NaN.
+    fn le(self, other: Self) -> Self::Mask;
+    /// Exact equality; zeros are equal.
+    fn same(self, other: Self) -> Self::Mask;
+    /// `a` where the mask holds, else `b`.
+    fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
+    /// Without its sign.
+    fn abs(self) -> Self;
+
+    /// The same integer in every lane.
+    fn index(i: u32) -> Self::Index;
+    /// Is the integer `i` less than the lane's?
+    fn precedes(i: u32, other: Self::Index) -> Self::Mask;
+    /// `a` where the mask holds, else `b`.
+    fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
+
+    /// The lesser, by compare and select; `other` if either is NaN.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::select(self.lt(other), self, other)
+    }
+
+    /// The greater, by compare and select; `other` if either is NaN.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::select(other.lt(self), self, other)
+    }
+
+    /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
+    /// become one is made zero at a named point, on every device alike.
+    #[inline(always)]
+    fn flush(self, least: f32) -> Self {
+        Self::select(self.abs().lt(Self::splat(least)), Self::splat(0.0), self)
+    }
+}
+
+/// A single lane, as shading takes it.
+pub trait Scalar: Real<Mask = bool, Index = u32> {
+    /// Three numbers and an integer in device memory.
+    type Record: Copy + Default;
+
+    /// Packs three numbers and an integer.
+    fn store(v: V3<Self>, word: u32) -> Self::Record;
+    /// What [`Scalar::store`] packed.
+    fn load(record: Self::Record) -> (V3<Self>, u32);
+    /// `self` to the power of `exponent`, both at least 0; zero below 2^-100.
+    fn pow(self, exponent: Self) -> Self;
+    /// The whole number at or below, for magnitudes up to 2^23 (clamped there).
+    fn floor_index(self) -> i32;
+    /// Neither NaN nor infinite?
+    fn is_finite(self) -> bool;
+}
+
+/// Products of two numbers of at least this magnitude, and sums of such products, are normal.
+pub const SMALL: f32 = 1.0 / (1u64 << 40) as f32;
+/// A coordinate or direction below this is zero.
+pub const TINY: f32 = 1.0 / (1u64 << 60) as f32;
+/// A contribution below this is zero: 2^-100.
+pub const FAINT: f32 = TINY * SMALL;

@@ -1,0 +1,134 @@
+//! `f32`: exact arithmetic, the same bits on every device.
+
+use super::{Real, Scalar, V3, power, soft};
+use crate::data;
+use glam::{UVec4, Vec3};
+
+/// The parts of [`Real`] and [`Scalar`] that exact and fast `f32` share: comparisons and bits.
+macro_rules! comparisons {
+    ($wrap:expr, $inner:expr) => {
+        #[inline(always)]
+        fn splat(x: f32) -> Self {
+            $wrap(x)
+        }
+        #[inline(always)]
+        fn lt(self, other: Self) -> bool {
+            $inner(self) < $inner(other)
+        }
+        #[inline(always)]
+        fn le(self, other: Self) -> bool {
+            $inner(self) <= $inner(other)
+        }
+        #[inline(always)]
+        fn same(self, other: Self) -> bool {
+            $inner(self) == $inner(other)
+        }
+        #[inline(always)]
+        fn select(mask: bool, a: Self, b: Self) -> Self {
+            if mask { a } else { b }
+        }
+        #[inline(always)]
+        fn abs(self) -> Self {
+            $wrap(f32::from_bits($inner(self).to_bits() & 0x7fff_ffff))
+        }
+        #[inline(always)]
+        fn index(i: u32) -> u32 {
+            i
+        }
+        #[inline(always)]
+        fn precedes(i: u32, other: u32) -> bool {
+            i < other
+        }
+        #[inline(always)]
+        fn select_index(mask: bool, a: u32, b: u32) -> u32 {
+            if mask { a } else { b }
+        }
+    };
+}
+pub(super) use comparisons;
+
+/// The parts of [`Scalar`] that exact and fast `f32` share.
+macro_rules! records {
+    ($wrap:expr, $inner:expr) => {
+        type Record = UVec4;
+
+        #[inline(always)]
+        fn store(v: V3<Self>, word: u32) -> UVec4 {
+            data::pack(Vec3::new($inner(v.x), $inner(v.y), $inner(v.z)), word)
+        }
+        #[inline(always)]
+        fn load(record: UVec4) -> (V3<Self>, u32) {
+            (V3::splat(data::numbers(record)), record.w)
+        }
+        #[inline(always)]
+        fn floor_index(self) -> i32 {
+            super::single::floor_index($inner(self))
+        }
+        #[inline(always)]
+        fn is_finite(self) -> bool {
+            ($inner(self).to_bits() >> 23) & 255 != 255
+        }
+    };
+}
+pub(super) use records;
+
+/// Truncation and a correction: both exact within the clamp.
+#[inline(always)]
+pub(super) fn floor_index(x: f32) -> i32 {
+    let bound = 8_388_608.0;
+    let x = if x < bound { x } else { bound };
+    let x = if x > -bound { x } else { -bound };
+    let whole = x as i32;
+    if (whole as f32) > x { whole - 1 } else { whole }
+}
+
+#[inline(always)]
+fn id(x: f32) -> f32 {
+    x
+}
+
+impl Real for f32 {
+    type Mask = bool;
+    type Index = u32;
+    const ROUNDOFF: f32 = 1.0 / (1 << 24) as f32;
+
+    comparisons!(id, id);
+
+    #[inline(always)]
+    fn div(self, divisor: f32) -> f32 {
+        #[cfg(target_arch = "spirv")]
+        return soft::div(self, divisor);
+        #[cfg(not(target_arch = "spirv"))]
+        soft::native::div(self, divisor)
+    }
+
+    #[inline(always)]
+    fn sqrt(self) -> f32 {
+        #[cfg(target_arch = "spirv")]
+        return soft::sqrt(self);
+        #[cfg(not(target_arch = "spirv"))]
+        soft::native::sqrt(self)
+    }
+}
+
+impl Scalar for f32 {
+    records!(id, id);
+
+    #[inline(always)]
+    fn pow(self, exponent: f32) -> f32 {
+        power::pow(self, exponent)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::floor_index;
+
+    #[test]
+    fn floor_goes_down_on_both_sides_of_zero() {
+        for (x, floor) in [(-1.0, -1), (-0.25, -1), (-0.0, 0), (0.75, 0), (1.0, 1), (1e30, 8_388_608)] {
+            assert_eq!(floor_index(x), floor, "{x}");
+        }
+        assert_eq!(floor_index(-1e30), -8_388_608);
+    }
+}

@@ -1,0 +1,237 @@
+//! Correctly rounded division and square root in integers, for devices that promise neither.
+//!
+//! The device's own quotient or root of the mantissas is an estimate within a few units in the last
+//! place; an exact integer remainder corrects it. Subnormal operands count as zero and subnormal
+//! results become zero. [`native`] gives the same bits from a CPU's instructions.
+
+const SIGN: u32 = 0x8000_0000;
+const INFINITY: u32 = 0x7f80_0000;
+const NAN: u32 = 0x7fc0_0000;
+const ONE: u32 = 0x3f80_0000;
+const BELOW_TWO: u32 = 0x3fff_ffff;
+const FRACTION: u32 = 0x007f_ffff;
+const HIDDEN: u32 = 0x0080_0000;
+
+#[inline(always)]
+fn exponent(bits: u32) -> u32 {
+    (bits >> 23) & 255
+}
+
+/// The estimate's mantissa with one more bit, forced into [1, 2).
+#[inline(always)]
+fn mantissa_of_estimate(estimate: f32) -> u32 {
+    let bits = estimate.to_bits();
+    let bits = if bits < ONE { ONE } else { bits };
+    let bits = if bits > BELOW_TWO { BELOW_TWO } else { bits };
+    ((bits & FRACTION) | HIDDEN) << 1
+}
+
+/// Rounds a 25-bit mantissa to nearest, ties to even; `rest` tells whether anything lies below it.
+#[inline(always)]
+fn round(mantissa: u32, rest: bool) -> u32 {
+    let half = mantissa & 1 == 1;
+    let m = mantissa >> 1;
+    if half && (rest || m & 1 == 1) { m + 1 } else { m }
+}
+
+/// Sign, biased exponent (out of range gives zero or infinity) and a mantissa of 2^23 to 2^24.
+#[inline(always)]
+fn assemble(sign: u32, biased: i32, mantissa: u32) -> u32 {
+    let carried = mantissa >> 24 == 1;
+    let biased = if carried { biased + 1 } else { biased };
+    if biased < 1 {
+        sign
+    } else if biased > 254 {
+        sign | INFINITY
+    } else {
+        sign | ((biased as u32) << 23) | (mantissa & FRACTION)
+    }
+}
+
+/// Quotient where an operand is zero, subnormal, infinite or NaN.
+#[inline(always)]
+fn special_quotient(a: u32, b: u32, sign: u32) -> u32 {
+    let (ea, eb) = (exponent(a), exponent(b));
+    let nan = (ea == 255 && a & FRACTION != 0) || (eb == 255 && b & FRACTION != 0);
+    if nan || (ea == 0 && eb == 0) || (ea == 255 && eb == 255) {
+        NAN
+    } else if ea == 0 || eb == 255 {
+        sign
+    } else {
+        sign | INFINITY
+    }
+}
+
+/// `a / b`, rounded to nearest even.
+#[inline(never)]
+pub fn div(a: f32, b: f32) -> f32 {
+    let (ua, ub) = (a.to_bits(), b.to_bits());
+    let (ea, eb) = (exponent(ua), exponent(ub));
+    let sign = (ua ^ ub) & SIGN;
+    let bits = if ea == 0 || eb == 0 || ea == 255 || eb == 255 {
+        special_quotient(ua, ub, sign)
+    } else {
+        let mb = (ub & FRACTION) | HIDDEN;
+        let ma = (ua & FRACTION) | HIDDEN;
+        let less = ma < mb;
+        let ma = if less { ma << 1 } else { ma };
+        let biased = ea as i32 - eb as i32 + if less { 126 } else { 127 };
+        let mut q = mantissa_of_estimate(ma as f32 / mb as f32);
+        // Only the low 32 bits: the true remainder of so close a quotient fits them.
+        let mut rest = (ma << 24).wrapping_sub(q.wrapping_mul(mb)) as i32;
+        while rest < 0 {
+            q -= 1;
+            rest += mb as i32;
+        }
+        while rest >= mb as i32 {
+            q += 1;
+            rest -= mb as i32;
+        }
+        // The one tie between the greatest subnormal and the least normal number rounds up to even.
+        let least = biased == 0 && q >= 0x01ff_fffe;
+        let q = if least { 1 << 24 } else { q };
+        assemble(sign, if least { 1 } else { biased }, round(q, rest != 0))
+    };
+    f32::from_bits(bits)
+}
+
+/// The square root, rounded to nearest even; NaN for a negative number, -0 for -0.
+#[inline(never)]
+pub fn sqrt(a: f32) -> f32 {
+    let ua = a.to_bits();
+    let ea = exponent(ua);
+    let bits = if ea == 0 {
+        ua & SIGN
+    } else if ea == 255 && ua & FRACTION != 0 || ua & SIGN != 0 {
+        NAN
+    } else if ea == 255 {
+        INFINITY
+    } else {
+        // The exponent's parity goes into the mantissa: v lies in [1, 4), its root in [1, 2).
+        let odd = (ea & 1) ^ 1;
+        let m = (ua & FRACTION) | HIDDEN;
+        let v = f32::from_bits(((127 + odd) << 23) | (ua & FRACTION));
+        let mut s = mantissa_of_estimate(root_estimate(v));
+        let mut rest = (m << (25 + odd)).wrapping_sub(s.wrapping_mul(s)) as i32;
+        while rest < 0 {
+            rest += 2 * s as i32 - 1;
+            s -= 1;
+        }
+        while rest > 2 * s as i32 {
+            rest -= 2 * s as i32 + 1;
+            s += 1;
+        }
+        let biased = (ea as i32 - 127 - odd as i32) / 2 + 127;
+        assemble(0, biased, round(s, rest != 0))
+    };
+    f32::from_bits(bits)
+}
+
+#[cfg(target_arch = "spirv")]
+#[inline(always)]
+fn root_estimate(v: f32) -> f32 {
+    spirv_std::num_traits::Float::sqrt(v)
+}
+
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn root_estimate(v: f32) -> f32 {
+    v.sqrt()
+}
+
+/// The same functions from a CPU's correctly rounded instructions.
+#[cfg(not(target_arch = "spirv"))]
+pub mod native {
+    /// Subnormals become zeros of their sign.
+    #[inline(always)]
+    fn flush(x: f32) -> f32 {
+        if x.abs() < f32::MIN_POSITIVE { f32::from_bits(x.to_bits() & super::SIGN) } else { x }
+    }
+
+    /// See [`super::div`].
+    #[inline(always)]
+    pub fn div(a: f32, b: f32) -> f32 {
+        flush(flush(a) / flush(b))
+    }
+
+    /// See [`super::sqrt`].
+    #[inline(always)]
+    pub fn sqrt(a: f32) -> f32 {
+        flush(a).sqrt()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{div, native, sqrt};
+    use proptest::prelude::*;
+
+    /// Operands whose quotients lie on ties, at the range's ends, and every special.
+    const CORNERS: [u32; 24] = [
+        0,
+        1,
+        0x007f_ffff,
+        0x0080_0000,
+        0x0080_0001,
+        0x00ff_ffff,
+        0x3380_0000,
+        0x3f00_0000,
+        0x3f7f_ffff,
+        0x3f80_0000,
+        0x3f80_0001,
+        0x3fff_ffff,
+        0x4000_0000,
+        0x4040_0000,
+        0x4b00_0001,
+        0x4b7f_ffff,
+        0x7eff_ffff,
+        0x7f00_0000,
+        0x7f7f_fffe,
+        0x7f7f_ffff,
+        0x7f80_0000,
+        0x7f80_0001,
+        0x7fc0_0000,
+        0x7fff_ffff,
+    ];
+
+    fn agree(soft: f32, hard: f32) -> bool {
+        soft.to_bits() == hard.to_bits() || soft.is_nan() && hard.is_nan()
+    }
+
+    #[test]
+    fn quotients_of_corners_are_the_processors() {
+        for a in CORNERS.iter().flat_map(|&a| [a, a | super::SIGN]) {
+            for b in CORNERS.iter().flat_map(|&b| [b, b | super::SIGN]) {
+                let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+                assert!(agree(div(x, y), native::div(x, y)), "{a:08x} / {b:08x}: {:?}", div(x, y));
+            }
+        }
+    }
+
+    #[test]
+    fn roots_of_corners_are_the_processors() {
+        for a in CORNERS.iter().flat_map(|&a| [a, a | super::SIGN]) {
+            let x = f32::from_bits(a);
+            assert!(agree(sqrt(x), native::sqrt(x)), "sqrt {a:08x}: {:?}", sqrt(x));
+        }
+    }
+
+    /// Every mantissa of both parities: the whole of the root's rounding.
+    #[test]
+    fn roots_of_all_mantissas_are_the_processors() {
+        for bits in 0x3f80_0000..0x4080_0000u32 {
+            let x = f32::from_bits(bits);
+            assert_eq!(sqrt(x).to_bits(), x.sqrt().to_bits(), "{bits:08x}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(1 << 20))]
+
+        #[test]
+        fn quotients_are_the_processors(a: u32, b: u32) {
+            let (x, y) = (f32::from_bits(a), f32::from_bits(b));
+            prop_assert!(agree(div(x, y), native::div(x, y)));
+        }
+    }
+}

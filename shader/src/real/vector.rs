@@ -1,0 +1,141 @@
+//! Three numbers, with every sum from left to right.
+
+use super::Real;
+use core::ops::{Add, Mul, Neg, Sub};
+use glam::Vec3;
+
+/// A vector, point or linear RGB colour over any [`Real`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct V3<R> {
+    /// First component, or red.
+    pub x: R,
+    /// Second component, or green.
+    pub y: R,
+    /// Third component, or blue.
+    pub z: R,
+}
+
+impl<R: Real> V3<R> {
+    /// A vector of three components.
+    #[inline(always)]
+    pub fn new(x: R, y: R, z: R) -> Self {
+        V3 { x, y, z }
+    }
+
+    /// The same vector in every lane.
+    #[inline(always)]
+    pub fn splat(v: Vec3) -> Self {
+        V3::new(R::splat(v.x), R::splat(v.y), R::splat(v.z))
+    }
+
+    /// All components zero.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        V3::splat(Vec3::ZERO)
+    }
+
+    /// `x*x' + y*y' + z*z'`, added in this order.
+    #[inline(always)]
+    pub fn dot(self, other: Self) -> R {
+        self.x * other.x + self.y * other.y + self.z * other.z
+    }
+
+    /// The right-handed cross product.
+    #[inline(always)]
+    pub fn cross(self, other: Self) -> Self {
+        V3::new(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+    }
+
+    /// Component by component.
+    #[inline(always)]
+    pub fn times(self, other: Self) -> Self {
+        V3::new(self.x * other.x, self.y * other.y, self.z * other.z)
+    }
+
+    /// Applies a function to every component.
+    #[inline(always)]
+    pub fn map(self, f: impl Fn(R) -> R) -> Self {
+        V3::new(f(self.x), f(self.y), f(self.z))
+    }
+
+    /// Magnitudes.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        self.map(R::abs)
+    }
+
+    /// Lesser components.
+    #[inline(always)]
+    pub fn min(self, other: Self) -> Self {
+        V3::new(self.x.min(other.x), self.y.min(other.y), self.z.min(other.z))
+    }
+
+    /// Greater components.
+    #[inline(always)]
+    pub fn max(self, other: Self) -> Self {
+        V3::new(self.x.max(other.x), self.y.max(other.y), self.z.max(other.z))
+    }
+
+    /// The greatest component.
+    #[inline(always)]
+    pub fn greatest(self) -> R {
+        self.x.max(self.y).max(self.z)
+    }
+
+    /// `a` where the mask holds, else `b`.
+    #[inline(always)]
+    pub fn select(mask: R::Mask, a: Self, b: Self) -> Self {
+        V3::new(R::select(mask, a.x, b.x), R::select(mask, a.y, b.y), R::select(mask, a.z, b.z))
+    }
+
+    /// Unit vector and length; a zero vector gives itself and zero.
+    ///
+    /// The greatest component is divided out first, so that no square over- or underflows.
+    #[inline(always)]
+    pub fn normalised(self) -> (Self, R) {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let scale = self.abs().greatest();
+        let none = scale.same(zero);
+        let inverse = one.div(R::select(none, one, scale));
+        let v = (self * inverse).map(|c| c.flush(super::SMALL));
+        let length = v.dot(v).sqrt();
+        let shrink = one.div(R::select(none, one, length));
+        ((v * shrink).map(|c| c.flush(super::TINY)), length * scale)
+    }
+}
+
+impl<R: Real> Add for V3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        V3::new(self.x + other.x, self.y + other.y, self.z + other.z)
+    }
+}
+
+impl<R: Real> Sub for V3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        V3::new(self.x - other.x, self.y - other.y, self.z - other.z)
+    }
+}
+
+impl<R: Real> Mul<R> for V3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, factor: R) -> Self {
+        V3::new(self.x * factor, self.y * factor, self.z * factor)
+    }
+}
+
+impl<R: Real> Neg for V3<R> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        V3::new(-self.x, -self.y, -self.z)
+    }
+}

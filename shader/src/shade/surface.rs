@@ -1,0 +1,139 @@
+//! What a surface is made of at a place, and what lies behind everything.
+
+use super::Contact;
+use crate::buffer::read;
+use crate::data::{Features, Frame, Material, Triangle, numbers};
+use crate::real::{Real, Scalar, V3};
+use crate::scene::Scene;
+
+/// A material at a contact, with the normal that light sees.
+#[derive(Clone, Copy)]
+pub struct Surface<R: Real> {
+    /// Unit shading normal on the viewer's side: the vertices' normals interpolated, or the triangle's.
+    pub normal: V3<R>,
+    /// Answer to ambient light, that light included.
+    pub ambient: V3<R>,
+    /// Lambert's colour, the checker's choice made.
+    pub diffuse: V3<R>,
+    /// Phong's colour.
+    pub specular: V3<R>,
+    /// Phong's exponent.
+    pub shininess: R,
+    /// Mirror colour of an opaque surface.
+    pub reflection: V3<R>,
+    /// Colour of what passes.
+    pub transmission: V3<R>,
+    /// Index of refraction, 0 for an opaque surface.
+    pub ior: R,
+}
+
+impl<R: Scalar> Surface<R> {
+    /// The surface of triangle `slot` at a contact with weights `u` and `v`, seen along `direction`.
+    #[inline(always)]
+    pub fn new(
+        scene: &Scene<'_>,
+        slot: u32,
+        triangle: &Triangle,
+        (u, v): (R, R),
+        direction: V3<R>,
+        contact: &Contact<R>,
+    ) -> Self {
+        let material: Material = read(scene.materials, triangle.material());
+        let colour = |record| V3::<R>::splat(numbers(record));
+        let number = |bits| R::splat(f32::from_bits(bits));
+        let normal = if scene.features.has(Features::SMOOTH) {
+            interpolated(scene, slot, u, v, direction, contact)
+        } else {
+            contact.normal
+        };
+        let other = scene.features.has(Features::CHECKER)
+            && material.checker.w != 0
+            && odd_cell(contact, number(material.checker.w));
+        Surface {
+            normal,
+            ambient: colour(material.ambient),
+            diffuse: if other { colour(material.checker) } else { colour(material.diffuse) },
+            specular: colour(material.specular),
+            shininess: number(material.specular.w),
+            reflection: colour(material.reflection),
+            transmission: colour(material.transmission),
+            ior: number(material.reflection.w),
+        }
+    }
+}
+
+/// The vertex normals' weighted sum, turned to the viewer's side of the triangle. Where that leaves
+/// no direction, or the normal turns away from the viewer, the triangle's own normal stands in.
+#[inline(always)]
+fn interpolated<R: Scalar>(scene: &Scene<'_>, slot: u32, u: R, v: R, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
+    let normals = read(scene.normals, slot);
+    let [a, b, c] = [normals.a, normals.b, normals.c].map(|n| V3::<R>::splat(numbers(n)));
+    let sum = a * (R::splat(1.0) - u - v) + b * u + c * v;
+    let (unit, length) = sum.normalised();
+    let unit = V3::select(contact.faces(unit), unit, -unit);
+    let lost = length.same(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
+    V3::select(lost, contact.normal, unit)
+}
+
+/// Cells of a checkerboard over the two axes that the surface faces least.
+#[inline(always)]
+fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
+    let n = contact.normal.abs();
+    let p = contact.position;
+    let (a, b) = if n.y.le(n.x) && n.z.le(n.x) {
+        (p.y, p.z)
+    } else if n.z.le(n.y) {
+        (p.x, p.z)
+    } else {
+        (p.x, p.y)
+    };
+    ((a * cells).floor_index() ^ (b * cells).floor_index()) & 1 != 0
+}
+
+/// What a ray sees that leaves the scene: one colour, or a gradient over the height of its direction.
+#[inline(always)]
+pub fn background<R: Scalar>(features: Features, frame: &Frame, direction: V3<R>) -> V3<R> {
+    let bottom = V3::splat(numbers(frame.bottom));
+    if !features.has(Features::GRADIENT) {
+        return bottom;
+    }
+    let height = direction.y.max(R::splat(0.0)).min(R::splat(1.0));
+    bottom * (R::splat(1.0) - height) + V3::splat(numbers(frame.top)) * height
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::pack;
+    use bytemuck::Zeroable;
+    use glam::Vec3;
+
+    fn contact(normal: Vec3, position: [f32; 3]) -> Contact<f32> {
+        Contact { position: V3::splat(position.into()), error: V3::zero(), normal: V3::splat(normal), front: true }
+    }
+
+    #[test]
+    fn checkers_alternate_along_the_surface_and_not_across_it() {
+        for (normal, a, b) in [(Vec3::X, 1, 2), (Vec3::Y, 0, 2), (-Vec3::Z, 0, 1)] {
+            let across = 3 - a - b;
+            let odd = |i: f32, j: f32, k: f32| {
+                let mut p = [0.0; 3];
+                (p[a], p[b], p[across]) = (i, j, k);
+                odd_cell(&contact(normal, p), 4.0)
+            };
+            assert!(!odd(0.1, 0.1, 0.0) && odd(0.3, 0.1, 0.0) && odd(0.1, 0.3, 0.0) && !odd(0.3, 0.3, 0.0));
+            assert!(odd(-0.1, 0.1, 0.0), "the cell below zero is another cell");
+            assert_eq!(odd(0.1, 0.1, 1e-7), odd(0.1, 0.1, -1e-7), "a plane through zero has no noise");
+        }
+    }
+
+    #[test]
+    fn a_gradient_runs_from_the_horizon_up() {
+        let frame = Frame { bottom: pack(Vec3::X, 0), top: pack(Vec3::Y, 0), ..Frame::zeroed() };
+        let seen = |y: f64, features| background(Features(features), &frame, V3::new(0.0, y, 0.0));
+        let red = V3::splat(Vec3::X);
+        assert_eq!(seen(-0.5, Features::GRADIENT), red);
+        assert_eq!(seen(0.25, Features::GRADIENT), V3::new(0.75, 0.25, 0.0));
+        assert_eq!(seen(1.0, 0), red);
+    }
+}

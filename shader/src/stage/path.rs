@@ -1,0 +1,55 @@
+//! The ray a slot follows, and those it will follow later.
+
+use crate::buffer::{read, write};
+use crate::camera;
+use crate::data::Features;
+use crate::real::{Real, Scalar, V3};
+use crate::scene::Scene;
+
+/// Records a path takes in device memory.
+pub const RECORDS: u32 = 3;
+
+/// A ray with its share of the pixel. A slot's memory holds the ray in hand at level 0 and, at the
+/// levels above, refracted rays that wait for the reflected ones before them.
+#[derive(Clone, Copy)]
+pub struct Path<R: Real> {
+    /// Where it starts.
+    pub origin: V3<R>,
+    /// Its unit direction.
+    pub direction: V3<R>,
+    /// What of its light reaches the pixel, linear RGB.
+    pub weight: V3<R>,
+    /// How often it was reflected or refracted.
+    pub bounces: u32,
+    /// Rays that wait in this slot.
+    pub pending: u32,
+}
+
+impl<R: Scalar> Path<R> {
+    /// The slot's ray: the camera's in the first wave, which keeps none in memory.
+    #[inline(always)]
+    pub fn current(scene: &Scene<'_>, slot: u32, paths: &[R::Record]) -> Self {
+        if scene.features.has(Features::SECONDARY) {
+            return Self::load(scene.slots(), slot, 0, paths);
+        }
+        let (origin, direction) = camera::ray(scene.frame, camera::pixel(scene.frame, slot));
+        Path { origin, direction, weight: V3::splat(glam::Vec3::ONE), bounces: 0, pending: 0 }
+    }
+
+    /// The path at a level of a slot. Levels lie apart, so that neighbouring slots load neighbours.
+    #[inline(always)]
+    pub fn load(slots: u32, slot: u32, level: u32, paths: &[R::Record]) -> Self {
+        let at = |k| R::load(read(paths, (level * RECORDS + k) * slots + slot));
+        let ((origin, bounces), (direction, pending), (weight, _)) = (at(0), at(1), at(2));
+        Path { origin, direction, weight, bounces, pending }
+    }
+
+    /// Keeps the path at a level of a slot.
+    #[inline(always)]
+    pub fn store(&self, slots: u32, slot: u32, level: u32, paths: &mut [R::Record]) {
+        let at = |k| (level * RECORDS + k) * slots + slot;
+        write(paths, at(0), R::store(self.origin, self.bounces));
+        write(paths, at(1), R::store(self.direction, self.pending));
+        write(paths, at(2), R::store(self.weight, 0));
+    }
+}

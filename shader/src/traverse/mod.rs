@@ -1,0 +1,41 @@
+//! Ways through the hierarchy. A method is one small file over the shared steps of [`step`].
+//!
+//! Every method finds the same hit: the least (t, primitive) among the triangles whose own box the
+//! ray meets, with t clamped into that box. An ancestor's box is entered no later than a triangle's
+//! own (the box test is monotone), so no order of visits can cull the winner.
+
+mod if_if;
+pub mod step;
+
+pub use if_if::IfIf;
+
+use crate::ray::{Hit, Ray};
+use crate::real::Scalar;
+use crate::scene::Scene;
+
+/// What a ray asks for.
+pub trait Query {
+    /// Is any hit enough, and do transparent triangles not count? (Shadow rays, thesis 3.2.)
+    const ANY: bool;
+}
+
+/// The closest hit.
+pub struct Closest;
+impl Query for Closest {
+    const ANY: bool = false;
+}
+
+/// Whether anything opaque lies before the limit; [`step::occluded`] tells.
+pub struct Occlusion;
+impl Query for Occlusion {
+    const ANY: bool = true;
+}
+
+/// A way through the hierarchy, one ray a lane.
+pub trait Method {
+    /// Follows a ray from the root and leaves what it finds in `hit`, which holds its limit before.
+    fn traverse<Q: Query, R: Scalar>(scene: &Scene<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+//! The steps that every method is made of: two boxes, or one triangle.
+
+use super::Query;
+use crate::buffer::read;
+use crate::data::{Features, NodePair, NodeRef, Triangle, numbers};
+use crate::intersect::{Crossing, Span, cross, slab};
+use crate::ray::{Hit, Ray};
+use crate::real::{Mask, Real, V3};
+use crate::scene::Scene;
+
+/// A limit that no box lies before: an any-hit ray that has found its triangle.
+const FOUND: f32 = -1.0;
+
+/// Has an any-hit ray found something opaque?
+#[inline(always)]
+pub fn occluded<R: Real>(hit: &Hit<R>) -> R::Mask {
+    hit.t.lt(R::splat(0.0))
+}
+
+/// Which children of a pair a ray meets before its limit.
+#[derive(Clone, Copy)]
+pub struct Wanted<R: Real> {
+    /// Is the left box met?
+    pub left: R::Mask,
+    /// Is the right box met?
+    pub right: R::Mask,
+    /// Is the right box the nearer?
+    pub right_first: R::Mask,
+}
+
+/// Tests both boxes of a pair.
+#[inline(always)]
+pub fn children<R: Real>(pair: &NodePair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
+    let span = |least, greatest| slab(V3::splat(numbers(least)), V3::splat(numbers(greatest)), ray);
+    let meets = |s: Span<R>| s.near.le(s.far) & s.near.le(hit.t);
+    let left = span(pair.left_min, pair.left_max);
+    let right = span(pair.right_min, pair.right_max);
+    Wanted { left: meets(left), right: meets(right), right_first: right.near.lt(left.near) }
+}
+
+/// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
+#[inline(always)]
+pub fn triangle<Q: Query, R: Real>(scene: &Scene<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
+    let triangle = read(scene.triangles, leaf.index());
+    let [a, b, c] = triangle.vertices().map(|p| V3::splat(p) - ray.origin);
+    let crossing = cross(a, b, c, ray.shear, ray.shear.cycle(ray.inverse).z);
+    if crossing.any() && counts::<Q>(scene.features, &triangle) {
+        keep::<Q, R>(scene.features, &triangle, leaf.index(), &crossing, ray, hit);
+    }
+}
+
+/// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
+#[inline(always)]
+fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
+    !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
+}
+
+/// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
+#[inline(always)]
+fn keep<Q: Query, R: Real>(
+    features: Features,
+    triangle: &Triangle,
+    slot: u32,
+    crossing: &Crossing<R>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let mut inside = crossing.inside;
+    if features.has(Features::CULLING) && !Q::ANY {
+        inside = inside & crossing.front;
+    }
+    let (least, greatest) = triangle.bounds();
+    let own = slab(V3::splat(least), V3::splat(greatest), ray);
+    // Lanes outside divide by one, so that none divides by zero.
+    let area = R::select(inside, crossing.area, R::splat(1.0));
+    let t = crossing.depth.div(area).max(own.near).min(own.far);
+    let inside = inside & own.near.le(own.far);
+    if Q::ANY {
+        hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
+        return;
+    }
+    let primitive = triangle.primitive();
+    let tie = t.same(hit.t) & R::precedes(primitive, hit.primitive);
+    let better = inside & (t.lt(hit.t) | tie);
+    if better.any() {
+        hit.t = R::select(better, t, hit.t);
+        hit.u = R::select(better, crossing.u.div(area), hit.u);
+        hit.v = R::select(better, crossing.v.div(area), hit.v);
+        hit.slot = R::select_index(better, R::index(slot), hit.slot);
+        hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
+    }
+}

@@ -1,0 +1,162 @@
+//! The same hit as brute force, on triangles that tie, overlap and degenerate.
+
+use super::step::{self, occluded};
+use super::{Closest, IfIf, Method, Occlusion, Query};
+use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle};
+use crate::ray::{Hit, Ray};
+use crate::real::{Fast, Scalar, V3};
+use crate::scene::Scene;
+use bytemuck::Zeroable;
+use glam::Vec3;
+use proptest::prelude::*;
+
+/// A hierarchy by halves of the list: bad trees find the same hits.
+fn build(triangles: &[Triangle]) -> Vec<NodePair> {
+    fn child(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> (Vec3, Vec3, NodeRef) {
+        let (least, greatest) = triangles
+            .iter()
+            .map(Triangle::bounds)
+            .reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
+            .expect("a child has triangles");
+        let count = triangles.len() as u32;
+        let node =
+            if count <= MAX_LEAF { NodeRef::leaf(first, count) } else { NodeRef::inner(pair(triangles, first, nodes)) };
+        (least, greatest, node)
+    }
+    fn pair(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> u32 {
+        let place = nodes.len();
+        nodes.push(NodePair::zeroed());
+        let (left, right) = triangles.split_at(triangles.len() / 2);
+        let left_child = child(left, first, nodes);
+        let right_child = child(right, first + left.len() as u32, nodes);
+        nodes[place] = NodePair::new(left_child, right_child);
+        place as u32
+    }
+    let mut nodes = Vec::new();
+    pair(triangles, 0, &mut nodes);
+    nodes
+}
+
+struct World {
+    triangles: Vec<Triangle>,
+    nodes: Vec<NodePair>,
+    frame: Frame,
+    features: Features,
+}
+
+impl World {
+    fn new(triangles: Vec<Triangle>, features: u32) -> Self {
+        let nodes = build(&triangles);
+        World { triangles, nodes, frame: Frame::zeroed(), features: Features(features) }
+    }
+
+    fn scene(&self) -> Scene<'_> {
+        Scene {
+            frame: &self.frame,
+            features: self.features,
+            nodes: &self.nodes,
+            triangles: &self.triangles,
+            normals: &[],
+            materials: &[],
+            lights: &[],
+        }
+    }
+
+    fn trace<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
+        let mut hit = Hit::none(R::splat(limit));
+        IfIf::traverse::<Q, R>(&self.scene(), ray, &mut hit);
+        hit
+    }
+
+    fn brute_force<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
+        let mut hit = Hit::none(R::splat(limit));
+        for slot in (0..self.triangles.len() as u32).rev() {
+            step::triangle::<Q, R>(&self.scene(), NodeRef::leaf(slot, 1), ray, &mut hit);
+        }
+        hit
+    }
+}
+
+fn ray<R: Scalar>(origin: [f32; 3], direction: [f32; 3]) -> Ray<R> {
+    Ray::new(V3::splat(Vec3::from(origin)), V3::splat(Vec3::from(direction)))
+}
+
+/// Coordinates on a coarse grid, so that vertices, edges, planes and whole triangles coincide.
+fn grid() -> impl Strategy<Value = [f32; 3]> {
+    prop::array::uniform3((-4i8..=4).prop_map(|k| f32::from(k) / 8.0))
+}
+
+fn soup() -> impl Strategy<Value = Vec<Triangle>> {
+    prop::collection::vec((prop::array::uniform3(grid()), any::<bool>()), 2..80).prop_map(|soup| {
+        let count = soup.len() as u32;
+        soup.iter()
+            .zip(0..)
+            .map(|((t, clear), i)| {
+                Triangle::new(t.map(Vec3::from), (i * 37) % count.next_power_of_two(), 0, u32::from(*clear))
+            })
+            .collect()
+    })
+}
+
+fn check<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
+    let ray = ray::<R>(origin, direction);
+    for limit in [f32::MAX, 0.5] {
+        let (got, want) = (world.trace::<Closest, R>(&ray, limit), world.brute_force::<Closest, R>(&ray, limit));
+        assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive));
+        let (got, want) = (world.trace::<Occlusion, R>(&ray, limit), world.brute_force::<Occlusion, R>(&ray, limit));
+        assert_eq!(occluded(&got), occluded(&want));
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+    #[test]
+    fn finds_what_brute_force_finds(
+        triangles in soup(), origin in grid(), target in grid(), nudge in prop::array::uniform3(-1e-6f32..1e-6),
+        culling: bool,
+    ) {
+        let direction: [f32; 3] = std::array::from_fn(|k| target[k] - origin[k]);
+        prop_assume!(direction != [0.0; 3]);
+        let features = Features::REFRACTION | if culling { Features::CULLING } else { 0 };
+        let world = World::new(triangles, features);
+        let beside: [f32; 3] = std::array::from_fn(|k| direction[k] + nudge[k]);
+        for direction in [direction, beside] {
+            check::<f32>(&world, origin, direction);
+            check::<Fast>(&world, origin, direction);
+            check::<f64>(&world, origin, direction);
+        }
+    }
+}
+
+#[test]
+fn ties_go_to_the_least_primitive_in_any_leaf_order() {
+    let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
+    for order in [[7u32, 3, 9, 5, 8, 6, 4], [3, 4, 5, 6, 7, 8, 9], [9, 8, 7, 6, 5, 4, 3]] {
+        let world = World::new(order.iter().map(|&id| Triangle::new(t, id, 0, 0)).collect(), 0);
+        let hit = world.trace::<Closest, f32>(&ray([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]), f32::MAX);
+        assert_eq!((hit.primitive, hit.t), (3, 0.5));
+    }
+}
+
+#[test]
+fn culling_hides_backs_from_sight_but_not_from_light() {
+    let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
+    let world = World::new(vec![Triangle::new(t, 0, 0, 0), Triangle::new(t, 1, 0, 0)], Features::CULLING);
+    let from = |z: f32| ray::<f32>([0.0, 0.0, z], [0.0, 0.0, -z]);
+    assert_eq!(world.trace::<Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
+    assert_eq!(world.trace::<Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
+    assert!(occluded(&world.trace::<Occlusion, f32>(&from(-0.5), f32::MAX)));
+}
+
+#[test]
+fn light_passes_transparent_triangles_only() {
+    let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
+    let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
+    for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
+        let world =
+            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Features::REFRACTION);
+        assert_eq!(occluded(&world.trace::<Occlusion, f32>(&down, f32::MAX)), blocked);
+        assert!(!occluded(&world.trace::<Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
+    }
+}

@@ -1,4 +1,5 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
 pub mod error;
+pub mod film;
 pub mod scene;

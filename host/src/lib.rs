@@ -2,4 +2,6 @@
 
 pub mod error;
 pub mod film;
+pub mod image;
+pub mod output;
 pub mod scene;

@@ -1,5 +1,6 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+pub mod compare;
 pub mod error;
 pub mod film;
 pub mod image;

@@ -1,4 +1,8 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+pub mod compare;
 pub mod error;
+pub mod film;
+pub mod image;
+pub mod output;
 pub mod scene;

@@ -1,0 +1,158 @@
+//! The finished picture: linear light, before any encoding for a screen or a file.
+
+use crate::error::{Error, Result};
+
+/// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
+#[derive(Debug, Clone)]
+pub struct Film {
+    /// Width in pixels, 1 to [`Film::MAX_SIDE`].
+    pub width: u32,
+    /// Height in pixels, 1 to [`Film::MAX_SIDE`].
+    pub height: u32,
+    /// `width * height` pixels, row-major from the top left.
+    pub pixels: Vec<[f32; 3]>,
+}
+
+impl Film {
+    /// The longest side in pixels: Radiance HDR has run lengths for no longer line.
+    pub const MAX_SIDE: u32 = 32_767;
+
+    /// The most pixels, so that a film is at most 1.5 GiB and every file of one can be read again.
+    pub const MAX_PIXELS: u64 = 1 << 27;
+
+    /// A black film.
+    ///
+    /// # Errors
+    /// A size that [`Film::check_size`] refuses, or too little memory.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        let count = Self::check_size(width, height)?;
+        let mut pixels = Vec::new();
+        pixels.try_reserve_exact(count).map_err(|_| {
+            Error::new(format!(
+                "too little memory for an image of {width}x{height} pixels; choose a smaller size"
+            ))
+        })?;
+        pixels.resize(count, [0.0; 3]);
+        Ok(Film {
+            width,
+            height,
+            pixels,
+        })
+    }
+
+    /// A film of given pixels, row-major from the top left.
+    ///
+    /// # Errors
+    /// As [`Film::validate`].
+    pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
+        let film = Film {
+            width,
+            height,
+            pixels,
+        };
+        film.validate()?;
+        Ok(film)
+    }
+
+    /// The number of pixels of a size, if a film may have it.
+    ///
+    /// # Errors
+    /// A side of 0 or above [`Film::MAX_SIDE`], or more than [`Film::MAX_PIXELS`] pixels.
+    pub fn check_size(width: u32, height: u32) -> Result<usize> {
+        let pixels = u64::from(width) * u64::from(height);
+        if pixels == 0 {
+            return Err(Error::new(format!(
+                "an image of {width}x{height} pixels is empty; both sides must be at least 1"
+            )));
+        }
+        if width.max(height) > Self::MAX_SIDE || pixels > Self::MAX_PIXELS {
+            return Err(Error::new(format!(
+                "an image of {width}x{height} pixels is too large; a side is at most {} and \
+                 all at most {} pixels",
+                Self::MAX_SIDE,
+                Self::MAX_PIXELS
+            )));
+        }
+        Ok(pixels as usize)
+    }
+
+    /// Checks what the public fields cannot promise.
+    ///
+    /// # Errors
+    /// A size that [`Film::check_size`] refuses, or another number of pixels than it asks for.
+    pub fn validate(&self) -> Result<()> {
+        let count = Self::check_size(self.width, self.height)?;
+        if self.pixels.len() != count {
+            return Err(Error::new(format!(
+                "a film of {}x{} pixels has {} of them",
+                self.width,
+                self.height,
+                self.pixels.len()
+            )));
+        }
+        Ok(())
+    }
+
+    /// The pixel in column `x` and row `y` from the top left; `None` outside.
+    pub fn pixel(&self, x: u32, y: u32) -> Option<[f32; 3]> {
+        if x >= self.width {
+            return None;
+        }
+        let index = y as usize * self.width as usize + x as usize;
+        self.pixels.get(index).copied()
+    }
+
+    /// Whether size and every bit agree: 0 and -0 differ, equal NaNs do not.
+    pub fn bits_equal(&self, other: &Film) -> bool {
+        self.width == other.width
+            && self.height == other.height
+            && self.pixels.len() == other.pixels.len()
+            && self
+                .pixels
+                .iter()
+                .zip(&other.pixels)
+                .all(|(&a, &b)| !bits_differ(a, b))
+    }
+}
+
+/// Whether two pixels differ in any bit.
+pub fn bits_differ(a: [f32; 3], b: [f32; 3]) -> bool {
+    a.map(f32::to_bits) != b.map(f32::to_bits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn refuses_empty_and_huge_sizes() {
+        for (width, height) in [(0, 1), (1, 0), (Film::MAX_SIDE + 1, 1), (32_767, 32_767)] {
+            assert!(Film::new(width, height).is_err(), "{width}x{height}");
+        }
+        assert!(Film::new(u32::MAX, u32::MAX).is_err());
+        assert_eq!(Film::new(3, 2).unwrap().pixels.len(), 6);
+    }
+
+    #[test]
+    fn refuses_a_wrong_number_of_pixels() {
+        assert!(Film::from_pixels(2, 2, vec![[0.0; 3]; 3]).is_err());
+        assert!(Film::from_pixels(2, 2, vec![[0.0; 3]; 4]).is_ok());
+    }
+
+    #[test]
+    fn pixels_are_row_major() {
+        let pixels = (0..6).map(|i| [i as f32; 3]).collect();
+        let film = Film::from_pixels(3, 2, pixels).unwrap();
+        assert_eq!(film.pixel(2, 1), Some([5.0; 3]));
+        assert_eq!(film.pixel(3, 0), None);
+        assert_eq!(film.pixel(0, 2), None);
+    }
+
+    #[test]
+    fn equality_is_of_bits() {
+        let film = |value| Film::from_pixels(1, 1, vec![[value; 3]]).unwrap();
+        assert!(film(f32::NAN).bits_equal(&film(f32::NAN)));
+        assert!(!film(0.0).bits_equal(&film(-0.0)));
+        assert!(!film(0.0).bits_equal(&Film::new(1, 2).unwrap()));
+    }
+}

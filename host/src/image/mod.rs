@@ -1,0 +1,135 @@
+//! Image files: films encoded for a screen or kept as they are, and read again.
+//!
+//! | Format | Values | Loses |
+//! |---|---|---|
+//! | PNG | sRGB, 8 or 16 bit | what is outside \[0, 1\], and rounds |
+//! | OpenEXR | linear, 32-bit floats | nothing at an exposure of 0 |
+//! | Radiance HDR | linear, 8 bit and a shared exponent | negative values, and about 1 % |
+
+mod encode;
+mod read;
+mod transfer;
+
+use std::fmt;
+use std::path::Path;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::output::Destination;
+
+pub use encode::encode;
+pub use read::{decode, read};
+pub use transfer::{linear_to_srgb, srgb_to_linear};
+
+/// The image formats that are written and read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Portable Network Graphics, `.png`.
+    Png,
+    /// OpenEXR, `.exr`.
+    Exr,
+    /// Radiance RGBE, `.hdr`.
+    Hdr,
+}
+
+impl Format {
+    /// The format that a file's extension names, in upper or lower case.
+    ///
+    /// # Errors
+    /// No extension or another one.
+    pub fn from_path(path: &Path) -> Result<Self> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        match extension.to_ascii_lowercase().as_str() {
+            "png" => Ok(Format::Png),
+            "exr" => Ok(Format::Exr),
+            "hdr" => Ok(Format::Hdr),
+            "" => Err(Error::file(
+                path,
+                "no extension says which image format; end the name in .png, .exr or .hdr",
+            )),
+            other => Err(Error::file(
+                path,
+                format!("unknown image format \"{other}\"; use .png, .exr or .hdr"),
+            )),
+        }
+    }
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        out.write_str(match self {
+            Format::Png => "PNG",
+            Format::Exr => "EXR",
+            Format::Hdr => "HDR",
+        })
+    }
+}
+
+/// Bits of a PNG's channel; the other formats have their own.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum BitDepth {
+    /// 256 steps.
+    #[default]
+    Eight,
+    /// 65,536 steps.
+    Sixteen,
+}
+
+impl BitDepth {
+    /// The depth of 8 or 16 bits.
+    ///
+    /// # Errors
+    /// Any other number.
+    pub fn from_bits(bits: u32) -> Result<Self> {
+        match bits {
+            8 => Ok(BitDepth::Eight),
+            16 => Ok(BitDepth::Sixteen),
+            _ => Err(Error::new(format!(
+                "a PNG of {bits} bits a channel cannot be written; choose 8 or 16"
+            ))),
+        }
+    }
+}
+
+/// How a film becomes a file.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Encoding {
+    /// Exposure in stops, at most [`Encoding::MAX_EXPOSURE`] either way: every value is
+    /// multiplied by 2 to this power, in every format. 0 changes no bit.
+    pub exposure_ev: f32,
+    /// Of a PNG.
+    pub bits: BitDepth,
+}
+
+impl Encoding {
+    /// More stops than lie between the least and the greatest normal `f32`.
+    pub const MAX_EXPOSURE: f32 = 256.0;
+
+    /// The factor of the exposure.
+    ///
+    /// # Errors
+    /// An exposure that is out of range or not a number.
+    pub fn scale(&self) -> Result<f64> {
+        if self.exposure_ev.abs() <= Self::MAX_EXPOSURE {
+            Ok(f64::from(self.exposure_ev).exp2())
+        } else {
+            Err(Error::new(format!(
+                "an exposure of {} stops is out of range; choose one from -{max} to {max}",
+                self.exposure_ev,
+                max = Self::MAX_EXPOSURE
+            )))
+        }
+    }
+}
+
+/// Writes a film to where it belongs, in the format that the place asks for.
+///
+/// # Errors
+/// An unknown format and those of [`encode()`] and [`Destination::write`].
+pub fn write(film: &Film, destination: &Destination, encoding: &Encoding) -> Result<()> {
+    let format = destination.format()?;
+    destination.write(|out| encode(film, format, encoding, out))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,117 @@
+//! Image files back to films.
+
+use std::fs::{self, File};
+use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+
+use image::{
+    DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits,
+    Primitive, Rgb,
+};
+
+use super::transfer::linear_table;
+use crate::error::{Error, Result};
+use crate::film::Film;
+
+/// Reads a PNG, EXR or HDR file, whatever its name says it is, as [`decode`].
+///
+/// # Errors
+/// What is missing, unreadable, empty or not a regular file, and those of [`decode`]. They name
+/// the file.
+pub fn read(path: &Path) -> Result<Film> {
+    let fault = |error: io::Error| Error::file(path, read_error(&error));
+    // Before it is opened: to open a FIFO waits for a writer.
+    let found = fs::metadata(path).map_err(fault)?;
+    if found.is_dir() {
+        return Err(Error::file(path, "is a directory; name an image file"));
+    }
+    if !found.is_file() {
+        return Err(Error::file(path, "is no regular file; name an image file"));
+    }
+    if found.len() == 0 {
+        return Err(Error::file(path, "is empty; write the image again"));
+    }
+    let file = File::open(path).map_err(fault)?;
+    decode(BufReader::new(file)).map_err(|error| Error {
+        file: Some(path.to_owned()),
+        ..error
+    })
+}
+
+/// Decodes a PNG, EXR or HDR file, told apart by their first bytes. A PNG's sRGB values become
+/// linear light in [0, 1], equal values becoming equal floats that encode to those values again;
+/// an EXR keeps its bits. Greys become RGB, and alpha is ignored.
+///
+/// # Errors
+/// What is none of these, damaged, truncated, or larger than a film may be. They name no file.
+pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
+    // The decoders' arithmetic is not proof against every hostile header.
+    catch_unwind(AssertUnwindSafe(|| decode_trusting(reader)))
+        .unwrap_or_else(|_| Err(Error::new("is damaged; write the image again")))
+}
+
+fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
+    let mut reader = ImageReader::new(reader)
+        .with_guessed_format()
+        .map_err(|e| Error::new(read_error(&e)))?;
+    let known = [ImageFormat::Png, ImageFormat::OpenExr, ImageFormat::Hdr];
+    if !reader
+        .format()
+        .is_some_and(|format| known.contains(&format))
+    {
+        return Err(Error::new("is not a PNG, EXR or HDR image"));
+    }
+    let mut limits = Limits::default();
+    // The widest pixel is one of four floats.
+    limits.max_alloc = Some(Film::MAX_PIXELS * 16);
+    reader.limits(limits);
+    let decoder = reader.into_decoder().map_err(decode_error)?;
+    let (width, height) = decoder.dimensions();
+    Film::check_size(width, height)?;
+    let decoded = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
+    Film::from_pixels(width, height, linear_pixels(decoded))
+}
+
+fn linear_pixels(image: DynamicImage) -> Vec<[f32; 3]> {
+    use DynamicImage::*;
+    match image {
+        ImageLuma8(_) | ImageLumaA8(_) | ImageRgb8(_) | ImageRgba8(_) => {
+            let table = linear_table(u8::MAX.into());
+            pixels(&image.into_rgb8(), |v| table[usize::from(v)])
+        }
+        ImageLuma16(_) | ImageLumaA16(_) | ImageRgb16(_) | ImageRgba16(_) => {
+            let table = linear_table(u16::MAX);
+            pixels(&image.into_rgb16(), |v| table[usize::from(v)])
+        }
+        _ => pixels(&image.into_rgb32f(), |v| v),
+    }
+}
+
+fn pixels<T>(image: &ImageBuffer<Rgb<T>, Vec<T>>, linear: impl Fn(T) -> f32) -> Vec<[f32; 3]>
+where
+    T: Primitive,
+    Rgb<T>: image::Pixel<Subpixel = T>,
+{
+    image.pixels().map(|pixel| pixel.0.map(&linear)).collect()
+}
+
+fn decode_error(error: ImageError) -> Error {
+    Error::new(match error {
+        ImageError::IoError(error) => read_error(&error),
+        ImageError::Limits(_) => format!(
+            "is too large; an image has at most {} pixels",
+            Film::MAX_PIXELS
+        ),
+        error => format!("is damaged or of an unknown kind ({error}); write the image again"),
+    })
+}
+
+fn read_error(error: &io::Error) -> String {
+    match error.kind() {
+        ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file; check the name".to_owned(),
+        ErrorKind::PermissionDenied => "no permission to read; change it".to_owned(),
+        ErrorKind::UnexpectedEof => "is truncated; write the image again".to_owned(),
+        _ => format!("cannot be read: {error}"),
+    }
+}

@@ -1,0 +1,327 @@
+use std::fs;
+use std::io::{self, Cursor, Write};
+use std::path::Path;
+
+use proptest::prelude::*;
+
+use super::*;
+
+const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
+
+const SIXTEEN: Encoding = Encoding {
+    exposure_ev: 0.0,
+    bits: BitDepth::Sixteen,
+};
+
+fn bytes(film: &Film, format: Format, encoding: &Encoding) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    encode(film, format, encoding, &mut bytes).unwrap();
+    bytes
+}
+
+fn round_trip(film: &Film, format: Format, encoding: &Encoding) -> Film {
+    decode(Cursor::new(bytes(film, format, encoding))).unwrap()
+}
+
+/// A film with every kind of value.
+fn odd_film() -> Film {
+    let values = [
+        [0.0, -0.0, 1.0],
+        [0.5, 0.18, 1e-6],
+        [-1.0, 3.5, 1e30],
+        [f32::NAN, f32::INFINITY, f32::NEG_INFINITY],
+        [f32::MIN_POSITIVE, f32::from_bits(1), f32::MAX],
+        [f32::from_bits(0xffc0_1234), 1e-45, 2.0],
+    ];
+    Film::from_pixels(3, 2, values.to_vec()).unwrap()
+}
+
+#[test]
+fn exr_keeps_every_bit() {
+    let film = odd_film();
+    let back = round_trip(&film, Format::Exr, &Encoding::default());
+    assert!(film.bits_equal(&back), "{back:?}");
+}
+
+#[test]
+fn png_keeps_every_value_it_has() {
+    let depths = [(Encoding::default(), 255_u16), (SIXTEEN, 65_535)];
+    for (encoding, steps) in depths {
+        let table = transfer::linear_table(steps);
+        let pixels = table.iter().map(|&v| [v, v, 1.0 - v]).collect::<Vec<_>>();
+        let height = pixels.len() as u32 / 256;
+        let film = Film::from_pixels(256, height, pixels).unwrap();
+        let once = round_trip(&film, Format::Png, &encoding);
+        let kept = film.pixels.iter().zip(&once.pixels);
+        assert!(kept.clone().all(|(a, b)| a[..2] == b[..2]));
+        assert!(once.bits_equal(&round_trip(&once, Format::Png, &encoding)));
+        assert_eq!(
+            bytes(&once, Format::Png, &encoding),
+            bytes(&film, Format::Png, &encoding)
+        );
+    }
+}
+
+#[test]
+fn hdr_keeps_a_hundredth_of_the_brightest_channel() {
+    let values = [
+        1e-30,
+        1e-3,
+        0.18,
+        0.999_999_94,
+        1.0,
+        200.0,
+        65_535.996,
+        1e30,
+    ];
+    let pixels = values.iter().map(|&v| [v, v / 3.0, 0.0]).collect();
+    let film = Film::from_pixels(8, 1, pixels).unwrap();
+    let back = round_trip(&film, Format::Hdr, &Encoding::default());
+    for (a, b) in film.pixels.iter().zip(&back.pixels) {
+        let close = a.iter().zip(b).all(|(x, y)| (x - y).abs() <= a[0] / 100.0);
+        assert!(close, "{a:?} {b:?}");
+    }
+    assert!(back.bits_equal(&round_trip(&back, Format::Hdr, &Encoding::default())));
+}
+
+#[test]
+fn what_is_no_light_has_a_place_in_png_and_hdr() {
+    let png = round_trip(&odd_film(), Format::Png, &Encoding::default());
+    assert_eq!(png.pixels[0], [0.0, 0.0, 1.0]);
+    assert_eq!(png.pixels[2], [0.0, 1.0, 1.0]);
+    assert_eq!(png.pixels[3], [0.0, 1.0, 0.0]);
+    let hdr = round_trip(&odd_film(), Format::Hdr, &Encoding::default());
+    assert_eq!(hdr.pixels[3][0], 0.0);
+    assert!(hdr.pixels[3][1] > 1.6e38 && hdr.pixels[3][2] == 0.0);
+    assert!(hdr.pixels[4][2] > 1.6e38);
+    let dark = Film::from_pixels(1, 1, vec![[1e-40; 3]]).unwrap();
+    let dark = round_trip(&dark, Format::Hdr, &Encoding::default());
+    assert_eq!(dark.pixels[0], [0.0; 3]);
+}
+
+#[test]
+fn exposure_applies_to_every_format() {
+    let film = Film::from_pixels(1, 1, vec![[0.25, 0.125, 0.5]]).unwrap();
+    let brighter = Encoding {
+        exposure_ev: 1.0,
+        ..SIXTEEN
+    };
+    for format in FORMATS {
+        let back = round_trip(&film, format, &brighter).pixels[0];
+        let wanted = [0.5, 0.25, 1.0];
+        let close = |(a, b): (&f32, f32)| (a - b).abs() < 1e-4;
+        assert!(back.iter().zip(wanted).all(close), "{format}: {back:?}");
+    }
+    for exposure_ev in [f32::NAN, f32::INFINITY, -300.0] {
+        let encoding = Encoding {
+            exposure_ev,
+            ..SIXTEEN
+        };
+        assert!(encode(&film, Format::Exr, &encoding, io::sink()).is_err());
+    }
+}
+
+#[test]
+fn png_says_what_it_is() {
+    let film = Film::new(2, 2).unwrap();
+    let png = bytes(&film, Format::Png, &Encoding::default());
+    for chunk in [&b"sRGB\0"[..], b"tEXtSoftware\0eyerays"] {
+        let at = png.windows(chunk.len()).position(|w| w == chunk).unwrap();
+        assert_eq!(png[at + chunk.len()..][..4], png_crc(chunk));
+        assert_eq!(png[at - 4..at], (chunk.len() as u32 - 4).to_be_bytes());
+    }
+}
+
+#[test]
+fn extensions_name_formats() {
+    for (name, format) in [
+        ("a.png", Format::Png),
+        ("b.x.EXR", Format::Exr),
+        ("c.hdr", Format::Hdr),
+    ] {
+        assert_eq!(Format::from_path(Path::new(name)), Ok(format));
+    }
+    for name in ["a.jpg", "png", ".png", "a.", ""] {
+        let error = Format::from_path(Path::new(name)).unwrap_err().to_string();
+        for format in [".png", ".exr", ".hdr"] {
+            assert!(error.contains(format), "{error}");
+        }
+    }
+    assert!(BitDepth::from_bits(10).is_err());
+}
+
+#[test]
+fn a_writer_that_fails_is_an_error() {
+    struct Full;
+    impl Write for Full {
+        fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+            Err(io::ErrorKind::StorageFull.into())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+    for format in FORMATS {
+        let error = encode(&odd_film(), format, &SIXTEEN, Full).unwrap_err();
+        assert!(error.message.contains("no space"), "{error}");
+    }
+}
+
+#[test]
+fn bad_files_are_one_line_with_their_name() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    for format in FORMATS {
+        let whole = bytes(&odd_film(), format, &SIXTEEN);
+        fs::write(path(&format!("half-{format}")), &whole[..whole.len() / 2]).unwrap();
+        fs::write(path(&format!("head-{format}")), &whole[..12]).unwrap();
+    }
+    fs::write(path("empty"), b"").unwrap();
+    fs::write(path("text"), b"P3 1 1 255 0 0 0\n").unwrap();
+    fs::write(
+        path("zero"),
+        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n",
+    )
+    .unwrap();
+    fs::write(
+        path("huge"),
+        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n",
+    )
+    .unwrap();
+    fs::write(path("vast.png"), huge_png(100_000)).unwrap();
+    fs::write(path("none.png"), huge_png(0)).unwrap();
+    fs::create_dir(path("folder")).unwrap();
+    let names: Vec<_> = fs::read_dir(folder.path()).unwrap().collect();
+    let names = names.into_iter().map(|entry| entry.unwrap().path());
+    for path in names.chain([path("missing"), path("text/below")]) {
+        let error = read(&path).expect_err(&path.to_string_lossy());
+        println!("{error}");
+        assert_eq!(error.file.as_deref(), Some(path.as_path()));
+        assert_eq!(error.to_string().lines().count(), 1);
+    }
+    let error = read(&path("vast.png")).unwrap_err();
+    assert!(error.message.contains("too large"), "{error}");
+}
+
+/// A PNG of nothing but a header, so short that its size cannot be true.
+fn huge_png(side: u32) -> Vec<u8> {
+    let mut png = bytes(&odd_film(), Format::Png, &SIXTEEN);
+    png[16..20].copy_from_slice(&side.to_be_bytes());
+    png[20..24].copy_from_slice(&side.to_be_bytes());
+    let crc = png_crc(&png[12..29]);
+    png[29..33].copy_from_slice(&crc);
+    png
+}
+
+/// The CRC of a PNG's chunk, of its type and data, by the specification's annex D.
+fn png_crc(chunk: &[u8]) -> [u8; 4] {
+    let crc = chunk.iter().fold(u32::MAX, |crc, &byte| {
+        (0..8).fold(crc ^ u32::from(byte), |c, _| {
+            (c >> 1) ^ (0xedb8_8320 * (c & 1))
+        })
+    });
+    (!crc).to_be_bytes()
+}
+
+/// Wide enough for the run lengths of an HDR, with runs and without.
+fn striped_film() -> Film {
+    let value = |i: u32| if i % 16 < 8 { 0.5 } else { 1.0 / i as f32 };
+    let pixels = (0..48).map(|i| [value(i), 0.25, value(i + 3)]).collect();
+    Film::from_pixels(16, 3, pixels).unwrap()
+}
+
+#[test]
+fn a_truncated_file_is_never_another_picture() {
+    for format in FORMATS {
+        let whole = bytes(&striped_film(), format, &SIXTEEN);
+        let film = decode(Cursor::new(&whole)).unwrap();
+        for end in 0..whole.len() {
+            match decode(Cursor::new(&whole[..end])) {
+                Ok(part) => {
+                    assert!(part.bits_equal(&film), "{format} at {end}");
+                    // Only what follows the pixels may be missing.
+                    assert!(end + 16 >= whole.len(), "{format} at {end}");
+                }
+                Err(error) => assert!(!error.message.is_empty()),
+            }
+        }
+    }
+}
+
+#[test]
+fn a_decoder_that_panics_is_an_error() {
+    // Empty runs whose multiplier overflows, which debug builds notice.
+    let mut file = b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 100\n".to_vec();
+    file.extend([5; 4]);
+    file.extend([1, 1, 1, 0].repeat(10));
+    assert!(decode(Cursor::new(file)).is_err());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn devices_are_not_read() {
+    for device in ["/dev/zero", "/dev/null"] {
+        let error = read(Path::new(device)).unwrap_err();
+        assert!(error.message.contains("regular"), "{error}");
+    }
+    let full = Destination::from(Path::new("/dev/full"));
+    assert!(write(&odd_film(), &full, &SIXTEEN).is_err());
+}
+
+#[test]
+fn greys_and_alpha_are_read() {
+    let image = image::DynamicImage::ImageLumaA16(
+        image::ImageBuffer::from_raw(2, 1, vec![65_535, 0, 1_000, 30_000]).unwrap(),
+    );
+    let mut png = Cursor::new(Vec::new());
+    image.write_to(&mut png, image::ImageFormat::Png).unwrap();
+    let film = decode(Cursor::new(png.into_inner())).unwrap();
+    let grey = transfer::linear_table(65_535)[1_000];
+    assert_eq!(film.pixels, [[1.0; 3], [grey; 3]]);
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn exr_keeps_any_bits(bits in prop::collection::vec(any::<[u32; 3]>(), 1..40)) {
+        let pixels = bits.iter().map(|p| p.map(f32::from_bits)).collect();
+        let film = Film::from_pixels(bits.len() as u32, 1, pixels).unwrap();
+        prop_assert!(film.bits_equal(&round_trip(&film, Format::Exr, &SIXTEEN)));
+    }
+
+    #[test]
+    fn any_film_can_be_encoded_and_read(bits in prop::collection::vec(any::<[u32; 3]>(), 1..40)) {
+        let pixels = bits.iter().map(|p| p.map(f32::from_bits)).collect();
+        let film = Film::from_pixels(1, bits.len() as u32, pixels).unwrap();
+        for format in [Format::Png, Format::Hdr] {
+            let back = round_trip(&film, format, &SIXTEEN);
+            prop_assert!(back.pixels.as_flattened().iter().all(|v| v.is_finite() && *v >= 0.0));
+        }
+    }
+
+    #[test]
+    fn random_bytes_never_panic(
+        start in prop::sample::select(vec![&b""[..], b"\x89PNG\r\n\x1a\n", b"\x76\x2f\x31\x01", b"#?RADIANCE"]),
+        rest in prop::collection::vec(any::<u8>(), 0..300),
+    ) {
+        let _ = decode(Cursor::new([start, &rest].concat()));
+    }
+
+    #[test]
+    fn damaged_files_never_panic(
+        format in prop::sample::select(FORMATS.to_vec()),
+        flips in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 1..8),
+        cut in any::<Option<prop::sample::Index>>(),
+    ) {
+        let mut file = bytes(&striped_film(), format, &SIXTEEN);
+        for (at, value) in flips {
+            let at = at.index(file.len());
+            file[at] = value;
+        }
+        if let Some(cut) = cut {
+            file.truncate(cut.index(file.len()));
+        }
+        let _ = decode(Cursor::new(file));
+    }
+}

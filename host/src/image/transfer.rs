@@ -1,0 +1,78 @@
+//! The sRGB transfer function (IEC 61966-2-1), between linear light and what a PNG stores.
+
+/// From linear light to the sRGB signal, both in [0, 1]. What is less, and NaN, becomes 0;
+/// what is more becomes 1.
+pub fn linear_to_srgb(linear: f64) -> f64 {
+    if linear > 0.003_130_8 {
+        1.055 * linear.min(1.0).powf(1.0 / 2.4) - 0.055
+    } else if linear > 0.0 {
+        12.92 * linear
+    } else {
+        0.0
+    }
+}
+
+/// From the sRGB signal to linear light, both in [0, 1].
+pub fn srgb_to_linear(signal: f64) -> f64 {
+    if signal <= 0.040_45 {
+        signal / 12.92
+    } else {
+        ((signal + 0.055) / 1.055).powf(2.4)
+    }
+}
+
+/// The nearest of `steps + 1` sRGB values for linear light; `steps` is 255 or 65,535.
+pub(super) fn quantise(linear: f64, steps: f64) -> f64 {
+    (linear_to_srgb(linear) * steps).round()
+}
+
+/// Linear light for every one of `steps + 1` sRGB values, so that equal values decode equally.
+pub(super) fn linear_table(steps: u16) -> Vec<f32> {
+    (0..=steps)
+        .map(|step| srgb_to_linear(f64::from(step) / f64::from(steps)) as f32)
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn decoding_and_encoding_again_changes_no_value() {
+        for steps in [255, 65_535] {
+            for (step, &linear) in linear_table(steps).iter().enumerate() {
+                let back = quantise(linear.into(), steps.into());
+                assert_eq!(back, step as f64, "of {steps}");
+            }
+        }
+    }
+
+    #[test]
+    fn known_values() {
+        assert_eq!(quantise(0.5, 255.0), 188.0);
+        assert_eq!(quantise(0.215_860_5, 255.0), 128.0);
+        assert_eq!(quantise(1.0, 65_535.0), 65_535.0);
+        assert_eq!(quantise(0.001, 255.0), 3.0);
+    }
+
+    #[test]
+    fn greater_light_is_never_a_lesser_value() {
+        let floats = (0..=1.0_f32.to_bits()).step_by(997).map(f32::from_bits);
+        let joint = 0.003_130_8_f32.to_bits();
+        let around = (joint - 20_000..joint + 20_000).map(f32::from_bits);
+        for range in [floats.collect::<Vec<_>>(), around.collect()] {
+            let values = range.iter().map(|&v| quantise(v.into(), 65_535.0));
+            assert!(values.is_sorted());
+        }
+    }
+
+    #[test]
+    fn what_is_no_light_has_a_place() {
+        for dark in [f64::NAN, f64::NEG_INFINITY, -1.0, -0.0, 0.0] {
+            assert_eq!(quantise(dark, 255.0), 0.0);
+        }
+        for bright in [1.0, 2.0, f64::MAX, f64::INFINITY] {
+            assert_eq!(quantise(bright, 255.0), 255.0);
+        }
+    }
+}

@@ -8,6 +8,8 @@ pub mod data;
 pub mod entry;
 pub mod intersect;
 pub mod launch;
+#[cfg(not(target_arch = "spirv"))]
+pub mod modules;
 pub mod ray;
 pub mod real;
 pub mod scene;

@@ -61,6 +61,9 @@ impl Scalar for f64 {
     fn floor_index(self) -> i32 {
         self.clamp(-8_388_608.0, 8_388_608.0).floor() as i32
     }
+    fn to_f32(self) -> f32 {
+        self as f32
+    }
     fn is_finite(self) -> bool {
         f64::is_finite(self)
     }

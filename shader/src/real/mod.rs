@@ -102,6 +102,8 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     fn pow(self, exponent: Self) -> Self;
     /// The whole number at or below, for magnitudes up to 2^23 (clamped there).
     fn floor_index(self) -> i32;
+    /// Rounded to single precision, as a film holds it.
+    fn to_f32(self) -> f32;
     /// Neither NaN nor infinite?
     fn is_finite(self) -> bool;
 }

@@ -65,6 +65,10 @@ macro_rules! records {
             super::single::floor_index($inner(self))
         }
         #[inline(always)]
+        fn to_f32(self) -> f32 {
+            $inner(self)
+        }
+        #[inline(always)]
         fn is_finite(self) -> bool {
             ($inner(self).to_bits() >> 23) & 255 != 255
         }

@@ -1,0 +1,167 @@
+//! The kernels on the CPU: tiles in parallel, each with the memory of a small launch.
+
+use std::sync::Mutex;
+
+use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::real::{Scalar, V3};
+use eyerays_shader::scene::Scene;
+use eyerays_shader::stage::{self, NON_FINITE, RECORDS, Wave};
+use eyerays_shader::traverse::IfIf;
+use rayon::prelude::*;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::pack::{Packed, Region};
+use crate::rays::Rays;
+
+/// Memory for the waiting rays of a tile, in bytes, that makes a tile smaller than [`TILE`].
+const PATH_MEMORY: u64 = 64 << 20;
+/// A tile's edge in pixels.
+const TILE: u32 = 32;
+
+/// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
+pub trait Observer<R: Scalar>: Sync {
+    /// Is called when a wave has been traced and before it is shaded.
+    fn wave(&self, scene: &Scene<'_>, slots: &[u32], records: &Records<R>);
+}
+
+/// Looks at nothing.
+impl<R: Scalar> Observer<R> for () {
+    fn wave(&self, _: &Scene<'_>, _: &[u32], _: &Records<R>) {}
+}
+
+/// The memory that the stages of a tile exchange.
+pub struct Records<R: Scalar> {
+    /// Paths by level, record and slot; empty without secondary rays.
+    pub paths: Vec<R::Record>,
+    /// (t, u, v) and triangle by slot.
+    pub hits: Vec<R::Record>,
+    /// Answers of the shadow stage by light and slot.
+    pub shadows: Vec<u32>,
+    /// Colour and counts by pixel.
+    pub film: Vec<R::Record>,
+}
+
+/// Renders with `threads` threads (0: one a core) in the arithmetic `R`. `done` hears of every
+/// finished share of the pixels.
+///
+/// # Errors
+/// If the film or the threads can't be had.
+pub fn render<R>(packed: &Packed, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Result<(Film, Rays)>
+where
+    R: Scalar<Record: Send + Sync>,
+{
+    observe::<R>(packed, threads, done, &())
+}
+
+/// [`render`], with somebody who looks on.
+///
+/// # Errors
+/// As [`render`].
+pub fn observe<R>(
+    packed: &Packed, threads: usize, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>,
+) -> Result<(Film, Rays)>
+where
+    R: Scalar<Record: Send + Sync>,
+{
+    let (width, height) = packed.settings.size;
+    let result = Mutex::new((Film::new(width, height)?, Rays::default()));
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pool = pool.map_err(|e| Error::new(format!("can't start {threads} threads ({e}): ask for fewer")))?;
+    pool.install(|| {
+        // A tile a task: coarser splitting leaves threads idle at the end.
+        tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
+            let (film, secondary) = render_tile(packed, region, observer);
+            let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            keep::<R>(region, &film, image, rays);
+            rays.secondary += secondary;
+            rays.primary += u64::from(region.width * region.height) * u64::from(packed.samples());
+            done(u64::from(region.width * region.height));
+        });
+    });
+    Ok(result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+}
+
+fn tiles(packed: &Packed) -> Vec<Region> {
+    let (width, height) = packed.settings.size;
+    let slot = u64::from(packed.levels()) * u64::from(RECORDS) * 32;
+    let mut edge = TILE;
+    while edge > 8 && u64::from(edge * edge) * slot > PATH_MEMORY {
+        edge /= 2;
+    }
+    let edge = edge as usize;
+    let rows = (0..height).step_by(edge);
+    rows.flat_map(|y| (0..width).step_by(edge).map(move |x| (x, y)))
+        .map(|(x, y)| Region { x, y, width: (width - x).min(edge as u32), height: (height - y).min(edge as u32) })
+        .collect()
+}
+
+/// Every sample of a tile; its film and how many secondary rays it took.
+fn render_tile<R: Scalar>(packed: &Packed, region: Region, observer: &dyn Observer<R>) -> (Vec<R::Record>, u64) {
+    let slots = packed.frame(region, 0).limits.z as usize;
+    let black = R::store(V3::zero(), 0);
+    let mut records = Records::<R> {
+        paths: vec![black; slots * (packed.levels() * RECORDS) as usize],
+        hits: vec![black; slots],
+        shadows: vec![0; slots * packed.lights.len()],
+        film: vec![black; (region.width * region.height) as usize],
+    };
+    let mut secondary = 0;
+    for sample in 0..packed.samples() {
+        let frame = packed.frame(region, sample);
+        let mut scene = view(packed, &frame);
+        let mut queue: Vec<u32> = (0..slots as u32).collect();
+        loop {
+            run_wave(&scene, &mut queue, &mut records, observer);
+            if queue.is_empty() {
+                break;
+            }
+            secondary += queue.len() as u64;
+            scene.features = Features(packed.features.0 | Features::SECONDARY);
+        }
+    }
+    (records.film, secondary)
+}
+
+fn view<'a>(packed: &'a Packed, frame: &'a Frame) -> Scene<'a> {
+    Scene {
+        frame,
+        features: packed.features,
+        nodes: &packed.nodes,
+        triangles: &packed.triangles,
+        normals: &packed.normals,
+        materials: &packed.materials,
+        lights: &packed.lights,
+    }
+}
+
+/// Trace, shadow, shade; leaves the slots of the next wave in the queue.
+fn run_wave<R: Scalar>(
+    scene: &Scene<'_>, queue: &mut Vec<u32>, records: &mut Records<R>, observer: &dyn Observer<R>,
+) {
+    for &slot in queue.iter() {
+        records.hits[slot as usize] = stage::trace::<R, IfIf>(scene, slot, &records.paths);
+    }
+    for light in 0..scene.light_count() {
+        for &slot in queue.iter() {
+            let answer = stage::shadow::<R, IfIf>(scene, slot, light, &records.paths, &records.hits);
+            records.shadows[(light * scene.slots() + slot) as usize] = answer;
+        }
+    }
+    observer.wave(scene, queue, records);
+    let Records { paths, hits, shadows, film } = records;
+    queue.retain(|&slot| stage::shade(scene, slot, Wave::<R> { paths: &mut *paths, hits, shadows, film: &mut *film }));
+}
+
+/// Copies a tile's film into the image and counts.
+fn keep<R: Scalar>(region: Region, film: &[R::Record], image: &mut Film, rays: &mut Rays) {
+    for (row, line) in film.chunks_exact(region.width as usize).enumerate() {
+        let start = (region.y as usize + row) * image.width as usize + region.x as usize;
+        for (pixel, &record) in image.pixels[start..].iter_mut().zip(line) {
+            let (colour, word) = R::load(record);
+            *pixel = [colour.x.to_f32(), colour.y.to_f32(), colour.z.to_f32()];
+            rays.shadow += u64::from(word & !NON_FINITE);
+            rays.non_finite += u64::from(word & NON_FINITE != 0);
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! One GPU, opened.
+
+use std::sync::{Arc, Mutex};
+
+use super::adapter::{self, AdapterReport};
+use crate::error::{Error, Result};
+
+/// How kernels reach the driver.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Route {
+    /// The committed SPIR-V as it is.
+    Passthrough,
+    /// Translated by naga, which drops what forbids contraction: not for exact precision.
+    Naga,
+}
+
+/// What a caller asks of a GPU.
+#[derive(Debug, Clone, Default)]
+pub struct Want {
+    /// A number or part of a name.
+    pub adapter: Option<String>,
+    /// Is a software adapter welcome?
+    pub software: bool,
+    /// Take naga's route even where passthrough is possible.
+    pub naga: bool,
+    /// Must it render in exact precision?
+    pub exact: bool,
+}
+
+/// An opened GPU.
+pub struct Gpu {
+    /// What it offers.
+    pub report: AdapterReport,
+    /// How kernels reach it.
+    pub route: Route,
+    pub(super) device: wgpu::Device,
+    pub(super) queue: wgpu::Queue,
+    fault: Arc<Mutex<Option<String>>>,
+}
+
+impl Gpu {
+    /// Opens the GPU that fits.
+    ///
+    /// # Errors
+    /// If there is none; the message names the remedy.
+    pub fn open(want: &Want) -> Result<Gpu> {
+        let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
+        let report = AdapterReport::of(index, &adapter);
+        if report.is_software() && !want.software {
+            return Err(Error::new(format!("\"{}\" is no GPU but a program: --device gpu takes it", report.name)));
+        }
+        let route = if report.passthrough && !want.naga { Route::Passthrough } else { Route::Naga };
+        if want.exact && (route == Route::Naga || !report.exact) {
+            return Err(Error::new(format!(
+                "exact precision needs Vulkan with SPIR-V passthrough, which {} is without: use --precision fast or --device cpu",
+                if want.naga { "--no-passthrough".to_owned() } else { format!("\"{}\"", report.name) }
+            )));
+        }
+        let mut features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        if route == Route::Passthrough {
+            features |= wgpu::Features::PASSTHROUGH_SHADERS;
+        }
+        let request = adapter.request_device(&wgpu::DeviceDescriptor {
+            label: Some("eyerays"),
+            required_features: features,
+            required_limits: adapter.limits(),
+            // SAFETY: passthrough is the one experimental feature in use; `module` says why it is sound.
+            experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
+            memory_hints: wgpu::MemoryHints::Performance,
+            trace: wgpu::Trace::Off,
+        });
+        let (device, queue) = pollster::block_on(request)
+            .map_err(|e| Error::new(format!("can't open \"{}\": {e}; use --device cpu", report.name)))?;
+        let fault = Arc::new(Mutex::new(None));
+        let (first, lost) = (fault.clone(), fault.clone());
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&first, e.to_string())));
+        device.set_device_lost_callback(move |reason, message| {
+            if reason != wgpu::DeviceLostReason::Destroyed {
+                note(&lost, format!("the device was lost: {message}"));
+            }
+        });
+        Ok(Gpu { report, route, device, queue, fault })
+    }
+
+    /// The first fault that the GPU reported since, if any.
+    ///
+    /// # Errors
+    /// That fault.
+    pub fn check(&self) -> Result<()> {
+        match self.fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
+            Some(fault) => Err(Error::new(format!("\"{}\" failed: {fault}; use --device cpu", self.report.name))),
+            None => Ok(()),
+        }
+    }
+
+    /// Waits until all that was submitted is done.
+    ///
+    /// # Errors
+    /// What the GPU reported.
+    pub fn wait(&self) -> Result<()> {
+        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.check()?;
+        polled.map(|_| ()).map_err(|e| Error::new(format!("\"{}\" failed: {e}", self.report.name)))
+    }
+}
+
+fn note(fault: &Mutex<Option<String>>, message: String) {
+    fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(message);
+}

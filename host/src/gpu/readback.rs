@@ -1,0 +1,27 @@
+//! From device memory back to the host.
+
+use super::device::Gpu;
+use crate::error::{Error, Result};
+
+/// The first `size` bytes of a buffer, once all that was submitted is done.
+pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>> {
+    let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("readback"),
+        size,
+        usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
+        mapped_at_creation: false,
+    });
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    encoder.copy_buffer_to_buffer(buffer, 0, &staging, 0, size);
+    gpu.queue.submit([encoder.finish()]);
+    staging.map_async(wgpu::MapMode::Read, .., |_| {});
+    gpu.wait()?;
+    let view = staging.get_mapped_range(..);
+    let view = view.map_err(|e| Error::new(format!("can't read from \"{}\": {e}", gpu.report.name)))?;
+    Ok(view.to_vec())
+}
+
+/// Little-endian words.
+pub(super) fn words(bytes: &[u8]) -> impl Iterator<Item = u32> + '_ {
+    bytes.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]]))
+}

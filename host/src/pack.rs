@@ -1,0 +1,260 @@
+//! From a scene in world units to the records that devices hold.
+
+use std::time::{Duration, Instant};
+
+use eyerays_bvh::{Quality, Statistics};
+use eyerays_shader::data::{
+    Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, pack,
+};
+use eyerays_shader::real::TINY;
+use glam::{DVec3, Vec3};
+
+use crate::error::{Error, Result};
+use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
+
+/// A scene as the kernels read it, owned, for one camera and one set of settings.
+pub struct Packed {
+    /// Child pairs of the hierarchy.
+    pub nodes: Vec<NodePair>,
+    /// Triangles in leaf order, in the normalised scene.
+    pub triangles: Vec<Triangle>,
+    /// Vertex normals in leaf order; empty if every mesh is flat.
+    pub normals: Vec<Normals>,
+    /// Materials.
+    pub materials: Vec<MaterialRecord>,
+    /// Lights in file order.
+    pub lights: Vec<LightRecord>,
+    /// The effects that the scene asks for.
+    pub features: Features,
+    /// What to render.
+    pub settings: Settings,
+    /// World units are multiplied by this power of two.
+    pub scale: f64,
+    /// The hierarchy's figures.
+    pub statistics: Statistics,
+    /// What building the hierarchy took.
+    pub build_time: Duration,
+    /// Every launch's record but for its region and sample.
+    frame: Frame,
+}
+
+/// A rectangle of the image in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Left column.
+    pub x: u32,
+    /// Top row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Packed {
+    /// Normalises, builds the hierarchy and packs.
+    ///
+    /// # Errors
+    /// What no device could hold or no ray meet: too many triangles, a light or camera too far away
+    /// for the scene's numbers.
+    pub fn new(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Result<Packed> {
+        let scale = normalisation(scene, camera);
+        let features = features(scene, &settings);
+        let triangles = triangles(scene, scale, features);
+        let start = Instant::now();
+        let bvh = eyerays_bvh::build(&triangles, quality).map_err(|e| Error::new(e.to_string()))?;
+        let build_time = start.elapsed();
+        let statistics = Statistics::of(&bvh, &triangles);
+        let lights = scene.lights.iter().enumerate().map(|(i, l)| light(l, i, scale)).collect::<Result<Vec<_>>>()?;
+        Ok(Packed {
+            triangles: bvh.gather(&triangles),
+            normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
+            nodes: bvh.nodes,
+            materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
+            frame: frame(scene, camera, &settings, lights.len(), scale)?,
+            lights,
+            features,
+            settings,
+            scale,
+            statistics,
+            build_time,
+        })
+    }
+
+    /// Can a primary ray's light come from further rays?
+    pub fn has_secondary_rays(&self) -> bool {
+        self.settings.bounces > 0 && (self.features.0 & (Features::REFLECTION | Features::REFRACTION)) != 0
+    }
+
+    /// Paths that a slot keeps: the one in hand and those that wait, 0 if there are primary rays only.
+    ///
+    /// A refracted ray waits at most once a bounce. Waiting rays and the one in hand share their
+    /// pixel's light, a unit a colour channel, and each has at least the least contribution of it.
+    pub fn levels(&self) -> u32 {
+        if !self.has_secondary_rays() {
+            return 0;
+        }
+        if !self.features.has(Features::REFRACTION) {
+            return 1;
+        }
+        let least = f64::from(self.settings.min_contribution);
+        let waiting = if least > 0.0 { (3.0 / least).ceil() + 1.0 } else { f64::from(u32::MAX) };
+        1 + (self.settings.bounces).min(waiting as u32)
+    }
+
+    /// The launches of a pixel: one a sample.
+    pub fn samples(&self) -> u32 {
+        self.settings.samples * self.settings.samples
+    }
+
+    /// The record of one launch.
+    pub fn frame(&self, region: Region, sample: u32) -> Frame {
+        let mut frame = self.frame;
+        frame.forward.w = sample;
+        frame.region = glam::UVec4::new(region.x, region.y, region.width, region.height);
+        frame.limits.z = eyerays_shader::camera::slots(region.width, region.height);
+        frame.limits.w = self.levels();
+        frame
+    }
+}
+
+/// The power of two that brings every vertex and the camera into [-1, 1].
+fn normalisation(scene: &Scene, camera: &Camera) -> f64 {
+    let extent = scene.mesh.positions.iter().chain([&camera.eye]).fold(0f32, |most, p| most.max(p.abs().max_element()));
+    if extent == 0.0 { 1.0 } else { (-f64::from(extent).log2().ceil()).exp2() }
+}
+
+/// A world coordinate in the normalised scene; what is below 2^-60 is zero (no subnormals).
+fn place(p: Vec3, scale: f64) -> Vec3 {
+    flushed((p.as_dvec3() * scale).as_vec3())
+}
+
+fn flushed(v: Vec3) -> Vec3 {
+    Vec3::from_array(v.to_array().map(|c| if c.abs() < TINY { 0.0 } else { c }))
+}
+
+fn flushed_number(x: f32) -> f32 {
+    if x.abs() < TINY { 0.0 } else { x }
+}
+
+fn colour(c: Vec3, word: u32) -> glam::UVec4 {
+    pack(flushed(c), word)
+}
+
+fn features(scene: &Scene, settings: &Settings) -> Features {
+    let used = |m: &dyn Fn(&Material) -> bool| scene.materials.iter().any(m);
+    let lit = !scene.lights.is_empty();
+    let mut bits = 0;
+    let mut ask = |bit: u32, asked: bool| bits |= if asked { bit } else { 0 };
+    let bounces = settings.bounces > 0;
+    ask(Features::SMOOTH, !scene.mesh.normals.is_empty());
+    ask(Features::CHECKER, used(&|m| m.checker.is_some()));
+    ask(Features::REFLECTION, bounces && used(&|m| m.reflection != Vec3::ZERO || is_transparent(m)));
+    ask(Features::REFRACTION, used(&is_transparent));
+    ask(Features::SPOT, scene.lights.iter().any(|l| matches!(l, Light::Spot { .. })));
+    ask(Features::DIRECTIONAL, scene.lights.iter().any(|l| matches!(l, Light::Directional { .. })));
+    ask(Features::SPECULAR, lit && used(&|m| m.specular != Vec3::ZERO));
+    ask(Features::CULLING, settings.culling);
+    ask(Features::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
+    Features(bits)
+}
+
+fn is_transparent(m: &Material) -> bool {
+    m.transmission != Vec3::ZERO
+}
+
+fn triangles(scene: &Scene, scale: f64, features: Features) -> Vec<Triangle> {
+    let mesh = &scene.mesh;
+    let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
+    let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
+        let vertices = corners.map(|v| place(mesh.positions[v as usize], scale));
+        let passes = features.has(Features::REFRACTION) && clear[material as usize];
+        Triangle::new(vertices, primitive, material, if passes { Triangle::TRANSPARENT } else { 0 })
+    });
+    records.collect()
+}
+
+fn normals(scene: &Scene) -> Vec<Normals> {
+    let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
+    scene.mesh.triangles.iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) }).collect()
+}
+
+fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
+    let ior = if is_transparent(m) { m.ior } else { 0.0 };
+    let checker = match m.checker {
+        // Cells much larger than the scene are one cell, whatever their exact size.
+        Some(c) => colour(c.colour, ((1.0 / (f64::from(c.size) * scale)).clamp(1e-6, 1e30) as f32).to_bits()),
+        None => colour(Vec3::ZERO, 0),
+    };
+    MaterialRecord {
+        ambient: colour(m.ambient * ambient, 0),
+        diffuse: colour(m.diffuse, 0),
+        specular: colour(m.specular, flushed_number(m.shininess).to_bits()),
+        reflection: colour(m.reflection, ior.to_bits()),
+        transmission: colour(m.transmission, 0),
+        checker,
+    }
+}
+
+fn light(light: &Light, index: usize, scale: f64) -> Result<LightRecord> {
+    let far = || Error::new(format!("light {} is too far away: move it nearer to the scene", index + 1));
+    let at = |p: Vec3| -> Result<Vec3> {
+        let p = place(p, scale);
+        if p.abs().max_element() < 1e18 { Ok(p) } else { Err(far()) }
+    };
+    let record = |position, kind, light: Vec3, axis: Vec3, (inner, outer): (f32, f32)| LightRecord {
+        position: pack(position, kind),
+        colour: colour(light, inner.to_bits()),
+        axis: pack(axis, outer.to_bits()),
+    };
+    Ok(match *light {
+        Light::Point { position, colour } => {
+            record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0))
+        }
+        Light::Directional { direction, colour } => {
+            record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
+        }
+        Light::Spot { position, target, colour, outer, inner } => {
+            let cosine = |degrees: f32| flushed_number(f64::from(degrees).to_radians().cos() as f32);
+            let axis = unit_between(position, target);
+            record(at(position)?, LightRecord::SPOT, colour, axis, (cosine(inner), cosine(outer)))
+        }
+    })
+}
+
+fn unit(v: Vec3) -> Vec3 {
+    flushed(v.as_dvec3().normalize_or_zero().as_vec3())
+}
+
+fn unit_between(from: Vec3, to: Vec3) -> Vec3 {
+    flushed((to.as_dvec3() - from.as_dvec3()).normalize_or_zero().as_vec3())
+}
+
+fn frame(scene: &Scene, camera: &Camera, settings: &Settings, lights: usize, scale: f64) -> Result<Frame> {
+    let (width, height) = settings.size;
+    let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
+    let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
+    if right == DVec3::ZERO {
+        let message = format!("camera \"{}\" looks along its up vector or at itself", camera.name);
+        return Err(Error::new(format!("{message}: move its target or turn its up")));
+    }
+    let half_height = (f64::from(camera.fov).to_radians() / 2.0).tan();
+    // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
+    let step = half_height / f64::from(height * settings.samples);
+    let vector = |v: DVec3, word| pack(flushed(v.as_vec3()), word);
+    let (bottom, top) = match scene.background {
+        Background::Colour(c) => (c, c),
+        Background::Gradient { horizon, zenith } => (horizon, zenith),
+    };
+    let share = 1.0 / (f64::from(settings.samples) * f64::from(settings.samples));
+    Ok(Frame {
+        eye: pack(place(camera.eye, scale), width),
+        right: vector(right * step, height),
+        up: vector(right.cross(forward) * step, settings.samples),
+        forward: vector(forward, 0),
+        bottom: colour(bottom, settings.bounces),
+        top: colour(top, lights as u32),
+        region: glam::UVec4::ZERO,
+        limits: glam::UVec4::new((share as f32).to_bits(), settings.min_contribution.to_bits(), 0, 0),
+    })
+}

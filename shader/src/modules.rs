@@ -1,0 +1,6 @@
+//! The committed SPIR-V modules, embedded so that an installed program carries its kernels.
+
+/// Exact arithmetic, entries `exact_*`. Every float instruction forbids contraction.
+pub const EXACT: &[u8] = include_bytes!("../spirv/exact.spv");
+/// Arithmetic at the device's own speed, entries `fast_*`.
+pub const FAST: &[u8] = include_bytes!("../spirv/fast.spv");

@@ -1,0 +1,58 @@
+//! The rewrites and checks between the compiler's module and a committed one, a file each.
+
+pub mod body;
+pub mod capability;
+pub mod contraction;
+pub mod dead;
+pub mod debug;
+pub mod forbidden;
+pub mod inlining;
+pub mod memory;
+pub mod names;
+pub mod pointers;
+pub mod reach;
+pub mod renumber;
+pub mod select;
+#[cfg(test)]
+mod testing;
+
+use rspirv::binary::Assemble;
+use rspirv::dr;
+
+use crate::table::{Module, Policy};
+use crate::{Error, Result};
+
+/// A module with every rewrite done and every check passed.
+#[derive(Debug)]
+pub struct Finished {
+    /// The module, for reflection.
+    pub module: dr::Module,
+    /// Names of the functions that were marked `#[inline(never)]` in the source.
+    pub protected: Vec<String>,
+}
+
+impl Finished {
+    /// The words of the module's file.
+    pub fn words(&self) -> Vec<u32> {
+        self.module.assemble()
+    }
+}
+
+/// Cuts `table`'s module from the compiler's `words`.
+pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
+    let mut module = dr::load_words(words).map_err(|e| Error::Malformed(e.to_string()))?;
+    debug::strip_lines(&mut module);
+    select::entries(&mut module, table.prefix)?;
+    dead::remove(&mut module);
+    pointers::check(&module)?;
+    if table.policy == Policy::Exact {
+        forbidden::check(&module)?;
+    }
+    contraction::forbid(&mut module, table.policy);
+    let protected = inlining::release(&mut module);
+    memory::to_glsl450(&mut module)?;
+    capability::prune(&mut module);
+    debug::strip_local_names(&mut module);
+    renumber::compact(&mut module);
+    Ok(Finished { module, protected })
+}

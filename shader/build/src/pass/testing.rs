@@ -1,0 +1,199 @@
+//! Small modules for the tests of the passes.
+
+use rspirv::dr::{Builder, Module, Operand};
+use rspirv::spirv::*;
+
+/// A module under construction: an input and an output buffer of one float, and a counter.
+pub struct Kernel {
+    builder: Builder,
+    ids: Ids,
+}
+
+#[derive(Clone, Copy)]
+struct Ids {
+    void: Word,
+    float: Word,
+    uint: Word,
+    signature: Word,
+    input: Word,
+    output: Word,
+    counter: Word,
+    glsl: Word,
+}
+
+impl Kernel {
+    pub fn new() -> Self {
+        let mut b = Builder::new();
+        b.set_version(1, 5);
+        b.capability(Capability::Shader);
+        b.memory_model(AddressingModel::Logical, MemoryModel::Vulkan);
+        let glsl = b.ext_inst_import("GLSL.std.450");
+        let (void, float, uint) = (b.type_void(), b.type_float(32, None), b.type_int(32, 0));
+        let signature = b.type_function(void, []);
+        let mut variable = |kind| {
+            let pointer = b.type_pointer(None, StorageClass::Private, kind);
+            b.variable(pointer, None, StorageClass::Private, None)
+        };
+        let ids = Ids {
+            void,
+            float,
+            uint,
+            signature,
+            input: variable(float),
+            output: variable(float),
+            counter: variable(uint),
+            glsl,
+        };
+        Kernel { builder: b, ids }
+    }
+
+    pub fn unused_id(&mut self) {
+        self.builder.id();
+    }
+
+    /// An entry point whose interface names every variable.
+    pub fn entry(&mut self, name: &str, body: impl FnOnce(&mut Body)) {
+        let function = self.function(FunctionControl::NONE, body);
+        let interface = [self.ids.input, self.ids.output, self.ids.counter];
+        self.builder
+            .entry_point(ExecutionModel::GLCompute, function, name, interface);
+        self.builder
+            .execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
+    }
+
+    /// A function that is never inlined.
+    pub fn protected(&mut self, body: impl FnOnce(&mut Body)) -> Word {
+        self.function(FunctionControl::DONT_INLINE, body)
+    }
+
+    fn function(&mut self, control: FunctionControl, body: impl FnOnce(&mut Body)) -> Word {
+        let ids = self.ids;
+        let b = &mut self.builder;
+        let function = b
+            .begin_function(ids.void, None, control, ids.signature)
+            .unwrap();
+        b.begin_block(None).unwrap();
+        body(&mut Body { b, ids });
+        b.ret().unwrap();
+        b.end_function().unwrap();
+        function
+    }
+
+    pub fn module(self) -> Module {
+        self.builder.module()
+    }
+}
+
+/// The one block of a function.
+pub struct Body<'a> {
+    b: &'a mut Builder,
+    ids: Ids,
+}
+
+impl Body<'_> {
+    pub fn load_input(&mut self) -> Word {
+        let Ids { float, input, .. } = self.ids;
+        self.b.load(float, None, input, None, []).unwrap()
+    }
+
+    pub fn store_output(&mut self, value: Word) {
+        self.b.store(self.ids.output, value, None, []).unwrap();
+    }
+
+    pub fn load_counter(&mut self, access: MemoryAccess) -> Word {
+        let Ids { uint, counter, .. } = self.ids;
+        self.b.load(uint, None, counter, Some(access), []).unwrap()
+    }
+
+    pub fn store_counter(&mut self, value: Word) {
+        self.b.store(self.ids.counter, value, None, []).unwrap();
+    }
+
+    pub fn atomic_increment(&mut self, scope: Word, semantics: Word) {
+        let Ids { uint, counter, .. } = self.ids;
+        self.b
+            .atomic_i_add(uint, None, counter, scope, semantics, scope)
+            .unwrap();
+    }
+
+    pub fn constant_u32(&mut self, value: u32) -> Word {
+        self.b.constant_bit32(self.ids.uint, value)
+    }
+
+    pub fn constant_f32(&mut self, bits: u32) -> Word {
+        self.b.constant_bit32(self.ids.float, bits)
+    }
+
+    pub fn float_type(&mut self, width: u32) {
+        self.b.type_float(width, None);
+    }
+
+    pub fn i_add(&mut self, x: Word, y: Word) -> Word {
+        self.b.i_add(self.ids.uint, None, x, y).unwrap()
+    }
+
+    pub fn f_add(&mut self, x: Word, y: Word) -> Word {
+        self.b.f_add(self.ids.float, None, x, y).unwrap()
+    }
+
+    pub fn f_mul(&mut self, x: Word, y: Word) -> Word {
+        self.b.f_mul(self.ids.float, None, x, y).unwrap()
+    }
+
+    pub fn f_div(&mut self, x: Word, y: Word) -> Word {
+        self.b.f_div(self.ids.float, None, x, y).unwrap()
+    }
+
+    pub fn f_rem(&mut self, x: Word, y: Word) -> Word {
+        self.b.f_rem(self.ids.float, None, x, y).unwrap()
+    }
+
+    pub fn glsl(&mut self, op: GlslStd450Op, x: Word) -> Word {
+        let Ids { float, glsl, .. } = self.ids;
+        self.b
+            .ext_inst(float, None, glsl, op as u32, [Operand::IdRef(x)])
+            .unwrap()
+    }
+
+    pub fn subgroup_sum(&mut self, x: Word) {
+        let subgroup = self.constant_u32(Scope::Subgroup as u32);
+        let operation = GroupOperation::Reduce;
+        self.b
+            .group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None)
+            .unwrap();
+    }
+
+    pub fn call(&mut self, function: Word) {
+        self.b
+            .function_call(self.ids.void, None, function, [])
+            .unwrap();
+    }
+
+    /// A local variable that is stored to, and read and stored on if `read`.
+    pub fn local(&mut self, value: Word, read: bool) {
+        let float = self.ids.float;
+        let pointer = self.b.type_pointer(None, StorageClass::Function, float);
+        let variable = self.b.variable(pointer, None, StorageClass::Function, None);
+        self.b.store(variable, value, None, []).unwrap();
+        if read {
+            let value = self.b.load(float, None, variable, None, []).unwrap();
+            self.store_output(value);
+        }
+    }
+
+    /// A struct that holds a pointer, and is passed through if `live`.
+    pub fn pointer_struct(&mut self, live: bool) {
+        let Ids { float, input, .. } = self.ids;
+        let pointer = self.b.type_pointer(None, StorageClass::Private, float);
+        let kind = self.b.type_struct([pointer]);
+        let composite = self.b.composite_construct(kind, None, [input]).unwrap();
+        let pointer = self
+            .b
+            .composite_extract(pointer, None, composite, [0])
+            .unwrap();
+        if live {
+            let value = self.b.load(float, None, pointer, None, []).unwrap();
+            self.store_output(value);
+        }
+    }
+}

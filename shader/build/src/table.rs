@@ -1,0 +1,43 @@
+//! Which modules are cut from the compiled kernels.
+
+/// What a module promises about its arithmetic.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Policy {
+    /// Every float instruction is rounded as written, and none is used whose result a device may
+    /// choose.
+    Exact,
+    /// Only protected functions are rounded as written.
+    Fast,
+}
+
+/// One committed module.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Module {
+    /// The file's name without its ending.
+    pub name: &'static str,
+    /// What the names of its entry points begin with.
+    pub prefix: &'static str,
+    /// What it promises.
+    pub policy: Policy,
+}
+
+impl Module {
+    /// The file's name within `shader/spirv`.
+    pub fn file(&self) -> String {
+        format!("{}.spv", self.name)
+    }
+}
+
+/// Every committed module.
+pub const MODULES: [Module; 2] = [
+    Module {
+        name: "exact",
+        prefix: "exact_",
+        policy: Policy::Exact,
+    },
+    Module {
+        name: "fast",
+        prefix: "fast_",
+        policy: Policy::Fast,
+    },
+];

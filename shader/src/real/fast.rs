@@ -5,7 +5,6 @@ use super::{Real, Scalar, V3};
 use crate::data;
 use core::ops::{Add, Mul, Neg, Sub};
 use glam::{UVec4, Vec3};
-#[cfg(target_arch = "spirv")]
 use spirv_std::num_traits::Float;
 
 /// A single number at the device's own speed.
@@ -55,7 +54,7 @@ impl Real for Fast {
 
     #[inline(always)]
     fn sqrt(self) -> Fast {
-        Fast(self.0.sqrt())
+        Fast(Float::sqrt(self.0))
     }
 
     #[inline(always)]
@@ -80,7 +79,7 @@ impl Scalar for Fast {
         } else if self.0 <= 0.0 {
             Fast(0.0)
         } else {
-            Fast(self.0.powf(exponent.0))
+            Fast(Float::powf(self.0, exponent.0))
         }
     }
 }

@@ -4,6 +4,8 @@
 //! place; an exact integer remainder corrects it. Subnormal operands count as zero and subnormal
 //! results become zero. [`native`] gives the same bits from a CPU's instructions.
 
+use spirv_std::num_traits::Float;
+
 const SIGN: u32 = 0x8000_0000;
 const INFINITY: u32 = 0x7f80_0000;
 const NAN: u32 = 0x7fc0_0000;
@@ -111,7 +113,7 @@ pub fn sqrt(a: f32) -> f32 {
         let odd = (ea & 1) ^ 1;
         let m = (ua & FRACTION) | HIDDEN;
         let v = f32::from_bits(((127 + odd) << 23) | (ua & FRACTION));
-        let mut s = mantissa_of_estimate(root_estimate(v));
+        let mut s = mantissa_of_estimate(Float::sqrt(v));
         let mut rest = (m << (25 + odd)).wrapping_sub(s.wrapping_mul(s)) as i32;
         while rest < 0 {
             rest += 2 * s as i32 - 1;
@@ -125,18 +127,6 @@ pub fn sqrt(a: f32) -> f32 {
         assemble(0, biased, round(s, rest != 0))
     };
     f32::from_bits(bits)
-}
-
-#[cfg(target_arch = "spirv")]
-#[inline(always)]
-fn root_estimate(v: f32) -> f32 {
-    spirv_std::num_traits::Float::sqrt(v)
-}
-
-#[cfg(not(target_arch = "spirv"))]
-#[inline(always)]
-fn root_estimate(v: f32) -> f32 {
-    v.sqrt()
 }
 
 /// The same functions from a CPU's correctly rounded instructions.

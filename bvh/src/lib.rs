@@ -19,6 +19,7 @@ mod morton;
 mod quality;
 mod reinsertion;
 mod search;
+mod statistics;
 mod topology;
 mod validate;
 
@@ -26,4 +27,5 @@ pub use build::{Bvh, build};
 pub use depth::MAX_DEPTH;
 pub use error::BuildError;
 pub use quality::Quality;
+pub use statistics::Statistics;
 pub use validate::validate;

@@ -1,0 +1,92 @@
+//! Why there is no hierarchy.
+
+use eyerays_shader::data::{MAX_LEAF, NodeRef};
+
+use crate::MAX_DEPTH;
+
+/// Why [`build`](crate::build()) or [`validate`](crate::validate()) refuses. The first three are
+/// faults of the input; the others mean that a hierarchy must not be traversed.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum BuildError {
+    /// There is nothing to build a tree of.
+    #[error("the scene has no triangles: add a mesh, or skip tracing and draw the background")]
+    NoTriangles,
+    /// A node reference cannot number so many triangles.
+    #[error(
+        "the scene has {count} triangles, but a node reference holds {most}: split the scene or simplify its meshes",
+        most = NodeRef::MAX_INDEX
+    )]
+    TooManyTriangles {
+        /// Triangles given.
+        count: usize,
+    },
+    /// A coordinate is NaN, infinite or outside the normalised scene.
+    #[error(
+        "primitive {primitive} has a vertex coordinate that is not a number in [-1, 1]: remove the primitive or normalise the scene"
+    )]
+    Coordinate {
+        /// The primitive's number in the scene.
+        primitive: u32,
+    },
+    /// A reference leads past the end of the node pairs.
+    #[error("pair {pair} refers to pair {child} of {pairs}: rebuild the hierarchy")]
+    PairOutOfRange {
+        /// The pair that holds the reference.
+        pair: u32,
+        /// The pair referred to.
+        child: u32,
+        /// Pairs there are.
+        pairs: usize,
+    },
+    /// A pair has two parents, or is its own ancestor.
+    #[error("pair {pair} is reached twice, so this is no tree: rebuild the hierarchy")]
+    PairReachedTwice {
+        /// The pair.
+        pair: u32,
+    },
+    /// A pair is part of no path from the root.
+    #[error("pair {pair} is never reached from the root: rebuild the hierarchy")]
+    PairUnreached {
+        /// The least such pair.
+        pair: u32,
+    },
+    /// A leaf's run is too long or leads past the end of the triangles.
+    #[error(
+        "pair {pair} has a leaf of {count} triangles from {first} on, but there are {triangles} and a leaf holds {most}: rebuild the hierarchy",
+        most = MAX_LEAF
+    )]
+    LeafOutOfRange {
+        /// The pair that holds the leaf.
+        pair: u32,
+        /// First slot of the run.
+        first: u32,
+        /// Length of the run.
+        count: u32,
+        /// Triangles there are.
+        triangles: usize,
+    },
+    /// Two leaves share a slot, or two slots a triangle.
+    #[error("triangle {triangle} sits in two places: rebuild the hierarchy")]
+    TriangleTwice {
+        /// The slot, or the triangle.
+        triangle: u32,
+    },
+    /// No leaf holds a slot, or no slot a triangle.
+    #[error("triangle {triangle} sits in no leaf: rebuild the hierarchy")]
+    TriangleLost {
+        /// The least such slot or triangle.
+        triangle: u32,
+    },
+    /// A box does not contain its triangles or its children.
+    #[error("a box of pair {pair} does not contain what is below it: rebuild the hierarchy")]
+    BoxTooSmall {
+        /// The pair.
+        pair: u32,
+    },
+    /// A traversal stack could overflow.
+    #[error("pair {pair} lies deeper than {most} levels: rebuild the hierarchy", most = MAX_DEPTH)]
+    TooDeep {
+        /// The first such pair on the way down.
+        pair: u32,
+    },
+}

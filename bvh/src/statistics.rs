@@ -1,0 +1,132 @@
+//! What a hierarchy looks like (thesis table 7.1) and what it costs.
+
+use eyerays_shader::data::{NodePair, NodeRef, Triangle};
+
+use crate::{
+    Bvh,
+    bounds::Bounds,
+    validate::{children, is_empty},
+};
+
+/// Figures of a hierarchy.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Statistics {
+    /// Triangles.
+    pub triangles: usize,
+    /// Inner nodes and leaves.
+    pub nodes: usize,
+    /// Leaves.
+    pub leaves: usize,
+    /// The most edges from the root to a leaf, which are the pairs on that path.
+    pub depth: u32,
+    /// The expected cost of a random ray by the surface area heuristic: for each inner node
+    /// [`Statistics::TRAVERSAL`], for each triangle [`Statistics::INTERSECTION`], times the surface
+    /// area of the node that is or holds it, divided by the root's.
+    pub sah_cost: f64,
+    /// Bytes of the node pairs.
+    pub node_bytes: usize,
+    /// Bytes of the triangles.
+    pub triangle_bytes: usize,
+}
+
+impl Statistics {
+    /// Cost of the step through an inner node, which tests the boxes of both children.
+    pub const TRAVERSAL: f64 = 1.0;
+    /// Cost of a triangle test.
+    pub const INTERSECTION: f64 = 1.0;
+
+    /// The figures of `bvh`, which was built over `triangles`.
+    pub fn of(bvh: &Bvh, triangles: &[Triangle]) -> Self {
+        let mut statistics = Statistics {
+            triangles: triangles.len(),
+            nodes: bvh.nodes.len(),
+            leaves: 0,
+            depth: 0,
+            sah_cost: 0.0,
+            node_bytes: size_of_val(&bvh.nodes[..]),
+            triangle_bytes: size_of_val(triangles),
+        };
+        let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
+        let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
+        statistics.sah_cost = Self::TRAVERSAL;
+        let mut open = vec![(0u32, 1u32)];
+        while let Some((pair, depth)) = open.pop() {
+            statistics.depth = statistics.depth.max(depth);
+            for (bounds, reference) in real_children(&bvh.nodes[pair as usize]) {
+                if reference.is_leaf() {
+                    let tests = f64::from(reference.count());
+                    statistics.sah_cost += share(bounds) * tests * Self::INTERSECTION;
+                    statistics.leaves += 1;
+                } else {
+                    statistics.sah_cost += share(bounds) * Self::TRAVERSAL;
+                    open.push((reference.index(), depth + 1));
+                }
+            }
+        }
+        statistics.nodes += statistics.leaves;
+        statistics
+    }
+}
+
+/// The children of a pair but for [`NodePair::EMPTY`].
+fn real_children(pair: &NodePair) -> impl Iterator<Item = (Bounds, NodeRef)> {
+    children(pair)
+        .into_iter()
+        .filter(|&(bounds, reference)| !is_empty(bounds, reference))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{Vec3, vec3};
+
+    /// A box of edge 1 from `x` on.
+    fn unit(x: f32, leaf: NodeRef) -> (Vec3, Vec3, NodeRef) {
+        (vec3(x, 0.0, 0.0), vec3(x + 1.0, 1.0, 1.0), leaf)
+    }
+
+    #[test]
+    fn a_tree_by_hand() {
+        let inner = (Vec3::ZERO, vec3(2.0, 1.0, 1.0), NodeRef::inner(1));
+        let bvh = Bvh {
+            nodes: vec![
+                NodePair::new(inner, unit(3.0, NodeRef::leaf(5, 4))),
+                NodePair::new(
+                    unit(0.0, NodeRef::leaf(0, 2)),
+                    unit(1.0, NodeRef::leaf(2, 3)),
+                ),
+            ],
+            order: (0..9).collect(),
+        };
+        let triangles = [Triangle::new([Vec3::ZERO; 3], 0, 0, 0); 9];
+        let statistics = Statistics::of(&bvh, &triangles);
+        // Half areas: root 9, inner node 5, each leaf 3.
+        let cost = 1.0 + 5.0 / 9.0 + (2.0 + 3.0 + 4.0) * 3.0 / 9.0;
+        assert!((statistics.sah_cost - cost).abs() < 1e-12);
+        let expected = Statistics {
+            triangles: 9,
+            nodes: 5,
+            leaves: 3,
+            depth: 2,
+            sah_cost: statistics.sah_cost,
+            node_bytes: 128,
+            triangle_bytes: 432,
+        };
+        assert_eq!(statistics, expected);
+    }
+
+    #[test]
+    fn an_empty_sibling_counts_for_nothing() {
+        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
+        let bvh = crate::build(&[triangle], crate::Quality::Medium).unwrap();
+        let statistics = Statistics::of(&bvh, &[triangle]);
+        assert_eq!(
+            (statistics.nodes, statistics.leaves, statistics.depth),
+            (2, 1, 1)
+        );
+        assert_eq!(
+            statistics.sah_cost,
+            Statistics::TRAVERSAL + Statistics::INTERSECTION
+        );
+    }
+}

@@ -1,0 +1,113 @@
+//! A tree over triangles before it has boxes.
+
+use obvhs::bvh2::Bvh2;
+
+use crate::cluster::Clusters;
+
+/// What a node of a [`Topology`] is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Left and right child, by their numbers.
+    Inner(u32, u32),
+    /// Triangles in no order yet; a leaf if they are few, otherwise to be split at medians.
+    Run,
+}
+
+/// A node and the triangles below it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Node {
+    pub kind: Kind,
+    /// First slot of the subtree.
+    pub first: u32,
+    /// Slots of the subtree.
+    pub count: u32,
+}
+
+/// A binary tree whose children come after their parents, and whose subtrees cover contiguous
+/// slots. Node 0 is the root.
+pub(crate) struct Topology {
+    pub nodes: Vec<Node>,
+    /// The triangle at each slot.
+    pub order: Vec<u32>,
+}
+
+impl Topology {
+    /// One run of all triangles.
+    pub fn run(triangles: u32) -> Self {
+        let node = Node {
+            kind: Kind::Run,
+            first: 0,
+            count: triangles,
+        };
+        Topology {
+            nodes: vec![node],
+            order: (0..triangles).collect(),
+        }
+    }
+
+    /// The tree that obvhs found over clusters, in depth-first order, with the clusters' triangles
+    /// in the leaves.
+    pub fn of(tree: &Bvh2, clusters: &Clusters) -> Self {
+        let mut topology = Topology {
+            nodes: Vec::with_capacity(tree.nodes.len()),
+            order: Vec::new(),
+        };
+        let mut open = vec![(0u32, None)];
+        while let Some((number, parent)) = open.pop() {
+            let node = &tree.nodes[number as usize];
+            let new = topology.nodes.len() as u32;
+            if let Some((parent, side)) = parent {
+                topology.link(parent, side, new);
+            }
+            topology.nodes.push(Node {
+                kind: Kind::Run,
+                first: topology.order.len() as u32,
+                count: 0,
+            });
+            if node.is_leaf() {
+                let primitives = node.first_index..node.first_index + node.prim_count;
+                for primitive in primitives {
+                    let group = tree.primitive_indices[primitive as usize];
+                    topology.order.extend(clusters.members(group));
+                }
+            } else {
+                open.push((node.first_index + 1, Some((new, Side::Right))));
+                open.push((node.first_index, Some((new, Side::Left))));
+            }
+        }
+        topology.count();
+        topology
+    }
+
+    /// Makes `child` a child of `parent`.
+    fn link(&mut self, parent: u32, side: Side, child: u32) {
+        let kind = &mut self.nodes[parent as usize].kind;
+        *kind = match (side, *kind) {
+            (Side::Left, _) => Kind::Inner(child, child),
+            (Side::Right, Kind::Inner(left, _)) => Kind::Inner(left, child),
+            (Side::Right, Kind::Run) => unreachable!("left children are linked first"),
+        };
+    }
+
+    /// Fills in how many slots each subtree has.
+    fn count(&mut self) {
+        // In depth-first order, slots still to come at a node begin where the next node's do.
+        let mut end = self.order.len() as u32;
+        for i in (0..self.nodes.len()).rev() {
+            let first = self.nodes[i].first;
+            self.nodes[i].count = match self.nodes[i].kind {
+                Kind::Run => end - first,
+                Kind::Inner(left, right) => {
+                    self.nodes[left as usize].count + self.nodes[right as usize].count
+                }
+            };
+            end = first;
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Side {
+    Left,
+    Right,
+}

@@ -1,0 +1,196 @@
+//! One corrupted tree for each rule of validation.
+
+mod common;
+
+use common::*;
+use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, build, validate};
+use eyerays_shader::data::{NodePair, NodeRef, Triangle};
+
+/// A valid tree, and its triangles in the order of slots.
+fn valid() -> (Vec<NodePair>, Vec<Triangle>) {
+    let triangles = scattered(300, 29);
+    let bvh = build(&triangles, Quality::Medium).unwrap();
+    let sorted = bvh.gather(&triangles);
+    assert_eq!(validate(&bvh.nodes, &sorted), Ok(()));
+    (bvh.nodes, sorted)
+}
+
+/// What validation says after a change.
+fn after(change: impl FnOnce(&mut Vec<NodePair>, &mut Vec<Triangle>)) -> BuildError {
+    let (mut nodes, mut triangles) = valid();
+    change(&mut nodes, &mut triangles);
+    validate(&nodes, &triangles).expect_err("a corrupted tree")
+}
+
+/// The first pair whose left child is of the kind asked for.
+fn left(nodes: &[NodePair], leaf: bool) -> usize {
+    let found = nodes.iter().position(|n| n.left().is_leaf() == leaf);
+    found.expect("a tree of hundreds has both kinds")
+}
+
+#[test]
+fn cycle() {
+    let error = after(|nodes, _| {
+        let last = nodes.len() - 1;
+        nodes[last].left_min.w = NodeRef::ROOT.0;
+    });
+    assert_eq!(error, BuildError::PairReachedTwice { pair: 0 });
+}
+
+#[test]
+fn pair_with_two_parents() {
+    let error = after(|nodes, _| {
+        let pair = nodes[0];
+        nodes[0] = NodePair {
+            right_min: pair.left_min,
+            right_max: pair.left_max,
+            ..pair
+        };
+    });
+    assert_eq!(error, BuildError::PairReachedTwice { pair: 1 });
+}
+
+#[test]
+fn pair_out_of_range() {
+    for past in [0, 1, 1 << 20] {
+        let error = after(|nodes, _| {
+            let child = NodeRef::inner(nodes.len() as u32 + past);
+            let pair = left(nodes, false);
+            nodes[pair].left_min.w = child.0;
+        });
+        assert!(
+            matches!(error, BuildError::PairOutOfRange { .. }),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn no_pairs() {
+    let error = after(|nodes, _| nodes.clear());
+    assert!(matches!(error, BuildError::PairOutOfRange { pairs: 0, .. }));
+}
+
+#[test]
+fn pair_that_nothing_refers_to() {
+    let count = valid().0.len() as u32;
+    let error = after(|nodes, _| nodes.push(nodes[0]));
+    assert_eq!(error, BuildError::PairUnreached { pair: count });
+}
+
+#[test]
+fn leaf_out_of_range() {
+    let error = after(|_, triangles| triangles.truncate(299));
+    assert!(matches!(
+        error,
+        BuildError::LeafOutOfRange { triangles: 299, .. }
+    ));
+    for count in [6, 7] {
+        let error = after(|nodes, _| {
+            let pair = left(nodes, true);
+            nodes[pair].left_min.w = NodeRef::leaf(0, count).0;
+        });
+        assert!(matches!(error, BuildError::LeafOutOfRange { first: 0, .. }));
+    }
+}
+
+#[test]
+fn triangle_in_no_leaf() {
+    let error = after(|_, triangles| triangles.push(triangles[0]));
+    assert_eq!(error, BuildError::TriangleLost { triangle: 300 });
+    let error = after(|nodes, _| {
+        let pair = nodes.iter().position(|n| n.left().count() > 1).unwrap();
+        nodes[pair].left_min.w -= 1;
+    });
+    assert!(matches!(error, BuildError::TriangleLost { .. }));
+}
+
+#[test]
+fn triangle_in_two_leaves() {
+    let error = after(|nodes, _| {
+        let pair = nodes
+            .iter()
+            .position(|n| n.left().is_leaf() && n.right().is_leaf())
+            .unwrap();
+        nodes[pair].right_min = nodes[pair].left_min;
+        nodes[pair].right_max = nodes[pair].left_max;
+    });
+    assert!(matches!(error, BuildError::TriangleTwice { .. }));
+}
+
+/// Moves one face of one box inwards by the least step there is.
+fn shrink(nodes: &mut [NodePair], pair: usize, face: usize) {
+    let node = &mut nodes[pair];
+    let (word, axis) = (face / 3, face % 3);
+    let word = match word {
+        0 => &mut node.left_min,
+        1 => &mut node.left_max,
+        2 => &mut node.right_min,
+        _ => &mut node.right_max,
+    };
+    let coordinate = f32::from_bits(word[axis]);
+    let least = matches!(face / 3, 0 | 2);
+    let inwards = if least {
+        coordinate.next_up()
+    } else {
+        coordinate.next_down()
+    };
+    word[axis] = inwards.to_bits();
+}
+
+#[test]
+fn any_face_of_any_box_too_small_by_the_least_step() {
+    let (nodes, triangles) = valid();
+    for pair in 0..nodes.len() {
+        for face in 0..12 {
+            let mut nodes = nodes.clone();
+            shrink(&mut nodes, pair, face);
+            let error = BuildError::BoxTooSmall { pair: pair as u32 };
+            assert_eq!(validate(&nodes, &triangles), Err(error), "face {face}");
+        }
+    }
+}
+
+#[test]
+fn box_of_nan() {
+    let error = after(|nodes, _| nodes[3].left_max.y = f32::NAN.to_bits());
+    assert_eq!(error, BuildError::BoxTooSmall { pair: 3 });
+}
+
+/// A path of `pairs`, each with a leaf of one triangle on the left.
+fn chain(pairs: u32) -> (Vec<NodePair>, Vec<Triangle>) {
+    let triangles = duplicates(pairs + 1);
+    let (min, max) = triangles[0].bounds();
+    let node = |i: u32| {
+        let next = if i + 1 < pairs {
+            NodeRef::inner(i + 1)
+        } else {
+            NodeRef::leaf(pairs, 1)
+        };
+        NodePair::new((min, max, NodeRef::leaf(i, 1)), (min, max, next))
+    };
+    ((0..pairs).map(node).collect(), triangles)
+}
+
+#[test]
+fn too_deep_by_one() {
+    let (nodes, triangles) = chain(MAX_DEPTH);
+    assert_eq!(validate(&nodes, &triangles), Ok(()));
+    let (nodes, triangles) = chain(MAX_DEPTH + 1);
+    let error = BuildError::TooDeep { pair: MAX_DEPTH };
+    assert_eq!(validate(&nodes, &triangles), Err(error));
+}
+
+#[test]
+fn empty_sibling_belongs_to_one_triangle_only() {
+    let triangles = scattered(2, 31);
+    let one = build(&triangles[..1], Quality::Medium).unwrap().nodes;
+    assert_eq!(validate(&one, &triangles[..1]), Ok(()));
+    let error = BuildError::TriangleTwice { triangle: 0 };
+    assert_eq!(validate(&one, &triangles), Err(error.clone()));
+
+    let mut moved = one.clone();
+    moved[0].right_max.x = 1.0f32.to_bits();
+    assert_eq!(validate(&moved, &triangles[..1]), Err(error));
+    assert_eq!(validate(&one, &[]), Err(BuildError::NoTriangles));
+}

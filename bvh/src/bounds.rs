@@ -12,10 +12,7 @@ pub(crate) struct Bounds {
 
 impl Bounds {
     /// The neutral element of [`Bounds::union`].
-    pub const EMPTY: Bounds = Bounds {
-        min: [f32::INFINITY; 3],
-        max: [f32::NEG_INFINITY; 3],
-    };
+    pub const EMPTY: Bounds = Bounds { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
     /// A triangle's own box, padding included.
     pub fn of(triangle: &Triangle) -> Self {
@@ -25,10 +22,7 @@ impl Bounds {
 
     /// The box between two corners.
     pub fn new(min: Vec3, max: Vec3) -> Self {
-        Bounds {
-            min: min.into(),
-            max: max.into(),
-        }
+        Bounds { min: min.into(), max: max.into() }
     }
 
     /// The least box around both, by compare and select: no coordinate is ever rounded.

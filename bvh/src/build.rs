@@ -3,8 +3,7 @@
 use eyerays_shader::data::{MAX_LEAF, NodePair, NodeRef, Triangle};
 
 use crate::{
-    BuildError, MAX_DEPTH, Quality, bounds::Bounds, cluster::Clusters, layout, search,
-    topology::Topology, validate,
+    BuildError, MAX_DEPTH, Quality, bounds::Bounds, cluster::Clusters, layout, search, topology::Topology, validate,
 };
 
 /// A validated hierarchy.
@@ -43,23 +42,15 @@ pub fn build(triangles: &[Triangle], quality: Quality) -> Result<Bvh, BuildError
     check_coordinates(triangles)?;
     let bounds: Vec<Bounds> = triangles.iter().map(Bounds::of).collect();
     let bvh = match bounds[..] {
-        [only] => Bvh {
-            nodes: vec![layout::single(only)],
-            order: vec![0],
-        },
+        [only] => Bvh { nodes: vec![layout::single(only)], order: vec![0] },
         _ => {
             let mut topology = topology(&bounds, count, quality);
             topology.limit_depth(MAX_DEPTH);
-            Bvh {
-                nodes: layout::pairs(&mut topology, &bounds),
-                order: topology.order,
-            }
+            Bvh { nodes: layout::pairs(&mut topology, &bounds), order: topology.order }
         }
     };
     validate::order(&bvh.order, triangles.len())?;
-    validate::nodes(&bvh.nodes, triangles.len(), |slot| {
-        bounds[bvh.order[slot as usize] as usize]
-    })?;
+    validate::nodes(&bvh.nodes, triangles.len(), |slot| bounds[bvh.order[slot as usize] as usize])?;
     Ok(bvh)
 }
 
@@ -95,9 +86,7 @@ fn check_coordinates(triangles: &[Triangle]) -> Result<(), BuildError> {
         coordinates.as_flattened().iter().all(|c| c.abs() <= 1.0)
     };
     match triangles.iter().find(|t| !normalised(t)) {
-        Some(t) => Err(BuildError::Coordinate {
-            primitive: t.primitive(),
-        }),
+        Some(t) => Err(BuildError::Coordinate { primitive: t.primitive() }),
         None => Ok(()),
     }
 }

@@ -29,10 +29,7 @@ impl Clusters {
     pub fn of(bounds: &[Bounds]) -> Self {
         let order = morton::sorted(bounds);
         let mut glued = vec![false; order.len()];
-        let mut nodes: Vec<Node> = (0..)
-            .zip(&order)
-            .map(|(i, &t)| (bounds[t as usize], i..i + 1))
-            .collect();
+        let mut nodes: Vec<Node> = (0..).zip(&order).map(|(i, &t)| (bounds[t as usize], i..i + 1)).collect();
         // A pass removes nodes from every full run. Fewer than a run are no burden, however slowly
         // they merge.
         while nodes.len() > RUN {
@@ -61,18 +58,12 @@ type Node = (Bounds, Range<u32>);
 /// One pass of clustering, as obvhs does it between direct neighbours. Stalled runs become one node
 /// and are glued together.
 fn pass(nodes: &[Node], glued: &mut [bool]) -> Vec<Node> {
-    let costs: Vec<f32> = nodes
-        .windows(2)
-        .map(|w| w[0].0.union(w[1].0).half_area())
-        .collect();
+    let costs: Vec<f32> = nodes.windows(2).map(|w| w[0].0.union(w[1].0).half_area()).collect();
     // Ties go to the right, as in obvhs: they are what makes a row of equals stall.
     let merges = |i: usize| {
-        i < costs.len()
-            && (i == 0 || costs[i - 1] >= costs[i])
-            && (i + 1 == costs.len() || costs[i] < costs[i + 1])
+        i < costs.len() && (i == 0 || costs[i - 1] >= costs[i]) && (i + 1 == costs.len() || costs[i] < costs[i + 1])
     };
-    let stalled =
-        |run: &Range<usize>| run.clone().filter(|&j| merges(j)).count() * RUN < FEW * run.len();
+    let stalled = |run: &Range<usize>| run.clone().filter(|&j| merges(j)).count() * RUN < FEW * run.len();
     let run_from = |i: usize| i..(i + RUN).min(nodes.len());
     let mut next = Vec::with_capacity(nodes.len());
     let mut i = 0;
@@ -114,10 +105,7 @@ mod tests {
 
     /// Unit cubes at these places along an axis.
     fn cubes(places: impl Iterator<Item = f32>) -> Vec<Bounds> {
-        let cube = |x| Bounds {
-            min: [x, 0.0, 0.0],
-            max: [x + 1.0, 1.0, 1.0],
-        };
+        let cube = |x| Bounds { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 1.0] };
         places.map(cube).collect()
     }
 
@@ -129,10 +117,7 @@ mod tests {
     #[test]
     fn duplicates_and_even_rows_are_one_group() {
         assert_eq!(sizes(&Clusters::of(&cubes((0..5000).map(|_| 0.0)))), [5000]);
-        assert_eq!(
-            sizes(&Clusters::of(&cubes((0..5000).map(|i| i as f32)))),
-            [5000]
-        );
+        assert_eq!(sizes(&Clusters::of(&cubes((0..5000).map(|i| i as f32)))), [5000]);
     }
 
     #[test]
@@ -143,13 +128,7 @@ mod tests {
 
     #[test]
     fn groups_are_a_partition() {
-        let places = (0..9000u32).map(|i| {
-            if i % 3 == 0 {
-                7.0
-            } else {
-                (i * i % 8191) as f32
-            }
-        });
+        let places = (0..9000u32).map(|i| if i % 3 == 0 { 7.0 } else { (i * i % 8191) as f32 });
         let clusters = Clusters::of(&cubes(places));
         assert!((2..9000).contains(&clusters.len()));
         let groups = 0..clusters.len() as u32;

@@ -35,11 +35,7 @@ fn number(topology: &mut Topology, bounds: &[Bounds]) -> Vec<[NodeRef; 2]> {
     while let Some((subtree, parent)) = open.pop() {
         let (first, count, children) = resolve(subtree, topology);
         let is_leaf = children.is_none() && count <= MAX_LEAF && parent.is_some();
-        let reference = if is_leaf {
-            NodeRef::leaf(first, count)
-        } else {
-            NodeRef::inner(pairs.len() as u32)
-        };
+        let reference = if is_leaf { NodeRef::leaf(first, count) } else { NodeRef::inner(pairs.len() as u32) };
         if let Some((pair, side)) = parent {
             pairs[pair][side] = reference;
         }
@@ -49,10 +45,7 @@ fn number(topology: &mut Topology, bounds: &[Bounds]) -> Vec<[NodeRef; 2]> {
         let [left, right] = children.unwrap_or_else(|| {
             let slots = first as usize..(first + count) as usize;
             let half = median::split(&mut topology.order[slots], bounds) as u32;
-            [
-                Subtree::Run(first, half),
-                Subtree::Run(first + half, count - half),
-            ]
+            [Subtree::Run(first, half), Subtree::Run(first + half, count - half)]
         });
         let pair = pairs.len();
         pairs.push([NodeRef::ROOT; 2]);

@@ -48,20 +48,13 @@ mod tests {
     use super::*;
 
     fn cube(centre: [f32; 3], half: f32) -> Bounds {
-        Bounds {
-            min: centre.map(|c| c - half),
-            max: centre.map(|c| c + half),
-        }
+        Bounds { min: centre.map(|c| c - half), max: centre.map(|c| c + half) }
     }
 
     #[test]
     fn height_is_that_of_repeated_halving() {
         fn halved(n: u32) -> u32 {
-            if n <= MAX_LEAF {
-                0
-            } else {
-                1 + halved(n.div_ceil(2))
-            }
+            if n <= MAX_LEAF { 0 } else { 1 + halved(n.div_ceil(2)) }
         }
         for n in (0..5000).chain([1 << 29, (1 << 29) - 1, 5 << 20, (5 << 20) + 1]) {
             assert_eq!(height(n), halved(n), "{n} triangles");
@@ -70,9 +63,7 @@ mod tests {
 
     #[test]
     fn halves_along_the_longest_axis() {
-        let boxes: Vec<Bounds> = [4.0, 1.0, 3.0, 2.0, 0.0]
-            .map(|y| cube([-y / 8.0, y, 0.5], 0.1))
-            .into();
+        let boxes: Vec<Bounds> = [4.0, 1.0, 3.0, 2.0, 0.0].map(|y| cube([-y / 8.0, y, 0.5], 0.1)).into();
         let mut triangles = vec![0, 1, 2, 3, 4];
         assert_eq!(split(&mut triangles, &boxes), 2);
         triangles[..2].sort();

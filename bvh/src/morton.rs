@@ -7,10 +7,7 @@ const BITS: u32 = 21;
 
 /// The numbers of the boxes, sorted by the Morton code of their centres, then by number.
 pub(crate) fn sorted(bounds: &[Bounds]) -> Vec<u32> {
-    let scene = Bounds::around(bounds.iter().map(|b| Bounds {
-        min: b.centre(),
-        max: b.centre(),
-    }));
+    let scene = Bounds::around(bounds.iter().map(|b| Bounds { min: b.centre(), max: b.centre() }));
     let mut keys: Vec<(u64, u32)> = bounds.iter().map(|b| code(b, &scene)).zip(0..).collect();
     keys.sort_unstable();
     keys.into_iter().map(|(_, number)| number).collect()

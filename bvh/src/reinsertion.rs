@@ -55,9 +55,8 @@ fn largest(tree: &Bvh2, count: usize) -> Vec<u32> {
     // obvhs numbers pairs from the root on, so the first nodes hold nearly all large ones.
     let near = tree.nodes.iter().take(2 * (count + 1)).zip(0u32..).skip(1);
     // The bits of positive numbers are ordered as the numbers are.
-    let mut keys: Vec<u64> = near
-        .map(|(node, id)| u64::from(node.aabb().half_area().to_bits()) << 32 | u64::from(!id))
-        .collect();
+    let mut keys: Vec<u64> =
+        near.map(|(node, id)| u64::from(node.aabb().half_area().to_bits()) << 32 | u64::from(!id)).collect();
     let count = count.min(keys.len());
     if count < keys.len() {
         keys.select_nth_unstable_by(count, |a, b| b.cmp(a));
@@ -96,11 +95,7 @@ mod tests {
             tree.nodes[id].set_aabb(cube(edge));
         }
         assert_eq!(largest(&tree, 3), [6, 2, 4]);
-        assert_eq!(
-            largest(&tree, 2),
-            [2, 4],
-            "only nodes near the root are tried"
-        );
+        assert_eq!(largest(&tree, 2), [2, 4], "only nodes near the root are tried");
         assert_eq!(largest(&tree, 100).len(), 10);
     }
 }

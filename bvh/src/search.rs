@@ -12,10 +12,7 @@ use crate::{bounds::Bounds, reinsertion::Reinsertion};
 /// A tree over primitives, given by their boxes: clustering, reinsertion, and leaves of several
 /// primitives where that is cheaper. The depth has no bound.
 pub(crate) fn search(primitives: &[Bounds], parameters: &BvhBuildParams) -> Bvh2 {
-    let boxes: Vec<Aabb> = primitives
-        .iter()
-        .map(|b| Aabb::new(b.min.into(), b.max.into()))
-        .collect();
+    let boxes: Vec<Aabb> = primitives.iter().map(|b| Aabb::new(b.min.into(), b.max.into())).collect();
     let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
         parameters.ploc_search_distance,
         &boxes,
@@ -28,11 +25,7 @@ pub(crate) fn search(primitives: &[Bounds], parameters: &BvhBuildParams) -> Bvh2
     tree.max_depth = DEFAULT_MAX_STACK_DEPTH;
     let share = parameters.reinsertion_batch_ratio;
     Reinsertion::new(share).run(&mut tree);
-    collapse(
-        &mut tree,
-        parameters.max_prims_per_leaf,
-        parameters.collapse_traversal_cost,
-    );
+    collapse(&mut tree, parameters.max_prims_per_leaf, parameters.collapse_traversal_cost);
     let again = parameters.post_collapse_reinsertion_batch_ratio_multiplier;
     Reinsertion::new(share * again).run(&mut tree);
     tree

@@ -70,9 +70,7 @@ impl Statistics {
 
 /// The children of a pair but for [`NodePair::EMPTY`].
 fn real_children(pair: &NodePair) -> impl Iterator<Item = (Bounds, NodeRef)> {
-    children(pair)
-        .into_iter()
-        .filter(|&(bounds, reference)| !is_empty(bounds, reference))
+    children(pair).into_iter().filter(|&(bounds, reference)| !is_empty(bounds, reference))
 }
 
 #[cfg(test)]
@@ -91,10 +89,7 @@ mod tests {
         let bvh = Bvh {
             nodes: vec![
                 NodePair::new(inner, unit(3.0, NodeRef::leaf(5, 4))),
-                NodePair::new(
-                    unit(0.0, NodeRef::leaf(0, 2)),
-                    unit(1.0, NodeRef::leaf(2, 3)),
-                ),
+                NodePair::new(unit(0.0, NodeRef::leaf(0, 2)), unit(1.0, NodeRef::leaf(2, 3))),
             ],
             order: (0..9).collect(),
         };
@@ -120,13 +115,7 @@ mod tests {
         let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
         let bvh = crate::build(&[triangle], crate::Quality::Medium).unwrap();
         let statistics = Statistics::of(&bvh, &[triangle]);
-        assert_eq!(
-            (statistics.nodes, statistics.leaves, statistics.depth),
-            (2, 1, 1)
-        );
-        assert_eq!(
-            statistics.sah_cost,
-            Statistics::TRAVERSAL + Statistics::INTERSECTION
-        );
+        assert_eq!((statistics.nodes, statistics.leaves, statistics.depth), (2, 1, 1));
+        assert_eq!(statistics.sah_cost, Statistics::TRAVERSAL + Statistics::INTERSECTION);
     }
 }

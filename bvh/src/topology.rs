@@ -34,24 +34,14 @@ pub(crate) struct Topology {
 impl Topology {
     /// One run of all triangles.
     pub fn run(triangles: u32) -> Self {
-        let node = Node {
-            kind: Kind::Run,
-            first: 0,
-            count: triangles,
-        };
-        Topology {
-            nodes: vec![node],
-            order: (0..triangles).collect(),
-        }
+        let node = Node { kind: Kind::Run, first: 0, count: triangles };
+        Topology { nodes: vec![node], order: (0..triangles).collect() }
     }
 
     /// The tree that obvhs found over clusters, in depth-first order, with the clusters' triangles
     /// in the leaves.
     pub fn of(tree: &Bvh2, clusters: &Clusters) -> Self {
-        let mut topology = Topology {
-            nodes: Vec::with_capacity(tree.nodes.len()),
-            order: Vec::new(),
-        };
+        let mut topology = Topology { nodes: Vec::with_capacity(tree.nodes.len()), order: Vec::new() };
         let mut open = vec![(0u32, None)];
         while let Some((number, parent)) = open.pop() {
             let node = &tree.nodes[number as usize];
@@ -59,11 +49,7 @@ impl Topology {
             if let Some((parent, side)) = parent {
                 topology.link(parent, side, new);
             }
-            topology.nodes.push(Node {
-                kind: Kind::Run,
-                first: topology.order.len() as u32,
-                count: 0,
-            });
+            topology.nodes.push(Node { kind: Kind::Run, first: topology.order.len() as u32, count: 0 });
             if node.is_leaf() {
                 let primitives = node.first_index..node.first_index + node.prim_count;
                 for primitive in primitives {
@@ -97,9 +83,7 @@ impl Topology {
             let first = self.nodes[i].first;
             self.nodes[i].count = match self.nodes[i].kind {
                 Kind::Run => end - first,
-                Kind::Inner(left, right) => {
-                    self.nodes[left as usize].count + self.nodes[right as usize].count
-                }
+                Kind::Inner(left, right) => self.nodes[left as usize].count + self.nodes[right as usize].count,
             };
             end = first;
         }

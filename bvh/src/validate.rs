@@ -12,9 +12,7 @@ use crate::{BuildError, MAX_DEPTH, bounds::Bounds};
 ///
 /// The first rule broken on a walk in depth-first order; what was never reached comes last.
 pub fn validate(nodes: &[NodePair], triangles: &[Triangle]) -> Result<(), BuildError> {
-    self::nodes(nodes, triangles.len(), |slot| {
-        Bounds::of(&triangles[slot as usize])
-    })
+    self::nodes(nodes, triangles.len(), |slot| Bounds::of(&triangles[slot as usize]))
 }
 
 /// Checks that `order` names each of `count` triangles exactly once.
@@ -32,22 +30,12 @@ pub(crate) fn order(order: &[u32], count: usize) -> Result<(), BuildError> {
 }
 
 /// As [`validate`], with a function from a slot to the box of its triangle.
-pub(crate) fn nodes(
-    nodes: &[NodePair],
-    triangles: usize,
-    bounds: impl Fn(u32) -> Bounds,
-) -> Result<(), BuildError> {
+pub(crate) fn nodes(nodes: &[NodePair], triangles: usize, bounds: impl Fn(u32) -> Bounds) -> Result<(), BuildError> {
     if triangles == 0 {
         return Err(BuildError::NoTriangles);
     }
-    let mut walk = Walk {
-        nodes,
-        triangles,
-        bounds,
-        pairs: Once::new(nodes.len()),
-        slots: Once::new(triangles),
-        open: Vec::new(),
-    };
+    let mut walk =
+        Walk { nodes, triangles, bounds, pairs: Once::new(nodes.len()), slots: Once::new(triangles), open: Vec::new() };
     walk.enter(0, NodeRef::ROOT, 0)?;
     while let Some((pair, level)) = walk.open.pop() {
         for (bounds, reference) in children(&nodes[pair as usize]) {
@@ -69,14 +57,8 @@ pub(crate) fn nodes(
 /// Both children of a pair: box and reference.
 pub(crate) fn children(pair: &NodePair) -> [(Bounds, NodeRef); 2] {
     [
-        (
-            Bounds::new(numbers(pair.left_min), numbers(pair.left_max)),
-            pair.left(),
-        ),
-        (
-            Bounds::new(numbers(pair.right_min), numbers(pair.right_max)),
-            pair.right(),
-        ),
+        (Bounds::new(numbers(pair.left_min), numbers(pair.left_max)), pair.left()),
+        (Bounds::new(numbers(pair.right_min), numbers(pair.right_max)), pair.right()),
     ]
 }
 
@@ -99,13 +81,7 @@ struct Walk<'a, F> {
 
 impl<F: Fn(u32) -> Bounds> Walk<'_, F> {
     /// Checks one child of `pair`, which has `level` pairs above it.
-    fn child(
-        &mut self,
-        pair: u32,
-        level: u32,
-        bounds: Bounds,
-        reference: NodeRef,
-    ) -> Result<(), BuildError> {
+    fn child(&mut self, pair: u32, level: u32, bounds: Bounds, reference: NodeRef) -> Result<(), BuildError> {
         let below = if reference.is_leaf() {
             self.leaf(pair, reference)?
         } else {
@@ -113,22 +89,14 @@ impl<F: Fn(u32) -> Bounds> Walk<'_, F> {
             let [(left, _), (right, _)] = children(&self.nodes[reference.index() as usize]);
             left.union(right)
         };
-        if bounds.contains(below) {
-            Ok(())
-        } else {
-            Err(BuildError::BoxTooSmall { pair })
-        }
+        if bounds.contains(below) { Ok(()) } else { Err(BuildError::BoxTooSmall { pair }) }
     }
 
     /// Opens the pair that `parent` refers to.
     fn enter(&mut self, parent: u32, reference: NodeRef, level: u32) -> Result<(), BuildError> {
         let pair = reference.index();
         if pair as usize >= self.nodes.len() {
-            return Err(BuildError::PairOutOfRange {
-                pair: parent,
-                child: pair,
-                pairs: self.nodes.len(),
-            });
+            return Err(BuildError::PairOutOfRange { pair: parent, child: pair, pairs: self.nodes.len() });
         }
         if !self.pairs.meet(pair) {
             return Err(BuildError::PairReachedTwice { pair });
@@ -145,12 +113,7 @@ impl<F: Fn(u32) -> Bounds> Walk<'_, F> {
         let (first, count) = (leaf.index(), leaf.count());
         let slots = first..first + count;
         if count > MAX_LEAF || slots.end as usize > self.triangles {
-            return Err(BuildError::LeafOutOfRange {
-                pair,
-                first,
-                count,
-                triangles: self.triangles,
-            });
+            return Err(BuildError::LeafOutOfRange { pair, first, count, triangles: self.triangles });
         }
         match slots.clone().find(|&slot| !self.slots.meet(slot)) {
             Some(triangle) => Err(BuildError::TriangleTwice { triangle }),

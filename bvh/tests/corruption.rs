@@ -41,11 +41,7 @@ fn cycle() {
 fn pair_with_two_parents() {
     let error = after(|nodes, _| {
         let pair = nodes[0];
-        nodes[0] = NodePair {
-            right_min: pair.left_min,
-            right_max: pair.left_max,
-            ..pair
-        };
+        nodes[0] = NodePair { right_min: pair.left_min, right_max: pair.left_max, ..pair };
     });
     assert_eq!(error, BuildError::PairReachedTwice { pair: 1 });
 }
@@ -58,10 +54,7 @@ fn pair_out_of_range() {
             let pair = left(nodes, false);
             nodes[pair].left_min.w = child.0;
         });
-        assert!(
-            matches!(error, BuildError::PairOutOfRange { .. }),
-            "{error}"
-        );
+        assert!(matches!(error, BuildError::PairOutOfRange { .. }), "{error}");
     }
 }
 
@@ -81,10 +74,7 @@ fn pair_that_nothing_refers_to() {
 #[test]
 fn leaf_out_of_range() {
     let error = after(|_, triangles| triangles.truncate(299));
-    assert!(matches!(
-        error,
-        BuildError::LeafOutOfRange { triangles: 299, .. }
-    ));
+    assert!(matches!(error, BuildError::LeafOutOfRange { triangles: 299, .. }));
     for count in [6, 7] {
         let error = after(|nodes, _| {
             let pair = left(nodes, true);
@@ -108,10 +98,7 @@ fn triangle_in_no_leaf() {
 #[test]
 fn triangle_in_two_leaves() {
     let error = after(|nodes, _| {
-        let pair = nodes
-            .iter()
-            .position(|n| n.left().is_leaf() && n.right().is_leaf())
-            .unwrap();
+        let pair = nodes.iter().position(|n| n.left().is_leaf() && n.right().is_leaf()).unwrap();
         nodes[pair].right_min = nodes[pair].left_min;
         nodes[pair].right_max = nodes[pair].left_max;
     });
@@ -130,11 +117,7 @@ fn shrink(nodes: &mut [NodePair], pair: usize, face: usize) {
     };
     let coordinate = f32::from_bits(word[axis]);
     let least = matches!(face / 3, 0 | 2);
-    let inwards = if least {
-        coordinate.next_up()
-    } else {
-        coordinate.next_down()
-    };
+    let inwards = if least { coordinate.next_up() } else { coordinate.next_down() };
     word[axis] = inwards.to_bits();
 }
 
@@ -162,11 +145,7 @@ fn chain(pairs: u32) -> (Vec<NodePair>, Vec<Triangle>) {
     let triangles = duplicates(pairs + 1);
     let (min, max) = triangles[0].bounds();
     let node = |i: u32| {
-        let next = if i + 1 < pairs {
-            NodeRef::inner(i + 1)
-        } else {
-            NodeRef::leaf(pairs, 1)
-        };
+        let next = if i + 1 < pairs { NodeRef::inner(i + 1) } else { NodeRef::leaf(pairs, 1) };
         NodePair::new((min, max, NodeRef::leaf(i, 1)), (min, max, next))
     };
     ((0..pairs).map(node).collect(), triangles)

@@ -18,11 +18,7 @@ fn depth(triangles: &[Triangle]) -> u32 {
     let depth = |quality| {
         let start = Instant::now();
         let bvh = build_and_check(triangles, quality);
-        assert!(
-            start.elapsed() < PATIENCE,
-            "{quality:?}: {:?}",
-            start.elapsed()
-        );
+        assert!(start.elapsed() < PATIENCE, "{quality:?}: {:?}", start.elapsed());
         Statistics::of(&bvh, triangles).depth
     };
     QUALITIES.map(depth).into_iter().max().unwrap()
@@ -56,10 +52,7 @@ fn a_leaf_full_is_still_a_pair() {
     for count in 2..=5 {
         let bvh = build(&scattered(count, 5), Quality::Medium).unwrap();
         assert_eq!(bvh.nodes.len(), 1);
-        assert_eq!(
-            bvh.nodes[0].left().count() + bvh.nodes[0].right().count(),
-            count
-        );
+        assert_eq!(bvh.nodes[0].left().count() + bvh.nodes[0].right().count(), count);
     }
 }
 
@@ -109,9 +102,7 @@ fn shrinking_triangles_reach_the_depth_limit_and_keep_to_it() {
 fn many_deep_corners() {
     let corners = (0..100u32).flat_map(|i| {
         let corner = vec3((i % 10) as f32, (i / 10) as f32, 0.0) * 0.2 - 1.0;
-        shrinking(30, 8)
-            .into_iter()
-            .map(move |t| t.vertices().map(|v| corner + v * 0.1))
+        shrinking(30, 8).into_iter().map(move |t| t.vertices().map(|v| corner + v * 0.1))
     });
     depth(&mesh(corners));
 }

@@ -29,16 +29,9 @@ fn vertex() -> impl Strategy<Value = Vec3> {
 
 /// Triangles, each repeated a number of times.
 fn any_mesh() -> impl Strategy<Value = Vec<Triangle>> {
-    let repeated = (
-        [vertex(), vertex(), vertex()],
-        prop_oneof![9 => 1..2usize, 1 => 1..400usize],
-    );
-    vec(repeated, 1..400).prop_map(|all| {
-        mesh(
-            all.into_iter()
-                .flat_map(|(vertices, times)| std::iter::repeat_n(vertices, times)),
-        )
-    })
+    let repeated = ([vertex(), vertex(), vertex()], prop_oneof![9 => 1..2usize, 1 => 1..400usize]);
+    vec(repeated, 1..400)
+        .prop_map(|all| mesh(all.into_iter().flat_map(|(vertices, times)| std::iter::repeat_n(vertices, times))))
 }
 
 fn quality() -> impl Strategy<Value = Quality> {
@@ -61,10 +54,7 @@ proptest! {
 
 /// Builds on a pool of so many threads.
 fn build_with(threads: usize, triangles: &[Triangle], quality: Quality) -> eyerays_bvh::Bvh {
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build()
-        .unwrap();
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| build(triangles, quality).unwrap())
 }
 

@@ -2,9 +2,9 @@
 
 use std::sync::Mutex;
 
-use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::data::Features;
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::scene::Scene;
+use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::stage::{self, NON_FINITE, RECORDS, Wave};
 use eyerays_shader::traverse::IfIf;
 use rayon::prelude::*;
@@ -22,12 +22,12 @@ const TILE: u32 = 32;
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
 pub trait Observer<R: Scalar>: Sync {
     /// Is called when a wave has been traced and before it is shaded.
-    fn wave(&self, scene: &Scene<'_>, slots: &[u32], records: &Records<R>);
+    fn wave(&self, geometry: &Geometry<'_>, slots: &[u32], records: &Records<R>);
 }
 
 /// Looks at nothing.
 impl<R: Scalar> Observer<R> for () {
-    fn wave(&self, _: &Scene<'_>, _: &[u32], _: &Records<R>) {}
+    fn wave(&self, _: &Geometry<'_>, _: &[u32], _: &Records<R>) {}
 }
 
 /// The memory that the stages of a tile exchange.
@@ -106,51 +106,44 @@ fn render_tile<R: Scalar>(packed: &Packed, region: Region, observer: &dyn Observ
         shadows: vec![0; slots * packed.lights.len()],
         film: vec![black; (region.width * region.height) as usize],
     };
+    let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
     let mut secondary = 0;
     for sample in 0..packed.samples() {
         let frame = packed.frame(region, sample);
-        let mut scene = view(packed, &frame);
+        let mut geometry =
+            Geometry { frame: &frame, features: packed.features, nodes: &packed.nodes, triangles: &packed.triangles };
         let mut queue: Vec<u32> = (0..slots as u32).collect();
         loop {
-            run_wave(&scene, &mut queue, &mut records, observer);
+            run_wave(&geometry, &looks, &mut queue, &mut records, observer);
             if queue.is_empty() {
                 break;
             }
             secondary += queue.len() as u64;
-            scene.features = Features(packed.features.0 | Features::SECONDARY);
+            geometry.features = Features(packed.features.0 | Features::SECONDARY);
         }
     }
     (records.film, secondary)
 }
 
-fn view<'a>(packed: &'a Packed, frame: &'a Frame) -> Scene<'a> {
-    Scene {
-        frame,
-        features: packed.features,
-        nodes: &packed.nodes,
-        triangles: &packed.triangles,
-        normals: &packed.normals,
-        materials: &packed.materials,
-        lights: &packed.lights,
-    }
-}
-
 /// Trace, shadow, shade; leaves the slots of the next wave in the queue.
 fn run_wave<R: Scalar>(
-    scene: &Scene<'_>, queue: &mut Vec<u32>, records: &mut Records<R>, observer: &dyn Observer<R>,
+    geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &mut Vec<u32>, records: &mut Records<R>,
+    observer: &dyn Observer<R>,
 ) {
     for &slot in queue.iter() {
-        records.hits[slot as usize] = stage::trace::<R, IfIf>(scene, slot, &records.paths);
+        records.hits[slot as usize] = stage::trace::<R, IfIf>(geometry, slot, &records.paths);
     }
-    for light in 0..scene.light_count() {
+    for light in 0..geometry.light_count() {
         for &slot in queue.iter() {
-            let answer = stage::shadow::<R, IfIf>(scene, slot, light, &records.paths, &records.hits);
-            records.shadows[(light * scene.slots() + slot) as usize] = answer;
+            let answer = stage::shadow::<R, IfIf>(geometry, looks.lights, slot, light, &records.paths, &records.hits);
+            records.shadows[(light * geometry.slots() + slot) as usize] = answer;
         }
     }
-    observer.wave(scene, queue, records);
+    observer.wave(geometry, queue, records);
     let Records { paths, hits, shadows, film } = records;
-    queue.retain(|&slot| stage::shade(scene, slot, Wave::<R> { paths: &mut *paths, hits, shadows, film: &mut *film }));
+    queue.retain(|&slot| {
+        stage::shade(geometry, looks, slot, Wave::<R> { paths: &mut *paths, hits, shadows, film: &mut *film })
+    });
 }
 
 /// Copies a tile's film into the image and counts.

@@ -21,29 +21,17 @@ pub struct Error {
 impl Error {
     /// A fault that no file is to blame for.
     pub fn new(message: impl Into<String>) -> Self {
-        Error {
-            file: None,
-            line: None,
-            message: message.into(),
-        }
+        Error { file: None, line: None, message: message.into() }
     }
 
     /// A fault of a file.
     pub fn file(file: &Path, message: impl Into<String>) -> Self {
-        Error {
-            file: Some(file.to_owned()),
-            line: None,
-            message: message.into(),
-        }
+        Error { file: Some(file.to_owned()), line: None, message: message.into() }
     }
 
     /// A fault of one line of a file, counted from 1.
     pub fn line(file: &Path, line: usize, message: impl Into<String>) -> Self {
-        Error {
-            file: Some(file.to_owned()),
-            line: Some(line),
-            message: message.into(),
-        }
+        Error { file: Some(file.to_owned()), line: Some(line), message: message.into() }
     }
 }
 
@@ -64,11 +52,8 @@ impl fmt::Display for Error {
 fn one_line(text: &str) -> String {
     text.chars()
         .flat_map(|c| {
-            let escaped: Box<dyn Iterator<Item = char>> = if c.is_control() {
-                Box::new(c.escape_default())
-            } else {
-                Box::new(std::iter::once(c))
-            };
+            let escaped: Box<dyn Iterator<Item = char>> =
+                if c.is_control() { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) };
             escaped
         })
         .collect()

@@ -28,16 +28,10 @@ impl Film {
         let count = Self::check_size(width, height)?;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| {
-            Error::new(format!(
-                "too little memory for an image of {width}x{height} pixels; choose a smaller size"
-            ))
+            Error::new(format!("too little memory for an image of {width}x{height} pixels; choose a smaller size"))
         })?;
         pixels.resize(count, [0.0; 3]);
-        Ok(Film {
-            width,
-            height,
-            pixels,
-        })
+        Ok(Film { width, height, pixels })
     }
 
     /// A film of given pixels, row-major from the top left.
@@ -45,11 +39,7 @@ impl Film {
     /// # Errors
     /// As [`Film::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let film = Film {
-            width,
-            height,
-            pixels,
-        };
+        let film = Film { width, height, pixels };
         film.validate()?;
         Ok(film)
     }
@@ -107,11 +97,7 @@ impl Film {
         self.width == other.width
             && self.height == other.height
             && self.pixels.len() == other.pixels.len()
-            && self
-                .pixels
-                .iter()
-                .zip(&other.pixels)
-                .all(|(&a, &b)| !bits_differ(a, b))
+            && self.pixels.iter().zip(&other.pixels).all(|(&a, &b)| !bits_differ(a, b))
     }
 }
 

@@ -1,8 +1,12 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
 pub mod compare;
+pub mod cpu;
 pub mod error;
 pub mod film;
+pub mod gpu;
 pub mod image;
 pub mod output;
+pub mod pack;
+pub mod rays;
 pub mod scene;

@@ -21,11 +21,7 @@ pub enum Destination {
 
 impl From<OsString> for Destination {
     fn from(name: OsString) -> Self {
-        if name == "-" {
-            Destination::Stdout
-        } else {
-            Destination::File(name.into())
-        }
+        if name == "-" { Destination::Stdout } else { Destination::File(name.into()) }
     }
 }
 
@@ -53,12 +49,10 @@ impl Destination {
     pub fn format(&self) -> Result<Format> {
         match self {
             Destination::Stdout => Ok(Format::Png),
-            Destination::File(path) => {
-                Format::from_path(path).or_else(|error| match fs::metadata(path) {
-                    Ok(found) if !found.is_file() && !found.is_dir() => Ok(Format::Png),
-                    _ => Err(error),
-                })
-            }
+            Destination::File(path) => Format::from_path(path).or_else(|error| match fs::metadata(path) {
+                Ok(found) if !found.is_file() && !found.is_dir() => Ok(Format::Png),
+                _ => Err(error),
+            }),
         }
     }
 
@@ -68,12 +62,8 @@ impl Destination {
     /// Those of `fill`, and a destination that cannot be written.
     pub fn write(&self, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
         match self {
-            Destination::Stdout => {
-                write_through(io::stdout().lock(), fill).map_err(|fault| Error {
-                    message: format!("standard output: {}", fault.message),
-                    ..fault
-                })
-            }
+            Destination::Stdout => write_through(io::stdout().lock(), fill)
+                .map_err(|fault| Error { message: format!("standard output: {}", fault.message), ..fault }),
             Destination::File(path) => write_atomically(path, fill),
         }
     }
@@ -86,9 +76,9 @@ impl Destination {
 /// A terminal as standard output, and for files what [`write_atomically`] refuses.
 pub fn check_writable(destination: &Destination) -> Result<()> {
     match destination {
-        Destination::Stdout if io::stdout().is_terminal() => Err(Error::new(
-            "standard output is a terminal; redirect it or name a file",
-        )),
+        Destination::Stdout if io::stdout().is_terminal() => {
+            Err(Error::new("standard output is a terminal; redirect it or name a file"))
+        }
         Destination::Stdout => Ok(()),
         Destination::File(path) => match Target::of(path)? {
             Target::Regular { place, .. } => Temporary::beside(path, &place).map(drop),
@@ -106,10 +96,7 @@ pub fn check_writable(destination: &Destination) -> Result<()> {
 /// # Errors
 /// Those of `fill`, with `path` added if they name no file; a folder that is missing or not
 /// writable; a directory or a read-only file as `path`; a full disk.
-pub fn write_atomically(
-    path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> Result<()>,
-) -> Result<()> {
+pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let written = match Target::of(path)? {
         Target::Special => write_through(open_special(path)?, fill),
         Target::Regular { place, permissions } => {
@@ -123,18 +110,13 @@ pub fn write_atomically(
             })
         }
     };
-    written.map_err(|error| Error {
-        file: error.file.or_else(|| Some(path.to_owned())),
-        ..error
-    })
+    written.map_err(|error| Error { file: error.file.or_else(|| Some(path.to_owned())), ..error })
 }
 
 /// An error of a writer in words that say what to do, without the file's name.
 pub fn write_error(error: &io::Error) -> Error {
     Error::new(match error.kind() {
-        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
-            "no space left; free some or write elsewhere".to_owned()
-        }
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => "no space left; free some or write elsewhere".to_owned(),
         ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem => {
             "no permission to write; change it or write elsewhere".to_owned()
         }
@@ -151,10 +133,7 @@ pub fn write_error(error: &io::Error) -> Error {
 /// What a path stands for before anything is written.
 enum Target {
     /// A file at `place` (links followed), there already if it has permissions.
-    Regular {
-        place: PathBuf,
-        permissions: Option<Permissions>,
-    },
+    Regular { place: PathBuf, permissions: Option<Permissions> },
     /// A device, pipe or socket.
     Special,
 }
@@ -173,21 +152,13 @@ impl Target {
                 })
             }
             Ok(_) => Ok(Target::Special),
-            Err(_) if path.as_os_str().is_empty() => {
-                Err(Error::new("the output's name is empty; name a file"))
-            }
+            Err(_) if path.as_os_str().is_empty() => Err(Error::new("the output's name is empty; name a file")),
             Err(error) if error.kind() == ErrorKind::NotFound => {
                 let name = path.as_os_str().as_encoded_bytes();
-                if name
-                    .last()
-                    .is_some_and(|&c| std::path::is_separator(c.into()))
-                {
+                if name.last().is_some_and(|&c| std::path::is_separator(c.into())) {
                     return Err(fault(ErrorKind::IsADirectory.into()));
                 }
-                Ok(Target::Regular {
-                    place: path.to_owned(),
-                    permissions: None,
-                })
+                Ok(Target::Regular { place: path.to_owned(), permissions: None })
             }
             Err(error) => Err(fault(error)),
         }
@@ -211,11 +182,7 @@ impl Temporary {
             let temporary = place.with_file_name(name);
             match File::create_new(&temporary) {
                 Ok(file) => {
-                    return Ok(Temporary {
-                        path: temporary,
-                        file,
-                        renamed: false,
-                    });
+                    return Ok(Temporary { path: temporary, file, renamed: false });
                 }
                 // Left by a killed process of the same number.
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
@@ -240,20 +207,14 @@ impl Drop for Temporary {
     }
 }
 
-fn write_through(
-    writer: impl Write,
-    fill: impl FnOnce(&mut dyn Write) -> Result<()>,
-) -> Result<()> {
+fn write_through(writer: impl Write, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     let mut writer = BufWriter::new(writer);
     fill(&mut writer)?;
     writer.flush().map_err(|e| write_error(&e))
 }
 
 fn open_special(path: &Path) -> Result<File> {
-    OpenOptions::new()
-        .write(true)
-        .open(path)
-        .map_err(|e| Error::file(path, write_error(&e).message))
+    OpenOptions::new().write(true).open(path).map_err(|e| Error::file(path, write_error(&e).message))
 }
 
 /// Whether opening waits for a reader, or would let one read an end of file too early.
@@ -273,18 +234,13 @@ mod tests {
     use super::*;
 
     fn names(folder: &Path) -> Vec<OsString> {
-        let mut names: Vec<_> = fs::read_dir(folder)
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name())
-            .collect();
+        let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         names.sort();
         names
     }
 
     fn write(path: &Path, bytes: &[u8]) -> Result<()> {
-        write_atomically(path, |out| {
-            out.write_all(bytes).map_err(|e| write_error(&e))
-        })
+        write_atomically(path, |out| out.write_all(bytes).map_err(|e| write_error(&e)))
     }
 
     #[test]
@@ -337,10 +293,7 @@ mod tests {
             (&"x".repeat(300), "too long"),
         ] {
             let path = folder.path().join(name);
-            for result in [
-                check_writable(&path.as_path().into()),
-                write(&path, b"bytes"),
-            ] {
+            for result in [check_writable(&path.as_path().into()), write(&path, b"bytes")] {
                 let error = result.expect_err(name);
                 assert_eq!(error.file.as_deref(), Some(path.as_path()));
                 assert!(error.message.contains(fault), "{error}");
@@ -371,10 +324,7 @@ mod tests {
         write(&link, b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(fs::read(&file).unwrap(), b"new");
-        assert_eq!(
-            fs::metadata(&file).unwrap().permissions().mode() & 0o777,
-            0o640
-        );
+        assert_eq!(fs::metadata(&file).unwrap().permissions().mode() & 0o777, 0o640);
     }
 
     #[cfg(unix)]
@@ -399,10 +349,7 @@ mod tests {
         let full = Path::new("/dev/full");
         check_writable(&full.into()).unwrap();
         let error = write(full, b"bytes").unwrap_err();
-        assert_eq!(
-            error.to_string(),
-            "/dev/full: no space left; free some or write elsewhere"
-        );
+        assert_eq!(error.to_string(), "/dev/full: no space left; free some or write elsewhere");
         write(Path::new("/dev/null"), b"bytes").unwrap();
         assert!(!fs::metadata("/dev/null").unwrap().is_file());
         assert_eq!(Destination::from(full).format(), Ok(Format::Png));

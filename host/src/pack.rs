@@ -208,9 +208,7 @@ fn light(light: &Light, index: usize, scale: f64) -> Result<LightRecord> {
         axis: pack(axis, outer.to_bits()),
     };
     Ok(match *light {
-        Light::Point { position, colour } => {
-            record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0))
-        }
+        Light::Point { position, colour } => record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0)),
         Light::Directional { direction, colour } => {
             record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
         }

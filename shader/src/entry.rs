@@ -4,7 +4,7 @@ use crate::buffer::{read, write};
 use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle};
 use crate::launch::{WORKGROUP, counter};
 use crate::real::Fast;
-use crate::scene::Scene;
+use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Wave};
 use crate::traverse::IfIf;
 use glam::{UVec3, UVec4};
@@ -33,9 +33,17 @@ fn enqueue(slot: u32, next: &mut [u32], counters: &mut [u32]) {
     // SAFETY: the host sizes the counters and gives the next wave room for every slot.
     let place = unsafe {
         let count = counters.index_unchecked_mut(counter::NEXT as usize);
-        atomic_i_add::<u32, { Scope::Device as u32 }, { Semantics::NONE.bits() }>(count, 1)
+        atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(count, 1)
     };
     write(next, place, slot);
+}
+
+/// The arguments of an indirect dispatch.
+#[inline(always)]
+fn dispatch(at: u32, groups_x: u32, groups_y: u32, counters: &mut [u32]) {
+    write(counters, at, groups_x);
+    write(counters, at + 1, groups_y);
+    write(counters, at + 2, 1);
 }
 
 /// Starts the next wave: its count, its dispatches, and the rays so far.
@@ -43,11 +51,8 @@ fn enqueue(slot: u32, next: &mut [u32], counters: &mut [u32]) {
 fn advance(lights: u32, counters: &mut [u32]) {
     let count = read(counters, counter::NEXT);
     let groups = (count + WORKGROUP - 1) / WORKGROUP;
-    for (at, threads_y) in [(counter::SLOTS, 1), (counter::SHADOWS, lights)] {
-        write(counters, at, groups);
-        write(counters, at + 1, threads_y);
-        write(counters, at + 2, 1);
-    }
+    dispatch(counter::SLOTS, groups, 1, counters);
+    dispatch(counter::SHADOWS, groups, lights, counters);
     write(counters, counter::COUNT, count);
     write(counters, counter::NEXT, 0);
     let rays = read(counters, counter::RAYS);
@@ -60,8 +65,7 @@ macro_rules! shading_entries {
         /// Shades the slots of a wave.
         #[spirv(compute(threads(64)))]
         pub fn $shade(
-            #[spirv(global_invocation_id)] id: UVec3,
-            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -81,9 +85,10 @@ macro_rules! shading_entries {
             if slot == IDLE {
                 return;
             }
-            let scene = Scene { frame, features, nodes, triangles, normals, materials, lights };
+            let geometry = Geometry { frame, features, nodes, triangles };
+            let looks = Looks { normals, materials, lights };
             let wave = Wave { paths, hits, shadows, film };
-            if stage::shade::<$real>(&scene, slot, wave) {
+            if stage::shade::<$real>(&geometry, &looks, slot, wave) {
                 enqueue(slot, next, counters);
             }
         }
@@ -105,8 +110,7 @@ macro_rules! tracing_entries {
         /// Traces the rays of a wave.
         #[spirv(compute(threads(64)))]
         pub fn $trace(
-            #[spirv(global_invocation_id)] id: UVec3,
-            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -120,15 +124,14 @@ macro_rules! tracing_entries {
             if slot == IDLE {
                 return;
             }
-            let scene = Scene { frame, features, nodes, triangles, normals: &[], materials: &[], lights: &[] };
-            write(hits, slot, stage::trace::<$real, $method>(&scene, slot, paths));
+            let geometry = Geometry { frame, features, nodes, triangles };
+            write(hits, slot, stage::trace::<$real, $method>(&geometry, slot, paths));
         }
 
         /// Traces the shadow rays of a wave: one row of threads a light.
         #[spirv(compute(threads(64)))]
         pub fn $shadow(
-            #[spirv(global_invocation_id)] id: UVec3,
-            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -144,9 +147,9 @@ macro_rules! tracing_entries {
             if slot == IDLE {
                 return;
             }
-            let scene = Scene { frame, features, nodes, triangles, normals: &[], materials: &[], lights };
-            let answer = stage::shadow::<$real, $method>(&scene, slot, id.y, paths, hits);
-            write(shadows, id.y * scene.slots() + slot, answer);
+            let geometry = Geometry { frame, features, nodes, triangles };
+            let answer = stage::shadow::<$real, $method>(&geometry, lights, slot, id.y, paths, hits);
+            write(shadows, id.y * geometry.slots() + slot, answer);
         }
     };
 }

@@ -2,9 +2,9 @@
 
 use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle};
 
-/// The scene's buffers, read only. A buffer that no effect asks for is a dummy of one record.
+/// The launch and what its rays meet.
 #[derive(Clone, Copy)]
-pub struct Scene<'a> {
+pub struct Geometry<'a> {
     /// The launch.
     pub frame: &'a Frame,
     /// Which effects there are; a constant of the compiled kernel on the GPU.
@@ -13,15 +13,9 @@ pub struct Scene<'a> {
     pub nodes: &'a [NodePair],
     /// Triangles in leaf order.
     pub triangles: &'a [Triangle],
-    /// Vertex normals in leaf order ([`Features::SMOOTH`]).
-    pub normals: &'a [Normals],
-    /// Materials.
-    pub materials: &'a [Material],
-    /// Lights in file order.
-    pub lights: &'a [Light],
 }
 
-impl Scene<'_> {
+impl Geometry<'_> {
     /// How many lights there are.
     #[inline(always)]
     pub fn light_count(&self) -> u32 {
@@ -33,4 +27,15 @@ impl Scene<'_> {
     pub fn slots(&self) -> u32 {
         self.frame.limits.z
     }
+}
+
+/// What surfaces look like. A buffer that no effect asks for is a dummy of one record.
+#[derive(Clone, Copy)]
+pub struct Looks<'a> {
+    /// Vertex normals in leaf order ([`Features::SMOOTH`]).
+    pub normals: &'a [Normals],
+    /// Materials.
+    pub materials: &'a [Material],
+    /// Lights in file order.
+    pub lights: &'a [Light],
 }

@@ -39,11 +39,7 @@ pub fn nested(count: u32) -> Vec<Triangle> {
 pub fn shrinking(scales: u32, each: u32) -> Vec<Triangle> {
     mesh((0..scales * each).map(|i| {
         let size = 0.5f32.powi((i / each) as i32) * (1.0 - 0.4 * (i % each) as f32 / each as f32);
-        [
-            vec3(size, 0.0, 0.0),
-            vec3(0.0, size, 0.0),
-            vec3(0.0, 0.0, size),
-        ]
+        [vec3(size, 0.0, 0.0), vec3(0.0, size, 0.0), vec3(0.0, 0.0, size)]
     }))
 }
 
@@ -51,11 +47,7 @@ pub fn shrinking(scales: u32, each: u32) -> Vec<Triangle> {
 pub fn concentric(count: u32) -> Vec<Triangle> {
     mesh((1..=count).map(|i| {
         let size = i as f32 / count as f32;
-        [
-            vec3(-size, -size, -size),
-            vec3(size, -size, 0.0),
-            vec3(0.0, size, size),
-        ]
+        [vec3(-size, -size, -size), vec3(size, -size, 0.0), vec3(0.0, size, size)]
     }))
 }
 
@@ -106,12 +98,7 @@ pub fn build_and_check(triangles: &[Triangle], quality: Quality) -> Bvh {
     expected.sort();
     assert_eq!(primitives, expected, "slots lost or doubled a triangle");
 
-    let mut walk = Walk {
-        nodes: &bvh.nodes,
-        triangles: &sorted,
-        pairs: 0,
-        slots: 0,
-    };
+    let mut walk = Walk { nodes: &bvh.nodes, triangles: &sorted, pairs: 0, slots: 0 };
     walk.pair(0, 1);
     assert_eq!(walk.pairs as usize, bvh.nodes.len(), "pairs");
     assert_eq!(walk.slots as usize, triangles.len(), "slots");
@@ -133,12 +120,7 @@ impl Walk<'_> {
         assert_eq!(pair, self.pairs, "pairs are not in depth-first order");
         assert!(depth <= MAX_DEPTH, "too deep");
         self.pairs += 1;
-        let NodePair {
-            left_min,
-            left_max,
-            right_min,
-            right_max,
-        } = self.nodes[pair as usize];
+        let NodePair { left_min, left_max, right_min, right_max } = self.nodes[pair as usize];
         let left = (numbers(left_min), numbers(left_max));
         let right = (numbers(right_min), numbers(right_max));
         assert_eq!(self.child(NodeRef(left_min.w), depth), left, "left box");

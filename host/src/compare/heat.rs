@@ -7,10 +7,8 @@ use crate::image::srgb_to_linear;
 
 /// One colour a decade, sRGB: the "inferno" map of matplotlib 2.0 (CC0) at 0.2, 0.3, ..., 1.0.
 /// Its lightness grows evenly, and it begins where it can be told from black.
-const COLOURS: [u32; 9] = [
-    0x42_0a_68, 0x6a_17_6e, 0x93_26_67, 0xbc_37_54, 0xdd_51_3a, 0xf3_78_19, 0xfc_a5_0a, 0xf6_d7_46,
-    0xfc_ff_a4,
-];
+const COLOURS: [u32; 9] =
+    [0x42_0a_68, 0x6a_17_6e, 0x93_26_67, 0xbc_37_54, 0xdd_51_3a, 0xf3_78_19, 0xfc_a5_0a, 0xf6_d7_46, 0xfc_ff_a4];
 
 /// The decade of the first colour.
 const FIRST_DECADE: f64 = -8.0;

@@ -55,10 +55,7 @@ pub fn compare(a: &Film, b: &Film) -> Result<Comparison> {
         height: a.height,
         bit_equal: differing_pixels == 0,
         differing_pixels,
-        largest_ulps: pairs()
-            .map(|(&a, &b)| ulp_distance(a, b))
-            .max()
-            .unwrap_or(0),
+        largest_ulps: pairs().map(|(&a, &b)| ulp_distance(a, b)).max().unwrap_or(0),
         largest_difference: pairs().map(|(&a, &b)| difference(a, b)).fold(0.0, f64::max),
         rmse,
         // Not -20 log 0, which is as infinite, lest it be "-0" at an RMSE of 1.
@@ -71,11 +68,7 @@ impl Comparison {
     /// Whether the films are further apart than is tolerated: by the largest difference in
     /// linear light, and at a tolerance of 0 or less by any bit, be it the sign of a zero.
     pub fn exceeds(&self, tolerance: f32) -> bool {
-        if tolerance > 0.0 {
-            self.largest_difference > tolerance.into()
-        } else {
-            !self.bit_equal
-        }
+        if tolerance > 0.0 { self.largest_difference > tolerance.into() } else { !self.bit_equal }
     }
 }
 
@@ -90,11 +83,7 @@ impl fmt::Display for Comparison {
         };
         writeln!(out, "size                {} x {}", self.width, self.height)?;
         writeln!(out, "equal in every bit  {equal}")?;
-        writeln!(
-            out,
-            "differing pixels    {} of {pixels}",
-            self.differing_pixels
-        )?;
+        writeln!(out, "differing pixels    {} of {pixels}", self.differing_pixels)?;
         writeln!(out, "largest ulps        {ulps}")?;
         writeln!(out, "largest difference  {:.6e}", self.largest_difference)?;
         writeln!(out, "RMSE                {:.6e}", self.rmse)?;

@@ -54,10 +54,7 @@ fn a_nan_is_beyond_any_tolerance() {
 #[test]
 fn unequal_sizes_are_both_named() {
     let error = compare(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).unwrap_err();
-    assert!(
-        error.message.contains("2x3") && error.message.contains("3x2"),
-        "{error}"
-    );
+    assert!(error.message.contains("2x3") && error.message.contains("3x2"), "{error}");
     assert!(heat_map(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).is_err());
 }
 
@@ -69,16 +66,11 @@ fn heat_grows_lighter_by_the_decade() {
         *step = [0.0, 10_f32.powi(i as i32 - 10), 0.0];
     }
     let heat = heat_map(&zero, &film(&steps)).unwrap().pixels;
-    let lightness = heat
-        .iter()
-        .map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b);
+    let lightness = heat.iter().map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b);
     let lightness: Vec<f32> = lightness.collect();
     assert_eq!(lightness[0], 0.0);
     // 1e-9 and 1e-8 share the first colour, 1 and more the last.
-    assert!(
-        lightness[2..=10].is_sorted_by(|a, b| a < b),
-        "{lightness:?}"
-    );
+    assert!(lightness[2..=10].is_sorted_by(|a, b| a < b), "{lightness:?}");
     assert_eq!((heat[1], heat[11]), (heat[2], heat[10]));
     assert!(lightness[1] > 0.01);
 }

@@ -16,9 +16,5 @@ pub fn ulp_distance(a: f32, b: f32) -> u32 {
 /// An integer in the order of the floats, consecutive for neighbours, and 0 for both zeros.
 fn ordered(value: f32) -> i32 {
     let magnitude = value.abs().to_bits() as i32;
-    if value.is_sign_negative() {
-        -magnitude
-    } else {
-        magnitude
-    }
+    if value.is_sign_negative() { -magnitude } else { magnitude }
 }

@@ -104,7 +104,9 @@ pub(super) fn choose(instance: &wgpu::Instance, wish: Option<&str>) -> Result<(u
     let adapters = all(instance);
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     if names.is_empty() {
-        return Err(Error::new("there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver, or use --device cpu"));
+        return Err(Error::new(
+            "there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver, or use --device cpu",
+        ));
     }
     let index = match wish {
         None => Some(0),

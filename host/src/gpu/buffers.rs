@@ -78,9 +78,7 @@ pub(super) struct Buffers {
 
 impl Buffers {
     /// Uploads the scene and takes the memory of launches of `slots` slots and `pixels` pixels.
-    pub fn new(
-        gpu: &Gpu, packed: &Packed, layout: &wgpu::BindGroupLayout, slots: u64, pixels: u64,
-    ) -> Result<Buffers> {
+    pub fn new(gpu: &Gpu, packed: &Packed, layout: &wgpu::BindGroupLayout, slots: u64, pixels: u64) -> Result<Buffers> {
         use wgpu::BufferUsages as Use;
         let share = Share::of(packed);
         let queue = if packed.has_secondary_rays() { 4 * slots } else { 0 };
@@ -151,8 +149,7 @@ pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
             count: None,
         })
         .collect();
-    gpu.device
-        .create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("eyerays"), entries: &entries })
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("eyerays"), entries: &entries })
 }
 
 /// A read-only buffer of records, or a dummy of zeros.

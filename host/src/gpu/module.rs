@@ -18,8 +18,7 @@ const DECORATION_SPEC_ID: u32 = 1;
 /// wgpu passes no constants to passthrough modules. The driver then folds every branch that the scene
 /// does not take.
 pub fn specialise(spirv: &[u8], features: Features) -> Vec<u32> {
-    let mut words: Vec<u32> =
-        spirv.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
+    let mut words: Vec<u32> = spirv.chunks_exact(4).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]])).collect();
     let mut constant = None;
     let mut at = HEADER;
     while at < words.len() {

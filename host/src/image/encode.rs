@@ -23,12 +23,7 @@ use crate::output::write_error;
 ///
 /// # Errors
 /// An invalid film, an exposure out of range, and those of the writer. They name no file.
-pub fn encode(
-    film: &Film,
-    format: Format,
-    encoding: &Encoding,
-    mut writer: impl Write,
-) -> Result<()> {
+pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl Write) -> Result<()> {
     film.validate()?;
     let scale = encoding.scale()?;
     let encoded = match (format, encoding.bits) {
@@ -38,17 +33,12 @@ pub fn encode(
         }
         (Format::Png, BitDepth::Sixteen) => {
             let values = samples(film, |v| quantise(v * scale, 65_535.0) as u16);
-            png(
-                film,
-                bytemuck::cast_slice(&values),
-                ExtendedColorType::Rgb16,
-            )
+            png(film, bytemuck::cast_slice(&values), ExtendedColorType::Rgb16)
         }
         (Format::Exr, _) => exr(film, &exposed(film, scale)),
         (Format::Hdr, _) => hdr(film, &exposed(film, scale)),
     };
-    let bytes = encoded
-        .map_err(|error| Error::new(format!("the image cannot be encoded as {format}: {error}")))?;
+    let bytes = encoded.map_err(|error| Error::new(format!("the image cannot be encoded as {format}: {error}")))?;
     writer.write_all(&bytes).map_err(|e| write_error(&e))
 }
 
@@ -113,9 +103,5 @@ fn hdr(film: &Film, pixels: &[[f32; 3]]) -> ImageResult<Vec<u8>> {
 fn rgbe_range(pixel: [f32; 3]) -> [f32; 3] {
     // NaN is not above 0.
     let pixel = pixel.map(|v| if v > 0.0 { v.min(HDR_MAX) } else { 0.0 });
-    if pixel.iter().all(|&v| v < f32::MIN_POSITIVE) {
-        [0.0; 3]
-    } else {
-        pixel
-    }
+    if pixel.iter().all(|&v| v < f32::MIN_POSITIVE) { [0.0; 3] } else { pixel }
 }

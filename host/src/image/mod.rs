@@ -43,14 +43,8 @@ impl Format {
             "png" => Ok(Format::Png),
             "exr" => Ok(Format::Exr),
             "hdr" => Ok(Format::Hdr),
-            "" => Err(Error::file(
-                path,
-                "no extension says which image format; end the name in .png, .exr or .hdr",
-            )),
-            other => Err(Error::file(
-                path,
-                format!("unknown image format \"{other}\"; use .png, .exr or .hdr"),
-            )),
+            "" => Err(Error::file(path, "no extension says which image format; end the name in .png, .exr or .hdr")),
+            other => Err(Error::file(path, format!("unknown image format \"{other}\"; use .png, .exr or .hdr"))),
         }
     }
 }
@@ -84,9 +78,7 @@ impl BitDepth {
         match bits {
             8 => Ok(BitDepth::Eight),
             16 => Ok(BitDepth::Sixteen),
-            _ => Err(Error::new(format!(
-                "a PNG of {bits} bits a channel cannot be written; choose 8 or 16"
-            ))),
+            _ => Err(Error::new(format!("a PNG of {bits} bits a channel cannot be written; choose 8 or 16"))),
         }
     }
 }

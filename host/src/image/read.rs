@@ -5,10 +5,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use image::{
-    DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits,
-    Primitive, Rgb,
-};
+use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Primitive, Rgb};
 
 use super::transfer::linear_table;
 use crate::error::{Error, Result};
@@ -33,10 +30,7 @@ pub fn read(path: &Path) -> Result<Film> {
         return Err(Error::file(path, "is empty; write the image again"));
     }
     let file = File::open(path).map_err(fault)?;
-    decode(BufReader::new(file)).map_err(|error| Error {
-        file: Some(path.to_owned()),
-        ..error
-    })
+    decode(BufReader::new(file)).map_err(|error| Error { file: Some(path.to_owned()), ..error })
 }
 
 /// Decodes a PNG, EXR or HDR file, told apart by their first bytes. A PNG's sRGB values become
@@ -52,14 +46,9 @@ pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
 }
 
 fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
-    let mut reader = ImageReader::new(reader)
-        .with_guessed_format()
-        .map_err(|e| Error::new(read_error(&e)))?;
+    let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| Error::new(read_error(&e)))?;
     let known = [ImageFormat::Png, ImageFormat::OpenExr, ImageFormat::Hdr];
-    if !reader
-        .format()
-        .is_some_and(|format| known.contains(&format))
-    {
+    if !reader.format().is_some_and(|format| known.contains(&format)) {
         return Err(Error::new("is not a PNG, EXR or HDR image"));
     }
     let mut limits = Limits::default();
@@ -99,10 +88,7 @@ where
 fn decode_error(error: ImageError) -> Error {
     Error::new(match error {
         ImageError::IoError(error) => read_error(&error),
-        ImageError::Limits(_) => format!(
-            "is too large; an image has at most {} pixels",
-            Film::MAX_PIXELS
-        ),
+        ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
         error => format!("is damaged or of an unknown kind ({error}); write the image again"),
     })
 }

@@ -8,10 +8,7 @@ use super::*;
 
 const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
 
-const SIXTEEN: Encoding = Encoding {
-    exposure_ev: 0.0,
-    bits: BitDepth::Sixteen,
-};
+const SIXTEEN: Encoding = Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen };
 
 fn bytes(film: &Film, format: Format, encoding: &Encoding) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -55,25 +52,13 @@ fn png_keeps_every_value_it_has() {
         let kept = film.pixels.iter().zip(&once.pixels);
         assert!(kept.clone().all(|(a, b)| a[..2] == b[..2]));
         assert!(once.bits_equal(&round_trip(&once, Format::Png, &encoding)));
-        assert_eq!(
-            bytes(&once, Format::Png, &encoding),
-            bytes(&film, Format::Png, &encoding)
-        );
+        assert_eq!(bytes(&once, Format::Png, &encoding), bytes(&film, Format::Png, &encoding));
     }
 }
 
 #[test]
 fn hdr_keeps_a_hundredth_of_the_brightest_channel() {
-    let values = [
-        1e-30,
-        1e-3,
-        0.18,
-        0.999_999_94,
-        1.0,
-        200.0,
-        65_535.996,
-        1e30,
-    ];
+    let values = [1e-30, 1e-3, 0.18, 0.999_999_94, 1.0, 200.0, 65_535.996, 1e30];
     let pixels = values.iter().map(|&v| [v, v / 3.0, 0.0]).collect();
     let film = Film::from_pixels(8, 1, pixels).unwrap();
     let back = round_trip(&film, Format::Hdr, &Encoding::default());
@@ -102,10 +87,7 @@ fn what_is_no_light_has_a_place_in_png_and_hdr() {
 #[test]
 fn exposure_applies_to_every_format() {
     let film = Film::from_pixels(1, 1, vec![[0.25, 0.125, 0.5]]).unwrap();
-    let brighter = Encoding {
-        exposure_ev: 1.0,
-        ..SIXTEEN
-    };
+    let brighter = Encoding { exposure_ev: 1.0, ..SIXTEEN };
     for format in FORMATS {
         let back = round_trip(&film, format, &brighter).pixels[0];
         let wanted = [0.5, 0.25, 1.0];
@@ -113,10 +95,7 @@ fn exposure_applies_to_every_format() {
         assert!(back.iter().zip(wanted).all(close), "{format}: {back:?}");
     }
     for exposure_ev in [f32::NAN, f32::INFINITY, -300.0] {
-        let encoding = Encoding {
-            exposure_ev,
-            ..SIXTEEN
-        };
+        let encoding = Encoding { exposure_ev, ..SIXTEEN };
         assert!(encode(&film, Format::Exr, &encoding, io::sink()).is_err());
     }
 }
@@ -134,11 +113,7 @@ fn png_says_what_it_is() {
 
 #[test]
 fn extensions_name_formats() {
-    for (name, format) in [
-        ("a.png", Format::Png),
-        ("b.x.EXR", Format::Exr),
-        ("c.hdr", Format::Hdr),
-    ] {
+    for (name, format) in [("a.png", Format::Png), ("b.x.EXR", Format::Exr), ("c.hdr", Format::Hdr)] {
         assert_eq!(Format::from_path(Path::new(name)), Ok(format));
     }
     for name in ["a.jpg", "png", ".png", "a.", ""] {
@@ -178,16 +153,8 @@ fn bad_files_are_one_line_with_their_name() {
     }
     fs::write(path("empty"), b"").unwrap();
     fs::write(path("text"), b"P3 1 1 255 0 0 0\n").unwrap();
-    fs::write(
-        path("zero"),
-        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n",
-    )
-    .unwrap();
-    fs::write(
-        path("huge"),
-        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n",
-    )
-    .unwrap();
+    fs::write(path("zero"), b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 0 +X 0\n").unwrap();
+    fs::write(path("huge"), b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 100000 +X 100000\n").unwrap();
     fs::write(path("vast.png"), huge_png(100_000)).unwrap();
     fs::write(path("none.png"), huge_png(0)).unwrap();
     fs::create_dir(path("folder")).unwrap();
@@ -215,11 +182,9 @@ fn huge_png(side: u32) -> Vec<u8> {
 
 /// The CRC of a PNG's chunk, of its type and data, by the specification's annex D.
 fn png_crc(chunk: &[u8]) -> [u8; 4] {
-    let crc = chunk.iter().fold(u32::MAX, |crc, &byte| {
-        (0..8).fold(crc ^ u32::from(byte), |c, _| {
-            (c >> 1) ^ (0xedb8_8320 * (c & 1))
-        })
-    });
+    let crc = chunk
+        .iter()
+        .fold(u32::MAX, |crc, &byte| (0..8).fold(crc ^ u32::from(byte), |c, _| (c >> 1) ^ (0xedb8_8320 * (c & 1))));
     (!crc).to_be_bytes()
 }
 
@@ -270,9 +235,8 @@ fn devices_are_not_read() {
 
 #[test]
 fn greys_and_alpha_are_read() {
-    let image = image::DynamicImage::ImageLumaA16(
-        image::ImageBuffer::from_raw(2, 1, vec![65_535, 0, 1_000, 30_000]).unwrap(),
-    );
+    let image =
+        image::DynamicImage::ImageLumaA16(image::ImageBuffer::from_raw(2, 1, vec![65_535, 0, 1_000, 30_000]).unwrap());
     let mut png = Cursor::new(Vec::new());
     image.write_to(&mut png, image::ImageFormat::Png).unwrap();
     let film = decode(Cursor::new(png.into_inner())).unwrap();

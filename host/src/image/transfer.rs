@@ -14,11 +14,7 @@ pub fn linear_to_srgb(linear: f64) -> f64 {
 
 /// From the sRGB signal to linear light, both in [0, 1].
 pub fn srgb_to_linear(signal: f64) -> f64 {
-    if signal <= 0.040_45 {
-        signal / 12.92
-    } else {
-        ((signal + 0.055) / 1.055).powf(2.4)
-    }
+    if signal <= 0.040_45 { signal / 12.92 } else { ((signal + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The nearest of `steps + 1` sRGB values for linear light; `steps` is 255 or 65,535.
@@ -28,9 +24,7 @@ pub(super) fn quantise(linear: f64, steps: f64) -> f64 {
 
 /// Linear light for every one of `steps + 1` sRGB values, so that equal values decode equally.
 pub(super) fn linear_table(steps: u16) -> Vec<f32> {
-    (0..=steps)
-        .map(|step| srgb_to_linear(f64::from(step) / f64::from(steps)) as f32)
-        .collect()
+    (0..=steps).map(|step| srgb_to_linear(f64::from(step) / f64::from(steps)) as f32).collect()
 }
 
 #[cfg(test)]

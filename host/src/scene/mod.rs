@@ -144,12 +144,6 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings {
-            size: (512, 512),
-            samples: 1,
-            bounces: 5,
-            min_contribution: 1.0 / 1024.0,
-            culling: false,
-        }
+        Settings { size: (512, 512), samples: 1, bounces: 5, min_contribution: 1.0 / 1024.0, culling: false }
     }
 }

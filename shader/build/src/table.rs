@@ -30,14 +30,6 @@ impl Module {
 
 /// Every committed module.
 pub const MODULES: [Module; 2] = [
-    Module {
-        name: "exact",
-        prefix: "exact_",
-        policy: Policy::Exact,
-    },
-    Module {
-        name: "fast",
-        prefix: "fast_",
-        policy: Policy::Fast,
-    },
+    Module { name: "exact", prefix: "exact_", policy: Policy::Exact },
+    Module { name: "fast", prefix: "fast_", policy: Policy::Fast },
 ];

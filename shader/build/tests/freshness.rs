@@ -9,13 +9,9 @@ use eyerays_spirv::{modules, output, source};
 #[test]
 fn sources_have_not_changed() {
     let command = output::COMMAND;
-    let manifest =
-        Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"));
+    let manifest = Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"));
     let hash = source::hash(&source::shader()).unwrap();
-    assert!(
-        manifest.source == hash,
-        "shader/spirv is older than the sources; run: {command}"
-    );
+    assert!(manifest.source == hash, "shader/spirv is older than the sources; run: {command}");
 }
 
 #[test]

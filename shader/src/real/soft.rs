@@ -123,7 +123,7 @@ pub fn sqrt(a: f32) -> f32 {
             rest -= 2 * s as i32 + 1;
             s += 1;
         }
-        let biased = (ea as i32 - 127 - odd as i32) / 2 + 127;
+        let biased = ((ea as i32 - 127 - odd as i32) >> 1) + 127;
         assemble(0, biased, round(s, rest != 0))
     };
     f32::from_bits(bits)

@@ -14,6 +14,8 @@ pub struct Contact<R: Real> {
     pub normal: V3<R>,
     /// Does the viewer see the front (counter-clockwise) side?
     pub front: bool,
+    /// Weights of the triangle's second and third vertex.
+    pub weights: (R, R),
 }
 
 /// Roundoffs of a vertex-weighted sum and of what is computed from it when a ray leaves: PBRT-v4's
@@ -24,7 +26,8 @@ impl<R: Scalar> Contact<R> {
     /// The place with weights `u` and `v` of the second and third vertex, seen along `direction`.
     #[inline(always)]
     pub fn new(triangle: &Triangle, u: R, v: R, direction: V3<R>) -> Self {
-        let [a, b, c] = triangle.vertices().map(V3::<R>::splat);
+        let [a, b, c] = triangle.vertices();
+        let (a, b, c) = (V3::<R>::splat(a), V3::<R>::splat(b), V3::<R>::splat(c));
         let w = R::splat(1.0) - u - v;
         let (wa, ub, vc) = (a * w, b * u, c * v);
         let sum = wa.abs() + ub.abs() + vc.abs();
@@ -38,6 +41,7 @@ impl<R: Scalar> Contact<R> {
             error: sum * (R::splat(ROUNDOFFS) * R::ROUNDOFF),
             normal: V3::select(front, normal, -normal),
             front,
+            weights: (u, v),
         }
     }
 

@@ -73,10 +73,7 @@ fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
 /// Light that a surface sends along `-direction`: Lambert's law and Phong's highlight.
 #[inline(always)]
 pub fn illuminate<R: Scalar>(
-    features: Features,
-    surface: &Surface<R>,
-    direction: V3<R>,
-    incidence: &Incidence<R>,
+    features: Features, surface: &Surface<R>, direction: V3<R>, incidence: &Incidence<R>,
 ) -> V3<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let cosine = surface.normal.dot(incidence.direction).max(zero).min(one);
@@ -161,6 +158,7 @@ mod tests {
             error: V3::splat(Vec3::splat(1e-6)),
             normal: V3::splat(Vec3::Y),
             front: true,
+            weights: (0.0, 0.0),
         };
         let (origin, direction, limit) = shadow_ray(ALL, &light(Light::POINT, Vec3::Y), &contact);
         assert!(origin.y > 0.0 && (direction.y - 1.0).abs() < 1e-12 && limit < 1.0 && limit > 0.999);

@@ -4,7 +4,7 @@ use super::Contact;
 use crate::buffer::read;
 use crate::data::{Features, Frame, Material, Triangle, numbers};
 use crate::real::{Real, Scalar, V3};
-use crate::scene::Scene;
+use crate::scene::Looks;
 
 /// A material at a contact, with the normal that light sees.
 #[derive(Clone, Copy)]
@@ -28,27 +28,18 @@ pub struct Surface<R: Real> {
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of triangle `slot` at a contact with weights `u` and `v`, seen along `direction`.
+    /// The surface of triangle `slot` at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
-        scene: &Scene<'_>,
-        slot: u32,
-        triangle: &Triangle,
-        (u, v): (R, R),
-        direction: V3<R>,
-        contact: &Contact<R>,
+        features: Features, looks: &Looks<'_>, slot: u32, triangle: &Triangle, direction: V3<R>, contact: &Contact<R>,
     ) -> Self {
-        let material: Material = read(scene.materials, triangle.material());
+        let material: Material = read(looks.materials, triangle.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
-        let normal = if scene.features.has(Features::SMOOTH) {
-            interpolated(scene, slot, u, v, direction, contact)
-        } else {
-            contact.normal
-        };
-        let other = scene.features.has(Features::CHECKER)
-            && material.checker.w != 0
-            && odd_cell(contact, number(material.checker.w));
+        let normal =
+            if features.has(Features::SMOOTH) { interpolated(looks, slot, direction, contact) } else { contact.normal };
+        let other =
+            features.has(Features::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
         Surface {
             normal,
             ambient: colour(material.ambient),
@@ -65,10 +56,11 @@ impl<R: Scalar> Surface<R> {
 /// The vertex normals' weighted sum, turned to the viewer's side of the triangle. Where that leaves
 /// no direction, or the normal turns away from the viewer, the triangle's own normal stands in.
 #[inline(always)]
-fn interpolated<R: Scalar>(scene: &Scene<'_>, slot: u32, u: R, v: R, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
-    let normals = read(scene.normals, slot);
-    let [a, b, c] = [normals.a, normals.b, normals.c].map(|n| V3::<R>::splat(numbers(n)));
-    let sum = a * (R::splat(1.0) - u - v) + b * u + c * v;
+fn interpolated<R: Scalar>(looks: &Looks<'_>, slot: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
+    let (u, v) = contact.weights;
+    let normals = read(looks.normals, slot);
+    let normal = |record| V3::<R>::splat(numbers(record));
+    let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.normalised();
     let unit = V3::select(contact.faces(unit), unit, -unit);
     let lost = length.same(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
@@ -109,7 +101,13 @@ mod tests {
     use glam::Vec3;
 
     fn contact(normal: Vec3, position: [f32; 3]) -> Contact<f32> {
-        Contact { position: V3::splat(position.into()), error: V3::zero(), normal: V3::splat(normal), front: true }
+        Contact {
+            position: V3::splat(position.into()),
+            error: V3::zero(),
+            normal: V3::splat(normal),
+            front: true,
+            weights: (0.0, 0.0),
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::Features;
 use crate::real::{Real, Scalar, V3};
-use crate::scene::Scene;
+use crate::scene::Geometry;
 
 /// Records a path takes in device memory.
 pub const RECORDS: u32 = 3;
@@ -28,11 +28,11 @@ pub struct Path<R: Real> {
 impl<R: Scalar> Path<R> {
     /// The slot's ray: the camera's in the first wave, which keeps none in memory.
     #[inline(always)]
-    pub fn current(scene: &Scene<'_>, slot: u32, paths: &[R::Record]) -> Self {
-        if scene.features.has(Features::SECONDARY) {
-            return Self::load(scene.slots(), slot, 0, paths);
+    pub fn current(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> Self {
+        if geometry.features.has(Features::SECONDARY) {
+            return Self::load(geometry.slots(), slot, 0, paths);
         }
-        let (origin, direction) = camera::ray(scene.frame, camera::pixel(scene.frame, slot));
+        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, slot));
         Path { origin, direction, weight: V3::splat(glam::Vec3::ONE), bounces: 0, pending: 0 }
     }
 

@@ -3,10 +3,10 @@
 use super::{FACES_AWAY, NON_FINITE, Path, REACHED};
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::Features;
+use crate::data::{Features, Light};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::scene::Scene;
+use crate::scene::{Geometry, Looks};
 use crate::shade::{Contact, Incidence, Surface, background, fresnel, illuminate, reflect, refract};
 
 /// The records that the stages of a wave exchange.
@@ -29,50 +29,47 @@ struct Branches<R: Real> {
 
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
-pub fn shade<R: Scalar>(scene: &Scene<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
+pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, film } = wave;
-    let pixel = camera::pixel(scene.frame, slot);
+    let pixel = camera::pixel(geometry.frame, slot);
     if !pixel.inside {
         return false;
     }
-    let path = Path::<R>::current(scene, slot, paths);
+    let path = Path::<R>::current(geometry, slot, paths);
     let (hit, place) = R::load(read(hits, slot));
     if place == Hit::<R>::NOTHING {
-        add(scene, film, pixel.index, &path, background(scene.features, scene.frame, path.direction), 0);
-        return pop(scene, slot, &path, paths);
+        add(geometry, film, pixel.index, &path, background(geometry.features, geometry.frame, path.direction), 0);
+        return pop(geometry, slot, &path, paths);
     }
-    let triangle = read(scene.triangles, place);
+    let triangle = read(geometry.triangles, place);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
-    let surface = Surface::new(scene, place, &triangle, (hit.y, hit.z), path.direction, &contact);
-    let (light, rays) = lit(scene, slot, &path, &contact, &surface, shadows);
-    add(scene, film, pixel.index, &path, light, rays);
-    if !scene.features.has(Features::REFLECTION) && !scene.features.has(Features::REFRACTION) {
+    let surface = Surface::new(geometry.features, looks, place, &triangle, path.direction, &contact);
+    let (light, rays) = lit(geometry, looks.lights, slot, path.direction, (&contact, &surface), shadows);
+    add(geometry, film, pixel.index, &path, light, rays);
+    if !geometry.features.has(Features::REFLECTION) && !geometry.features.has(Features::REFRACTION) {
         return false;
     }
-    follow(scene, slot, &path, branch(scene, &path, &contact, &surface), paths)
+    follow(geometry, slot, &path, branch(geometry, &path, &contact, &surface), paths)
 }
 
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
 #[inline(always)]
 fn lit<R: Scalar>(
-    scene: &Scene<'_>,
-    slot: u32,
-    path: &Path<R>,
-    contact: &Contact<R>,
-    surface: &Surface<R>,
+    geometry: &Geometry<'_>, lights: &[Light], slot: u32, direction: V3<R>, lit: (&Contact<R>, &Surface<R>),
     shadows: &[u32],
 ) -> (V3<R>, u32) {
+    let (contact, surface) = lit;
     let mut sum = surface.ambient;
     let mut rays = 0;
     let mut index = 0;
-    while index < scene.light_count() {
-        let answer = read(shadows, index * scene.slots() + slot);
+    while index < geometry.light_count() {
+        let answer = read(shadows, index * geometry.slots() + slot);
         if answer != FACES_AWAY {
             rays += 1;
         }
         if answer == REACHED {
-            let incidence = Incidence::new(scene.features, &read(scene.lights, index), contact.position);
-            sum = sum + illuminate(scene.features, surface, path.direction, &incidence);
+            let incidence = Incidence::new(geometry.features, &read(lights, index), contact.position);
+            sum = sum + illuminate(geometry.features, surface, direction, &incidence);
         }
         index += 1;
     }
@@ -81,8 +78,10 @@ fn lit<R: Scalar>(
 
 /// Adds a path's light to its pixel. What is not finite is left out and flagged, what is below 2^-100 is zero.
 #[inline(always)]
-fn add<R: Scalar>(scene: &Scene<'_>, film: &mut [R::Record], pixel: u32, path: &Path<R>, light: V3<R>, rays: u32) {
-    let share = R::splat(f32::from_bits(scene.frame.limits.x));
+fn add<R: Scalar>(
+    geometry: &Geometry<'_>, film: &mut [R::Record], pixel: u32, path: &Path<R>, light: V3<R>, rays: u32,
+) {
+    let share = R::splat(f32::from_bits(geometry.frame.limits.x));
     let term = (light.times(path.weight) * share).map(|c| c.flush(FAINT));
     let finite = term.x.is_finite() && term.y.is_finite() && term.z.is_finite();
     let (sum, word) = R::load(read(film, pixel));
@@ -94,14 +93,16 @@ fn add<R: Scalar>(scene: &Scene<'_>, film: &mut [R::Record], pixel: u32, path: &
 /// The reflected and the refracted ray with their weights (thesis 3.3): a mirror's colour, or
 /// Fresnel's shares of an interface.
 #[inline(always)]
-fn branch<R: Scalar>(scene: &Scene<'_>, path: &Path<R>, contact: &Contact<R>, surface: &Surface<R>) -> Branches<R> {
+fn branch<R: Scalar>(
+    geometry: &Geometry<'_>, path: &Path<R>, contact: &Contact<R>, surface: &Surface<R>,
+) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
     let reflected = path.on(contact, mirrored, surface.reflection);
     let none = path.on(contact, mirrored, V3::zero());
-    if !scene.features.has(Features::REFRACTION) || surface.ior.same(zero) {
+    if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
@@ -133,9 +134,9 @@ impl<R: Scalar> Path<R> {
 
     /// Is it worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
     #[inline(always)]
-    fn counts(&self, scene: &Scene<'_>) -> bool {
-        let least = R::splat(f32::from_bits(scene.frame.limits.y));
-        self.bounces <= scene.frame.bottom.w
+    fn counts(&self, geometry: &Geometry<'_>) -> bool {
+        let least = R::splat(f32::from_bits(geometry.frame.limits.y));
+        self.bounces <= geometry.frame.bottom.w
             && least.le(self.weight.greatest())
             && R::splat(0.0).lt(self.weight.greatest())
     }
@@ -144,37 +145,33 @@ impl<R: Scalar> Path<R> {
 /// Depth first, reflection before refraction: takes one branch in hand and lets the other wait.
 #[inline(always)]
 fn follow<R: Scalar>(
-    scene: &Scene<'_>,
-    slot: u32,
-    path: &Path<R>,
-    branches: Branches<R>,
-    paths: &mut [R::Record],
+    geometry: &Geometry<'_>, slot: u32, path: &Path<R>, branches: Branches<R>, paths: &mut [R::Record],
 ) -> bool {
     let Branches { mut reflected, refracted } = branches;
-    let second = refracted.counts(scene);
-    if reflected.counts(scene) {
+    let second = refracted.counts(geometry);
+    if reflected.counts(geometry) {
         if second {
             reflected.pending += 1;
-            refracted.store(scene.slots(), slot, reflected.pending, paths);
+            refracted.store(geometry.slots(), slot, reflected.pending, paths);
         }
-        reflected.store(scene.slots(), slot, 0, paths);
+        reflected.store(geometry.slots(), slot, 0, paths);
         true
     } else if second {
-        refracted.store(scene.slots(), slot, 0, paths);
+        refracted.store(geometry.slots(), slot, 0, paths);
         true
     } else {
-        pop(scene, slot, path, paths)
+        pop(geometry, slot, path, paths)
     }
 }
 
 /// Takes the last ray that waits in hand.
 #[inline(always)]
-fn pop<R: Scalar>(scene: &Scene<'_>, slot: u32, path: &Path<R>, paths: &mut [R::Record]) -> bool {
-    if !scene.features.has(Features::REFRACTION) || path.pending == 0 {
+fn pop<R: Scalar>(geometry: &Geometry<'_>, slot: u32, path: &Path<R>, paths: &mut [R::Record]) -> bool {
+    if !geometry.features.has(Features::REFRACTION) || path.pending == 0 {
         return false;
     }
-    let mut next = Path::<R>::load(scene.slots(), slot, path.pending, paths);
+    let mut next = Path::<R>::load(geometry.slots(), slot, path.pending, paths);
     next.pending = path.pending - 1;
-    next.store(scene.slots(), slot, 0, paths);
+    next.store(geometry.slots(), slot, 0, paths);
     true
 }

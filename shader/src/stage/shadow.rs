@@ -2,9 +2,10 @@
 
 use super::Path;
 use crate::buffer::read;
+use crate::data::Light;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Scene;
+use crate::scene::Geometry;
 use crate::shade::{Contact, shadow_ray};
 use crate::traverse::{Method, Occlusion, step};
 
@@ -18,24 +19,20 @@ pub const FACES_AWAY: u32 = 2;
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
 pub fn shadow<R: Scalar, M: Method>(
-    scene: &Scene<'_>,
-    slot: u32,
-    index: u32,
-    paths: &[R::Record],
-    hits: &[R::Record],
+    geometry: &Geometry<'_>, lights: &[Light], slot: u32, index: u32, paths: &[R::Record], hits: &[R::Record],
 ) -> u32 {
     let (hit, place) = R::load(read(hits, slot));
     if place == Hit::<R>::NOTHING {
         return FACES_AWAY;
     }
-    let path = Path::<R>::current(scene, slot, paths);
-    let contact = Contact::new(&read(scene.triangles, place), hit.y, hit.z, path.direction);
-    let light = read(scene.lights, index);
-    let (origin, direction, limit) = shadow_ray(scene.features, &light, &contact);
+    let path = Path::<R>::current(geometry, slot, paths);
+    let contact = Contact::new(&read(geometry.triangles, place), hit.y, hit.z, path.direction);
+    let light = read(lights, index);
+    let (origin, direction, limit) = shadow_ray(geometry.features, &light, &contact);
     if !contact.faces(direction) {
         return FACES_AWAY;
     }
     let mut hit = Hit::none(limit);
-    M::traverse::<Occlusion, R>(scene, &Ray::new(origin, direction), &mut hit);
+    M::traverse::<Occlusion, R>(geometry, &Ray::new(origin, direction), &mut hit);
     if step::occluded(&hit) { SHADOWED } else { REACHED }
 }

@@ -7,7 +7,7 @@ use crate::buffer::read;
 use crate::data::{NodeRef, STACK};
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Scene;
+use crate::scene::Geometry;
 
 /// See the module.
 pub struct IfIf;
@@ -42,14 +42,10 @@ impl Cursor {
 /// One iteration: the two ifs.
 #[inline(always)]
 fn step<Q: Query, R: Scalar>(
-    scene: &Scene<'_>,
-    ray: &Ray<R>,
-    stack: &mut [u32; STACK],
-    cursor: &mut Cursor,
-    hit: &mut Hit<R>,
+    geometry: &Geometry<'_>, ray: &Ray<R>, stack: &mut [u32; STACK], cursor: &mut Cursor, hit: &mut Hit<R>,
 ) {
     if !cursor.node.is_leaf() {
-        let pair = read(scene.nodes, cursor.node.index());
+        let pair = read(geometry.nodes, cursor.node.index());
         let wanted = children(&pair, ray, hit);
         if wanted.left && wanted.right {
             let (near, far) =
@@ -65,7 +61,7 @@ fn step<Q: Query, R: Scalar>(
         }
     }
     if cursor.node.is_leaf() && !cursor.done {
-        triangle::<Q, R>(scene, cursor.node, ray, hit);
+        triangle::<Q, R>(geometry, cursor.node, ray, hit);
         cursor.node = cursor.node.rest();
         if Q::ANY && occluded(hit) {
             cursor.done = true;
@@ -77,11 +73,11 @@ fn step<Q: Query, R: Scalar>(
 
 impl Method for IfIf {
     #[inline(always)]
-    fn traverse<Q: Query, R: Scalar>(scene: &Scene<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query, R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = [0; STACK];
         let mut cursor = Cursor { node: NodeRef::ROOT, depth: 0, done: false };
         while !cursor.done {
-            step::<Q, R>(scene, ray, &mut stack, &mut cursor, hit);
+            step::<Q, R>(geometry, ray, &mut stack, &mut cursor, hit);
         }
     }
 }

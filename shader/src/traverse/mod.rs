@@ -11,7 +11,7 @@ pub use if_if::IfIf;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Scene;
+use crate::scene::Geometry;
 
 /// What a ray asks for.
 pub trait Query {
@@ -34,7 +34,7 @@ impl Query for Occlusion {
 /// A way through the hierarchy, one ray a lane.
 pub trait Method {
     /// Follows a ray from the root and leaves what it finds in `hit`, which holds its limit before.
-    fn traverse<Q: Query, R: Scalar>(scene: &Scene<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
+    fn traverse<Q: Query, R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::data::{Features, NodePair, NodeRef, Triangle, numbers};
 use crate::intersect::{Crossing, Span, cross, slab};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real, V3};
-use crate::scene::Scene;
+use crate::scene::Geometry;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
 const FOUND: f32 = -1.0;
@@ -40,12 +40,13 @@ pub fn children<R: Real>(pair: &NodePair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<
 
 /// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
 #[inline(always)]
-pub fn triangle<Q: Query, R: Real>(scene: &Scene<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
-    let triangle = read(scene.triangles, leaf.index());
-    let [a, b, c] = triangle.vertices().map(|p| V3::splat(p) - ray.origin);
-    let crossing = cross(a, b, c, ray.shear, ray.shear.cycle(ray.inverse).z);
-    if crossing.any() && counts::<Q>(scene.features, &triangle) {
-        keep::<Q, R>(scene.features, &triangle, leaf.index(), &crossing, ray, hit);
+pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
+    let triangle = read(geometry.triangles, leaf.index());
+    let [a, b, c] = triangle.vertices();
+    let from = |p| V3::splat(p) - ray.origin;
+    let crossing = cross(from(a), from(b), from(c), ray.shear, ray.shear.cycle(ray.inverse).z);
+    if crossing.any() && counts::<Q>(geometry.features, &triangle) {
+        keep::<Q, R>(geometry.features, &triangle, leaf.index(), &crossing, ray, hit);
     }
 }
 
@@ -58,12 +59,7 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 /// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
-    features: Features,
-    triangle: &Triangle,
-    slot: u32,
-    crossing: &Crossing<R>,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
+    features: Features, triangle: &Triangle, slot: u32, crossing: &Crossing<R>, ray: &Ray<R>, hit: &mut Hit<R>,
 ) {
     let mut inside = crossing.inside;
     if features.has(Features::CULLING) && !Q::ANY {

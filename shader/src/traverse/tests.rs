@@ -5,7 +5,7 @@ use super::{Closest, IfIf, Method, Occlusion, Query};
 use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Scalar, V3};
-use crate::scene::Scene;
+use crate::scene::Geometry;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -50,28 +50,20 @@ impl World {
         World { triangles, nodes, frame: Frame::zeroed(), features: Features(features) }
     }
 
-    fn scene(&self) -> Scene<'_> {
-        Scene {
-            frame: &self.frame,
-            features: self.features,
-            nodes: &self.nodes,
-            triangles: &self.triangles,
-            normals: &[],
-            materials: &[],
-            lights: &[],
-        }
+    fn geometry(&self) -> Geometry<'_> {
+        Geometry { frame: &self.frame, features: self.features, nodes: &self.nodes, triangles: &self.triangles }
     }
 
     fn trace<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
-        IfIf::traverse::<Q, R>(&self.scene(), ray, &mut hit);
+        IfIf::traverse::<Q, R>(&self.geometry(), ray, &mut hit);
         hit
     }
 
     fn brute_force<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
         for slot in (0..self.triangles.len() as u32).rev() {
-            step::triangle::<Q, R>(&self.scene(), NodeRef::leaf(slot, 1), ray, &mut hit);
+            step::triangle::<Q, R>(&self.geometry(), NodeRef::leaf(slot, 1), ray, &mut hit);
         }
         hit
     }

@@ -1,6 +1,35 @@
 //! A scene in world units, as the files describe it and before anything is packed for a device.
 
+mod checked;
+mod document;
+mod file;
+mod frame;
+mod lines;
+mod load;
+mod material;
+mod merge;
+mod mtl;
+mod normal;
+mod obj;
+mod part;
+mod range;
+mod shape;
+mod suggest;
+mod table;
+mod tally;
+mod transform;
+
+pub use load::load;
+pub use suggest::suggest;
+
+use eyerays_shader::data::NodeRef;
 use glam::Vec3;
+
+/// The result of a check that does not know whose line it checks: the error is a fault and its remedy.
+type Unplaced<T> = Result<T, String>;
+
+/// The most triangles a mesh may have: traversal numbers them in the bits that a node reference has.
+pub const MAX_TRIANGLES: usize = NodeRef::MAX_INDEX as usize;
 
 /// All that a picture is made from. Everything in it is finite and in range: [`load`] refuses the rest.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,6 +169,15 @@ pub struct Settings {
     pub min_contribution: f32,
     /// Skip triangles seen from behind.
     pub culling: bool,
+}
+
+impl Settings {
+    /// The largest width and height in pixels.
+    pub const MOST_SIDE: u32 = 16384;
+    /// The most samples along a pixel's edge.
+    pub const MOST_SAMPLES: u32 = 64;
+    /// The largest limit of bounces.
+    pub const MOST_BOUNCES: u32 = 32;
 }
 
 impl Default for Settings {

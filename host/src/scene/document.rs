@@ -1,0 +1,188 @@
+//! The tables of a TOML scene, but for its meshes.
+
+use std::collections::HashSet;
+
+use glam::{DVec3, Vec3};
+
+use super::range::Range;
+use super::table::Table;
+use super::{Background, Camera, Light, Settings};
+use crate::error::Result;
+
+/// Reads `[render]`; what it does not say is the default.
+///
+/// # Errors
+/// A number out of range, or an unknown key.
+pub fn settings(mut table: Table) -> Result<Settings> {
+    let default = Settings::default();
+    let settings = Settings {
+        size: table
+            .pair("size", 1, Settings::MOST_SIDE)?
+            .unwrap_or(default.size),
+        samples: table
+            .whole("samples", 1, Settings::MOST_SAMPLES)?
+            .unwrap_or(default.samples),
+        bounces: table
+            .whole("bounces", 0, Settings::MOST_BOUNCES)?
+            .unwrap_or(default.bounces),
+        min_contribution: table
+            .number("min_contribution", Range::SHARE)?
+            .unwrap_or(default.min_contribution),
+        culling: table.flag("culling")?.unwrap_or(default.culling),
+    };
+    table.done()?;
+    Ok(settings)
+}
+
+/// Reads `[background]`: a `color`, or a `horizon` and a `zenith`.
+///
+/// # Errors
+/// Both or neither, a colour below 0, or an unknown key.
+pub fn background(mut table: Table) -> Result<Background> {
+    if table.has("color") && (table.has("horizon") || table.has("zenith")) {
+        let fault = "[background] has a color and a gradient; remove the one or the other";
+        return Err(table.fault_of("color", fault));
+    }
+    let colour = table.triple("color", Range::AMOUNT)?;
+    let horizon = table.triple("horizon", Range::AMOUNT)?;
+    let zenith = table.triple("zenith", Range::AMOUNT)?;
+    let background = match (colour, horizon, zenith) {
+        (Some(colour), ..) => Background::Colour(colour),
+        (None, None, None) => Background::Colour(table.need("color", colour)?),
+        _ => Background::Gradient {
+            horizon: table.need("horizon", horizon)?,
+            zenith: table.need("zenith", zenith)?,
+        },
+    };
+    table.done()?;
+    Ok(background)
+}
+
+/// Reads every `[[camera]]`.
+///
+/// # Errors
+/// A name given twice, a view that has no direction or no upright, a number out of range, or an unknown key.
+pub fn cameras(tables: Vec<Table>) -> Result<Vec<Camera>> {
+    let mut names = HashSet::new();
+    let mut cameras = Vec::new();
+    for mut table in tables {
+        let camera = camera(&mut table)?;
+        if !names.insert(camera.name.clone()) {
+            let fault = format!("a second camera {:?}; rename one", camera.name);
+            return Err(table.fault_of("name", fault));
+        }
+        table.done()?;
+        cameras.push(camera);
+    }
+    Ok(cameras)
+}
+
+fn camera(table: &mut Table) -> Result<Camera> {
+    let name = table.name("name")?;
+    let eye = table.triple("eye", Range::ANY)?;
+    let target = table.triple("target", Range::ANY)?;
+    let camera = Camera {
+        name: table.need("name", name)?,
+        eye: table.need("eye", eye)?,
+        target: table.need("target", target)?,
+        up: table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y),
+        fov: table.number("fov", Range::CONE)?.unwrap_or(45.0),
+    };
+    let named = format!("camera {:?}", camera.name);
+    let view = camera.target.as_dvec3() - camera.eye.as_dvec3();
+    if view == DVec3::ZERO {
+        let fault = format!("{named} looks at its own eye; move its target");
+        return Err(table.fault_of("target", fault));
+    }
+    let sine = view
+        .normalize()
+        .cross(camera.up.as_dvec3().normalize_or_zero());
+    // Nearer than this, single precision no longer tells which way is up.
+    if sine.length() < 1e-6 {
+        let fault = format!("{named} has its up along its view; turn up aside");
+        let key = if table.has("up") { "up" } else { "target" };
+        return Err(table.fault_of(key, fault));
+    }
+    Ok(camera)
+}
+
+/// Reads every `[[light]]`.
+///
+/// # Errors
+/// A light without direction, a number out of range, or a key that its kind does not take.
+pub fn lights(tables: Vec<Table>) -> Result<Vec<Light>> {
+    tables.into_iter().map(light).collect()
+}
+
+#[derive(Clone, Copy)]
+enum Kind {
+    Point,
+    Directional,
+    Spot,
+}
+
+fn light(mut table: Table) -> Result<Light> {
+    let words = [
+        ("point", Kind::Point),
+        ("directional", Kind::Directional),
+        ("spot", Kind::Spot),
+    ];
+    let kind = table.word("kind", &words)?;
+    let kind = table.need("kind", kind)?;
+    let colour = light_colour(&mut table)?;
+    let light = match kind {
+        Kind::Point => {
+            table.rename("a point light");
+            let position = table.triple("position", Range::ANY)?;
+            Light::Point {
+                position: table.need("position", position)?,
+                colour,
+            }
+        }
+        Kind::Directional => {
+            table.rename("a directional light");
+            let direction = table.triple("direction", Range::ANY)?;
+            let direction = table.need("direction", direction)?;
+            if direction == Vec3::ZERO {
+                let fault = "the direction is zero; say which way the light travels";
+                return Err(table.fault_of("direction", fault));
+            }
+            Light::Directional { direction, colour }
+        }
+        Kind::Spot => spot(&mut table, colour)?,
+    };
+    table.done()?;
+    Ok(light)
+}
+
+fn spot(table: &mut Table, colour: Vec3) -> Result<Light> {
+    table.rename("a spot light");
+    let position = table.triple("position", Range::ANY)?;
+    let position = table.need("position", position)?;
+    let target = table.triple("target", Range::ANY)?;
+    let target = table.need("target", target)?;
+    if target == position {
+        let fault = "the spot light shines at its own position; move its target";
+        return Err(table.fault_of("target", fault));
+    }
+    let angle = table.number("angle", Range::CONE)?;
+    let outer = table.need("angle", angle)? / 2.0;
+    let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
+    Ok(Light::Spot {
+        position,
+        target,
+        colour,
+        outer,
+        inner: outer * (1.0 - softness),
+    })
+}
+
+fn light_colour(table: &mut Table) -> Result<Vec3> {
+    let colour = table.triple("color", Range::AMOUNT)?.unwrap_or(Vec3::ONE);
+    let intensity = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
+    if !(colour * intensity).is_finite() {
+        let fault = "color times intensity is not finite; lower the intensity";
+        return Err(table.fault_of("intensity", fault));
+    }
+    Ok(colour * intensity)
+}

@@ -1,0 +1,93 @@
+//! A material as files describe it, in part, and as the tracer needs it, in full.
+
+use glam::Vec3;
+
+use super::range::Range;
+use super::table::Table;
+use super::{Checker, Material};
+use crate::error::Result;
+
+/// What a file says of a material; the rest is left to whoever else describes it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fields {
+    pub ambient: Option<Vec3>,
+    pub diffuse: Option<Vec3>,
+    pub specular: Option<Vec3>,
+    pub shininess: Option<f32>,
+    pub reflection: Option<Vec3>,
+    pub transmission: Option<Vec3>,
+    pub ior: Option<f32>,
+    pub checker: Option<Checker>,
+}
+
+/// The name of the material of a surface that names none.
+pub const DEFAULT: &str = "default";
+/// A grey that shows form under any light.
+const GREY: Vec3 = Vec3::splat(0.7);
+/// A highlight some twenty degrees wide.
+const SHININESS: f32 = 32.0;
+/// Window glass.
+const GLASS: f32 = 1.5;
+
+impl Fields {
+    /// Reads a `[[material]]` table: its name and what it says.
+    ///
+    /// # Errors
+    /// A missing name, a number out of range, or an unknown key.
+    pub fn read(table: &mut Table) -> Result<(String, Fields)> {
+        let name = table.name("name")?;
+        let name = table.need("name", name)?;
+        let fields = Fields {
+            ambient: table.triple("ambient", Range::SHARE)?,
+            diffuse: table.triple("diffuse", Range::SHARE)?,
+            specular: table.triple("specular", Range::SHARE)?,
+            shininess: table.number("shininess", Range::AMOUNT)?,
+            reflection: table.triple("reflection", Range::SHARE)?,
+            transmission: table.triple("transmission", Range::SHARE)?,
+            ior: table.number("ior", Range::IOR)?,
+            checker: table.table("checker")?.map(checker).transpose()?,
+        };
+        Ok((name, fields))
+    }
+
+    /// These fields, and `under` where they say nothing.
+    pub fn over(self, under: Fields) -> Fields {
+        Fields {
+            ambient: self.ambient.or(under.ambient),
+            diffuse: self.diffuse.or(under.diffuse),
+            specular: self.specular.or(under.specular),
+            shininess: self.shininess.or(under.shininess),
+            reflection: self.reflection.or(under.reflection),
+            transmission: self.transmission.or(under.transmission),
+            ior: self.ior.or(under.ior),
+            checker: self.checker.or(under.checker),
+        }
+    }
+
+    /// The whole material: grey and matt where nothing is said, ambient as diffuse.
+    pub fn finish(self, name: &str) -> Material {
+        let diffuse = self.diffuse.unwrap_or(GREY);
+        Material {
+            name: name.to_owned(),
+            ambient: self.ambient.unwrap_or(diffuse),
+            diffuse,
+            specular: self.specular.unwrap_or(Vec3::ZERO),
+            shininess: self.shininess.unwrap_or(SHININESS),
+            reflection: self.reflection.unwrap_or(Vec3::ZERO),
+            transmission: self.transmission.unwrap_or(Vec3::ZERO),
+            ior: self.ior.unwrap_or(GLASS),
+            checker: self.checker,
+        }
+    }
+}
+
+fn checker(mut table: Table) -> Result<Checker> {
+    let colour = table.triple("color", Range::SHARE)?;
+    let size = table.number("size", Range::LENGTH)?;
+    let checker = Checker {
+        colour: table.need("color", colour)?,
+        size: table.need("size", size)?,
+    };
+    table.done()?;
+    Ok(checker)
+}

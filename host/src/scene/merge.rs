@@ -1,0 +1,130 @@
+//! One mesh of many parts, and the materials in use.
+
+use std::cell::Cell;
+use std::collections::{BTreeMap, HashMap};
+
+use glam::Vec3;
+
+use super::checked::too_many;
+use super::material::{DEFAULT, Fields};
+use super::part::Part;
+use super::suggest::suggest;
+use super::{MAX_TRIANGLES, Material, Mesh, Unplaced};
+
+/// A `[[material]]` table, and whether any surface has it.
+pub struct Override {
+    fields: Fields,
+    idle: String,
+    used: Cell<bool>,
+}
+
+impl Override {
+    /// What the table says, and the warning for when no surface has it.
+    pub fn new(fields: Fields, idle: String) -> Self {
+        Override {
+            fields,
+            idle,
+            used: Cell::new(false),
+        }
+    }
+
+    /// The warning, if no surface has it.
+    pub fn warning(&self) -> Option<String> {
+        (!self.used.get()).then(|| self.idle.clone())
+    }
+
+    fn over(&self, fields: Fields) -> Fields {
+        self.used.set(true);
+        self.fields.over(fields)
+    }
+}
+
+/// By name.
+pub type Overrides = BTreeMap<String, Override>;
+
+/// The parts so far.
+#[derive(Default)]
+pub struct Merge {
+    mesh: Mesh,
+    materials: Vec<Material>,
+    by_name: HashMap<String, Vec<u32>>,
+}
+
+impl Merge {
+    /// Adds a part, whose materials `overrides` has the last word on.
+    ///
+    /// # Errors
+    /// Its material is unknown, or the triangles are too many to number.
+    pub fn add(&mut self, part: Part, overrides: &Overrides) -> Unplaced<()> {
+        if self.mesh.triangles.len() + part.mesh.triangles.len() > MAX_TRIANGLES {
+            return Err(too_many(MAX_TRIANGLES));
+        }
+        let all = part.material.as_deref();
+        let all = all
+            .map(|name| self.named(name, &part, overrides))
+            .transpose()?;
+        let mut numbers = vec![all; part.materials.len()];
+        let first = self.mesh.positions.len() as u32;
+        for &local in &part.mesh.materials {
+            let local = local as usize;
+            let number = *numbers[local].get_or_insert_with(|| {
+                let (name, fields) = &part.materials[local];
+                self.number(name, *fields, overrides)
+            });
+            self.mesh.materials.push(number);
+        }
+        let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
+        self.mesh
+            .triangles
+            .extend(part.mesh.triangles.into_iter().map(shift));
+        self.mesh.positions.extend(part.mesh.positions);
+        self.mesh.normals.extend(part.mesh.normals);
+        self.mesh
+            .normals
+            .resize(self.mesh.positions.len(), Vec3::ZERO);
+        Ok(())
+    }
+
+    /// The whole mesh and the materials that it uses, each once.
+    pub fn finish(mut self) -> (Mesh, Vec<Material>) {
+        if self.mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
+            self.mesh.normals = Vec::new();
+        }
+        (self.mesh, self.materials)
+    }
+
+    fn named(&mut self, name: &str, part: &Part, overrides: &Overrides) -> Unplaced<u32> {
+        // The last of a name counts, as in the file itself.
+        let own = part.materials.iter().rev().find(|(own, _)| own == name);
+        if own.is_none() && !overrides.contains_key(name) && name != DEFAULT {
+            let own = part.materials.iter().map(|(own, _)| own.as_str());
+            let known = own.chain(overrides.keys().map(String::as_str));
+            return Err(format!(
+                "unknown material {name:?}; {}",
+                suggest(name, known)
+            ));
+        }
+        let fields = own.map_or(Fields::default(), |(_, fields)| *fields);
+        Ok(self.number(name, fields, overrides))
+    }
+
+    fn number(&mut self, name: &str, fields: Fields, overrides: &Overrides) -> u32 {
+        let fields = match overrides.get(name) {
+            Some(over) => over.over(fields),
+            None => fields,
+        };
+        let material = fields.finish(name);
+        // Two files may mean different things by a name.
+        let same = self.by_name.entry(name.to_owned()).or_default();
+        let found = same
+            .iter()
+            .find(|&&number| self.materials[number as usize] == material);
+        if let Some(&number) = found {
+            return number;
+        }
+        let number = self.materials.len() as u32;
+        same.push(number);
+        self.materials.push(material);
+        number
+    }
+}

@@ -1,0 +1,131 @@
+//! Meshes that a scene file names by their shape.
+
+use std::collections::HashMap;
+
+use glam::{DVec3, Vec3};
+
+use super::Mesh;
+
+/// A sphere: an icosahedron whose triangles are split in four `subdivisions` times, 20 * 4^n of them, with
+/// the sphere's own normals. Neighbours share their vertices, so that there is no crack.
+pub fn sphere(center: Vec3, radius: f32, subdivisions: u32) -> Mesh {
+    let (mut points, mut triangles) = icosahedron();
+    for _ in 0..subdivisions {
+        triangles = split(&mut points, &triangles);
+    }
+    let place = |point: &DVec3| (center.as_dvec3() + *point * f64::from(radius)).as_vec3();
+    Mesh {
+        positions: points.iter().map(place).collect(),
+        normals: points.iter().map(|point| point.as_vec3()).collect(),
+        ..flat(triangles)
+    }
+}
+
+/// A parallelogram or any flat convex quadrilateral, from its corners counter-clockwise.
+pub fn quad(corners: [Vec3; 4]) -> Mesh {
+    Mesh {
+        positions: corners.to_vec(),
+        ..flat(vec![[0, 1, 2], [0, 2, 3]])
+    }
+}
+
+/// A box along the axes from its least to its greatest corner, seen from outside.
+pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
+    let corner = |bits: u32| {
+        let side = |axis: usize| [min[axis], max[axis]][(bits >> axis & 1) as usize];
+        Vec3::new(side(0), side(1), side(2))
+    };
+    // Bit 0 of a corner's number is x, bit 1 is y, bit 2 is z.
+    const SIDES: [[u32; 4]; 6] = [
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    Mesh {
+        positions: (0..8).map(corner).collect(),
+        ..flat(SIDES.into_iter().flat_map(halves).collect())
+    }
+}
+
+/// Triangles of one material.
+fn flat(triangles: Vec<[u32; 3]>) -> Mesh {
+    Mesh {
+        materials: vec![0; triangles.len()],
+        triangles,
+        ..Mesh::default()
+    }
+}
+
+/// Unit vectors and triangles, counter-clockwise seen from outside.
+fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let golden = (1.0 + 5f64.sqrt()) / 2.0;
+    let mut points = Vec::new();
+    for (one, long) in [
+        (-1.0, golden),
+        (1.0, golden),
+        (-1.0, -golden),
+        (1.0, -golden),
+    ] {
+        points.push(DVec3::new(one, long, 0.0).normalize());
+    }
+    for (one, long) in [
+        (-1.0, golden),
+        (1.0, golden),
+        (-1.0, -golden),
+        (1.0, -golden),
+    ] {
+        points.push(DVec3::new(0.0, one, long).normalize());
+    }
+    for (one, long) in [
+        (-1.0, golden),
+        (1.0, golden),
+        (-1.0, -golden),
+        (1.0, -golden),
+    ] {
+        points.push(DVec3::new(long, 0.0, one).normalize());
+    }
+    let triangles = vec![
+        [0, 11, 5],
+        [0, 5, 1],
+        [0, 1, 7],
+        [0, 7, 10],
+        [0, 10, 11],
+        [1, 5, 9],
+        [5, 11, 4],
+        [11, 10, 2],
+        [10, 7, 6],
+        [7, 1, 8],
+        [3, 9, 4],
+        [3, 4, 2],
+        [3, 2, 6],
+        [3, 6, 8],
+        [3, 8, 9],
+        [4, 9, 5],
+        [2, 4, 11],
+        [6, 2, 10],
+        [8, 6, 7],
+        [9, 8, 1],
+    ];
+    (points, triangles)
+}
+
+/// Splits every triangle in four; an edge's middle is made once and moved out to the sphere.
+fn split(points: &mut Vec<DVec3>, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut middles = HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            points.push((points[a as usize] + points[b as usize]).normalize());
+            points.len() as u32 - 1
+        })
+    };
+    let mut parts = Vec::with_capacity(4 * triangles.len());
+    for &[a, b, c] in triangles {
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        parts.extend([[a, ab, ca], [b, bc, ab], [c, ca, bc], [ab, bc, ca]]);
+    }
+    parts
+}

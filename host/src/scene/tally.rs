@@ -1,0 +1,30 @@
+//! Warnings that are given once a file.
+
+use std::path::Path;
+
+use crate::error::Error;
+
+/// What is reported once a file: where it happened first, and how often it did.
+#[derive(Debug, Default)]
+pub struct Tally {
+    first: Option<(usize, String)>,
+    count: usize,
+}
+
+impl Tally {
+    /// Notes one more on a line, counted from 1.
+    pub fn add(&mut self, line: usize, what: &str) {
+        self.first.get_or_insert_with(|| (line, what.to_owned()));
+        self.count += 1;
+    }
+
+    /// The warning, if there was anything: what was first, how many more, and `why`.
+    pub fn warn(&self, path: &Path, why: &str) -> Option<String> {
+        let (line, what) = self.first.as_ref()?;
+        let more = match self.count - 1 {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        Some(Error::line(path, *line, format!("{what}{more} {why}")).to_string())
+    }
+}

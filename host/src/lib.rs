@@ -1,5 +1,6 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+pub mod cli;
 pub mod compare;
 pub mod cpu;
 pub mod error;
@@ -9,4 +10,5 @@ pub mod image;
 pub mod output;
 pub mod pack;
 pub mod rays;
+pub mod render;
 pub mod scene;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The command `eyerays`.
+
+fn main() -> std::process::ExitCode {
+    eyerays::cli::run()
+}

@@ -1,0 +1,42 @@
+//! `eyerays check`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use eyerays_bvh::Quality;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::pack::Packed;
+use crate::scene;
+
+#[derive(Args)]
+pub(super) struct Check {
+    /// The scene
+    scene: PathBuf,
+}
+
+impl Check {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let (scene, warnings) = scene::load(&self.scene)?;
+        super::warn(&warnings, quiet);
+        let named = |e: Error| Error { file: e.file.or_else(|| Some(self.scene.clone())), ..e };
+        Film::check_size(scene.settings.size.0, scene.settings.size.1).map_err(named)?;
+        for camera in &scene.cameras {
+            Packed::new(&scene, camera, scene.settings, Quality::Fast).map_err(named)?;
+        }
+        if !quiet {
+            let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+            super::print(&format!(
+                "{}: {} triangles, {} materials, {} lights; cameras {}\n",
+                self.scene.display(),
+                scene.mesh.triangles.len(),
+                scene.materials.len(),
+                scene.lights.len(),
+                cameras.join(", ")
+            ))?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,113 @@
+//! `eyerays diff`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use serde_json::json;
+
+use super::options::{On, View};
+use super::summary::bar;
+use crate::compare::{Comparison, compare, heat_map};
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::image::{self, Encoding};
+use crate::output::{self, Destination};
+use crate::render::{Chosen, DeviceWish, Precision, Rendering};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  eyerays diff before.png after.png -o difference.png
+  eyerays diff scenes/cornell.toml --size 256x256
+Exit code 1 tells that the pictures differ by more than the tolerance.";
+
+/// Exit code of pictures that differ.
+const DIFFERENT: u8 = 1;
+
+#[derive(Args)]
+pub(super) struct Diff {
+    /// A picture, or a scene to render on GPU and CPU
+    first: PathBuf,
+    /// The picture to compare with
+    second: Option<PathBuf>,
+    /// Write a heat map of the difference (black where bits are equal)
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<std::ffi::OsString>,
+    /// The largest absolute difference of a channel that still counts as the same
+    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    tolerance: f32,
+    /// Print the comparison as JSON to standard output
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    on: On,
+    #[command(flatten)]
+    view: View,
+}
+
+impl Diff {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return Err(Error::new(format!("--tolerance {} is no finite number from 0 up", self.tolerance)));
+        }
+        let heat = self.output.clone().map(Destination::from);
+        if let Some(destination) = &heat {
+            if self.json && matches!(destination, Destination::Stdout) {
+                return Err(Error::new("--json and -o - both write to standard output: name a file for the map"));
+            }
+            destination.format()?;
+            output::check_writable(destination)?;
+        }
+        let (a, b, names) = match &self.second {
+            Some(second) => self.pictures(second)?,
+            None => self.renderings(quiet)?,
+        };
+        let comparison = compare(&a, &b)?;
+        if let Some(destination) = &heat {
+            image::write(&heat_map(&a, &b)?, destination, &Encoding::default())?;
+        }
+        self.report(&comparison, &names, quiet)?;
+        let differs = comparison.exceeds(self.tolerance);
+        Ok(if differs { ExitCode::from(DIFFERENT) } else { ExitCode::SUCCESS })
+    }
+
+    fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
+        let names = [&self.first, second].map(|path| path.display().to_string());
+        Ok((image::read(&self.first)?, image::read(second)?, names))
+    }
+
+    /// The unquantised films of a scene from GPU and CPU.
+    fn renderings(&self, quiet: bool) -> Result<(Film, Film, [String; 2])> {
+        if self.first.extension().is_some_and(|e| ["png", "exr", "hdr"].iter().any(|x| e.eq_ignore_ascii_case(x))) {
+            return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
+        }
+        if self.on.precision == Precision::Reference {
+            return Err(Error::new("reference precision is the CPU's alone: there is no GPU to compare with"));
+        }
+        let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
+        let cpu_choice = crate::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
+        let loaded = self.view.load(&self.first, quiet)?;
+        let (width, height) = loaded.packed.settings.size;
+        let progress = bar(2 * u64::from(width) * u64::from(height), quiet || self.json);
+        let render = |choice| -> Result<Rendering> {
+            Chosen::new(choice)?.render(&loaded.packed, 1, &|pixels| progress.inc(pixels))
+        };
+        let renderings = render(&gpu_choice).and_then(|gpu| Ok((gpu, render(&cpu_choice)?)));
+        progress.finish_and_clear();
+        let (gpu, cpu) = renderings?;
+        if gpu.rays != cpu.rays && !quiet {
+            eprintln!("warning: the GPU counted {:?}, the CPU {:?}", gpu.rays, cpu.rays);
+        }
+        Ok((gpu.film, cpu.film, [gpu.device, cpu.device]))
+    }
+
+    fn report(&self, comparison: &Comparison, names: &[String; 2], quiet: bool) -> Result<()> {
+        if self.json {
+            return super::print_json(&json!({ "first": names[0], "second": names[1], "comparison": comparison }));
+        }
+        if quiet {
+            return Ok(());
+        }
+        super::print(&format!("{} against {}\n{comparison}\n", names[0], names[1]))
+    }
+}

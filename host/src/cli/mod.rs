@@ -1,0 +1,86 @@
+//! The command line.
+
+mod check;
+mod diff;
+mod info;
+mod options;
+mod render;
+mod summary;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::Result;
+
+/// Exit code of a command that failed on what it was given.
+const BAD_INPUT: u8 = 2;
+
+/// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
+#[derive(Parser)]
+#[command(name = "eyerays", version, about, max_term_width = 100)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say nothing but errors
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Say more: warnings of drivers; twice for debugging
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, conflicts_with = "quiet")]
+    verbose: u8,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene to a picture
+    #[command(after_help = render::EXAMPLES)]
+    Render(Box<render::Render>),
+    /// Compare two pictures, or a scene's pictures from GPU and CPU
+    #[command(after_help = diff::EXAMPLES)]
+    Diff(Box<diff::Diff>),
+    /// List the GPUs of this machine, or tell a scene's figures
+    Info(info::Info),
+    /// Validate a scene and render nothing
+    Check(check::Check),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let cli = Cli::parse();
+    log(cli.verbose);
+    let outcome = match cli.command {
+        Command::Render(command) => command.run(cli.quiet),
+        Command::Diff(command) => command.run(cli.quiet),
+        Command::Info(command) => command.run(),
+        Command::Check(command) => command.run(cli.quiet),
+    };
+    outcome.unwrap_or_else(|error| {
+        eprintln!("error: {error}");
+        ExitCode::from(BAD_INPUT)
+    })
+}
+
+fn log(verbose: u8) {
+    let level = ["off", "warn", "debug"][usize::from(verbose).min(2)];
+    let filter = tracing_subscriber::EnvFilter::try_from_default_env();
+    let filter = filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(level));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().init();
+}
+
+/// Warnings of a scene, each on its line.
+fn warn(warnings: &[String], quiet: bool) {
+    for warning in warnings.iter().filter(|_| !quiet) {
+        eprintln!("warning: {warning}");
+    }
+}
+
+/// Prints a JSON value to standard output.
+fn print_json(value: &serde_json::Value) -> Result<()> {
+    print(&format!("{value:#}\n"))
+}
+
+/// Prints to standard output; a reader that has gone away is no panic.
+fn print(text: &str) -> Result<()> {
+    use std::io::Write;
+    std::io::stdout().write_all(text.as_bytes()).map_err(|e| crate::output::write_error(&e))
+}

@@ -1,0 +1,198 @@
+//! What the commands that render share.
+
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use clap::{Args, ValueEnum};
+use eyerays_bvh::Quality;
+use glam::Vec3;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::pack::Packed;
+use crate::render::{Choice, DeviceWish, Precision};
+use crate::scene::{self, Camera, Scene, Settings};
+
+/// The most samples along a pixel's edge.
+const MOST_SAMPLES: u32 = 64;
+/// The most bounces.
+const MOST_BOUNCES: u32 = 65_535;
+/// The most threads.
+const MOST_THREADS: usize = 1024;
+
+/// The scene and how to see it.
+#[derive(Args)]
+pub(super) struct View {
+    /// Image width and height in pixels, for example 1920x1080
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    /// Samples along a pixel's edge: N x N rays a pixel
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
+    /// One of the scene's cameras, by name or number (from 0)
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "eye")]
+    camera: Option<String>,
+    /// Look from here instead, in the scene's units
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "target", allow_hyphen_values = true)]
+    eye: Option<Vec3>,
+    /// Look there
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "eye", allow_hyphen_values = true)]
+    target: Option<Vec3>,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "D")]
+    fov: Option<f32>,
+    /// How often a ray is reflected or refracted at most
+    #[arg(long, value_name = "N")]
+    bounces: Option<u32>,
+    /// Least share of its pixel that a ray is followed for
+    #[arg(long, value_name = "SHARE")]
+    min_contribution: Option<f32>,
+    /// Skip triangles seen from behind
+    #[arg(long)]
+    cull: bool,
+    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace
+    #[arg(long, value_name = "QUALITY", value_enum, default_value_t = Bvh::Medium)]
+    bvh: Bvh,
+}
+
+/// Which device, and its arithmetic.
+#[derive(Args)]
+pub(super) struct On {
+    /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
+    #[arg(long, value_enum, default_value_t = Precision::Exact, hide_possible_values = false)]
+    pub precision: Precision,
+    /// A GPU by its number or a part of its name, as `eyerays info` lists them
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub adapter: Option<String>,
+    /// CPU threads [default: one a core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Translate the kernels through naga, as where SPIR-V passthrough is missing (fast only)
+    #[arg(long)]
+    pub no_passthrough: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Bvh {
+    Fast,
+    Medium,
+    High,
+}
+
+/// A scene, loaded and packed, and what that took.
+pub(super) struct Loaded {
+    pub packed: Packed,
+    pub load_time: Duration,
+}
+
+impl View {
+    /// Loads a scene and packs it for these options.
+    pub fn load(&self, path: &PathBuf, quiet: bool) -> Result<Loaded> {
+        let start = Instant::now();
+        let (scene, warnings) = scene::load(path)?;
+        super::warn(&warnings, quiet);
+        let load_time = start.elapsed();
+        let settings = self.settings(&scene)?;
+        let camera = self.camera(&scene)?;
+        let packed = Packed::new(&scene, &camera, settings, self.quality())
+            .map_err(|e| Error { file: e.file.or_else(|| Some(path.clone())), ..e })?;
+        Ok(Loaded { packed, load_time })
+    }
+
+    /// The scene's settings with the command line's over them.
+    fn settings(&self, scene: &Scene) -> Result<Settings> {
+        let own = scene.settings;
+        let settings = Settings {
+            size: self.size.unwrap_or(own.size),
+            samples: self.samples.unwrap_or(own.samples),
+            bounces: self.bounces.unwrap_or(own.bounces),
+            min_contribution: self.min_contribution.unwrap_or(own.min_contribution),
+            culling: self.cull || own.culling,
+        };
+        Film::check_size(settings.size.0, settings.size.1)?;
+        if !(1..=MOST_SAMPLES).contains(&settings.samples) {
+            return Err(Error::new(format!("--samples {} is not within 1 to {MOST_SAMPLES}", settings.samples)));
+        }
+        if settings.bounces > MOST_BOUNCES {
+            return Err(Error::new(format!("--bounces {} is more than {MOST_BOUNCES}", settings.bounces)));
+        }
+        if !(0.0..=1.0).contains(&settings.min_contribution) {
+            let share = settings.min_contribution;
+            return Err(Error::new(format!("--min-contribution {share} is not within 0 to 1")));
+        }
+        Ok(settings)
+    }
+
+    fn camera(&self, scene: &Scene) -> Result<Camera> {
+        let mut camera = match (&self.camera, self.eye, self.target) {
+            (_, Some(eye), Some(target)) => {
+                let up = if (target - eye).cross(Vec3::Y).length() == 0.0 { Vec3::Z } else { Vec3::Y };
+                Camera { name: "--eye".to_owned(), eye, target, up, fov: 60.0 }
+            }
+            (Some(wish), ..) => pick(&scene.cameras, wish)?.clone(),
+            _ => scene.cameras[0].clone(),
+        };
+        if camera.eye == camera.target {
+            return Err(Error::new("--eye and --target are the same point: the camera looks at itself; move one"));
+        }
+        if let Some(fov) = self.fov {
+            if !(fov > 0.0 && fov < 180.0) {
+                return Err(Error::new(format!("--fov {fov} is not between 0 and 180 degrees")));
+            }
+            camera.fov = fov;
+        }
+        Ok(camera)
+    }
+
+    fn quality(&self) -> Quality {
+        match self.bvh {
+            Bvh::Fast => Quality::Fast,
+            Bvh::Medium => Quality::Medium,
+            Bvh::High => Quality::High,
+        }
+    }
+}
+
+impl On {
+    /// The choice of devices these options make.
+    pub fn choice(&self, device: DeviceWish) -> Result<Choice> {
+        let threads = self.threads.unwrap_or(0);
+        if self.threads == Some(0) || threads > MOST_THREADS {
+            return Err(Error::new(format!("--threads {threads} is not within 1 to {MOST_THREADS}")));
+        }
+        if self.no_passthrough && self.precision != Precision::Fast {
+            return Err(Error::new("--no-passthrough can't keep exact arithmetic: add --precision fast"));
+        }
+        if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
+            return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
+        }
+        let (precision, adapter) = (self.precision, self.adapter.clone());
+        Ok(Choice { device, precision, adapter, no_passthrough: self.no_passthrough, threads })
+    }
+}
+
+/// The camera with this name, or this number.
+fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
+    let named = cameras.iter().find(|c| c.name == wish);
+    let numbered = || wish.parse::<usize>().ok().and_then(|i| cameras.get(i));
+    named.or_else(numbered).ok_or_else(|| {
+        let list: Vec<String> = cameras.iter().enumerate().map(|(i, c)| format!("{i} \"{}\"", c.name)).collect();
+        Error::new(format!("no camera is \"{wish}\": the scene has {}", list.join(", ")))
+    })
+}
+
+/// `WxH`.
+fn size(text: &str) -> std::result::Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    parts.ok_or_else(|| "write a width and a height in pixels, for example 640x480".to_owned())
+}
+
+/// `X,Y,Z`.
+fn vector(text: &str) -> std::result::Result<Vec3, String> {
+    let parts: Option<Vec<f32>> =
+        text.split(',').map(|p| p.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
+    match parts.as_deref() {
+        Some([x, y, z]) => Ok(Vec3::new(*x, *y, *z)),
+        _ => Err("write three finite numbers, for example 1,2.5,-3".to_owned()),
+    }
+}

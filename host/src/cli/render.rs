@@ -1,0 +1,84 @@
+//! `eyerays render`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::options::{On, View};
+use super::summary::{Summary, bar};
+use crate::error::{Error, Result};
+use crate::image::{self, BitDepth, Encoding};
+use crate::output::{self, Destination};
+use crate::render::{Chosen, DeviceWish};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  eyerays render scenes/cornell.toml -o cornell.png
+  eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
+  eyerays render scenes/whitted.toml -o - > whitted.png";
+
+#[derive(Args)]
+pub(super) struct Render {
+    /// A scene (.toml), or a bare mesh (.obj) that is framed and lit as it is
+    scene: PathBuf,
+    /// The picture, .png, .exr or .hdr; - writes PNG to standard output [default: SCENE.png here]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<std::ffi::OsString>,
+    /// Where to render
+    #[arg(long, value_enum, default_value_t = DeviceWish::Auto)]
+    device: DeviceWish,
+    #[command(flatten)]
+    on: On,
+    #[command(flatten)]
+    view: View,
+    /// Brighten the picture by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    exposure: f32,
+    /// Bits a channel of a PNG: 8 or 16
+    #[arg(long, value_name = "BITS", default_value_t = 8)]
+    bits: u32,
+    /// Render this many times and tell the median time
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    repeat: u32,
+    /// Print the summary as JSON to standard output
+    #[arg(long)]
+    json: bool,
+}
+
+impl Render {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let destination = match &self.output {
+            Some(name) => Destination::from(name.clone()),
+            None => Destination::from(default_output(&self.scene).as_path()),
+        };
+        if self.json && matches!(destination, Destination::Stdout) {
+            return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
+        }
+        let encoding = Encoding { exposure_ev: self.exposure, bits: BitDepth::from_bits(self.bits)? };
+        encoding.scale()?;
+        destination.format()?;
+        let choice = self.on.choice(self.device)?;
+        output::check_writable(&destination)?;
+        let loaded = self.view.load(&self.scene, quiet)?;
+        let chosen = Chosen::new(&choice)?;
+        let (width, height) = loaded.packed.settings.size;
+        let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat.max(1)), quiet || self.json);
+        let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
+        progress.finish_and_clear();
+        let rendering = rendering?;
+        image::write(&rendering.film, &destination, &encoding)?;
+        let summary = Summary::new(&destination, &choice, &loaded, &rendering);
+        if self.json {
+            super::print_json(&summary.json())?;
+        } else if !quiet {
+            eprintln!("{summary}");
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// The scene's name with another ending, in the current folder.
+fn default_output(scene: &Path) -> PathBuf {
+    PathBuf::from(scene.file_stem().unwrap_or("eyerays".as_ref())).with_extension("png")
+}

@@ -1,0 +1,178 @@
+//! From a packed scene to a picture, on the device that was asked for or fits best.
+
+use std::time::{Duration, Instant};
+
+use eyerays_shader::real::Fast;
+
+use crate::cpu;
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::gpu::{Gpu, Renderer, Want};
+use crate::pack::Packed;
+use crate::rays::Rays;
+
+/// How numbers are computed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum Precision {
+    /// The same picture bit for bit on every device.
+    #[default]
+    Exact,
+    /// The device's own division, root and power.
+    Fast,
+    /// Double precision on the CPU, to measure errors against.
+    Reference,
+}
+
+/// Where to render.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+pub enum DeviceWish {
+    /// A GPU when one works, else the CPU.
+    #[default]
+    Auto,
+    /// A GPU, a software one such as lavapipe too.
+    Gpu,
+    /// The CPU.
+    Cpu,
+}
+
+/// What a caller asks of devices.
+#[derive(Debug, Clone, Default)]
+pub struct Choice {
+    /// Where to render.
+    pub device: DeviceWish,
+    /// How numbers are computed.
+    pub precision: Precision,
+    /// A GPU's number or part of its name.
+    pub adapter: Option<String>,
+    /// Translate kernels by naga, as on machines without SPIR-V passthrough.
+    pub no_passthrough: bool,
+    /// CPU threads; 0 is one a core.
+    pub threads: usize,
+}
+
+/// The device of a rendering.
+enum Device {
+    Cpu,
+    Gpu(Box<Gpu>),
+}
+
+/// A device, and why it was taken.
+pub struct Chosen {
+    device: Device,
+    choice: Choice,
+    why: String,
+}
+
+/// A picture and what it took.
+pub struct Rendering {
+    /// The picture.
+    pub film: Film,
+    /// What was traced.
+    pub rays: Rays,
+    /// The device that ran.
+    pub device: String,
+    /// Why it was taken.
+    pub why: String,
+    /// Time of a rendering, median of all of them.
+    pub time: Duration,
+    /// Time on the GPU, median of all renderings, where it has a clock.
+    pub device_time: Option<Duration>,
+}
+
+impl Chosen {
+    /// Opens the device that fits the choice.
+    ///
+    /// # Errors
+    /// A GPU was asked for by name and there is none, or none that can do it.
+    pub fn new(choice: &Choice) -> Result<Chosen> {
+        let cpu = |why: String| Chosen { device: Device::Cpu, choice: choice.clone(), why };
+        if choice.device == DeviceWish::Cpu {
+            return Ok(cpu("asked for".to_owned()));
+        }
+        if choice.precision == Precision::Reference {
+            return match choice.device {
+                DeviceWish::Gpu => Err(Error::new(
+                    "reference precision is double precision on the CPU: use --device cpu, or --precision exact",
+                )),
+                _ => Ok(cpu("reference precision is the CPU's".to_owned())),
+            };
+        }
+        let asked = choice.device == DeviceWish::Gpu;
+        let want = Want {
+            adapter: choice.adapter.clone(),
+            software: asked,
+            naga: choice.no_passthrough,
+            exact: choice.precision == Precision::Exact,
+        };
+        match Gpu::open(&want) {
+            Ok(gpu) => {
+                let why = if asked { "asked for" } else { "a GPU that works" }.to_owned();
+                Ok(Chosen { device: Device::Gpu(Box::new(gpu)), choice: choice.clone(), why })
+            }
+            Err(error) if asked || choice.adapter.is_some() => Err(error),
+            Err(error) => Ok(cpu(error.message)),
+        }
+    }
+
+    /// Renders `repeat` times, at least once. `done` hears of finished shares of the pixels.
+    ///
+    /// # Errors
+    /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
+    pub fn render(&self, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        if let Device::Gpu(gpu) = &self.device {
+            match self.on_gpu(gpu, packed, repeat, done) {
+                Err(error) if self.choice.device == DeviceWish::Auto => {
+                    return self.on_cpu(packed, error.message, repeat, done);
+                }
+                result => return result,
+            }
+        }
+        self.on_cpu(packed, self.why.clone(), repeat, done)
+    }
+
+    fn on_gpu(&self, gpu: &Gpu, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact)?;
+        let (rendering, time) = repeated(repeat, || renderer.render(done))?;
+        let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();
+        let last = rendering.into_iter().last().expect("at least one rendering");
+        let route = if self.choice.no_passthrough { ", through naga" } else { "" };
+        Ok(Rendering {
+            film: last.film,
+            rays: last.rays,
+            device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
+            why: self.why.clone(),
+            time,
+            device_time: device_times.map(median),
+        })
+    }
+
+    fn on_cpu(&self, packed: &Packed, why: String, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        let threads = self.choice.threads;
+        let (rendering, time) = repeated(repeat, || match self.choice.precision {
+            Precision::Exact => cpu::render::<f32>(packed, threads, done),
+            Precision::Fast => cpu::render::<Fast>(packed, threads, done),
+            Precision::Reference => cpu::render::<f64>(packed, threads, done),
+        })?;
+        let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
+        let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
+        let plural = if threads == 1 { "" } else { "s" };
+        Ok(Rendering { film, rays, device: format!("CPU ({threads} thread{plural})"), why, time, device_time: None })
+    }
+}
+
+/// Runs `repeat` times and keeps the results, with the median time.
+fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(Vec<T>, Duration)> {
+    let mut results = Vec::new();
+    let mut times = Vec::new();
+    for _ in 0..repeat.max(1) {
+        let start = Instant::now();
+        results.push(run()?);
+        times.push(start.elapsed());
+    }
+    Ok((results, median(times)))
+}
+
+fn median(mut times: Vec<Duration>) -> Duration {
+    times.sort_unstable();
+    times[times.len() / 2]
+}

@@ -55,7 +55,9 @@ impl Compiler {
         let installed = Install::from_shader_crate(shader.to_owned())
             .run()
             .map_err(|e| {
-                let cause = one_line(&format!("{e:#}"));
+                // The output of rustup that follows has been shown already.
+                let text = format!("{e:#}");
+                let cause = one_line(text.split("-- stdout").next().unwrap_or_default());
                 Error::Compiler(format!("its installation failed ({cause})"))
             })?;
         Ok(Compiler {

@@ -43,6 +43,7 @@ fn the_same_compiler_gives_the_same_bytes() {
         Ok(_) => return eprintln!("skipped: the compiler present is not the manifest's"),
         Err(error) => return eprintln!("skipped: {error}"),
     };
-    let build = modules::build(&compiler, &source::shader()).unwrap();
-    output::check(&directory, &build).unwrap();
+    modules::build(&compiler, &source::shader())
+        .and_then(|build| output::check(&directory, &build))
+        .unwrap_or_else(|error| panic!("{error}"));
 }

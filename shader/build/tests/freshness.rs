@@ -6,11 +6,14 @@ use eyerays_spirv::compiler::Compiler;
 use eyerays_spirv::manifest::Manifest;
 use eyerays_spirv::{modules, output, source};
 
+fn manifest() -> Manifest {
+    let command = output::COMMAND;
+    Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"))
+}
+
 #[test]
 fn sources_have_not_changed() {
-    let command = output::COMMAND;
-    let manifest =
-        Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"));
+    let (command, manifest) = (output::COMMAND, manifest());
     let hash = source::hash(&source::shader()).unwrap();
     assert!(
         manifest.source == hash,
@@ -21,8 +24,7 @@ fn sources_have_not_changed() {
 #[test]
 fn committed_files_are_whole() {
     let directory = source::spirv();
-    let manifest = Manifest::read(&directory).unwrap();
-    for module in manifest.modules {
+    for module in manifest().modules {
         let bytes = std::fs::read(directory.join(&module.file)).unwrap();
         let hash = eyerays_spirv::compiler::hex(&bytes);
         assert_eq!(hash, module.sha256, "{}", module.file);
@@ -32,8 +34,7 @@ fn committed_files_are_whole() {
 /// Other generators may write other bytes, so only the manifest's own decides.
 #[test]
 fn the_same_compiler_gives_the_same_bytes() {
-    let directory = source::spirv();
-    let manifest = Manifest::read(&directory).unwrap();
+    let (directory, manifest) = (source::spirv(), manifest());
     let compiler = Compiler::find(
         std::env::var("EYERAYS_SPIRV_TOOLCHAIN").ok(),
         std::env::var_os("EYERAYS_SPIRV_CODEGEN").map(PathBuf::from),

@@ -16,11 +16,13 @@ pub const TARGET: &str = "spirv-unknown-vulkan1.2";
 /// unless a float-controls capability is present; `NoContraction` comes too late to prevent that.
 pub const FLOATS_AS_WRITTEN: Capability = Capability::SignedZeroInfNanPreserve;
 
-const CAPABILITIES: [Capability; 5] = [
+/// The device's scope is for atomics; `pass::memory` drops what only the Vulkan memory model knows.
+const CAPABILITIES: [Capability; 6] = [
     Capability::GroupNonUniform,
     Capability::GroupNonUniformVote,
     Capability::GroupNonUniformBallot,
     Capability::GroupNonUniformArithmetic,
+    Capability::VulkanMemoryModelDeviceScope,
     FLOATS_AS_WRITTEN,
 ];
 

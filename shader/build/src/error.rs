@@ -36,6 +36,11 @@ pub enum Error {
     /// Two entry points of a module have one name.
     #[error("two entry points are named `{0}`; rename one")]
     DuplicateEntry(String),
+    /// A function that must be protected was inlined.
+    #[error(
+        "`{0}` is no function of its own; pass it values, not references, and let nothing in it panic"
+    )]
+    Unprotected(&'static str),
     /// An instruction that a module's policy forbids.
     #[error("`{function}` holds {what}, which {why}")]
     Forbidden {

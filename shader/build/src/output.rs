@@ -42,3 +42,41 @@ fn replace(directory: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     std::fs::write(&temporary, bytes).map_err(Error::file("write", &temporary))?;
     std::fs::rename(&temporary, &path).map_err(Error::file("replace", &path))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::manifest::{FORMAT, Toolchain};
+    use crate::validate::Validation;
+
+    fn build(bytes: &[u8], codegen: &str) -> Build {
+        Build {
+            manifest: Manifest {
+                format: FORMAT,
+                source: "0".into(),
+                toolchain: Toolchain {
+                    rustc: "rustc 1".into(),
+                    spirv_std: "0.10.0".into(),
+                    codegen: codegen.into(),
+                },
+                modules: Vec::new(),
+            },
+            files: vec![("exact.spv".into(), bytes.to_vec())],
+            validation: Validation::Passed,
+        }
+    }
+
+    #[test]
+    fn what_is_written_is_fresh() {
+        let name = format!("eyerays-spirv-{}", std::process::id());
+        let directory = std::env::temp_dir().join(name);
+        write(&directory, &build(b"old", "a")).unwrap();
+        write(&directory, &build(b"new", "a")).unwrap();
+        assert!(check(&directory, &build(b"new", "b")).is_ok());
+        let stale = check(&directory, &build(b"other", "a"));
+        assert!(matches!(stale, Err(Error::Stale(path)) if path.ends_with("exact.spv")));
+        let files = std::fs::read_dir(&directory).unwrap().count();
+        assert_eq!(files, 2, "temporary files stay behind");
+        std::fs::remove_dir_all(&directory).unwrap();
+    }
+}

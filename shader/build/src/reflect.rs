@@ -126,3 +126,43 @@ fn decoration(module: &Module, id: Word, kind: Decoration) -> Option<u32> {
         _ => None,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pass::testing::Kernel;
+
+    #[test]
+    fn finds_bindings_and_constants() {
+        let mut kernel = Kernel::new();
+        kernel.buffer(StorageClass::StorageBuffer, 0, 3);
+        let read = kernel.buffer(StorageClass::StorageBuffer, 0, 1);
+        kernel.decorate(read, Decoration::NonWritable);
+        kernel.buffer(StorageClass::Uniform, 0, 2);
+        let features = kernel.spec_constant(1, 7);
+        kernel.name(features, "features");
+        kernel.entry("exact_a", |_| {});
+        kernel.entry("exact_b", |b| b.ballot_count());
+        let module = kernel.module();
+        let constant = Constant {
+            id: 1,
+            name: "features".into(),
+            default: 7,
+        };
+        assert_eq!(constants(&module), [constant]);
+        let entries = entries(&module).unwrap();
+        assert_eq!(entries[0].workgroup, [32, 1, 1]);
+        assert_eq!(entries[0].reads, [1]);
+        assert_eq!(entries[0].writes, [3]);
+        assert_eq!(entries[0].uniforms, [2]);
+        assert_eq!([entries[0].subgroup, entries[1].subgroup], [false, true]);
+    }
+
+    #[test]
+    fn refuses_other_sets() {
+        let mut kernel = Kernel::new();
+        kernel.buffer(StorageClass::StorageBuffer, 1, 0);
+        kernel.entry("exact_a", |_| {});
+        assert!(entries(&kernel.module()).is_err());
+    }
+}

@@ -9,10 +9,14 @@ use crate::{Error, Result};
 /// Dependencies whose code ends up in the modules.
 const DEPENDENCIES: [&str; 3] = ["bytemuck", "glam", "spirv-std"];
 
-/// The directory of the kernels' crate.
+/// The directory of the kernels' crate. What cargo says at run time goes first: builds of several
+/// checkouts that share a target directory share binaries.
 pub fn shader() -> PathBuf {
-    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
-    here.parent().unwrap_or(here).to_owned()
+    let here = match std::env::var_os("CARGO_MANIFEST_DIR") {
+        Some(here) => PathBuf::from(here),
+        None => PathBuf::from(env!("CARGO_MANIFEST_DIR")),
+    };
+    here.parent().unwrap_or(&here).to_owned()
 }
 
 /// The directory of the committed modules.

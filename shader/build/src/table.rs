@@ -19,6 +19,10 @@ pub struct Module {
     pub prefix: &'static str,
     /// What it promises.
     pub policy: Policy,
+    /// Ends of the paths of functions that must survive as protected ones: `#[inline(never)]` is
+    /// lost, with no more than a warning, on a function that takes a reference into a buffer or
+    /// may panic, and its arithmetic is then rounded as the device likes.
+    pub protects: &'static [&'static str],
 }
 
 impl Module {
@@ -30,6 +34,21 @@ impl Module {
 
 /// Every committed module.
 pub const MODULES: [Module; 2] = [
+<<<<<<< HEAD
     Module { name: "exact", prefix: "exact_", policy: Policy::Exact },
     Module { name: "fast", prefix: "fast_", policy: Policy::Fast },
+=======
+    Module {
+        name: "exact",
+        prefix: "exact_",
+        policy: Policy::Exact,
+        protects: &[],
+    },
+    Module {
+        name: "fast",
+        prefix: "fast_",
+        policy: Policy::Fast,
+        protects: &["triangle::cross"],
+    },
+>>>>>>> spirv
 ];

@@ -6,10 +6,19 @@ use eyerays_spirv::compiler::Compiler;
 use eyerays_spirv::manifest::Manifest;
 use eyerays_spirv::{modules, output, source};
 
+fn manifest() -> Manifest {
+    let command = output::COMMAND;
+    Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"))
+}
+
 #[test]
 fn sources_have_not_changed() {
+<<<<<<< HEAD
     let command = output::COMMAND;
     let manifest = Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"));
+=======
+    let (command, manifest) = (output::COMMAND, manifest());
+>>>>>>> spirv
     let hash = source::hash(&source::shader()).unwrap();
     assert!(manifest.source == hash, "shader/spirv is older than the sources; run: {command}");
 }
@@ -17,8 +26,7 @@ fn sources_have_not_changed() {
 #[test]
 fn committed_files_are_whole() {
     let directory = source::spirv();
-    let manifest = Manifest::read(&directory).unwrap();
-    for module in manifest.modules {
+    for module in manifest().modules {
         let bytes = std::fs::read(directory.join(&module.file)).unwrap();
         let hash = eyerays_spirv::compiler::hex(&bytes);
         assert_eq!(hash, module.sha256, "{}", module.file);
@@ -28,8 +36,7 @@ fn committed_files_are_whole() {
 /// Other generators may write other bytes, so only the manifest's own decides.
 #[test]
 fn the_same_compiler_gives_the_same_bytes() {
-    let directory = source::spirv();
-    let manifest = Manifest::read(&directory).unwrap();
+    let (directory, manifest) = (source::spirv(), manifest());
     let compiler = Compiler::find(
         std::env::var("EYERAYS_SPIRV_TOOLCHAIN").ok(),
         std::env::var_os("EYERAYS_SPIRV_CODEGEN").map(PathBuf::from),
@@ -39,6 +46,7 @@ fn the_same_compiler_gives_the_same_bytes() {
         Ok(_) => return eprintln!("skipped: the compiler present is not the manifest's"),
         Err(error) => return eprintln!("skipped: {error}"),
     };
-    let build = modules::build(&compiler, &source::shader()).unwrap();
-    output::check(&directory, &build).unwrap();
+    modules::build(&compiler, &source::shader())
+        .and_then(|build| output::check(&directory, &build))
+        .unwrap_or_else(|error| panic!("{error}"));
 }

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use rspirv::dr::Module;
+use rspirv::dr::{Module, Operand};
 use rspirv::spirv::Capability;
 
 use crate::compile::FLOATS_AS_WRITTEN;
@@ -31,12 +31,53 @@ pub fn prune(module: &mut Module) {
     });
 }
 
+/// The operands of group operations name alternatives, which their instructions decide; only
+/// built-in variables count beside these.
 fn needed(module: &Module) -> HashSet<Capability> {
     let bodies = module.functions.iter().flat_map(|f| f.all_inst_iter());
     let mut needed = HashSet::new();
     for inst in bodies.chain(&module.annotations) {
         needed.extend(inst.class.capabilities);
-        needed.extend(inst.operands.iter().flat_map(|o| o.required_capabilities()));
+        let builtins = inst
+            .operands
+            .iter()
+            .filter(|o| matches!(o, Operand::BuiltIn(_)));
+        needed.extend(builtins.flat_map(|operand| operand.required_capabilities()));
     }
     needed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pass::testing::{Body, Kernel};
+
+    /// The capabilities that remain of all, `Shader` aside.
+    fn remaining(body: impl FnOnce(&mut Body)) -> Vec<Capability> {
+        let mut kernel = Kernel::new();
+        kernel.capability(Capability::GroupNonUniform);
+        kernel.capability(FLOATS_AS_WRITTEN);
+        for capability in SUBGROUP {
+            kernel.capability(capability);
+        }
+        kernel.entry("fast_a", body);
+        let mut module = kernel.module();
+        prune(&mut module);
+        let declared = module.capabilities.iter();
+        declared
+            .map(|inst| inst.operands[0].unwrap_capability())
+            .filter(|capability| *capability != Capability::Shader)
+            .collect()
+    }
+
+    #[test]
+    fn only_used_ones_stay() {
+        assert_eq!(remaining(|_| {}), []);
+        let ballot = remaining(|b| b.ballot_count());
+        let expected = [
+            Capability::GroupNonUniform,
+            Capability::GroupNonUniformBallot,
+        ];
+        assert_eq!(ballot, expected);
+    }
 }

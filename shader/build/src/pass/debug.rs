@@ -25,3 +25,32 @@ pub fn strip_local_names(module: &mut Module) {
     let named: HashSet<_> = globals.chain(functions).filter_map(|inst| inst.result_id).collect();
     module.debug_names.retain(|name| named.contains(&name.operands[0].unwrap_id_ref()));
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pass::testing::Kernel;
+
+    #[test]
+    fn lines_and_local_names_go() {
+        let mut kernel = Kernel::new();
+        let file = kernel.file("/home/someone/kernel.rs");
+        let mut local = 0;
+        kernel.entry("exact_a", |b| {
+            b.line(file);
+            local = b.load_input();
+            b.store_output(local);
+        });
+        kernel.name(local, "x");
+        let mut module = kernel.module();
+        strip_lines(&mut module);
+        strip_local_names(&mut module);
+        assert!(module.debug_string_source.is_empty());
+        assert!(module.debug_names.is_empty());
+        assert!(
+            module
+                .all_inst_iter()
+                .all(|inst| inst.class.opcode != Op::Line)
+        );
+    }
+}

@@ -1,6 +1,6 @@
 //! What an exact module must not hold: instructions whose result Vulkan leaves to the device.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{GlslStd450Op, Op, Word};
@@ -75,13 +75,12 @@ impl Rules {
     }
 }
 
-/// Does the specification fix every bit of the result? A minimum of floats is not among these: it
-/// may treat zeros and NaN either way.
+/// Does the specification fix every bit of the result? Not of a minimum, a maximum or a sign of
+/// floats, which may treat zeros and NaN either way.
 fn is_exact(op: GlslStd450Op) -> bool {
     matches!(
         op,
         GlslStd450Op::FAbs
-            | GlslStd450Op::FSign
             | GlslStd450Op::Floor
             | GlslStd450Op::Ceil
             | GlslStd450Op::Trunc
@@ -152,15 +151,15 @@ fn constants(module: &Module, floats: &HashSet<Word>, names: &Names) -> Result<(
 
 /// A function that uses constant `id`, alone or in a composite.
 fn user(module: &Module, id: Word) -> Option<&Function> {
-    let mut holders: HashMap<Word, ()> = HashMap::from([(id, ())]);
+    let mut holders = HashSet::from([id]);
     for inst in &module.types_global_values {
-        if reach::mentioned(inst).any(|id| holders.contains_key(&id)) {
-            holders.extend(inst.result_id.map(|id| (id, ())));
+        if reach::mentioned(inst).any(|id| holders.contains(&id)) {
+            holders.extend(inst.result_id);
         }
     }
     module.functions.iter().find(|function| {
         let mut mentioned = function.all_inst_iter().flat_map(reach::mentioned);
-        mentioned.any(|id| holders.contains_key(&id))
+        mentioned.any(|id| holders.contains(&id))
     })
 }
 

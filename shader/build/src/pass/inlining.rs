@@ -7,6 +7,7 @@ use rspirv::dr::{Function, Module, Operand};
 use rspirv::spirv::FunctionControl;
 
 use super::names::Names;
+use crate::{Error, Result};
 
 /// Is the function marked?
 pub fn is_protected(function: &Function) -> bool {
@@ -28,4 +29,44 @@ pub fn release(module: &mut Module) -> Vec<String> {
         }
     }
     protected
+}
+
+/// Fails unless each of `wanted`, the end of a path, is among the protected functions. Their names
+/// may end in generic arguments.
+pub fn require(protected: &[String], wanted: &[&'static str]) -> Result<()> {
+    let path = |name: &str| name.split("::<").next().unwrap_or(name).to_owned();
+    let is_there = |end: &str| {
+        protected.iter().map(|name| path(name)).any(|path| {
+            let rest = path.strip_suffix(end);
+            rest.is_some_and(|rest| rest.is_empty() || rest.ends_with("::"))
+        })
+    };
+    match wanted.iter().find(|end| !is_there(end)) {
+        Some(end) => Err(Error::Unprotected(end)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::pass::testing::Kernel;
+
+    #[test]
+    fn releases_and_names() {
+        let mut kernel = Kernel::new();
+        let function = kernel.protected(|_| {});
+        kernel.entry("exact_a", |b| b.call(function));
+        let mut module = kernel.module();
+        assert_eq!(release(&mut module), [format!("%{function}")]);
+        assert!(!module.functions.iter().any(is_protected));
+    }
+
+    #[test]
+    fn requires_whole_segments() {
+        let protected = ["a::real::soft::div".into(), "a::cross::<f32>".into()];
+        assert!(require(&protected, &["soft::div", "cross"]).is_ok());
+        assert!(require(&protected, &["oft::div"]).is_err());
+        assert!(require(&protected, &["soft"]).is_err());
+    }
 }

@@ -14,7 +14,7 @@ pub mod reach;
 pub mod renumber;
 pub mod select;
 #[cfg(test)]
-mod testing;
+pub(crate) mod testing;
 
 use rspirv::binary::Assemble;
 use rspirv::dr;
@@ -50,9 +50,58 @@ pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
     }
     contraction::forbid(&mut module, table.policy);
     let protected = inlining::release(&mut module);
+    inlining::require(&protected, table.protects)?;
     memory::to_glsl450(&mut module)?;
     capability::prune(&mut module);
     debug::strip_local_names(&mut module);
     renumber::compact(&mut module);
     Ok(Finished { module, protected })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile;
+    use crate::validate::{self, Validation};
+    use testing::Kernel;
+
+    #[test]
+    fn both_modules_come_from_one() {
+        let mut kernel = Kernel::new();
+        kernel.capability(rspirv::spirv::Capability::VulkanMemoryModel);
+        kernel.capability(compile::FLOATS_AS_WRITTEN);
+        let root = kernel.protected(|b| {
+            let x = b.load_input();
+            let y = b.f_div(x, x);
+            b.store_output(y);
+        });
+        kernel.name(root, "real::div");
+        kernel.entry("entry::exact_a", |b| b.call(root));
+        kernel.entry("entry::fast_a", |b| {
+            let x = b.load_input();
+            let y = b.f_div(x, x);
+            b.store_output(y);
+        });
+        let words = kernel.module().assemble();
+        for (name, policy, protected) in [
+            ("exact", Policy::Exact, vec!["real::div"]),
+            ("fast", Policy::Fast, vec![]),
+        ] {
+            let table = Module {
+                name,
+                prefix: if name == "exact" { "exact_" } else { "fast_" },
+                policy,
+                protects: &[],
+            };
+            let finished = finish(&words, &table).unwrap();
+            assert_eq!(finished.protected, protected);
+            let bytes = compile::bytes(&finished.words());
+            let again = dr::load_bytes(&bytes).unwrap();
+            assert_eq!(again.entry_points.len(), 1);
+            assert!(matches!(
+                validate::run(name, &bytes),
+                Ok(Validation::Passed | Validation::Skipped)
+            ));
+        }
+    }
 }

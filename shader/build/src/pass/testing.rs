@@ -7,6 +7,7 @@ use rspirv::spirv::*;
 pub struct Kernel {
     builder: Builder,
     ids: Ids,
+    interface: Vec<Word>,
 }
 
 #[derive(Clone, Copy)]
@@ -44,19 +45,72 @@ impl Kernel {
             counter: variable(uint),
             glsl,
         };
-        Kernel { builder: b, ids }
+        let interface = vec![ids.input, ids.output, ids.counter];
+        Kernel {
+            builder: b,
+            ids,
+            interface,
+        }
+    }
+
+    pub fn file(&mut self, path: &str) -> Word {
+        self.builder.string(path)
+    }
+
+    pub fn name(&mut self, id: Word, name: &str) {
+        self.builder.name(id, name);
     }
 
     pub fn unused_id(&mut self) {
         self.builder.id();
     }
 
+    /// A buffer at a binding, for the entry points that follow.
+    pub fn buffer(&mut self, class: StorageClass, set: u32, binding: u32) -> Word {
+        let b = &mut self.builder;
+        let block = b.type_struct_id(None, [self.ids.float]);
+        let pointer = b.type_pointer(None, class, block);
+        let id = b.variable(pointer, None, class, None);
+        for (decoration, value) in [
+            (Decoration::DescriptorSet, set),
+            (Decoration::Binding, binding),
+        ] {
+            b.decorate(id, decoration, [Operand::LiteralBit32(value)]);
+        }
+        self.interface.push(id);
+        id
+    }
+
+    pub fn decorate(&mut self, id: Word, decoration: Decoration) {
+        self.builder.decorate(id, decoration, []);
+    }
+
+    /// A constant to specialise.
+    pub fn spec_constant(&mut self, id: u32, default: u32) -> Word {
+        let constant = self.builder.spec_constant_bit32(self.ids.uint, default);
+        let operand = [Operand::LiteralBit32(id)];
+        self.builder.decorate(constant, Decoration::SpecId, operand);
+        constant
+    }
+
+    pub fn capability(&mut self, capability: Capability) {
+        self.builder.capability(capability);
+    }
+
     /// An entry point whose interface names every variable.
     pub fn entry(&mut self, name: &str, body: impl FnOnce(&mut Body)) {
         let function = self.function(FunctionControl::NONE, body);
+<<<<<<< HEAD
         let interface = [self.ids.input, self.ids.output, self.ids.counter];
         self.builder.entry_point(ExecutionModel::GLCompute, function, name, interface);
         self.builder.execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
+=======
+        let model = ExecutionModel::GLCompute;
+        self.builder
+            .entry_point(model, function, name, self.interface.clone());
+        self.builder
+            .execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
+>>>>>>> spirv
     }
 
     /// A function that is never inlined.
@@ -151,6 +205,21 @@ impl Body<'_> {
         let subgroup = self.constant_u32(Scope::Subgroup as u32);
         let operation = GroupOperation::Reduce;
         self.b.group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None).unwrap();
+    }
+
+    pub fn line(&mut self, file: Word) {
+        self.b.line(file, 1, 2);
+    }
+
+    pub fn ballot_count(&mut self) {
+        let uint = self.ids.uint;
+        let ballot = self.b.type_vector(uint, 4);
+        let mask = self.b.constant_null(ballot);
+        let subgroup = self.constant_u32(Scope::Subgroup as u32);
+        let operation = GroupOperation::Reduce;
+        self.b
+            .group_non_uniform_ballot_bit_count(uint, None, subgroup, operation, mask)
+            .unwrap();
     }
 
     pub fn call(&mut self, function: Word) {

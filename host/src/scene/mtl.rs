@@ -40,7 +40,12 @@ pub struct Library {
 /// are clamped with a warning, since many exporters write them.
 pub fn load(path: &Path) -> Result<Library> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    let mut lines = Lines::new(&bytes[..]);
+    parse(path, &bytes)
+}
+
+/// The materials of a text.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Library> {
+    let mut lines = Lines::new(bytes);
     let mut reader = Reader {
         path,
         line: 0,

@@ -37,7 +37,8 @@ pub fn load(path: &Path) -> Result<Obj> {
     )
 }
 
-fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
+/// The mesh of a text, of at most `most` triangles.
+pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
     let mut checked = Checked::new(path, reader, most);
     let options = tobj::LoadOptions {
         triangulate: true,

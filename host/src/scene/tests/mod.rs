@@ -3,6 +3,7 @@
 mod hostile;
 mod mesh;
 mod obj;
+mod shipped;
 mod toml;
 
 use std::fs;

@@ -35,6 +35,10 @@ pub fn background(mut table: Table) -> Result<Background> {
         let fault = "[background] has a color and a gradient; remove the one or the other";
         return Err(table.fault_of("color", fault));
     }
+    if table.has("ambient") {
+        let fault = "ambient is no key of [background]; move it above the first table";
+        return Err(table.fault_of("ambient", fault));
+    }
     let colour = table.triple("color", Range::AMOUNT)?;
     let horizon = table.triple("horizon", Range::AMOUNT)?;
     let zenith = table.triple("zenith", Range::AMOUNT)?;

@@ -67,7 +67,12 @@ fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>>
 
 fn load_toml(path: &Path) -> Result<(Scene, Vec<String>)> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    let text = std::str::from_utf8(&bytes).map_err(|error| {
+    parse(path, &bytes)
+}
+
+/// The scene of a TOML text, whose meshes are relative to the folder of `path`.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
+    let text = std::str::from_utf8(bytes).map_err(|error| {
         let good = &bytes[..error.valid_up_to()];
         let line = 1 + good.iter().filter(|&&byte| byte == b'\n').count();
         Error::line(path, line, "this is not UTF-8 text; save the file as UTF-8")

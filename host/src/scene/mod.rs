@@ -1,4 +1,10 @@
 //! A scene in world units, as the files describe it and before anything is packed for a device.
+//!
+//! A scene file is TOML. All there is to say, as an example:
+//!
+//! ```toml
+#![doc = include_str!("example.toml")]
+//! ```
 
 mod checked;
 mod document;
@@ -18,6 +24,9 @@ mod suggest;
 mod table;
 mod tally;
 mod transform;
+
+#[cfg(test)]
+mod tests;
 
 pub use load::load;
 pub use suggest::suggest;

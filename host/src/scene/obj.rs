@@ -33,7 +33,8 @@ pub fn load(path: &Path) -> Result<Obj> {
     parse(path, BufReader::new(file.take(file::MOST_MESH)), MAX_TRIANGLES)
 }
 
-fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
+/// The mesh of a text, of at most `most` triangles.
+pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
     let mut checked = Checked::new(path, reader, most);
     let options = tobj::LoadOptions { triangulate: true, single_index: true, ..Default::default() };
     let models = tobj::load_obj_buf(&mut checked, &options, |_| Ok(Default::default()));

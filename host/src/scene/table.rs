@@ -106,8 +106,7 @@ impl<'s> Table<'s> {
     }
 
     /// Is the key there? Does not take it.
-    pub fn has(&mut self, key: &'static str) -> bool {
-        self.asked.push(key);
+    pub fn has(&self, key: &str) -> bool {
         self.entries.iter().any(|entry| entry.key == key)
     }
 

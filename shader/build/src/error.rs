@@ -87,12 +87,19 @@ impl Error {
     /// Wraps an input or output failure: `.map_err(Error::file("read", path))`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Error::File { action, path, source }
+        move |source| Error::File {
+            action,
+            path,
+            source,
+        }
     }
 
     /// A record at `path` that cannot be used.
     pub fn record(path: &Path, problem: impl ToString) -> Self {
-        Error::Record { path: path.to_owned(), problem: one_line(&problem.to_string()) }
+        Error::Record {
+            path: path.to_owned(),
+            problem: one_line(&problem.to_string()),
+        }
     }
 }
 

@@ -34,10 +34,6 @@ impl Module {
 
 /// Every committed module.
 pub const MODULES: [Module; 2] = [
-<<<<<<< HEAD
-    Module { name: "exact", prefix: "exact_", policy: Policy::Exact },
-    Module { name: "fast", prefix: "fast_", policy: Policy::Fast },
-=======
     Module {
         name: "exact",
         prefix: "exact_",
@@ -50,5 +46,4 @@ pub const MODULES: [Module; 2] = [
         policy: Policy::Fast,
         protects: &["triangle::cross"],
     },
->>>>>>> spirv
 ];

@@ -21,12 +21,16 @@ const SUBGROUP: [Capability; 7] = [
 /// no instruction and no built-in variable needs.
 pub fn prune(module: &mut Module) {
     let mut needed = needed(module);
-    if SUBGROUP.iter().any(|capability| needed.contains(capability)) {
+    if SUBGROUP
+        .iter()
+        .any(|capability| needed.contains(capability))
+    {
         needed.insert(Capability::GroupNonUniform);
     }
     module.capabilities.retain(|inst| {
         let capability = inst.operands[0].unwrap_capability();
-        let is_subgroup = capability == Capability::GroupNonUniform || SUBGROUP.contains(&capability);
+        let is_subgroup =
+            capability == Capability::GroupNonUniform || SUBGROUP.contains(&capability);
         capability != FLOATS_AS_WRITTEN && (!is_subgroup || needed.contains(&capability))
     });
 }

@@ -10,10 +10,14 @@ pub fn strip_lines(module: &mut Module) {
     let is_line = |op| matches!(op, Op::Line | Op::NoLine);
     module.debug_string_source.clear();
     module.debug_module_processed.clear();
-    module.types_global_values.retain(|inst| !is_line(inst.class.opcode));
+    module
+        .types_global_values
+        .retain(|inst| !is_line(inst.class.opcode));
     for function in &mut module.functions {
         for block in &mut function.blocks {
-            block.instructions.retain(|inst| !is_line(inst.class.opcode));
+            block
+                .instructions
+                .retain(|inst| !is_line(inst.class.opcode));
         }
     }
 }
@@ -22,8 +26,13 @@ pub fn strip_lines(module: &mut Module) {
 pub fn strip_local_names(module: &mut Module) {
     let globals = module.types_global_values.iter();
     let functions = module.functions.iter().filter_map(|f| f.def.as_ref());
-    let named: HashSet<_> = globals.chain(functions).filter_map(|inst| inst.result_id).collect();
-    module.debug_names.retain(|name| named.contains(&name.operands[0].unwrap_id_ref()));
+    let named: HashSet<_> = globals
+        .chain(functions)
+        .filter_map(|inst| inst.result_id)
+        .collect();
+    module
+        .debug_names
+        .retain(|name| named.contains(&name.operands[0].unwrap_id_ref()));
 }
 
 #[cfg(test)]

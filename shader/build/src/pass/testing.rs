@@ -100,17 +100,11 @@ impl Kernel {
     /// An entry point whose interface names every variable.
     pub fn entry(&mut self, name: &str, body: impl FnOnce(&mut Body)) {
         let function = self.function(FunctionControl::NONE, body);
-<<<<<<< HEAD
-        let interface = [self.ids.input, self.ids.output, self.ids.counter];
-        self.builder.entry_point(ExecutionModel::GLCompute, function, name, interface);
-        self.builder.execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
-=======
         let model = ExecutionModel::GLCompute;
         self.builder
             .entry_point(model, function, name, self.interface.clone());
         self.builder
             .execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
->>>>>>> spirv
     }
 
     /// A function that is never inlined.
@@ -121,7 +115,9 @@ impl Kernel {
     fn function(&mut self, control: FunctionControl, body: impl FnOnce(&mut Body)) -> Word {
         let ids = self.ids;
         let b = &mut self.builder;
-        let function = b.begin_function(ids.void, None, control, ids.signature).unwrap();
+        let function = b
+            .begin_function(ids.void, None, control, ids.signature)
+            .unwrap();
         b.begin_block(None).unwrap();
         body(&mut Body { b, ids });
         b.ret().unwrap();
@@ -161,7 +157,9 @@ impl Body<'_> {
 
     pub fn atomic_increment(&mut self, scope: Word, semantics: Word) {
         let Ids { uint, counter, .. } = self.ids;
-        self.b.atomic_i_add(uint, None, counter, scope, semantics, scope).unwrap();
+        self.b
+            .atomic_i_add(uint, None, counter, scope, semantics, scope)
+            .unwrap();
     }
 
     pub fn constant_u32(&mut self, value: u32) -> Word {
@@ -198,13 +196,17 @@ impl Body<'_> {
 
     pub fn glsl(&mut self, op: GlslStd450Op, x: Word) -> Word {
         let Ids { float, glsl, .. } = self.ids;
-        self.b.ext_inst(float, None, glsl, op as u32, [Operand::IdRef(x)]).unwrap()
+        self.b
+            .ext_inst(float, None, glsl, op as u32, [Operand::IdRef(x)])
+            .unwrap()
     }
 
     pub fn subgroup_sum(&mut self, x: Word) {
         let subgroup = self.constant_u32(Scope::Subgroup as u32);
         let operation = GroupOperation::Reduce;
-        self.b.group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None).unwrap();
+        self.b
+            .group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None)
+            .unwrap();
     }
 
     pub fn line(&mut self, file: Word) {
@@ -223,7 +225,9 @@ impl Body<'_> {
     }
 
     pub fn call(&mut self, function: Word) {
-        self.b.function_call(self.ids.void, None, function, []).unwrap();
+        self.b
+            .function_call(self.ids.void, None, function, [])
+            .unwrap();
     }
 
     /// A local variable that is stored to, and read and stored on if `read`.
@@ -244,7 +248,10 @@ impl Body<'_> {
         let pointer = self.b.type_pointer(None, StorageClass::Private, float);
         let kind = self.b.type_struct([pointer]);
         let composite = self.b.composite_construct(kind, None, [input]).unwrap();
-        let pointer = self.b.composite_extract(pointer, None, composite, [0]).unwrap();
+        let pointer = self
+            .b
+            .composite_extract(pointer, None, composite, [0])
+            .unwrap();
         if live {
             let value = self.b.load(float, None, pointer, None, []).unwrap();
             self.store_output(value);

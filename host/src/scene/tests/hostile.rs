@@ -1,0 +1,79 @@
+//! Bytes that nobody vouches for: refused or right, but never a panic.
+
+use std::path::Path;
+
+use glam::Vec3;
+use proptest::prelude::*;
+
+use crate::scene::{load, mtl, obj};
+
+/// Words of the format between words of no format.
+fn word() -> impl Strategy<Value = String> {
+    prop_oneof![
+        4 => "(v|vn|vt|f|usemtl|mtllib|o|l|newmtl|Kd|d|illum|map_Kd) ",
+        8 => "-?[0-9]{1,2} ",
+        3 => "-?[0-9]{0,2}/[0-9]?/-?[0-9]{0,20} ",
+        2 => "-?[0-9]\\.[0-9]e-?[0-9]{1,2} ",
+        1 => "nan |inf |\\\\|#|\\.\\./|\u{e9}|\u{a0}",
+        4 => "\n|\r\n",
+    ]
+}
+
+fn text() -> impl Strategy<Value = Vec<u8>> {
+    let words = prop::collection::vec(word(), 0..80).prop_map(|words| {
+        let start = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\n";
+        (start.to_owned() + &words.concat()).into_bytes()
+    });
+    prop_oneof![words, prop::collection::vec(any::<u8>(), 0..300)]
+}
+
+/// The documented example with a few bytes changed.
+fn changed() -> impl Strategy<Value = Vec<u8>> {
+    let example = include_bytes!("../example.toml");
+    let change = (0..example.len(), any::<u8>());
+    prop::collection::vec(change, 1..4).prop_map(|changes| {
+        let mut bytes = example.to_vec();
+        for (at, byte) in changes {
+            bytes[at] = byte;
+        }
+        bytes
+    })
+}
+
+proptest! {
+    #[test]
+    fn a_mesh_is_refused_or_whole(bytes in text()) {
+        if let Ok(obj) = obj::parse(Path::new("/nowhere/a.obj"), &bytes[..], 1000) {
+            let mesh = obj.mesh;
+            prop_assert!(!mesh.triangles.is_empty());
+            prop_assert_eq!(mesh.triangles.len(), mesh.materials.len());
+            prop_assert!(mesh.normals.is_empty() || mesh.normals.len() == mesh.positions.len());
+            prop_assert!(mesh.positions.iter().all(|position| position.is_finite()));
+            let inside = |&vertex: &u32| (vertex as usize) < mesh.positions.len();
+            prop_assert!(mesh.triangles.iter().flatten().all(inside));
+            let unit = |n: &Vec3| *n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
+            prop_assert!(mesh.normals.iter().all(unit));
+            let known = |&material: &u32| (material as usize) < obj.materials.len();
+            prop_assert!(mesh.materials.iter().all(known));
+        }
+    }
+
+    #[test]
+    fn a_material_file_is_refused_or_in_range(bytes in text()) {
+        if let Ok(library) = mtl::parse(Path::new("/nowhere/a.mtl"), &bytes) {
+            for (name, fields) in library.materials {
+                let material = fields.finish(&name);
+                let share = |colour: Vec3| colour == colour.clamp(Vec3::ZERO, Vec3::ONE);
+                prop_assert!(share(material.diffuse) && share(material.transmission));
+                prop_assert!((1.0..=4.0).contains(&material.ior));
+            }
+        }
+    }
+
+    #[test]
+    fn a_scene_file_is_refused_in_one_line(bytes in changed()) {
+        if let Err(error) = load::parse(Path::new("/nowhere/a.toml"), &bytes) {
+            prop_assert!(!error.to_string().contains('\n'));
+        }
+    }
+}

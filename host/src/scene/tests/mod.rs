@@ -1,0 +1,54 @@
+//! Tests of loading: what must be refused, and what must come out right.
+
+mod hostile;
+mod mesh;
+mod obj;
+mod shipped;
+mod toml;
+
+use std::fs;
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+
+use super::Scene;
+use crate::error::{Error, Result};
+
+/// A folder of files that is gone after the test.
+pub struct Folder(TempDir);
+
+impl Folder {
+    pub fn new(files: &[(&str, &[u8])]) -> Self {
+        let folder = Folder(tempfile::tempdir().unwrap());
+        for (name, content) in files {
+            fs::write(folder.path(name), content).unwrap();
+        }
+        folder
+    }
+
+    pub fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub fn load(&self, name: &str) -> Result<(Scene, Vec<String>)> {
+        super::load(&self.path(name))
+    }
+
+    /// The error of a scene that must be refused.
+    pub fn refuse(&self, name: &str) -> Error {
+        let error = self.load(name).expect_err("accepted");
+        assert!(!error.to_string().contains('\n'), "{error}");
+        error
+    }
+}
+
+/// Asserts where and why a file is refused.
+pub fn assert_refused(error: &Error, file: &str, line: Option<usize>, why: &str) {
+    let named = error.file.as_ref().and_then(|path| path.file_name());
+    assert_eq!(named, Some(file.as_ref()), "{error}");
+    assert_eq!(error.line, line, "{error}");
+    assert!(error.message.contains(why), "{error}, wanted: {why}");
+}
+
+/// One triangle.
+pub const TRIANGLE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";

@@ -27,11 +27,7 @@ const CAPABILITIES: [Capability; 6] = [
 ];
 
 /// What the code generator reads from the environment beside its arguments.
-const FORBIDDEN_VARIABLES: [&str; 3] = [
-    "RUSTGPU_CODEGEN_ARGS",
-    "RUSTGPU_RUSTFLAGS",
-    "RUSTGPU_CARGOFLAGS",
-];
+const FORBIDDEN_VARIABLES: [&str; 3] = ["RUSTGPU_CODEGEN_ARGS", "RUSTGPU_RUSTFLAGS", "RUSTGPU_CARGOFLAGS"];
 
 /// Compiles the crate at `shader`; the words hold every entry point and all debug names.
 pub fn compile(compiler: &Compiler, shader: &Path) -> Result<Vec<u32>> {

@@ -23,11 +23,7 @@ pub struct Compiler {
 
 impl Compiler {
     /// The compiler that the arguments name; with none, rust-gpu's own, installed first if need be.
-    pub fn resolve(
-        toolchain: Option<String>,
-        codegen: Option<PathBuf>,
-        shader: &Path,
-    ) -> Result<Self> {
+    pub fn resolve(toolchain: Option<String>, codegen: Option<PathBuf>, shader: &Path) -> Result<Self> {
         if toolchain.is_none() && codegen.is_none() {
             return Self::install(shader);
         }
@@ -52,18 +48,13 @@ impl Compiler {
 
     /// rust-gpu's own toolchain and code generator for the `spirv-std` that `shader` locks.
     fn install(shader: &Path) -> Result<Self> {
-        let installed = Install::from_shader_crate(shader.to_owned())
-            .run()
-            .map_err(|e| {
-                // The output of rustup that follows has been shown already.
-                let text = format!("{e:#}");
-                let cause = one_line(text.split("-- stdout").next().unwrap_or_default());
-                Error::Compiler(format!("its installation failed ({cause})"))
-            })?;
-        Ok(Compiler {
-            toolchain: installed.toolchain_channel,
-            codegen: installed.rustc_codegen_spirv_location,
-        })
+        let installed = Install::from_shader_crate(shader.to_owned()).run().map_err(|e| {
+            // The output of rustup that follows has been shown already.
+            let text = format!("{e:#}");
+            let cause = one_line(text.split("-- stdout").next().unwrap_or_default());
+            Error::Compiler(format!("its installation failed ({cause})"))
+        })?;
+        Ok(Compiler { toolchain: installed.toolchain_channel, codegen: installed.rustc_codegen_spirv_location })
     }
 
     /// The first line of `rustc -V`.
@@ -101,8 +92,6 @@ fn rustc(toolchain: &str, arguments: &[&str]) -> Result<String> {
     let text = String::from_utf8_lossy(&output.stdout);
     match text.lines().next() {
         Some(line) if output.status.success() => Ok(line.to_owned()),
-        _ => Err(Error::Compiler(format!(
-            "rustup has no working toolchain `{toolchain}`"
-        ))),
+        _ => Err(Error::Compiler(format!("rustup has no working toolchain `{toolchain}`"))),
     }
 }

@@ -37,9 +37,7 @@ pub enum Error {
     #[error("two entry points are named `{0}`; rename one")]
     DuplicateEntry(String),
     /// A function that must be protected was inlined.
-    #[error(
-        "`{0}` is no function of its own; pass it values, not references, and let nothing in it panic"
-    )]
+    #[error("`{0}` is no function of its own; pass it values, not references, and let nothing in it panic")]
     Unprotected(&'static str),
     /// An instruction that a module's policy forbids.
     #[error("`{function}` holds {what}, which {why}")]
@@ -87,19 +85,12 @@ impl Error {
     /// Wraps an input or output failure: `.map_err(Error::file("read", path))`.
     pub fn file(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Self {
         let path = path.to_owned();
-        move |source| Error::File {
-            action,
-            path,
-            source,
-        }
+        move |source| Error::File { action, path, source }
     }
 
     /// A record at `path` that cannot be used.
     pub fn record(path: &Path, problem: impl ToString) -> Self {
-        Error::Record {
-            path: path.to_owned(),
-            problem: one_line(&problem.to_string()),
-        }
+        Error::Record { path: path.to_owned(), problem: one_line(&problem.to_string()) }
     }
 }
 

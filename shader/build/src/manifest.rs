@@ -123,11 +123,7 @@ mod tests {
         let manifest = Manifest {
             format: FORMAT,
             source: "0".into(),
-            toolchain: Toolchain {
-                rustc: "rustc 1".into(),
-                spirv_std: "0.10.0".into(),
-                codegen: "1".into(),
-            },
+            toolchain: Toolchain { rustc: "rustc 1".into(), spirv_std: "0.10.0".into(), codegen: "1".into() },
             modules: vec![Module {
                 name: "exact".into(),
                 file: "exact.spv".into(),
@@ -135,11 +131,7 @@ mod tests {
                 bytes: 3,
                 capabilities: vec!["Shader".into()],
                 protected: vec![],
-                constants: vec![Constant {
-                    id: 1,
-                    name: "flags".into(),
-                    default: 0,
-                }],
+                constants: vec![Constant { id: 1, name: "flags".into(), default: 0 }],
                 entries: vec![Entry {
                     name: "exact_a".into(),
                     workgroup: [32, 1, 1],

@@ -33,12 +33,7 @@ pub fn build(compiler: &Compiler, shader: &Path) -> Result<Build> {
     };
     let words = compile::compile(compiler, shader)?;
     let mut build = Build {
-        manifest: Manifest {
-            format: FORMAT,
-            source,
-            toolchain,
-            modules: Vec::new(),
-        },
+        manifest: Manifest { format: FORMAT, source, toolchain, modules: Vec::new() },
         files: Vec::new(),
         validation: Validation::Passed,
     };

@@ -54,11 +54,7 @@ mod tests {
             manifest: Manifest {
                 format: FORMAT,
                 source: "0".into(),
-                toolchain: Toolchain {
-                    rustc: "rustc 1".into(),
-                    spirv_std: "0.10.0".into(),
-                    codegen: codegen.into(),
-                },
+                toolchain: Toolchain { rustc: "rustc 1".into(), spirv_std: "0.10.0".into(), codegen: codegen.into() },
                 modules: Vec::new(),
             },
             files: vec![("exact.spv".into(), bytes.to_vec())],

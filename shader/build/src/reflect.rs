@@ -11,11 +11,7 @@ use crate::{Error, Result};
 
 /// The entry points of a module, in its order.
 pub fn entries(module: &Module) -> Result<Vec<Entry>> {
-    module
-        .entry_points
-        .iter()
-        .map(|e| entry(module, e))
-        .collect()
+    module.entry_points.iter().map(|e| entry(module, e)).collect()
 }
 
 /// The constants that the host may overwrite, by their `SpecId`.
@@ -29,17 +25,9 @@ pub fn constants(module: &Module) -> Vec<Constant> {
             Op::SpecConstantFalse => 0,
             _ => return None,
         };
-        Some(Constant {
-            id: decoration(module, id, Decoration::SpecId)?,
-            name: names.get(id),
-            default,
-        })
+        Some(Constant { id: decoration(module, id, Decoration::SpecId)?, name: names.get(id), default })
     };
-    let mut constants: Vec<_> = module
-        .types_global_values
-        .iter()
-        .filter_map(constant)
-        .collect();
+    let mut constants: Vec<_> = module.types_global_values.iter().filter_map(constant).collect();
     constants.sort_by_key(|constant| constant.id);
     constants
 }
@@ -60,10 +48,7 @@ fn entry(module: &Module, inst: &Instruction) -> Result<Entry> {
         writes: Vec::new(),
         uniforms: Vec::new(),
     };
-    let interface: HashSet<Word> = inst.operands[3..]
-        .iter()
-        .filter_map(|operand| operand.id_ref_any())
-        .collect();
+    let interface: HashSet<Word> = inst.operands[3..].iter().filter_map(|operand| operand.id_ref_any()).collect();
     for variable in &module.types_global_values {
         if let Some(id) = variable.result_id
             && interface.contains(&id)
@@ -118,12 +103,8 @@ fn uses_subgroup(module: &Module, function: Word) -> bool {
     let mentioned = reach::ids(module, function);
     votes
         || module.annotations.iter().any(|inst| {
-            let subgroup = [
-                BuiltIn::SubgroupSize,
-                BuiltIn::SubgroupId,
-                BuiltIn::NumSubgroups,
-                BuiltIn::SubgroupLocalInvocationId,
-            ];
+            let subgroup =
+                [BuiltIn::SubgroupSize, BuiltIn::SubgroupId, BuiltIn::NumSubgroups, BuiltIn::SubgroupLocalInvocationId];
             let target = inst.operands[0].id_ref_any();
             target.is_some_and(|id| mentioned.contains(&id))
                 && matches!(inst.operands.last(), Some(Operand::BuiltIn(b)) if subgroup.contains(b))
@@ -131,20 +112,15 @@ fn uses_subgroup(module: &Module, function: Word) -> bool {
 }
 
 fn is_read_only(module: &Module, id: Word) -> bool {
-    let operands = [
-        Operand::IdRef(id),
-        Operand::Decoration(Decoration::NonWritable),
-    ];
-    module
-        .annotations
-        .iter()
-        .any(|inst| inst.operands == operands)
+    let operands = [Operand::IdRef(id), Operand::Decoration(Decoration::NonWritable)];
+    module.annotations.iter().any(|inst| inst.operands == operands)
 }
 
 fn decoration(module: &Module, id: Word, kind: Decoration) -> Option<u32> {
-    let inst = module.annotations.iter().find(|inst| {
-        inst.operands[0] == Operand::IdRef(id) && inst.operands[1] == Operand::Decoration(kind)
-    })?;
+    let inst = module
+        .annotations
+        .iter()
+        .find(|inst| inst.operands[0] == Operand::IdRef(id) && inst.operands[1] == Operand::Decoration(kind))?;
     match inst.operands.get(2)? {
         Operand::LiteralBit32(value) => Some(*value),
         _ => None,
@@ -168,11 +144,7 @@ mod tests {
         kernel.entry("exact_a", |_| {});
         kernel.entry("exact_b", |b| b.ballot_count());
         let module = kernel.module();
-        let constant = Constant {
-            id: 1,
-            name: "features".into(),
-            default: 7,
-        };
+        let constant = Constant { id: 1, name: "features".into(), default: 7 };
         assert_eq!(constants(&module), [constant]);
         let entries = entries(&module).unwrap();
         assert_eq!(entries[0].workgroup, [32, 1, 1]);

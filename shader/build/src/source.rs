@@ -30,10 +30,7 @@ pub fn hash(shader: &Path) -> Result<String> {
     let mut files = vec![shader.join("Cargo.toml")];
     collect(&shader.join("src"), &mut files)?;
     collect(&shader.join("build/src"), &mut files)?;
-    let mut named: Vec<(String, PathBuf)> = files
-        .into_iter()
-        .map(|path| (relative(&path, shader), path))
-        .collect();
+    let mut named: Vec<(String, PathBuf)> = files.into_iter().map(|path| (relative(&path, shader), path)).collect();
     named.sort();
     let mut digest = Sha256::new();
     for (name, path) in named {

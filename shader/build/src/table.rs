@@ -34,16 +34,6 @@ impl Module {
 
 /// Every committed module.
 pub const MODULES: [Module; 2] = [
-    Module {
-        name: "exact",
-        prefix: "exact_",
-        policy: Policy::Exact,
-        protects: &[],
-    },
-    Module {
-        name: "fast",
-        prefix: "fast_",
-        policy: Policy::Fast,
-        protects: &["triangle::cross"],
-    },
+    Module { name: "exact", prefix: "exact_", policy: Policy::Exact, protects: &[] },
+    Module { name: "fast", prefix: "fast_", policy: Policy::Fast, protects: &["triangle::cross"] },
 ];

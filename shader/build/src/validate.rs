@@ -33,9 +33,7 @@ pub fn run(module: &'static str, bytes: &[u8]) -> Result<Validation> {
         // A validator that stops reading early says why in its output.
         let _ = input.write_all(bytes);
     }
-    let output = child
-        .wait_with_output()
-        .map_err(|e| invalid(e.to_string()))?;
+    let output = child.wait_with_output().map_err(|e| invalid(e.to_string()))?;
     if output.status.success() {
         return Ok(Validation::Passed);
     }

@@ -13,11 +13,8 @@ pub fn remove(module: &mut Module) {
     let glsl = glsl_set(module);
     for function in &mut module.functions {
         let live = Liveness::of(function, glsl);
-        let keep: Vec<Vec<bool>> = function
-            .blocks
-            .iter()
-            .map(|block| block.instructions.iter().map(|i| live.keeps(i)).collect())
-            .collect();
+        let keep: Vec<Vec<bool>> =
+            function.blocks.iter().map(|block| block.instructions.iter().map(|i| live.keeps(i)).collect()).collect();
         for (block, keep) in function.blocks.iter_mut().zip(keep) {
             let mut keep = keep.into_iter();
             block.instructions.retain(|_| keep.next() == Some(true));
@@ -41,11 +38,7 @@ struct Liveness {
 
 impl Liveness {
     fn of(function: &Function, glsl: Option<Word>) -> Self {
-        let mut this = Liveness {
-            glsl,
-            bases: bases(function),
-            live: HashSet::new(),
-        };
+        let mut this = Liveness { glsl, bases: bases(function), live: HashSet::new() };
         this.mark(function);
         this
     }
@@ -72,10 +65,7 @@ impl Liveness {
                 // A variable that is read needs all that is stored to it.
                 definitions.entry(base).or_default().push(inst);
             } else if is_pure(inst, self.glsl) {
-                definitions
-                    .entry(inst.result_id.unwrap_or_default())
-                    .or_default()
-                    .push(inst);
+                definitions.entry(inst.result_id.unwrap_or_default()).or_default().push(inst);
             } else {
                 open.extend(reach::mentioned(inst));
             }
@@ -95,9 +85,7 @@ fn bases(function: &Function) -> HashMap<Word, Word> {
         let Some(id) = inst.result_id else { continue };
         let base = match inst.class.opcode {
             Op::Variable if inst.operands[0] == StorageClass::Function.into() => Some(id),
-            Op::AccessChain | Op::InBoundsAccessChain => {
-                bases.get(&inst.operands[0].unwrap_id_ref()).copied()
-            }
+            Op::AccessChain | Op::InBoundsAccessChain => bases.get(&inst.operands[0].unwrap_id_ref()).copied(),
             _ => None,
         };
         bases.extend(base.map(|base| (id, base)));
@@ -106,9 +94,9 @@ fn bases(function: &Function) -> HashMap<Word, Word> {
 }
 
 fn is_volatile(inst: &Instruction) -> bool {
-    inst.operands.iter().any(|operand| {
-        matches!(operand, Operand::MemoryAccess(access) if access.contains(MemoryAccess::VOLATILE))
-    })
+    inst.operands
+        .iter()
+        .any(|operand| matches!(operand, Operand::MemoryAccess(access) if access.contains(MemoryAccess::VOLATILE)))
 }
 
 /// Has an instruction no effect but its result?
@@ -140,10 +128,7 @@ fn is_pure_extended(inst: &Instruction, glsl: Option<Word>) -> bool {
     let Operand::LiteralExtInstInteger(number) = inst.operands[1] else {
         return false;
     };
-    let writes = matches!(
-        GlslStd450Op::from_u32(number),
-        None | Some(GlslStd450Op::Modf | GlslStd450Op::Frexp)
-    );
+    let writes = matches!(GlslStd450Op::from_u32(number), None | Some(GlslStd450Op::Modf | GlslStd450Op::Frexp));
     inst.operands[0].id_ref_any() == glsl && !writes
 }
 

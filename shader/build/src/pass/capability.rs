@@ -21,16 +21,12 @@ const SUBGROUP: [Capability; 7] = [
 /// no instruction and no built-in variable needs.
 pub fn prune(module: &mut Module) {
     let mut needed = needed(module);
-    if SUBGROUP
-        .iter()
-        .any(|capability| needed.contains(capability))
-    {
+    if SUBGROUP.iter().any(|capability| needed.contains(capability)) {
         needed.insert(Capability::GroupNonUniform);
     }
     module.capabilities.retain(|inst| {
         let capability = inst.operands[0].unwrap_capability();
-        let is_subgroup =
-            capability == Capability::GroupNonUniform || SUBGROUP.contains(&capability);
+        let is_subgroup = capability == Capability::GroupNonUniform || SUBGROUP.contains(&capability);
         capability != FLOATS_AS_WRITTEN && (!is_subgroup || needed.contains(&capability))
     });
 }
@@ -42,10 +38,7 @@ fn needed(module: &Module) -> HashSet<Capability> {
     let mut needed = HashSet::new();
     for inst in bodies.chain(&module.annotations) {
         needed.extend(inst.class.capabilities);
-        let builtins = inst
-            .operands
-            .iter()
-            .filter(|o| matches!(o, Operand::BuiltIn(_)));
+        let builtins = inst.operands.iter().filter(|o| matches!(o, Operand::BuiltIn(_)));
         needed.extend(builtins.flat_map(|operand| operand.required_capabilities()));
     }
     needed
@@ -78,10 +71,7 @@ mod tests {
     fn only_used_ones_stay() {
         assert_eq!(remaining(|_| {}), []);
         let ballot = remaining(|b| b.ballot_count());
-        let expected = [
-            Capability::GroupNonUniform,
-            Capability::GroupNonUniformBallot,
-        ];
+        let expected = [Capability::GroupNonUniform, Capability::GroupNonUniformBallot];
         assert_eq!(ballot, expected);
     }
 }

@@ -38,10 +38,7 @@ fn protected(module: &Module) -> HashSet<Word> {
 }
 
 fn no_contraction(id: Word) -> Instruction {
-    let operands = vec![
-        Operand::IdRef(id),
-        Operand::Decoration(Decoration::NoContraction),
-    ];
+    let operands = vec![Operand::IdRef(id), Operand::Decoration(Decoration::NoContraction)];
     Instruction::new(Op::Decorate, None, None, operands)
 }
 
@@ -86,9 +83,8 @@ mod tests {
         let mut module = kernel.module();
         forbid(&mut module, policy);
         forbid(&mut module, policy);
-        let is_decoration = |inst: &&Instruction| {
-            inst.operands.get(1) == Some(&Operand::Decoration(Decoration::NoContraction))
-        };
+        let is_decoration =
+            |inst: &&Instruction| inst.operands.get(1) == Some(&Operand::Decoration(Decoration::NoContraction));
         module.annotations.iter().filter(is_decoration).count()
     }
 

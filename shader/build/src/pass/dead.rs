@@ -25,12 +25,8 @@ pub fn remove(module: &mut Module) {
 fn functions(module: &mut Module) {
     let roots: Vec<Word> = module.entry_points.iter().map(entry_function).collect();
     let live = reach::functions(module, roots.iter().copied());
-    module
-        .functions
-        .retain(|function| function.def_id().is_some_and(|id| live.contains(&id)));
-    module
-        .execution_modes
-        .retain(|mode| roots.contains(&mode.operands[0].unwrap_id_ref()));
+    module.functions.retain(|function| function.def_id().is_some_and(|id| live.contains(&id)));
+    module.execution_modes.retain(|mode| roots.contains(&mode.operands[0].unwrap_id_ref()));
 }
 
 fn interfaces(module: &mut Module) {
@@ -66,19 +62,11 @@ fn globals(module: &mut Module) {
 }
 
 fn live_globals(module: &Module) -> HashSet<Word> {
-    let definitions: HashMap<Word, &Instruction> = module
-        .types_global_values
-        .iter()
-        .filter_map(|inst| Some((inst.result_id?, inst)))
-        .collect();
+    let definitions: HashMap<Word, &Instruction> =
+        module.types_global_values.iter().filter_map(|inst| Some((inst.result_id?, inst))).collect();
     let bodies = module.functions.iter().flat_map(|f| f.all_inst_iter());
-    let mut open: Vec<Word> = module
-        .entry_points
-        .iter()
-        .chain(&module.execution_modes)
-        .chain(bodies)
-        .flat_map(reach::mentioned)
-        .collect();
+    let mut open: Vec<Word> =
+        module.entry_points.iter().chain(&module.execution_modes).chain(bodies).flat_map(reach::mentioned).collect();
     let mut live = HashSet::new();
     while let Some(id) = open.pop() {
         if live.insert(id)
@@ -120,11 +108,7 @@ mod tests {
         assert_eq!(module.execution_modes.len(), 1);
         assert_eq!(module.entry_points[0].operands.len(), 3 + 2);
         assert!(module.ext_inst_imports.is_empty());
-        let kinds: Vec<Op> = module
-            .types_global_values
-            .iter()
-            .map(|inst| inst.class.opcode)
-            .collect();
+        let kinds: Vec<Op> = module.types_global_values.iter().map(|inst| inst.class.opcode).collect();
         assert!(!kinds.contains(&Op::Constant) && !kinds.contains(&Op::TypeInt));
     }
 }

@@ -10,14 +10,10 @@ pub fn strip_lines(module: &mut Module) {
     let is_line = |op| matches!(op, Op::Line | Op::NoLine);
     module.debug_string_source.clear();
     module.debug_module_processed.clear();
-    module
-        .types_global_values
-        .retain(|inst| !is_line(inst.class.opcode));
+    module.types_global_values.retain(|inst| !is_line(inst.class.opcode));
     for function in &mut module.functions {
         for block in &mut function.blocks {
-            block
-                .instructions
-                .retain(|inst| !is_line(inst.class.opcode));
+            block.instructions.retain(|inst| !is_line(inst.class.opcode));
         }
     }
 }
@@ -26,13 +22,8 @@ pub fn strip_lines(module: &mut Module) {
 pub fn strip_local_names(module: &mut Module) {
     let globals = module.types_global_values.iter();
     let functions = module.functions.iter().filter_map(|f| f.def.as_ref());
-    let named: HashSet<_> = globals
-        .chain(functions)
-        .filter_map(|inst| inst.result_id)
-        .collect();
-    module
-        .debug_names
-        .retain(|name| named.contains(&name.operands[0].unwrap_id_ref()));
+    let named: HashSet<_> = globals.chain(functions).filter_map(|inst| inst.result_id).collect();
+    module.debug_names.retain(|name| named.contains(&name.operands[0].unwrap_id_ref()));
 }
 
 #[cfg(test)]
@@ -56,10 +47,6 @@ mod tests {
         strip_local_names(&mut module);
         assert!(module.debug_string_source.is_empty());
         assert!(module.debug_names.is_empty());
-        assert!(
-            module
-                .all_inst_iter()
-                .all(|inst| inst.class.opcode != Op::Line)
-        );
+        assert!(module.all_inst_iter().all(|inst| inst.class.opcode != Op::Line));
     }
 }

@@ -8,8 +8,7 @@ use rspirv::spirv::{GlslStd450Op, Op, Word};
 use super::{body, inlining, names::Names, reach};
 use crate::{Error, Result};
 
-const DIVISION: &str =
-    "may occur in `#[inline(never)]` functions only; call `div` or `sqrt` of `real`";
+const DIVISION: &str = "may occur in `#[inline(never)]` functions only; call `div` or `sqrt` of `real`";
 const INEXACT: &str = "a device may round its own way; use + - * and the functions of `real`";
 const UNORDERED: &str = "depends on the order of lanes; sum in a fixed order";
 const TEXTURE: &str = "a device may filter its own way; read a buffer";
@@ -20,20 +19,13 @@ const VALUE: &str = "a device may flush or replace; use an integer for bit patte
 /// [`inlining::release`], on a module without dead code.
 pub fn check(module: &Module) -> Result<()> {
     let names = Names::of(module);
-    let rules = Rules {
-        floats: float_types(module)?,
-        glsl: body::glsl_set(module),
-    };
+    let rules = Rules { floats: float_types(module)?, glsl: body::glsl_set(module) };
     for function in &module.functions {
         let protected = inlining::is_protected(function);
         for inst in function.all_inst_iter() {
             if let Some((what, why)) = rules.broken(inst, protected) {
                 let function = names.function(function);
-                return Err(Error::Forbidden {
-                    function,
-                    what,
-                    why,
-                });
+                return Err(Error::Forbidden { function, what, why });
             }
         }
     }
@@ -53,10 +45,7 @@ impl Rules {
             Op::FDiv => DIVISION,
             Op::ExtInst => return self.extended(inst, protected),
             Op::FRem | Op::FMod | Op::Dot | Op::OuterProduct | Op::QuantizeToF16 => INEXACT,
-            Op::VectorTimesMatrix
-            | Op::MatrixTimesScalar
-            | Op::MatrixTimesVector
-            | Op::MatrixTimesMatrix => INEXACT,
+            Op::VectorTimesMatrix | Op::MatrixTimesScalar | Op::MatrixTimesVector | Op::MatrixTimesMatrix => INEXACT,
             Op::AtomicFAddEXT | Op::AtomicFMinEXT | Op::AtomicFMaxEXT => UNORDERED,
             _ if self.is_float(inst) && is_group(inst.class.opname) => UNORDERED,
             _ if inst.class.opname.contains("Image") => TEXTURE,

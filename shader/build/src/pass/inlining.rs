@@ -11,11 +11,10 @@ use crate::{Error, Result};
 
 /// Is the function marked?
 pub fn is_protected(function: &Function) -> bool {
-    function.def.as_ref().is_some_and(|def| {
-        def.operands[0]
-            .unwrap_function_control()
-            .contains(FunctionControl::DONT_INLINE)
-    })
+    function
+        .def
+        .as_ref()
+        .is_some_and(|def| def.operands[0].unwrap_function_control().contains(FunctionControl::DONT_INLINE))
 }
 
 /// Removes the marks; returns the names of the functions that had one, in order.

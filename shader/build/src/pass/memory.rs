@@ -3,9 +3,7 @@
 use std::collections::HashMap;
 
 use rspirv::dr::{Instruction, Module, Operand};
-use rspirv::spirv::{
-    AddressingModel, Capability, MemoryAccess, MemoryModel, MemorySemantics, Op, Scope, Word,
-};
+use rspirv::spirv::{AddressingModel, Capability, MemoryAccess, MemoryModel, MemorySemantics, Op, Scope, Word};
 
 use crate::{Error, Result};
 
@@ -14,17 +12,12 @@ use crate::{Error, Result};
 pub fn to_glsl450(module: &mut Module) -> Result<()> {
     module.capabilities.retain(|inst| {
         let capability = inst.operands[0].unwrap_capability();
-        capability != Capability::VulkanMemoryModel
-            && capability != Capability::VulkanMemoryModelDeviceScope
+        capability != Capability::VulkanMemoryModel && capability != Capability::VulkanMemoryModelDeviceScope
     });
-    module
-        .extensions
-        .retain(|inst| inst.operands[0].unwrap_literal_string() != "SPV_KHR_vulkan_memory_model");
+    module.extensions.retain(|inst| inst.operands[0].unwrap_literal_string() != "SPV_KHR_vulkan_memory_model");
     if let Some(model) = &mut module.memory_model {
-        model.operands = vec![
-            Operand::AddressingModel(AddressingModel::Logical),
-            Operand::MemoryModel(MemoryModel::GLSL450),
-        ];
+        model.operands =
+            vec![Operand::AddressingModel(AddressingModel::Logical), Operand::MemoryModel(MemoryModel::GLSL450)];
     }
     replace_constants(module)?;
     for function in &mut module.functions {
@@ -58,19 +51,15 @@ fn replace_constants(module: &mut Module) -> Result<()> {
             _ => None,
         })
         .collect();
-    let mut fresh = Fresh {
-        bound: module.header.as_ref().map_or(1, |header| header.bound),
-        constants: Vec::new(),
-    };
+    let mut fresh = Fresh { bound: module.header.as_ref().map_or(1, |header| header.bound), constants: Vec::new() };
     let bodies = module.functions.iter_mut();
     for inst in bodies.flat_map(|function| function.all_inst_iter_mut()) {
         for operand in &mut inst.operands {
             let (Operand::IdScope(id) | Operand::IdMemorySemantics(id)) = *operand else {
                 continue;
             };
-            let (kind, old) = *values
-                .get(&id)
-                .ok_or_else(|| Error::Malformed("a memory scope that is no constant".into()))?;
+            let (kind, old) =
+                *values.get(&id).ok_or_else(|| Error::Malformed("a memory scope that is no constant".into()))?;
             let new = glsl450(operand, old);
             if new != old
                 && let Some(id) = operand.id_ref_any_mut()
@@ -95,8 +84,7 @@ struct Fresh {
 impl Fresh {
     fn get(&mut self, kind: Word, value: u32) -> Word {
         let operands = vec![Operand::LiteralBit32(value)];
-        let same =
-            |inst: &&Instruction| inst.result_type == Some(kind) && inst.operands == operands;
+        let same = |inst: &&Instruction| inst.result_type == Some(kind) && inst.operands == operands;
         if let Some(id) = self.constants.iter().find(same).and_then(|i| i.result_id) {
             return id;
         }
@@ -111,9 +99,8 @@ impl Fresh {
 /// Drops the Vulkan model's flags from a load, a store or a copy. The operands of the flags that
 /// stay precede those of the flags that go.
 fn strip_access(inst: &mut Instruction) {
-    let vulkan_only = MemoryAccess::MAKE_POINTER_AVAILABLE
-        | MemoryAccess::MAKE_POINTER_VISIBLE
-        | MemoryAccess::NON_PRIVATE_POINTER;
+    let vulkan_only =
+        MemoryAccess::MAKE_POINTER_AVAILABLE | MemoryAccess::MAKE_POINTER_VISIBLE | MemoryAccess::NON_PRIVATE_POINTER;
     let mut stripped = false;
     for operand in &mut inst.operands {
         if let Operand::MemoryAccess(access) = operand {
@@ -123,8 +110,7 @@ fn strip_access(inst: &mut Instruction) {
     }
     if stripped {
         inst.operands.retain(|operand| {
-            !matches!(operand, Operand::IdScope(_))
-                && *operand != Operand::MemoryAccess(MemoryAccess::NONE)
+            !matches!(operand, Operand::IdScope(_)) && *operand != Operand::MemoryAccess(MemoryAccess::NONE)
         });
     }
 }

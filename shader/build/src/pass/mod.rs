@@ -83,25 +83,15 @@ mod tests {
             b.store_output(y);
         });
         let words = kernel.module().assemble();
-        for (name, policy, protected) in [
-            ("exact", Policy::Exact, vec!["real::div"]),
-            ("fast", Policy::Fast, vec![]),
-        ] {
-            let table = Module {
-                name,
-                prefix: if name == "exact" { "exact_" } else { "fast_" },
-                policy,
-                protects: &[],
-            };
+        for (name, policy, protected) in [("exact", Policy::Exact, vec!["real::div"]), ("fast", Policy::Fast, vec![])] {
+            let table =
+                Module { name, prefix: if name == "exact" { "exact_" } else { "fast_" }, policy, protects: &[] };
             let finished = finish(&words, &table).unwrap();
             assert_eq!(finished.protected, protected);
             let bytes = compile::bytes(&finished.words());
             let again = dr::load_bytes(&bytes).unwrap();
             assert_eq!(again.entry_points.len(), 1);
-            assert!(matches!(
-                validate::run(name, &bytes),
-                Ok(Validation::Passed | Validation::Skipped)
-            ));
+            assert!(matches!(validate::run(name, &bytes), Ok(Validation::Passed | Validation::Skipped)));
         }
     }
 }

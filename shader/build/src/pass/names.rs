@@ -16,10 +16,7 @@ impl<'a> Names<'a> {
             .iter()
             .filter(|inst| inst.class.opcode == Op::Name)
             .map(|inst| (&inst.operands[0], &inst.operands[1]));
-        let entries = module
-            .entry_points
-            .iter()
-            .map(|inst| (&inst.operands[1], &inst.operands[2]));
+        let entries = module.entry_points.iter().map(|inst| (&inst.operands[1], &inst.operands[2]));
         let pair = |(id, name): (&rspirv::dr::Operand, &'a rspirv::dr::Operand)| {
             (id.unwrap_id_ref(), name.unwrap_literal_string())
         };

@@ -12,41 +12,26 @@ use crate::{Error, Result};
 /// time. Run it after dead code is gone.
 pub fn check(module: &Module) -> Result<()> {
     let names = Names::of(module);
-    let types: HashMap<Word, &Instruction> = module
-        .types_global_values
-        .iter()
-        .filter_map(|inst| Some((inst.result_id?, inst)))
-        .collect();
-    let is_pointer = |id: Word| {
-        types
-            .get(&id)
-            .is_some_and(|inst| inst.class.opcode == Op::TypePointer)
-    };
+    let types: HashMap<Word, &Instruction> =
+        module.types_global_values.iter().filter_map(|inst| Some((inst.result_id?, inst))).collect();
+    let is_pointer = |id: Word| types.get(&id).is_some_and(|inst| inst.class.opcode == Op::TypePointer);
     for inst in &module.types_global_values {
-        let holds = matches!(
-            inst.class.opcode,
-            Op::TypeStruct | Op::TypeArray | Op::TypeRuntimeArray | Op::TypePointer
-        );
+        let holds =
+            matches!(inst.class.opcode, Op::TypeStruct | Op::TypeArray | Op::TypeRuntimeArray | Op::TypePointer);
         let mut members = inst.operands.iter().filter_map(|o| o.id_ref_any());
         if let (true, true, Some(id)) = (holds, members.any(is_pointer), inst.result_id) {
             let (function, name) = (user(module, &types, id), names.get(id));
             let function = function.map_or("the module".into(), |id| names.get(id));
-            return Err(Error::Pointer(format!(
-                "`{function}` keeps a pointer in `{name}` ({})",
-                inst.class.opname
-            )));
+            return Err(Error::Pointer(format!("`{function}` keeps a pointer in `{name}` ({})", inst.class.opname)));
         }
     }
     for function in &module.functions {
-        let chosen = function.all_inst_iter().find(|inst| {
-            matches!(inst.class.opcode, Op::Phi | Op::Select)
-                && inst.result_type.is_some_and(is_pointer)
-        });
+        let chosen = function
+            .all_inst_iter()
+            .find(|inst| matches!(inst.class.opcode, Op::Phi | Op::Select) && inst.result_type.is_some_and(is_pointer));
         if chosen.is_some() {
             let name = names.function(function);
-            return Err(Error::Pointer(format!(
-                "`{name}` chooses a pointer at run time"
-            )));
+            return Err(Error::Pointer(format!("`{name}` chooses a pointer at run time")));
         }
     }
     Ok(())

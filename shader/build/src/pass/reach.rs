@@ -7,20 +7,13 @@ use rspirv::spirv::{Op, Word};
 
 /// Every id that an instruction mentions but its own.
 pub fn mentioned(inst: &Instruction) -> impl Iterator<Item = Word> {
-    inst.result_type.into_iter().chain(
-        inst.operands
-            .iter()
-            .filter_map(|operand| operand.id_ref_any()),
-    )
+    inst.result_type.into_iter().chain(inst.operands.iter().filter_map(|operand| operand.id_ref_any()))
 }
 
 /// The functions that those in `roots` call, and `roots`.
 pub fn functions(module: &Module, roots: impl IntoIterator<Item = Word>) -> HashSet<Word> {
-    let by_id: HashMap<Word, &Function> = module
-        .functions
-        .iter()
-        .filter_map(|function| Some((function.def_id()?, function)))
-        .collect();
+    let by_id: HashMap<Word, &Function> =
+        module.functions.iter().filter_map(|function| Some((function.def_id()?, function))).collect();
     let mut reached = HashSet::new();
     let mut open: Vec<Word> = roots.into_iter().collect();
     while let Some(id) = open.pop() {

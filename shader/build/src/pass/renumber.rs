@@ -24,16 +24,8 @@ impl Numbers {
     }
 
     fn renumber(&mut self, inst: &mut Instruction) {
-        let operands = inst
-            .operands
-            .iter_mut()
-            .filter_map(|operand| operand.id_ref_any_mut());
-        for id in inst
-            .result_type
-            .iter_mut()
-            .chain(inst.result_id.iter_mut())
-            .chain(operands)
-        {
+        let operands = inst.operands.iter_mut().filter_map(|operand| operand.id_ref_any_mut());
+        for id in inst.result_type.iter_mut().chain(inst.result_id.iter_mut()).chain(operands) {
             let next = self.bound();
             *id = *self.0.entry(*id).or_insert(next);
         }

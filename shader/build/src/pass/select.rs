@@ -17,14 +17,9 @@ pub fn entries(module: &mut Module, prefix: &'static str) -> Result<()> {
     if module.entry_points.is_empty() {
         return Err(Error::NoEntry(prefix));
     }
-    let name =
-        |entry: &rspirv::dr::Instruction| entry.operands[2].unwrap_literal_string().to_owned();
+    let name = |entry: &rspirv::dr::Instruction| entry.operands[2].unwrap_literal_string().to_owned();
     module.entry_points.sort_by_key(name);
-    match module
-        .entry_points
-        .windows(2)
-        .find(|pair| name(&pair[0]) == name(&pair[1]))
-    {
+    match module.entry_points.windows(2).find(|pair| name(&pair[0]) == name(&pair[1])) {
         Some(pair) => Err(Error::DuplicateEntry(name(&pair[0]))),
         None => Ok(()),
     }
@@ -43,11 +38,7 @@ mod tests {
         kernel.entry("entry::exact_a", |_| {});
         let mut module = kernel.module();
         entries(&mut module, "exact_").unwrap();
-        let names: Vec<_> = module
-            .entry_points
-            .iter()
-            .map(|entry| entry.operands[2].unwrap_literal_string())
-            .collect();
+        let names: Vec<_> = module.entry_points.iter().map(|entry| entry.operands[2].unwrap_literal_string()).collect();
         assert_eq!(names, ["exact_a", "exact_b"]);
     }
 
@@ -57,10 +48,7 @@ mod tests {
         kernel.entry("a::fast_x", |_| {});
         kernel.entry("b::fast_x", |_| {});
         let mut module = kernel.module();
-        assert!(matches!(
-            entries(&mut module.clone(), "exact_"),
-            Err(Error::NoEntry("exact_"))
-        ));
+        assert!(matches!(entries(&mut module.clone(), "exact_"), Err(Error::NoEntry("exact_"))));
         assert!(matches!(
             entries(&mut module, "fast_"),
             Err(Error::DuplicateEntry(name)) if name == "fast_x"

@@ -46,11 +46,7 @@ impl Kernel {
             glsl,
         };
         let interface = vec![ids.input, ids.output, ids.counter];
-        Kernel {
-            builder: b,
-            ids,
-            interface,
-        }
+        Kernel { builder: b, ids, interface }
     }
 
     pub fn file(&mut self, path: &str) -> Word {
@@ -71,10 +67,7 @@ impl Kernel {
         let block = b.type_struct_id(None, [self.ids.float]);
         let pointer = b.type_pointer(None, class, block);
         let id = b.variable(pointer, None, class, None);
-        for (decoration, value) in [
-            (Decoration::DescriptorSet, set),
-            (Decoration::Binding, binding),
-        ] {
+        for (decoration, value) in [(Decoration::DescriptorSet, set), (Decoration::Binding, binding)] {
             b.decorate(id, decoration, [Operand::LiteralBit32(value)]);
         }
         self.interface.push(id);
@@ -101,10 +94,8 @@ impl Kernel {
     pub fn entry(&mut self, name: &str, body: impl FnOnce(&mut Body)) {
         let function = self.function(FunctionControl::NONE, body);
         let model = ExecutionModel::GLCompute;
-        self.builder
-            .entry_point(model, function, name, self.interface.clone());
-        self.builder
-            .execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
+        self.builder.entry_point(model, function, name, self.interface.clone());
+        self.builder.execution_mode(function, ExecutionMode::LocalSize, [32, 1, 1]);
     }
 
     /// A function that is never inlined.
@@ -115,9 +106,7 @@ impl Kernel {
     fn function(&mut self, control: FunctionControl, body: impl FnOnce(&mut Body)) -> Word {
         let ids = self.ids;
         let b = &mut self.builder;
-        let function = b
-            .begin_function(ids.void, None, control, ids.signature)
-            .unwrap();
+        let function = b.begin_function(ids.void, None, control, ids.signature).unwrap();
         b.begin_block(None).unwrap();
         body(&mut Body { b, ids });
         b.ret().unwrap();
@@ -157,9 +146,7 @@ impl Body<'_> {
 
     pub fn atomic_increment(&mut self, scope: Word, semantics: Word) {
         let Ids { uint, counter, .. } = self.ids;
-        self.b
-            .atomic_i_add(uint, None, counter, scope, semantics, scope)
-            .unwrap();
+        self.b.atomic_i_add(uint, None, counter, scope, semantics, scope).unwrap();
     }
 
     pub fn constant_u32(&mut self, value: u32) -> Word {
@@ -196,17 +183,13 @@ impl Body<'_> {
 
     pub fn glsl(&mut self, op: GlslStd450Op, x: Word) -> Word {
         let Ids { float, glsl, .. } = self.ids;
-        self.b
-            .ext_inst(float, None, glsl, op as u32, [Operand::IdRef(x)])
-            .unwrap()
+        self.b.ext_inst(float, None, glsl, op as u32, [Operand::IdRef(x)]).unwrap()
     }
 
     pub fn subgroup_sum(&mut self, x: Word) {
         let subgroup = self.constant_u32(Scope::Subgroup as u32);
         let operation = GroupOperation::Reduce;
-        self.b
-            .group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None)
-            .unwrap();
+        self.b.group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None).unwrap();
     }
 
     pub fn line(&mut self, file: Word) {
@@ -219,15 +202,11 @@ impl Body<'_> {
         let mask = self.b.constant_null(ballot);
         let subgroup = self.constant_u32(Scope::Subgroup as u32);
         let operation = GroupOperation::Reduce;
-        self.b
-            .group_non_uniform_ballot_bit_count(uint, None, subgroup, operation, mask)
-            .unwrap();
+        self.b.group_non_uniform_ballot_bit_count(uint, None, subgroup, operation, mask).unwrap();
     }
 
     pub fn call(&mut self, function: Word) {
-        self.b
-            .function_call(self.ids.void, None, function, [])
-            .unwrap();
+        self.b.function_call(self.ids.void, None, function, []).unwrap();
     }
 
     /// A local variable that is stored to, and read and stored on if `read`.
@@ -248,10 +227,7 @@ impl Body<'_> {
         let pointer = self.b.type_pointer(None, StorageClass::Private, float);
         let kind = self.b.type_struct([pointer]);
         let composite = self.b.composite_construct(kind, None, [input]).unwrap();
-        let pointer = self
-            .b
-            .composite_extract(pointer, None, composite, [0])
-            .unwrap();
+        let pointer = self.b.composite_extract(pointer, None, composite, [0]).unwrap();
         if live {
             let value = self.b.load(float, None, pointer, None, []).unwrap();
             self.store_output(value);

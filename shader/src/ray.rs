@@ -11,6 +11,8 @@ pub struct Ray<R: Real> {
     pub inverse: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
+    /// The triangle that it leaves, in leaf order, which it can't meet again; [`Hit::NOTHING`] for none.
+    pub leaves: R::Index,
 }
 
 /// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
@@ -27,9 +29,16 @@ pub struct Shear<R: Real> {
 }
 
 impl<R: Real> Ray<R> {
-    /// A ray; `direction` needs no unit length (t counts in its lengths), but must not be zero.
+    /// A ray from anywhere; `direction` needs no unit length (t counts in its lengths), but must not be
+    /// zero.
     #[inline(always)]
     pub fn new(origin: V3<R>, direction: V3<R>) -> Self {
+        Self::leaving(R::index(Hit::<R>::NOTHING), origin, direction)
+    }
+
+    /// A ray that leaves a triangle.
+    #[inline(always)]
+    pub fn leaving(leaves: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
         let d = direction.map(|c| c.flush(TINY));
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);
@@ -42,7 +51,7 @@ impl<R: Real> Ray<R> {
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
-        Ray { origin, inverse, shear }
+        Ray { origin, inverse, shear, leaves }
     }
 }
 

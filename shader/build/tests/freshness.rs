@@ -13,12 +13,7 @@ fn manifest() -> Manifest {
 
 #[test]
 fn sources_have_not_changed() {
-<<<<<<< HEAD
-    let command = output::COMMAND;
-    let manifest = Manifest::read(&source::spirv()).unwrap_or_else(|error| panic!("{error}; run: {command}"));
-=======
     let (command, manifest) = (output::COMMAND, manifest());
->>>>>>> spirv
     let hash = source::hash(&source::shader()).unwrap();
     assert!(manifest.source == hash, "shader/spirv is older than the sources; run: {command}");
 }

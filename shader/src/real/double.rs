@@ -34,6 +34,9 @@ impl Real for f64 {
     fn index(i: u32) -> u32 {
         i
     }
+    fn equals(i: u32, other: u32) -> bool {
+        i == other
+    }
     fn precedes(i: u32, other: u32) -> bool {
         i < other
     }

@@ -66,6 +66,8 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn index(i: u32) -> Self::Index;
     /// Is the integer `i` less than the lane's?
     fn precedes(i: u32, other: Self::Index) -> Self::Mask;
+    /// Is the integer `i` the lane's?
+    fn equals(i: u32, other: Self::Index) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
 

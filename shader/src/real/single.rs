@@ -36,6 +36,10 @@ macro_rules! comparisons {
             i
         }
         #[inline(always)]
+        fn equals(i: u32, other: u32) -> bool {
+            i == other
+        }
+        #[inline(always)]
         fn precedes(i: u32, other: u32) -> bool {
             i < other
         }

@@ -155,7 +155,7 @@ mod tests {
     fn shadow_rays_end_short_of_a_place_and_never_for_a_direction() {
         let contact = Contact::<f64> {
             position: V3::zero(),
-            error: V3::splat(Vec3::splat(1e-6)),
+            clearance: 1e-6,
             normal: V3::splat(Vec3::Y),
             front: true,
             weights: (0.0, 0.0),

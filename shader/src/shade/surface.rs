@@ -103,7 +103,7 @@ mod tests {
     fn contact(normal: Vec3, position: [f32; 3]) -> Contact<f32> {
         Contact {
             position: V3::splat(position.into()),
-            error: V3::zero(),
+            clearance: 0.0,
             normal: V3::splat(normal),
             front: true,
             weights: (0.0, 0.0),

@@ -3,6 +3,7 @@
 use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::Features;
+use crate::ray::Hit;
 use crate::real::{Real, Scalar, V3};
 use crate::scene::Geometry;
 
@@ -23,6 +24,8 @@ pub struct Path<R: Real> {
     pub bounces: u32,
     /// Rays that wait in this slot.
     pub pending: u32,
+    /// The triangle that it leaves, in leaf order, or [`Hit::NOTHING`].
+    pub leaves: u32,
 }
 
 impl<R: Scalar> Path<R> {
@@ -33,15 +36,22 @@ impl<R: Scalar> Path<R> {
             return Self::load(geometry.slots(), slot, 0, paths);
         }
         let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, slot));
-        Path { origin, direction, weight: V3::splat(glam::Vec3::ONE), bounces: 0, pending: 0 }
+        Path {
+            origin,
+            direction,
+            weight: V3::splat(glam::Vec3::ONE),
+            bounces: 0,
+            pending: 0,
+            leaves: Hit::<R>::NOTHING,
+        }
     }
 
     /// The path at a level of a slot. Levels lie apart, so that neighbouring slots load neighbours.
     #[inline(always)]
     pub fn load(slots: u32, slot: u32, level: u32, paths: &[R::Record]) -> Self {
         let at = |k| R::load(read(paths, (level * RECORDS + k) * slots + slot));
-        let ((origin, bounces), (direction, pending), (weight, _)) = (at(0), at(1), at(2));
-        Path { origin, direction, weight, bounces, pending }
+        let ((origin, bounces), (direction, pending), (weight, leaves)) = (at(0), at(1), at(2));
+        Path { origin, direction, weight, bounces, pending, leaves }
     }
 
     /// Keeps the path at a level of a slot.
@@ -50,6 +60,6 @@ impl<R: Scalar> Path<R> {
         let at = |k| (level * RECORDS + k) * slots + slot;
         write(paths, at(0), R::store(self.origin, self.bounces));
         write(paths, at(1), R::store(self.direction, self.pending));
-        write(paths, at(2), R::store(self.weight, 0));
+        write(paths, at(2), R::store(self.weight, self.leaves));
     }
 }

@@ -49,7 +49,7 @@ pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, w
     if !geometry.features.has(Features::REFLECTION) && !geometry.features.has(Features::REFRACTION) {
         return false;
     }
-    follow(geometry, slot, &path, branch(geometry, &path, &contact, &surface), paths)
+    follow(geometry, slot, &path, branch(geometry, &path, place, (&contact, &surface)), paths)
 }
 
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
@@ -94,14 +94,14 @@ fn add<R: Scalar>(
 /// Fresnel's shares of an interface.
 #[inline(always)]
 fn branch<R: Scalar>(
-    geometry: &Geometry<'_>, path: &Path<R>, contact: &Contact<R>, surface: &Surface<R>,
+    geometry: &Geometry<'_>, path: &Path<R>, place: u32, (contact, surface): (&Contact<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let reflected = path.on(contact, mirrored, surface.reflection);
-    let none = path.on(contact, mirrored, V3::zero());
+    let reflected = path.on(place, contact, mirrored, surface.reflection);
+    let none = path.on(place, contact, mirrored, V3::zero());
     if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
         return Branches { reflected, refracted: none };
     }
@@ -109,12 +109,12 @@ fn branch<R: Scalar>(
     let eta = if contact.front { one.div(surface.ior) } else { surface.ior };
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
-    let reflected = path.on(contact, mirrored, V3::new(share, share, share));
+    let reflected = path.on(place, contact, mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(contact, inwards, surface.transmission * (one - share));
+    let refracted = path.on(place, contact, inwards, surface.transmission * (one - share));
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }
@@ -122,13 +122,14 @@ fn branch<R: Scalar>(
 impl<R: Scalar> Path<R> {
     /// The path that goes on from a contact.
     #[inline(always)]
-    fn on(&self, contact: &Contact<R>, direction: V3<R>, weight: V3<R>) -> Self {
+    fn on(&self, leaves: u32, contact: &Contact<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
             origin: contact.leave(direction),
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,
             pending: self.pending,
+            leaves,
         }
     }
 

@@ -33,6 +33,6 @@ pub fn shadow<R: Scalar, M: Method>(
         return FACES_AWAY;
     }
     let mut hit = Hit::none(limit);
-    M::traverse::<Occlusion, R>(geometry, &Ray::new(origin, direction), &mut hit);
+    M::traverse::<Occlusion, R>(geometry, &Ray::leaving(place, origin, direction), &mut hit);
     if step::occluded(&hit) { SHADOWED } else { REACHED }
 }

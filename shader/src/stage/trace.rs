@@ -11,6 +11,6 @@ use crate::traverse::{Closest, Method};
 pub fn trace<R: Scalar, M: Method>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
     let path = Path::<R>::current(geometry, slot, paths);
     let mut hit = Hit::none(R::splat(f32::MAX));
-    M::traverse::<Closest, R>(geometry, &Ray::new(path.origin, path.direction), &mut hit);
+    M::traverse::<Closest, R>(geometry, &Ray::leaving(path.leaves, path.origin, path.direction), &mut hit);
     R::store(V3::new(hit.t, hit.u, hit.v), hit.slot)
 }

@@ -61,7 +61,7 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 fn keep<Q: Query, R: Real>(
     features: Features, triangle: &Triangle, slot: u32, crossing: &Crossing<R>, ray: &Ray<R>, hit: &mut Hit<R>,
 ) {
-    let mut inside = crossing.inside;
+    let mut inside = crossing.inside & !R::equals(slot, ray.leaves);
     if features.has(Features::CULLING) && !Q::ANY {
         inside = inside & crossing.front;
     }

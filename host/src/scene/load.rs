@@ -12,7 +12,8 @@ use super::merge::{Merge, Override, Overrides};
 use super::obj;
 use super::part::{self, Files, Part, is};
 use super::range::Range;
-use super::table::{Source, Table};
+use super::source::Source;
+use super::table::Table;
 use super::{Background, Camera, Mesh, Scene, Settings};
 use crate::error::{Error, Result};
 

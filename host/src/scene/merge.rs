@@ -5,9 +5,9 @@ use std::collections::{BTreeMap, HashMap};
 
 use glam::Vec3;
 
-use super::checked::too_many;
 use super::material::{DEFAULT, Fields};
 use super::part::Part;
+use super::statement::too_many;
 use super::suggest::suggest;
 use super::{MAX_TRIANGLES, Material, Mesh, Unplaced};
 

@@ -20,6 +20,8 @@ mod obj;
 mod part;
 mod range;
 mod shape;
+mod source;
+mod statement;
 mod suggest;
 mod table;
 mod tally;

@@ -9,10 +9,10 @@
 //! | `d` below 1, or `illum` 6, 7, or `illum` 4, 9 with `Ni` above 1 | glass |
 //! | `Ni` | index of refraction; where absent 1.5 for `illum` 4, 6, 7, 9 and else 1, which does not bend |
 //!
-//! Glass passes the share 1 - `d` of the light (all of it where `d` is 1 or absent), coloured by `Tf`, or where
-//! that is absent by the hue of `Kd` (its brightest channel passes in full); `Kd` and `Ka` are scaled by the share
-//! that does not pass. `Tr` is 1 - `d`. `illum` 4 alone does not make glass, since exporters write it
-//! for everything.
+//! Glass passes the share 1 - `d` of the light (all of it where `d` is 1 or absent), coloured by
+//! `Tf`, or where that is absent by the hue of `Kd` (its brightest channel passes in full). `Kd` and
+//! `Ka` are scaled by the share that does not pass. `Tr` is 1 - `d`. `illum` 4 alone does not make
+//! glass, since exporters write it for everything.
 //!
 //! Files are read here and not by tobj, which panics on `Kd 1 0`.
 

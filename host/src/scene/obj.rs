@@ -1,8 +1,8 @@
 //! Wavefront meshes: tobj reads what a validating reader lets through.
 //!
-//! tobj reports no lines, takes NaN for a coordinate, wraps indices, mixes up the normals of faces that
-//! have some with those that have none, and draws polylines as faces. So it is given a text of our own: checked
-//! positions, unit normals behind one zero normal for corners without, faces of absolute indices, and
+//! tobj reports no lines, takes NaN for a coordinate, wraps indices, confuses normals where only some
+//! corners have them, and draws polylines as faces. So it is given a text of our own: checked
+//! positions, normals behind one zero normal for the corners without, faces of absolute indices, and
 //! objects named by the number of their material.
 
 use std::io::{BufRead, BufReader, Read};
@@ -24,7 +24,7 @@ pub struct Obj {
     pub warnings: Vec<String>,
 }
 
-/// Reads a mesh file and the material files it names. Normals are as the file has them, zero where it has none.
+/// Reads a mesh file and the material files it names. A normal is zero where the file has none.
 ///
 /// # Errors
 /// A file that cannot be read, is no mesh, names what does not exist or holds no triangle.

@@ -1,44 +1,14 @@
 //! Strict reading of TOML tables: every value is checked where it is taken, and what nobody takes
 //! is an unknown key. Every error knows its line.
 
-use std::path::Path;
-
 use glam::Vec3;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::range::Range;
+use super::source::Source;
 use super::suggest::suggest;
 use crate::error::{Error, Result};
-
-/// A TOML text and the file it came from.
-#[derive(Clone, Copy)]
-pub struct Source<'s> {
-    path: &'s Path,
-    text: &'s str,
-}
-
-impl<'s> Source<'s> {
-    /// A text and the file that errors name.
-    pub fn new(path: &'s Path, text: &'s str) -> Self {
-        Source { path, text }
-    }
-
-    /// The file's tables. The error is a fault of the syntax or a key given twice.
-    pub fn parse(self) -> Result<Table<'s>> {
-        let table = DeTable::parse(self.text).map_err(|error| {
-            let at = error.span().map_or(0, |span| span.start);
-            self.fault(at, error.message())
-        })?;
-        Ok(Table::new(self, "the file", 0, table.into_inner()))
-    }
-
-    fn fault(self, at: usize, message: impl Into<String>) -> Error {
-        let before = self.text.as_bytes().iter().take(at);
-        let line = 1 + before.filter(|&&byte| byte == b'\n').count();
-        Error::line(self.path, line, message)
-    }
-}
 
 /// A table whose keys are taken one by one.
 pub struct Table<'s> {
@@ -58,7 +28,8 @@ struct Entry<'s> {
 type Value<'s> = Spanned<DeValue<'s>>;
 
 impl<'s> Table<'s> {
-    fn new(source: Source<'s>, name: impl Into<String>, at: usize, table: DeTable<'s>) -> Self {
+    /// A table that begins at byte `at` and is called `name` in messages.
+    pub fn new(source: Source<'s>, name: impl Into<String>, at: usize, table: DeTable<'s>) -> Self {
         let mut entries: Vec<_> = table
             .into_iter()
             .map(|(key, value)| Entry {

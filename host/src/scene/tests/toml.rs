@@ -54,6 +54,16 @@ fn what_is_not_said_has_defaults() {
     assert!(scene.lights.is_empty());
 }
 
+#[test]
+fn numbers_are_read_as_toml_writes_them() {
+    let text = "[render]\nsize = [0x10, 1_000]\n[[mesh]]\nshape = \"box\"\nmin = [-1_0.5, +0, 1e-3]\n\
+        max = [1E1, 1.0, 100000000000000000000]\n";
+    let (scene, _) = load(text);
+    assert_eq!(scene.settings.size, (16, 1000));
+    assert_eq!(scene.mesh.positions[0], Vec3::new(-10.5, 0.0, 1e-3));
+    assert_eq!(scene.mesh.positions[7], Vec3::new(10.0, 1.0, 1e20));
+}
+
 /// Every text with the line to blame and a part of the message.
 const REFUSED: &[(&str, usize, &str)] = &[
     ("[[mesh]\n", 1, ""),

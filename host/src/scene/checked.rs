@@ -1,13 +1,11 @@
 //! The validating reader between a mesh file and tobj.
 
-use std::collections::{HashMap, HashSet};
-use std::io::{self, BufRead, Read, Write};
+use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use super::lines::{self, Lines};
-use super::material::{DEFAULT, Fields};
-use super::tally::Tally;
-use super::{Unplaced, file, mtl};
+use super::file;
+use super::lines::Lines;
+use super::statement::{Found, State};
 use crate::error::{Error, Result};
 
 /// Reads as the text that tobj is given, made a block at a time from the lines of the file.
@@ -18,17 +16,15 @@ pub struct Checked<'p, R> {
     fault: Option<Error>,
 }
 
-/// What the lines hold besides the mesh.
-pub struct Found {
-    /// By the numbers that the objects in the text are named by.
-    pub materials: Vec<(String, Fields)>,
-    pub warnings: Vec<String>,
-}
-
 impl<'p, R: BufRead> Checked<'p, R> {
     /// The text of the lines that `reader` gives, of at most `most` triangles.
     pub fn new(path: &'p Path, reader: R, most: usize) -> Self {
-        Checked { lines: Lines::new(reader), state: State::new(path, most), taken: 0, fault: None }
+        Checked {
+            lines: Lines::new(reader),
+            state: State::new(path, most),
+            taken: 0,
+            fault: None,
+        }
     }
 
     /// What was found once the text is read, or the fault that ended it.
@@ -76,236 +72,5 @@ impl<R: BufRead> Read for Checked<'_, R> {
         let count = self.fill_buf()?.read(into)?;
         self.consume(count);
         Ok(count)
-    }
-}
-
-/// What has been seen so far, and the text that comes of it.
-struct State<'p> {
-    path: &'p Path,
-    text: Vec<u8>,
-    positions: usize,
-    textures: usize,
-    normals: usize,
-    triangles: usize,
-    most: usize,
-    material: u32,
-    materials: Vec<(String, Fields)>,
-    by_name: HashMap<String, u32>,
-    libraries: HashSet<String>,
-    missing: Tally,
-    lost: Tally,
-    unknown: Tally,
-    warnings: Vec<String>,
-}
-
-impl<'p> State<'p> {
-    fn new(path: &'p Path, most: usize) -> Self {
-        State {
-            path,
-            // Normal 1 stands for "flat here", and object 0 has the default material.
-            text: b"vn 0 0 0\no 0\n".to_vec(),
-            positions: 0,
-            textures: 0,
-            normals: 0,
-            triangles: 0,
-            most,
-            material: 0,
-            materials: vec![(DEFAULT.to_owned(), Fields::default())],
-            by_name: HashMap::new(),
-            libraries: HashSet::new(),
-            missing: Tally::default(),
-            lost: Tally::default(),
-            unknown: Tally::default(),
-            warnings: Vec::new(),
-        }
-    }
-
-    fn line(&mut self, number: usize, line: &[u8]) -> Result<()> {
-        let at = |fault| Error::line(self.path, number, fault);
-        let Some((key, rest)) = lines::split(line).map_err(at)? else {
-            return Ok(());
-        };
-        let fault = match key {
-            "v" => self.position(rest),
-            "vn" => self.normal(rest),
-            "f" | "fo" => self.face(rest),
-            "usemtl" => self.use_material(number, rest),
-            "mtllib" => return self.library(number, rest),
-            "vt" => {
-                self.textures += 1;
-                Ok(())
-            }
-            "o" | "g" | "s" | "l" | "p" => Ok(()),
-            _ => {
-                self.unknown.add(number, &format!("statement {key:?}"));
-                Ok(())
-            }
-        };
-        fault.map_err(|fault| Error::line(self.path, number, fault))
-    }
-
-    fn position(&mut self, rest: &str) -> Unplaced<()> {
-        self.positions += 1;
-        // What follows is a weight or a colour, and tobj would divide by the one and want the other
-        // on all vertices or none.
-        let xyz = three("v", rest)?;
-        for word in xyz {
-            lines::number("v", word)?;
-        }
-        self.vector("v", xyz);
-        Ok(())
-    }
-
-    fn normal(&mut self, rest: &str) -> Unplaced<()> {
-        self.normals += 1;
-        let mut xyz = three("vn", rest)?;
-        for word in xyz {
-            match word.parse::<f32>() {
-                Ok(number) if number.is_finite() => {}
-                // Exporters write NaN for the normal of a face without area: it is flat.
-                Ok(_) => xyz = ["0"; 3],
-                Err(_) => return lines::number("vn", word).map(drop),
-            }
-        }
-        self.vector("vn", xyz);
-        Ok(())
-    }
-
-    fn vector(&mut self, key: &str, xyz: [&str; 3]) {
-        self.text.extend_from_slice(key.as_bytes());
-        for word in xyz {
-            self.text.push(b' ');
-            self.text.extend_from_slice(word.as_bytes());
-        }
-        self.text.push(b'\n');
-    }
-
-    fn face(&mut self, rest: &str) -> Unplaced<()> {
-        self.text.push(b'f');
-        let mut corners = 0;
-        for word in lines::words(rest) {
-            let (position, normal) = self.corner(word)?;
-            // Writing to a vector does not fail.
-            let _ = write!(self.text, " {position}//{}", normal + 1);
-            corners += 1;
-        }
-        self.text.push(b'\n');
-        if corners < 3 {
-            return Err(format!("a face has at least 3 corners, not {corners}; remove it"));
-        }
-        self.triangles += corners - 2;
-        if self.triangles > self.most {
-            return Err(too_many(self.most));
-        }
-        Ok(())
-    }
-
-    /// The position's and the normal's number from 1; the normal's is 0 where there is none.
-    fn corner(&self, word: &str) -> Unplaced<(usize, usize)> {
-        let mut parts = word.split('/');
-        let position = index("vertex", parts.next(), self.positions)?;
-        index("texture vertex", parts.next(), self.textures)?;
-        let normal = index("normal", parts.next(), self.normals)?;
-        if position == 0 || parts.next().is_some() {
-            return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
-        }
-        Ok((position, normal))
-    }
-
-    fn use_material(&mut self, line: usize, name: &str) -> Unplaced<()> {
-        if name.is_empty() {
-            return Err("usemtl names no material; add a name".into());
-        }
-        let number = self.by_name.get(name).copied().unwrap_or_else(|| {
-            self.lost.add(line, &format!("material {name:?}"));
-            0
-        });
-        if number != self.material {
-            self.material = number;
-            let _ = writeln!(self.text, "o {number}");
-        }
-        Ok(())
-    }
-
-    fn library(&mut self, line: usize, names: &str) -> Result<()> {
-        if names.is_empty() {
-            let fault = "mtllib names no file; add a name";
-            return Err(Error::line(self.path, line, fault));
-        }
-        // The format lists files between blanks, but exporters write names that hold blanks.
-        if !self.material_file(line, names)? && names.contains(char::is_whitespace) {
-            for name in names.split_whitespace() {
-                if !self.material_file(line, name)? {
-                    self.missing.add(line, &format!("material file {name:?}"));
-                }
-            }
-        } else if !self.libraries.contains(names) {
-            self.missing.add(line, &format!("material file {names:?}"));
-        }
-        Ok(())
-    }
-
-    /// Reads a material file once; false if there is none.
-    fn material_file(&mut self, line: usize, name: &str) -> Result<bool> {
-        if self.libraries.contains(name) {
-            return Ok(true);
-        }
-        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
-        if !path.exists() {
-            return Ok(false);
-        }
-        self.libraries.insert(name.to_owned());
-        let library = mtl::load(&path)?;
-        self.warnings.extend(library.warnings);
-        for (name, fields) in library.materials {
-            let number = self.materials.len() as u32;
-            self.by_name.insert(name.clone(), number);
-            self.materials.push((name, fields));
-        }
-        Ok(true)
-    }
-
-    fn finish(mut self) -> Result<Found> {
-        if self.triangles == 0 {
-            let fault = "there is no face in it; is it a Wavefront OBJ mesh?";
-            return Err(Error::file(self.path, fault));
-        }
-        let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
-        // A missing file explains the missing materials.
-        let lost = self.lost.warn(self.path, "in none of its material files: drawn grey");
-        let unknown = self.unknown.warn(self.path, "ignored: only polygons are read");
-        self.warnings.extend(missing.or(lost));
-        self.warnings.extend(unknown);
-        Ok(Found { materials: self.materials, warnings: self.warnings })
-    }
-}
-
-/// The fault of a mesh that has too many triangles to number.
-pub fn too_many(most: usize) -> String {
-    format!("more than {most} triangles; simplify the mesh")
-}
-
-fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {
-    let mut words = lines::words(rest);
-    match (words.next(), words.next(), words.next()) {
-        (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-        _ => Err(format!("{key} takes three numbers, not {rest:?}; add what is missing")),
-    }
-}
-
-/// An index as a number from 1, of `count` that there are so far; 0 for one that is left out.
-fn index(what: &str, word: Option<&str>, count: usize) -> Unplaced<usize> {
-    let word = match word {
-        None | Some("") => return Ok(0),
-        Some(word) => word,
-    };
-    let Ok(number) = word.parse::<i64>() else {
-        return Err(format!("{what} {word:?} is no whole number; correct the face"));
-    };
-    let absolute = if number < 0 { (count as i64).saturating_add(number).saturating_add(1) } else { number };
-    match usize::try_from(absolute) {
-        Ok(absolute) if (1..=count).contains(&absolute) => Ok(absolute),
-        _ if number == 0 => Err(format!("{what} 0 does not exist; indices count from 1")),
-        _ => Err(format!("{what} {word} does not exist, {count} precede the face; correct it")),
     }
 }

@@ -12,7 +12,8 @@ use super::merge::{Merge, Override, Overrides};
 use super::obj;
 use super::part::{self, Files, Part, is};
 use super::range::Range;
-use super::table::{Source, Table};
+use super::source::Source;
+use super::table::Table;
 use super::{Background, Camera, Mesh, Scene, Settings};
 use crate::error::{Error, Result};
 
@@ -37,9 +38,15 @@ pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
 
 fn load_obj(path: &Path) -> Result<(Scene, Vec<String>)> {
     let obj = obj::load(path)?;
-    let part = Part { mesh: obj.mesh, materials: obj.materials, material: None };
+    let part = Part {
+        mesh: obj.mesh,
+        materials: obj.materials,
+        material: None,
+    };
     let mut merge = Merge::default();
-    merge.add(part, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
+    merge
+        .add(part, &Overrides::new())
+        .map_err(|fault| Error::file(path, fault))?;
     let (mesh, materials) = merge.finish();
     let settings = Settings::default();
     let scene = Scene {
@@ -59,7 +66,8 @@ fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>>
     match frame::camera(mesh, f64::from(width) / f64::from(height)) {
         Some(camera) => Ok(vec![camera]),
         None => {
-            let fault = "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
+            let fault =
+                "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
             Err(Error::file(path, fault))
         }
     }
@@ -132,7 +140,11 @@ fn merge(path: &Path, tables: Vec<Table>, overrides: &Overrides) -> Result<(Merg
     let mut merge = Merge::default();
     for mut table in tables {
         let part = part::read(&mut table, &mut files)?;
-        let key = if part.material.is_some() { "material" } else { "file" };
+        let key = if part.material.is_some() {
+            "material"
+        } else {
+            "file"
+        };
         let fault = merge.add(part, overrides).err();
         if let Some(fault) = fault {
             return Err(table.fault_of(key, fault));

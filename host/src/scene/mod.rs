@@ -20,6 +20,8 @@ mod obj;
 mod part;
 mod range;
 mod shape;
+mod source;
+mod statement;
 mod suggest;
 mod table;
 mod tally;
@@ -191,6 +193,12 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { size: (512, 512), samples: 1, bounces: 5, min_contribution: 1.0 / 1024.0, culling: false }
+        Settings {
+            size: (512, 512),
+            samples: 1,
+            bounces: 5,
+            min_contribution: 1.0 / 1024.0,
+            culling: false,
+        }
     }
 }

@@ -1,8 +1,8 @@
 //! Wavefront meshes: tobj reads what a validating reader lets through.
 //!
-//! tobj reports no lines, takes NaN for a coordinate, wraps indices, mixes up the normals of faces that
-//! have some with those that have none, and draws polylines as faces. So it is given a text of our own: checked
-//! positions, unit normals behind one zero normal for corners without, faces of absolute indices, and
+//! tobj reports no lines, takes NaN for a coordinate, wraps indices, confuses normals where only some
+//! corners have them, and draws polylines as faces. So it is given a text of our own: checked
+//! positions, normals behind one zero normal for the corners without, faces of absolute indices, and
 //! objects named by the number of their material.
 
 use std::io::{BufRead, BufReader, Read};
@@ -24,19 +24,27 @@ pub struct Obj {
     pub warnings: Vec<String>,
 }
 
-/// Reads a mesh file and the material files it names. Normals are as the file has them, zero where it has none.
+/// Reads a mesh file and the material files it names. A normal is zero where the file has none.
 ///
 /// # Errors
 /// A file that cannot be read, is no mesh, names what does not exist or holds no triangle.
 pub fn load(path: &Path) -> Result<Obj> {
     let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, BufReader::new(file.take(file::MOST_MESH)), MAX_TRIANGLES)
+    parse(
+        path,
+        BufReader::new(file.take(file::MOST_MESH)),
+        MAX_TRIANGLES,
+    )
 }
 
 /// The mesh of a text, of at most `most` triangles.
 pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
     let mut checked = Checked::new(path, reader, most);
-    let options = tobj::LoadOptions { triangulate: true, single_index: true, ..Default::default() };
+    let options = tobj::LoadOptions {
+        triangulate: true,
+        single_index: true,
+        ..Default::default()
+    };
     let models = tobj::load_obj_buf(&mut checked, &options, |_| Ok(Default::default()));
     let found = checked.finish()?;
     let (models, _) = models.map_err(|error| Error::file(path, format!("no mesh: {error}")))?;
@@ -47,7 +55,11 @@ pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Ob
     if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
         mesh.normals.clear();
     }
-    Ok(Obj { mesh, materials: found.materials, warnings: found.warnings })
+    Ok(Obj {
+        mesh,
+        materials: found.materials,
+        warnings: found.warnings,
+    })
 }
 
 /// Adds one of tobj's models, whose name is the number of its material.
@@ -60,8 +72,13 @@ fn append(mesh: &mut Mesh, model: &tobj::Model) {
     let (triangles, _) = part.indices.as_chunks();
     mesh.positions.extend(positions.iter().map(vector));
     let normals = normals.iter().map(vector);
-    mesh.normals.extend(normals.map(|normal| unit(normal.as_dvec3())));
-    mesh.triangles.extend(triangles.iter().map(|&[a, b, c]| [first + a, first + b, first + c]));
+    mesh.normals
+        .extend(normals.map(|normal| unit(normal.as_dvec3())));
+    mesh.triangles.extend(
+        triangles
+            .iter()
+            .map(|&[a, b, c]| [first + a, first + b, first + c]),
+    );
     let material = model.name.parse().unwrap_or(0);
     mesh.materials.resize(mesh.triangles.len(), material);
 }

@@ -13,10 +13,6 @@ use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
 
-/// The most samples along a pixel's edge.
-const MOST_SAMPLES: u32 = 64;
-/// The most bounces.
-const MOST_BOUNCES: u32 = 65_535;
 /// The most threads.
 const MOST_THREADS: usize = 1024;
 
@@ -110,11 +106,15 @@ impl View {
             culling: self.cull || own.culling,
         };
         Film::check_size(settings.size.0, settings.size.1)?;
-        if !(1..=MOST_SAMPLES).contains(&settings.samples) {
-            return Err(Error::new(format!("--samples {} is not within 1 to {MOST_SAMPLES}", settings.samples)));
+        if !(1..=Settings::MOST_SAMPLES).contains(&settings.samples) {
+            return Err(Error::new(format!(
+                "--samples {} is not within 1 to {}",
+                settings.samples,
+                Settings::MOST_SAMPLES
+            )));
         }
-        if settings.bounces > MOST_BOUNCES {
-            return Err(Error::new(format!("--bounces {} is more than {MOST_BOUNCES}", settings.bounces)));
+        if settings.bounces > Settings::MOST_BOUNCES {
+            return Err(Error::new(format!("--bounces {} is more than {}", settings.bounces, Settings::MOST_BOUNCES)));
         }
         if !(0.0..=1.0).contains(&settings.min_contribution) {
             let share = settings.min_contribution;

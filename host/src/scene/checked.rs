@@ -19,12 +19,7 @@ pub struct Checked<'p, R> {
 impl<'p, R: BufRead> Checked<'p, R> {
     /// The text of the lines that `reader` gives, of at most `most` triangles.
     pub fn new(path: &'p Path, reader: R, most: usize) -> Self {
-        Checked {
-            lines: Lines::new(reader),
-            state: State::new(path, most),
-            taken: 0,
-            fault: None,
-        }
+        Checked { lines: Lines::new(reader), state: State::new(path, most), taken: 0, fault: None }
     }
 
     /// What was found once the text is read, or the fault that ended it.

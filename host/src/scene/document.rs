@@ -16,18 +16,10 @@ use crate::error::Result;
 pub fn settings(mut table: Table) -> Result<Settings> {
     let default = Settings::default();
     let settings = Settings {
-        size: table
-            .pair("size", 1, Settings::MOST_SIDE)?
-            .unwrap_or(default.size),
-        samples: table
-            .whole("samples", 1, Settings::MOST_SAMPLES)?
-            .unwrap_or(default.samples),
-        bounces: table
-            .whole("bounces", 0, Settings::MOST_BOUNCES)?
-            .unwrap_or(default.bounces),
-        min_contribution: table
-            .number("min_contribution", Range::SHARE)?
-            .unwrap_or(default.min_contribution),
+        size: table.pair("size", 1, Settings::MOST_SIDE)?.unwrap_or(default.size),
+        samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?.unwrap_or(default.samples),
+        bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.bounces),
+        min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
     };
     table.done()?;
@@ -53,10 +45,7 @@ pub fn background(mut table: Table) -> Result<Background> {
     let background = match (colour, horizon, zenith) {
         (Some(colour), ..) => Background::Colour(colour),
         (None, None, None) => Background::Colour(table.need("color", colour)?),
-        _ => Background::Gradient {
-            horizon: table.need("horizon", horizon)?,
-            zenith: table.need("zenith", zenith)?,
-        },
+        _ => Background::Gradient { horizon: table.need("horizon", horizon)?, zenith: table.need("zenith", zenith)? },
     };
     table.done()?;
     Ok(background)
@@ -98,9 +87,7 @@ fn camera(table: &mut Table) -> Result<Camera> {
         let fault = format!("{named} looks at its own eye; move its target");
         return Err(table.fault_of("target", fault));
     }
-    let sine = view
-        .normalize()
-        .cross(camera.up.as_dvec3().normalize_or_zero());
+    let sine = view.normalize().cross(camera.up.as_dvec3().normalize_or_zero());
     // Nearer than this, single precision no longer tells which way is up.
     if sine.length() < 1e-6 {
         let fault = format!("{named} has its up along its view; turn up aside");
@@ -126,11 +113,7 @@ enum Kind {
 }
 
 fn light(mut table: Table) -> Result<Light> {
-    let words = [
-        ("point", Kind::Point),
-        ("directional", Kind::Directional),
-        ("spot", Kind::Spot),
-    ];
+    let words = [("point", Kind::Point), ("directional", Kind::Directional), ("spot", Kind::Spot)];
     let kind = table.word("kind", &words)?;
     let kind = table.need("kind", kind)?;
     let colour = light_colour(&mut table)?;
@@ -138,10 +121,7 @@ fn light(mut table: Table) -> Result<Light> {
         Kind::Point => {
             table.rename("a point light");
             let position = table.triple("position", Range::ANY)?;
-            Light::Point {
-                position: table.need("position", position)?,
-                colour,
-            }
+            Light::Point { position: table.need("position", position)?, colour }
         }
         Kind::Directional => {
             table.rename("a directional light");
@@ -172,13 +152,7 @@ fn spot(table: &mut Table, colour: Vec3) -> Result<Light> {
     let angle = table.number("angle", Range::CONE)?;
     let outer = table.need("angle", angle)? / 2.0;
     let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
-    Ok(Light::Spot {
-        position,
-        target,
-        colour,
-        outer,
-        inner: outer * (1.0 - softness),
-    })
+    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness) })
 }
 
 fn light_colour(table: &mut Table) -> Result<Vec3> {

@@ -27,10 +27,7 @@ pub fn open(path: &Path, most: u64) -> Unplaced<File> {
         return Err("the file is empty; was it written to the end?".into());
     }
     if kind.len() > most {
-        return Err(format!(
-            "the file holds {} bytes and {most} is the most that is read; split it",
-            kind.len()
-        ));
+        return Err(format!("the file holds {} bytes and {most} is the most that is read; split it", kind.len()));
     }
     File::open(path).map_err(|error| explain(&error))
 }
@@ -38,10 +35,7 @@ pub fn open(path: &Path, most: u64) -> Unplaced<File> {
 /// The bytes of a file that [`open`] accepts.
 pub fn read(path: &Path, most: u64) -> Unplaced<Vec<u8>> {
     let mut bytes = Vec::new();
-    open(path, most)?
-        .take(most)
-        .read_to_end(&mut bytes)
-        .map_err(|error| explain(&error))?;
+    open(path, most)?.take(most).read_to_end(&mut bytes).map_err(|error| explain(&error))?;
     Ok(bytes)
 }
 
@@ -82,9 +76,5 @@ pub fn folder(path: &Path) -> &Path {
 }
 
 fn real_folder(folder: &Path) -> &Path {
-    if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    }
+    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }

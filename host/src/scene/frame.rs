@@ -19,36 +19,21 @@ pub fn camera(mesh: &Mesh, aspect: f64) -> Option<Camera> {
     let across = (half.tan() * aspect).atan();
     let distance = MARGIN * radius / half.min(across).sin();
     let eye = (center + THREE_QUARTER.normalize() * distance).as_vec3();
-    let camera = Camera {
-        name: "default".into(),
-        eye,
-        target: center.as_vec3(),
-        up: Vec3::Y,
-        fov: FOV,
-    };
+    let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, fov: FOV };
     (eye.is_finite() && camera.target.is_finite()).then_some(camera)
 }
 
 /// A key light from above and a weaker one from the right, of no place, so that size does not matter.
 pub fn lights() -> Vec<Light> {
     vec![
-        Light::Directional {
-            direction: Vec3::new(0.3, -1.0, -0.7),
-            colour: Vec3::splat(0.8),
-        },
-        Light::Directional {
-            direction: Vec3::new(-1.0, -0.2, -0.1),
-            colour: Vec3::splat(0.35),
-        },
+        Light::Directional { direction: Vec3::new(0.3, -1.0, -0.7), colour: Vec3::splat(0.8) },
+        Light::Directional { direction: Vec3::new(-1.0, -0.2, -0.1), colour: Vec3::splat(0.35) },
     ]
 }
 
 /// A pale sky.
 pub fn background() -> Background {
-    Background::Gradient {
-        horizon: Vec3::new(0.80, 0.85, 0.90),
-        zenith: Vec3::new(0.35, 0.50, 0.75),
-    }
+    Background::Gradient { horizon: Vec3::new(0.80, 0.85, 0.90), zenith: Vec3::new(0.35, 0.50, 0.75) }
 }
 
 /// A sphere around the mesh's vertices, never of radius zero.
@@ -57,9 +42,7 @@ fn sphere(mesh: &Mesh) -> (DVec3, f64) {
     let low = points().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
     let high = points().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
     let center = (low + high) / 2.0;
-    let radius = points()
-        .map(|point| point.distance(center))
-        .fold(0.0, f64::max);
+    let radius = points().map(|point| point.distance(center)).fold(0.0, f64::max);
     // The eye must differ from the target once both are rounded to single precision.
     let least = center.abs().max_element() * 1e-4;
     let radius = radius.max(least);

@@ -15,11 +15,7 @@ pub struct Lines<R> {
 impl<R: BufRead> Lines<R> {
     /// The lines of what `reader` gives.
     pub fn new(reader: R) -> Self {
-        Lines {
-            reader,
-            line: Vec::new(),
-            next: 1,
-        }
+        Lines { reader, line: Vec::new(), next: 1 }
     }
 
     /// Reads the next line, if there is one, and its number from 1.
@@ -66,8 +62,7 @@ pub fn split(line: &[u8]) -> Unplaced<Option<(&str, &str)>> {
 
 /// The words of a statement's rest, up to a comment. A name may hold a `#`, so names are taken whole.
 pub fn words(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split_whitespace()
-        .take_while(|word| !word.starts_with('#'))
+    rest.split_whitespace().take_while(|word| !word.starts_with('#'))
 }
 
 /// A finite number.
@@ -77,12 +72,8 @@ pub fn words(rest: &str) -> impl Iterator<Item = &str> {
 pub fn number(key: &str, word: &str) -> Unplaced<f32> {
     match word.parse::<f32>() {
         Ok(number) if number.is_finite() => Ok(number),
-        Ok(_) => Err(format!(
-            "{key} holds {word}, which is no finite number below 3.4e38; correct it"
-        )),
-        Err(_) => Err(format!(
-            "{key} holds {word:?}, which is no number; correct it"
-        )),
+        Ok(_) => Err(format!("{key} holds {word}, which is no finite number below 3.4e38; correct it")),
+        Err(_) => Err(format!("{key} holds {word:?}, which is no number; correct it")),
     }
 }
 
@@ -102,13 +93,7 @@ mod tests {
     #[test]
     fn lines_are_counted_across_ends_marks_comments_and_continuations() {
         let text = b"\xef\xbb\xbfa\r\n# c\xff \\\nf 1 \\\n2 3\n\nlast";
-        let want = [
-            (1, &b"a"[..]),
-            (2, b""),
-            (3, b"f 1  2 3"),
-            (5, b""),
-            (6, b"last"),
-        ];
+        let want = [(1, &b"a"[..]), (2, b""), (3, b"f 1  2 3"), (5, b""), (6, b"last")];
         assert_eq!(read(text), want.map(|(n, line)| (n, line.to_owned())));
         assert!(read(b"").is_empty());
         assert_eq!(read(b"x\\"), [(1, b"x ".to_vec())]);

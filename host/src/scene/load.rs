@@ -38,15 +38,9 @@ pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
 
 fn load_obj(path: &Path) -> Result<(Scene, Vec<String>)> {
     let obj = obj::load(path)?;
-    let part = Part {
-        mesh: obj.mesh,
-        materials: obj.materials,
-        material: None,
-    };
+    let part = Part { mesh: obj.mesh, materials: obj.materials, material: None };
     let mut merge = Merge::default();
-    merge
-        .add(part, &Overrides::new())
-        .map_err(|fault| Error::file(path, fault))?;
+    merge.add(part, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
     let (mesh, materials) = merge.finish();
     let settings = Settings::default();
     let scene = Scene {
@@ -66,8 +60,7 @@ fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>>
     match frame::camera(mesh, f64::from(width) / f64::from(height)) {
         Some(camera) => Ok(vec![camera]),
         None => {
-            let fault =
-                "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
+            let fault = "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
             Err(Error::file(path, fault))
         }
     }
@@ -140,11 +133,7 @@ fn merge(path: &Path, tables: Vec<Table>, overrides: &Overrides) -> Result<(Merg
     let mut merge = Merge::default();
     for mut table in tables {
         let part = part::read(&mut table, &mut files)?;
-        let key = if part.material.is_some() {
-            "material"
-        } else {
-            "file"
-        };
+        let key = if part.material.is_some() { "material" } else { "file" };
         let fault = merge.add(part, overrides).err();
         if let Some(fault) = fault {
             return Err(table.fault_of(key, fault));

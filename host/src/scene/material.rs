@@ -84,10 +84,7 @@ impl Fields {
 fn checker(mut table: Table) -> Result<Checker> {
     let colour = table.triple("color", Range::SHARE)?;
     let size = table.number("size", Range::LENGTH)?;
-    let checker = Checker {
-        colour: table.need("color", colour)?,
-        size: table.need("size", size)?,
-    };
+    let checker = Checker { colour: table.need("color", colour)?, size: table.need("size", size)? };
     table.done()?;
     Ok(checker)
 }

@@ -21,11 +21,7 @@ pub struct Override {
 impl Override {
     /// What the table says, and the warning for when no surface has it.
     pub fn new(fields: Fields, idle: String) -> Self {
-        Override {
-            fields,
-            idle,
-            used: Cell::new(false),
-        }
+        Override { fields, idle, used: Cell::new(false) }
     }
 
     /// The warning, if no surface has it.
@@ -60,9 +56,7 @@ impl Merge {
             return Err(too_many(MAX_TRIANGLES));
         }
         let all = part.material.as_deref();
-        let all = all
-            .map(|name| self.named(name, &part, overrides))
-            .transpose()?;
+        let all = all.map(|name| self.named(name, &part, overrides)).transpose()?;
         let mut numbers = vec![all; part.materials.len()];
         let first = self.mesh.positions.len() as u32;
         for &local in &part.mesh.materials {
@@ -74,14 +68,10 @@ impl Merge {
             self.mesh.materials.push(number);
         }
         let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
-        self.mesh
-            .triangles
-            .extend(part.mesh.triangles.into_iter().map(shift));
+        self.mesh.triangles.extend(part.mesh.triangles.into_iter().map(shift));
         self.mesh.positions.extend(part.mesh.positions);
         self.mesh.normals.extend(part.mesh.normals);
-        self.mesh
-            .normals
-            .resize(self.mesh.positions.len(), Vec3::ZERO);
+        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
         Ok(())
     }
 
@@ -99,10 +89,7 @@ impl Merge {
         if own.is_none() && !overrides.contains_key(name) && name != DEFAULT {
             let own = part.materials.iter().map(|(own, _)| own.as_str());
             let known = own.chain(overrides.keys().map(String::as_str));
-            return Err(format!(
-                "unknown material {name:?}; {}",
-                suggest(name, known)
-            ));
+            return Err(format!("unknown material {name:?}; {}", suggest(name, known)));
         }
         let fields = own.map_or(Fields::default(), |(_, fields)| *fields);
         Ok(self.number(name, fields, overrides))
@@ -116,9 +103,7 @@ impl Merge {
         let material = fields.finish(name);
         // Two files may mean different things by a name.
         let same = self.by_name.entry(name.to_owned()).or_default();
-        let found = same
-            .iter()
-            .find(|&&number| self.materials[number as usize] == material);
+        let found = same.iter().find(|&&number| self.materials[number as usize] == material);
         if let Some(&number) = found {
             return number;
         }

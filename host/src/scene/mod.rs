@@ -184,21 +184,15 @@ pub struct Settings {
 
 impl Settings {
     /// The largest width and height in pixels.
-    pub const MOST_SIDE: u32 = 16384;
+    pub const MOST_SIDE: u32 = crate::film::Film::MAX_SIDE;
     /// The most samples along a pixel's edge.
     pub const MOST_SAMPLES: u32 = 64;
     /// The largest limit of bounces.
-    pub const MOST_BOUNCES: u32 = 32;
+    pub const MOST_BOUNCES: u32 = 65_535;
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings {
-            size: (512, 512),
-            samples: 1,
-            bounces: 5,
-            min_contribution: 1.0 / 1024.0,
-            culling: false,
-        }
+        Settings { size: (512, 512), samples: 1, bounces: 5, min_contribution: 1.0 / 1024.0, culling: false }
     }
 }

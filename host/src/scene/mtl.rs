@@ -46,13 +46,8 @@ pub fn load(path: &Path) -> Result<Library> {
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Library> {
     let mut lines = Lines::new(bytes);
-    let mut reader = Reader {
-        path,
-        line: 0,
-        materials: Vec::new(),
-        ignored: Tally::default(),
-        clamped: Tally::default(),
-    };
+    let mut reader =
+        Reader { path, line: 0, materials: Vec::new(), ignored: Tally::default(), clamped: Tally::default() };
     loop {
         let next = lines.advance();
         let next = next.map_err(|error| Error::file(path, file::explain(&error)))?;
@@ -87,9 +82,7 @@ impl Reader<'_> {
             _ if key.starts_with("map_") => self.texture(key, rest),
             "Ka" | "Kd" | "Ks" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "illum" => {
                 let Some((_, mut now)) = self.materials.last().cloned() else {
-                    return Err(format!(
-                        "{key} comes before newmtl; name the material first"
-                    ));
+                    return Err(format!("{key} comes before newmtl; name the material first"));
                 };
                 self.statement(&mut now, key, rest)?;
                 if let Some((_, last)) = self.materials.last_mut() {
@@ -157,12 +150,8 @@ impl Reader<'_> {
     }
 
     fn finish(self) -> Library {
-        let ignored = self
-            .ignored
-            .warn(self.path, "ignored: no textures are drawn");
-        let clamped = self
-            .clamped
-            .warn(self.path, "out of range: the nearest value is used");
+        let ignored = self.ignored.warn(self.path, "ignored: no textures are drawn");
+        let clamped = self.clamped.warn(self.path, "out of range: the nearest value is used");
         let fields = |(name, statements): (String, Statements)| (name, statements.fields());
         Library {
             materials: self.materials.into_iter().map(fields).collect(),
@@ -172,9 +161,7 @@ impl Reader<'_> {
 }
 
 fn numbers(key: &str, rest: &str) -> Unplaced<Vec<f32>> {
-    lines::words(rest)
-        .map(|word| lines::number(key, word))
-        .collect()
+    lines::words(rest).map(|word| lines::number(key, word)).collect()
 }
 
 /// `d -halo 0.5` would fade glass towards its rim; the number counts all the same.
@@ -206,10 +193,7 @@ impl Statements {
         };
         match (self.passing(), self.illum) {
             (Some(share), _) => self.glass(surface, share),
-            (None, Some(3 | 5)) => Fields {
-                reflection: self.ks,
-                ..surface
-            },
+            (None, Some(3 | 5)) => Fields { reflection: self.ks, ..surface },
             (None, _) => surface,
         }
     }
@@ -231,11 +215,7 @@ impl Statements {
     fn glass(self, surface: Fields, share: f32) -> Fields {
         let kd = self.kd.unwrap_or(Vec3::ZERO);
         let brightest = kd.max_element();
-        let hue = if brightest > 0.0 {
-            kd / brightest
-        } else {
-            Vec3::ONE
-        };
+        let hue = if brightest > 0.0 { kd / brightest } else { Vec3::ONE };
         let bending = matches!(self.illum, Some(4 | 6 | 7 | 9));
         Fields {
             ambient: self.ka.map(|ka| ka * (1.0 - share)),

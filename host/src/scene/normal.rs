@@ -9,11 +9,7 @@ use super::Mesh;
 /// The vector at unit length; zero where it has no direction.
 pub fn unit(vector: DVec3) -> Vec3 {
     let length = vector.length();
-    if length > 0.0 && length.is_finite() {
-        (vector / length).as_vec3()
-    } else {
-        Vec3::ZERO
-    }
+    if length > 0.0 && length.is_finite() { (vector / length).as_vec3() } else { Vec3::ZERO }
 }
 
 /// Gives every vertex without a normal the mean of the faces around it, weighted by their areas.
@@ -26,9 +22,7 @@ pub fn smooth(mesh: &mut Mesh) {
         let [a, b, c] = triangle.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
         let area = (b - a).cross(c - a);
         for &vertex in triangle {
-            *sums
-                .entry(place(mesh.positions[vertex as usize]))
-                .or_default() += area;
+            *sums.entry(place(mesh.positions[vertex as usize])).or_default() += area;
         }
     }
     for (normal, &position) in mesh.normals.iter_mut().zip(&mesh.positions) {

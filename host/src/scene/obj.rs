@@ -30,21 +30,13 @@ pub struct Obj {
 /// A file that cannot be read, is no mesh, names what does not exist or holds no triangle.
 pub fn load(path: &Path) -> Result<Obj> {
     let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(
-        path,
-        BufReader::new(file.take(file::MOST_MESH)),
-        MAX_TRIANGLES,
-    )
+    parse(path, BufReader::new(file.take(file::MOST_MESH)), MAX_TRIANGLES)
 }
 
 /// The mesh of a text, of at most `most` triangles.
 pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
     let mut checked = Checked::new(path, reader, most);
-    let options = tobj::LoadOptions {
-        triangulate: true,
-        single_index: true,
-        ..Default::default()
-    };
+    let options = tobj::LoadOptions { triangulate: true, single_index: true, ..Default::default() };
     let models = tobj::load_obj_buf(&mut checked, &options, |_| Ok(Default::default()));
     let found = checked.finish()?;
     let (models, _) = models.map_err(|error| Error::file(path, format!("no mesh: {error}")))?;
@@ -55,11 +47,7 @@ pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Ob
     if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
         mesh.normals.clear();
     }
-    Ok(Obj {
-        mesh,
-        materials: found.materials,
-        warnings: found.warnings,
-    })
+    Ok(Obj { mesh, materials: found.materials, warnings: found.warnings })
 }
 
 /// Adds one of tobj's models, whose name is the number of its material.
@@ -72,13 +60,8 @@ fn append(mesh: &mut Mesh, model: &tobj::Model) {
     let (triangles, _) = part.indices.as_chunks();
     mesh.positions.extend(positions.iter().map(vector));
     let normals = normals.iter().map(vector);
-    mesh.normals
-        .extend(normals.map(|normal| unit(normal.as_dvec3())));
-    mesh.triangles.extend(
-        triangles
-            .iter()
-            .map(|&[a, b, c]| [first + a, first + b, first + c]),
-    );
+    mesh.normals.extend(normals.map(|normal| unit(normal.as_dvec3())));
+    mesh.triangles.extend(triangles.iter().map(|&[a, b, c]| [first + a, first + b, first + c]));
     let material = model.name.parse().unwrap_or(0);
     mesh.materials.resize(mesh.triangles.len(), material);
 }

@@ -32,11 +32,7 @@ pub struct Part {
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names.
     pub fn new(folder: &'p Path) -> Self {
-        Files {
-            folder,
-            read: HashMap::new(),
-            warnings: Vec::new(),
-        }
+        Files { folder, read: HashMap::new(), warnings: Vec::new() }
     }
 
     fn load(&mut self, name: &str) -> Result<&Obj> {
@@ -71,11 +67,7 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Part> {
     if !mesh.positions.iter().all(|position| position.is_finite()) {
         return Err(table.fault("the mesh leaves the range of single precision; make it smaller"));
     }
-    Ok(Part {
-        mesh,
-        materials,
-        material,
-    })
+    Ok(Part { mesh, materials, material })
 }
 
 type Source = (Mesh, Vec<(String, Fields)>);
@@ -83,10 +75,7 @@ type Source = (Mesh, Vec<(String, Fields)>);
 fn source(table: &mut Table, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, files),
-        (false, true) => Ok((
-            from_shape(table)?,
-            vec![(DEFAULT.into(), Fields::default())],
-        )),
+        (false, true) => Ok((from_shape(table)?, vec![(DEFAULT.into(), Fields::default())])),
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
         (false, false) => Err(table.fault("[[mesh]] needs \"file\" or \"shape\"; add one")),
     }
@@ -110,8 +99,7 @@ fn from_file(table: &mut Table, files: &mut Files) -> Result<Source> {
 
 /// Does the path end like this, in capitals or not?
 pub fn is(path: &Path, extension: &str) -> bool {
-    path.extension()
-        .is_some_and(|end| end.eq_ignore_ascii_case(extension))
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension))
 }
 
 #[derive(Clone, Copy)]
@@ -122,11 +110,7 @@ enum Shape {
 }
 
 fn from_shape(table: &mut Table) -> Result<Mesh> {
-    let words = [
-        ("sphere", Shape::Sphere),
-        ("quad", Shape::Quad),
-        ("box", Shape::Box),
-    ];
+    let words = [("sphere", Shape::Sphere), ("quad", Shape::Quad), ("box", Shape::Box)];
     let shape = table.word("shape", &words)?;
     match table.need("shape", shape)? {
         Shape::Sphere => {

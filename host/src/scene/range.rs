@@ -8,40 +8,20 @@ pub struct Range {
 
 impl Range {
     /// A coordinate or an angle.
-    pub const ANY: Range = Range {
-        holds: |x| x.is_finite(),
-        says: "a finite number",
-    };
+    pub const ANY: Range = Range { holds: |x| x.is_finite(), says: "a finite number" };
     /// A share of light.
-    pub const SHARE: Range = Range {
-        holds: |x| (0.0..=1.0).contains(&x),
-        says: "between 0 and 1",
-    };
+    pub const SHARE: Range = Range { holds: |x| (0.0..=1.0).contains(&x), says: "between 0 and 1" };
     /// An amount of light, an exponent.
-    pub const AMOUNT: Range = Range {
-        holds: |x| x.is_finite() && x >= 0.0,
-        says: "a finite number of at least 0",
-    };
+    pub const AMOUNT: Range = Range { holds: |x| x.is_finite() && x >= 0.0, says: "a finite number of at least 0" };
     /// A length.
-    pub const LENGTH: Range = Range {
-        holds: |x| x.is_finite() && x > 0.0,
-        says: "a finite number greater than 0",
-    };
+    pub const LENGTH: Range = Range { holds: |x| x.is_finite() && x > 0.0, says: "a finite number greater than 0" };
     /// A factor, which may mirror.
-    pub const FACTOR: Range = Range {
-        holds: |x| x.is_finite() && x != 0.0,
-        says: "a finite number other than 0",
-    };
+    pub const FACTOR: Range = Range { holds: |x| x.is_finite() && x != 0.0, says: "a finite number other than 0" };
     /// A full angle of view or of a cone, in degrees.
-    pub const CONE: Range = Range {
-        holds: |x| x > 0.0 && x < 180.0,
-        says: "between 0 and 180 degrees, both exclusive",
-    };
+    pub const CONE: Range =
+        Range { holds: |x| x > 0.0 && x < 180.0, says: "between 0 and 180 degrees, both exclusive" };
     /// An index of refraction.
-    pub const IOR: Range = Range {
-        holds: |x| (1.0..=4.0).contains(&x),
-        says: "between 1 and 4",
-    };
+    pub const IOR: Range = Range { holds: |x| (1.0..=4.0).contains(&x), says: "between 1 and 4" };
 
     /// Is the number in the range? NaN never is.
     pub fn holds(&self, number: f32) -> bool {

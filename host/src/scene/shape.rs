@@ -23,10 +23,7 @@ pub fn sphere(center: Vec3, radius: f32, subdivisions: u32) -> Mesh {
 
 /// A parallelogram or any flat convex quadrilateral, from its corners counter-clockwise.
 pub fn quad(corners: [Vec3; 4]) -> Mesh {
-    Mesh {
-        positions: corners.to_vec(),
-        ..flat(vec![[0, 1, 2], [0, 2, 3]])
-    }
+    Mesh { positions: corners.to_vec(), ..flat(vec![[0, 1, 2], [0, 2, 3]]) }
 }
 
 /// A box along the axes from its least to its greatest corner, seen from outside.
@@ -36,56 +33,27 @@ pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
         Vec3::new(side(0), side(1), side(2))
     };
     // Bit 0 of a corner's number is x, bit 1 is y, bit 2 is z.
-    const SIDES: [[u32; 4]; 6] = [
-        [0, 4, 6, 2],
-        [1, 3, 7, 5],
-        [0, 1, 5, 4],
-        [2, 6, 7, 3],
-        [0, 2, 3, 1],
-        [4, 5, 7, 6],
-    ];
+    const SIDES: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
-    Mesh {
-        positions: (0..8).map(corner).collect(),
-        ..flat(SIDES.into_iter().flat_map(halves).collect())
-    }
+    Mesh { positions: (0..8).map(corner).collect(), ..flat(SIDES.into_iter().flat_map(halves).collect()) }
 }
 
 /// Triangles of one material.
 fn flat(triangles: Vec<[u32; 3]>) -> Mesh {
-    Mesh {
-        materials: vec![0; triangles.len()],
-        triangles,
-        ..Mesh::default()
-    }
+    Mesh { materials: vec![0; triangles.len()], triangles, ..Mesh::default() }
 }
 
 /// Unit vectors and triangles, counter-clockwise seen from outside.
 fn icosahedron() -> (Vec<DVec3>, Vec<[u32; 3]>) {
     let golden = (1.0 + 5f64.sqrt()) / 2.0;
     let mut points = Vec::new();
-    for (one, long) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (one, long) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         points.push(DVec3::new(one, long, 0.0).normalize());
     }
-    for (one, long) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (one, long) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         points.push(DVec3::new(0.0, one, long).normalize());
     }
-    for (one, long) in [
-        (-1.0, golden),
-        (1.0, golden),
-        (-1.0, -golden),
-        (1.0, -golden),
-    ] {
+    for (one, long) in [(-1.0, golden), (1.0, golden), (-1.0, -golden), (1.0, -golden)] {
         points.push(DVec3::new(long, 0.0, one).normalize());
     }
     let triangles = vec![

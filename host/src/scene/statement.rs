@@ -136,9 +136,7 @@ impl<'p> State<'p> {
         }
         self.text.push(b'\n');
         if corners < 3 {
-            return Err(format!(
-                "a face has at least 3 corners, not {corners}; remove it"
-            ));
+            return Err(format!("a face has at least 3 corners, not {corners}; remove it"));
         }
         self.triangles += corners - 2;
         if self.triangles > self.most {
@@ -154,9 +152,7 @@ impl<'p> State<'p> {
         index("texture vertex", parts.next(), self.textures)?;
         let normal = index("normal", parts.next(), self.normals)?;
         if position == 0 || parts.next().is_some() {
-            return Err(format!(
-                "the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"
-            ));
+            return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
         }
         Ok((position, normal))
     }
@@ -199,8 +195,7 @@ impl<'p> State<'p> {
         if self.libraries.contains(name) {
             return Ok(true);
         }
-        let path = file::inside(file::folder(self.path), name)
-            .map_err(|fault| Error::line(self.path, line, fault))?;
+        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
         if !path.exists() {
             return Ok(false);
         }
@@ -224,22 +219,13 @@ impl<'p> State<'p> {
             let fault = "there is no face in it; is it a Wavefront OBJ mesh?";
             return Err(Error::file(self.path, fault));
         }
-        let missing = self
-            .missing
-            .warn(self.path, "not found: its surfaces are grey");
+        let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
         // A missing file explains the missing materials.
-        let lost = self
-            .lost
-            .warn(self.path, "in none of its material files: drawn grey");
-        let unknown = self
-            .unknown
-            .warn(self.path, "ignored: only polygons are read");
+        let lost = self.lost.warn(self.path, "in none of its material files: drawn grey");
+        let unknown = self.unknown.warn(self.path, "ignored: only polygons are read");
         self.warnings.extend(missing.or(lost));
         self.warnings.extend(unknown);
-        Ok(Found {
-            materials: self.materials,
-            warnings: self.warnings,
-        })
+        Ok(Found { materials: self.materials, warnings: self.warnings })
     }
 }
 
@@ -252,9 +238,7 @@ fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {
     let mut words = lines::words(rest);
     match (words.next(), words.next(), words.next()) {
         (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
-        _ => Err(format!(
-            "{key} takes three numbers, not {rest:?}; add what is missing"
-        )),
+        _ => Err(format!("{key} takes three numbers, not {rest:?}; add what is missing")),
     }
 }
 
@@ -265,20 +249,12 @@ fn index(what: &str, word: Option<&str>, count: usize) -> Unplaced<usize> {
         Some(word) => word,
     };
     let Ok(number) = word.parse::<i64>() else {
-        return Err(format!(
-            "{what} {word:?} is no whole number; correct the face"
-        ));
+        return Err(format!("{what} {word:?} is no whole number; correct the face"));
     };
-    let absolute = if number < 0 {
-        (count as i64).saturating_add(number).saturating_add(1)
-    } else {
-        number
-    };
+    let absolute = if number < 0 { (count as i64).saturating_add(number).saturating_add(1) } else { number };
     match usize::try_from(absolute) {
         Ok(absolute) if (1..=count).contains(&absolute) => Ok(absolute),
         _ if number == 0 => Err(format!("{what} 0 does not exist; indices count from 1")),
-        _ => Err(format!(
-            "{what} {word} does not exist, {count} precede the face; correct it"
-        )),
+        _ => Err(format!("{what} {word} does not exist, {count} precede the face; correct it")),
     }
 }

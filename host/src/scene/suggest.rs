@@ -23,10 +23,7 @@ mod tests {
 
     #[test]
     fn the_nearest_name_is_suggested_and_a_far_one_is_not() {
-        assert_eq!(
-            suggest("colour", ["size", "color"]),
-            "did you mean \"color\"?"
-        );
+        assert_eq!(suggest("colour", ["size", "color"]), "did you mean \"color\"?");
         assert_eq!(suggest("glow", ["size", "color"]), "known are color, size");
         assert_eq!(suggest("x", []), "there are none");
     }

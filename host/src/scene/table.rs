@@ -32,21 +32,11 @@ impl<'s> Table<'s> {
     pub fn new(source: Source<'s>, name: impl Into<String>, at: usize, table: DeTable<'s>) -> Self {
         let mut entries: Vec<_> = table
             .into_iter()
-            .map(|(key, value)| Entry {
-                at: key.span().start,
-                key: key.into_inner().into_owned(),
-                value: Some(value),
-            })
+            .map(|(key, value)| Entry { at: key.span().start, key: key.into_inner().into_owned(), value: Some(value) })
             .collect();
         // The first unknown key of the file is the one to report.
         entries.sort_by_key(|entry| entry.at);
-        Table {
-            source,
-            name: name.into(),
-            at,
-            entries,
-            asked: Vec::new(),
-        }
+        Table { source, name: name.into(), at, entries, asked: Vec::new() }
     }
 
     /// Calls the table by a narrower name in messages: `a "spot" light`.
@@ -62,8 +52,7 @@ impl<'s> Table<'s> {
     /// A fault of a key's value; of the table where the key is missing.
     pub fn fault_of(&self, key: &str, message: impl Into<String>) -> Error {
         let entry = self.entries.iter().find(|entry| entry.key == key);
-        self.source
-            .fault(entry.map_or(self.at, |entry| entry.at), message)
+        self.source.fault(entry.map_or(self.at, |entry| entry.at), message)
     }
 
     /// The value of `key`, or the error that it is missing.
@@ -103,19 +92,13 @@ impl<'s> Table<'s> {
     /// A name: a string that is not empty.
     pub fn name(&mut self, key: &'static str) -> Result<Option<String>> {
         match self.text(key)? {
-            Some(name) if name.trim().is_empty() => {
-                Err(self.fault_of(key, format!("{key:?} is empty; give a name")))
-            }
+            Some(name) if name.trim().is_empty() => Err(self.fault_of(key, format!("{key:?} is empty; give a name"))),
             name => Ok(name),
         }
     }
 
     /// One of a few words.
-    pub fn word<T: Copy>(
-        &mut self,
-        key: &'static str,
-        words: &[(&'static str, T)],
-    ) -> Result<Option<T>> {
+    pub fn word<T: Copy>(&mut self, key: &'static str, words: &[(&'static str, T)]) -> Result<Option<T>> {
         let Some(text) = self.text(key)? else {
             return Ok(None);
         };
@@ -123,10 +106,7 @@ impl<'s> Table<'s> {
             Some((_, value)) => Ok(Some(*value)),
             None => Err(self.fault_of(
                 key,
-                format!(
-                    "unknown {key} {text:?}; {}",
-                    suggest(&text, words.iter().map(|(word, _)| *word))
-                ),
+                format!("unknown {key} {text:?}; {}", suggest(&text, words.iter().map(|(word, _)| *word))),
             )),
         }
     }
@@ -146,19 +126,14 @@ impl<'s> Table<'s> {
 
     /// A whole number from `least` to `most`.
     pub fn whole(&mut self, key: &'static str, least: u32, most: u32) -> Result<Option<u32>> {
-        self.map(key, |table, value| {
-            table.check_whole(key, &value, least, most)
-        })
+        self.map(key, |table, value| table.check_whole(key, &value, least, most))
     }
 
     /// Two whole numbers from `least` to `most`.
     pub fn pair(&mut self, key: &'static str, least: u32, most: u32) -> Result<Option<(u32, u32)>> {
         self.map(key, |table, value| {
             let items = table.items(key, &value, "two whole numbers, [width, height]", 2)?;
-            Ok((
-                table.check_whole(key, items[0], least, most)?,
-                table.check_whole(key, items[1], least, most)?,
-            ))
+            Ok((table.check_whole(key, items[0], least, most)?, table.check_whole(key, items[1], least, most)?))
         })
     }
 
@@ -192,9 +167,7 @@ impl<'s> Table<'s> {
         self.map(key, |parent, value| {
             let at = value.span().start;
             match value.into_inner() {
-                DeValue::Table(table) => {
-                    Ok(Table::new(parent.source, format!("[{key}]"), at, table))
-                }
+                DeValue::Table(table) => Ok(Table::new(parent.source, format!("[{key}]"), at, table)),
                 _ => Err(parent.fault_of(key, format!("{key:?} must be a table: [{key}]"))),
             }
         })
@@ -219,11 +192,7 @@ impl<'s> Table<'s> {
         })
     }
 
-    fn map<T>(
-        &mut self,
-        key: &'static str,
-        read: impl FnOnce(&Self, Value<'s>) -> Result<T>,
-    ) -> Result<Option<T>> {
+    fn map<T>(&mut self, key: &'static str, read: impl FnOnce(&Self, Value<'s>) -> Result<T>) -> Result<Option<T>> {
         self.asked.push(key);
         let entry = self.entries.iter_mut().find(|entry| entry.key == key);
         match entry.and_then(|entry| entry.value.take()) {
@@ -238,13 +207,7 @@ impl<'s> Table<'s> {
         self.source.fault(value.span().start, message)
     }
 
-    fn items<'v>(
-        &self,
-        key: &str,
-        value: &'v Value<'s>,
-        wanted: &str,
-        count: usize,
-    ) -> Result<Vec<&'v Value<'s>>> {
+    fn items<'v>(&self, key: &str, value: &'v Value<'s>, wanted: &str, count: usize) -> Result<Vec<&'v Value<'s>>> {
         let DeValue::Array(array) = value.get_ref() else {
             return Err(self.mismatch(key, wanted, value));
         };
@@ -272,10 +235,7 @@ impl<'s> Table<'s> {
         };
         match digits.parse() {
             Ok(number) if range.holds(number) => Ok(number),
-            _ => Err(self.source.fault(
-                value.span().start,
-                format!("{key:?} must be {}, not {digits}", range.says()),
-            )),
+            _ => Err(self.source.fault(value.span().start, format!("{key:?} must be {}, not {digits}", range.says()))),
         }
     }
 
@@ -285,18 +245,13 @@ impl<'s> Table<'s> {
         };
         match u32::from_str_radix(number.as_str(), number.radix()) {
             Ok(number) if (least..=most).contains(&number) => Ok(number),
-            _ => Err(self.source.fault(
-                value.span().start,
-                format!("{key:?} must be between {least} and {most}, not {number}"),
-            )),
+            _ => Err(self
+                .source
+                .fault(value.span().start, format!("{key:?} must be between {least} and {most}, not {number}"))),
         }
     }
 }
 
 fn article(noun: &str) -> &'static str {
-    if noun.starts_with(['a', 'e', 'i', 'o']) {
-        "an"
-    } else {
-        "a"
-    }
+    if noun.starts_with(['a', 'e', 'i', 'o']) { "an" } else { "a" }
 }

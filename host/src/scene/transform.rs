@@ -38,21 +38,9 @@ impl Transform {
     /// (counter-clockwise looking against the axis), then moves.
     pub fn new(scale: Vec3, rotate: Vec3, translate: Vec3) -> Self {
         let [x, y, z] = rotate.to_array().map(|angle| sin_cos(f64::from(angle)));
-        let about_x = DMat3::from_cols(
-            DVec3::X,
-            DVec3::new(0.0, x.1, x.0),
-            DVec3::new(0.0, -x.0, x.1),
-        );
-        let about_y = DMat3::from_cols(
-            DVec3::new(y.1, 0.0, -y.0),
-            DVec3::Y,
-            DVec3::new(y.0, 0.0, y.1),
-        );
-        let about_z = DMat3::from_cols(
-            DVec3::new(z.1, z.0, 0.0),
-            DVec3::new(-z.0, z.1, 0.0),
-            DVec3::Z,
-        );
+        let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
+        let about_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
+        let about_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
         Transform {
             linear: about_z * about_y * about_x * DMat3::from_diagonal(scale.as_dvec3()),
             translate: translate.as_dvec3(),
@@ -64,11 +52,7 @@ impl Transform {
         for position in &mut mesh.positions {
             *position = (self.linear * position.as_dvec3() + self.translate).as_vec3();
         }
-        let DMat3 {
-            x_axis: x,
-            y_axis: y,
-            z_axis: z,
-        } = self.linear;
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.linear;
         // The cofactors are the inverse's transpose but for the length and the determinant's sign.
         let mirrored = x.cross(y).dot(z) < 0.0;
         let sign = if mirrored { -1.0 } else { 1.0 };
@@ -77,9 +61,7 @@ impl Transform {
             *normal = unit(cofactors * normal.as_dvec3() * sign);
         }
         if mirrored {
-            mesh.triangles
-                .iter_mut()
-                .for_each(|[_, b, c]| std::mem::swap(b, c));
+            mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }
     }
 }

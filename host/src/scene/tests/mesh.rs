@@ -72,12 +72,7 @@ fn a_transform_scales_then_turns_then_moves() {
     // About x, y turns to z and z to -y.
     assert_eq!(
         mesh.positions,
-        [
-            Vec3::new(12.0, 0.0, 0.0),
-            Vec3::new(10.0, 0.0, 3.0),
-            Vec3::new(10.0, -4.0, 0.0),
-            Vec3::new(12.0, -4.0, 3.0),
-        ]
+        [Vec3::new(12.0, 0.0, 0.0), Vec3::new(10.0, 0.0, 3.0), Vec3::new(10.0, -4.0, 0.0), Vec3::new(12.0, -4.0, 3.0),]
     );
     let mut turned = shape::quad([Vec3::X, Vec3::Y, Vec3::Z, Vec3::ZERO]);
     Transform::new(Vec3::ONE, Vec3::new(90.0, 90.0, 90.0), Vec3::ZERO).apply(&mut turned);
@@ -87,11 +82,7 @@ fn a_transform_scales_then_turns_then_moves() {
 
 #[test]
 fn a_mirror_keeps_the_outside_out_and_a_stretch_keeps_normals_upright() {
-    for scale in [
-        Vec3::new(-1.0, 1.0, 1.0),
-        Vec3::splat(-2.0),
-        Vec3::new(1.0, 2.0, 0.5),
-    ] {
+    for scale in [Vec3::new(-1.0, 1.0, 1.0), Vec3::splat(-2.0), Vec3::new(1.0, 2.0, 0.5)] {
         let mut ball = shape::sphere(Vec3::ZERO, 1.0, 4);
         Transform::new(scale, Vec3::new(10.0, 20.0, 30.0), Vec3::ONE).apply(&mut ball);
         assert_closed(&ball);
@@ -112,11 +103,7 @@ fn a_mirror_keeps_the_outside_out_and_a_stretch_keeps_normals_upright() {
 #[test]
 fn smoothing_joins_vertices_at_one_place_and_leaves_given_normals() {
     let mut mesh = shape::cuboid(-Vec3::ONE, Vec3::ONE);
-    mesh.positions = mesh
-        .triangles
-        .iter()
-        .flat_map(|&t| corners(&mesh, t))
-        .collect();
+    mesh.positions = mesh.triangles.iter().flat_map(|&t| corners(&mesh, t)).collect();
     mesh.triangles = (0..12).map(|t| [3 * t, 3 * t + 1, 3 * t + 2]).collect();
     mesh.normals = vec![Vec3::ZERO; 36];
     mesh.normals[0] = Vec3::NEG_X;
@@ -126,9 +113,7 @@ fn smoothing_joins_vertices_at_one_place_and_leaves_given_normals() {
     for (position, normal) in mesh.positions.iter().zip(&mesh.normals).skip(1) {
         assert!((normal.length() - 1.0).abs() < 1e-6);
         assert!(normal.dot(*position) > 1.0);
-        let same = *seen
-            .entry(position.to_array().map(f32::to_bits))
-            .or_insert(*normal);
+        let same = *seen.entry(position.to_array().map(f32::to_bits)).or_insert(*normal);
         assert_eq!(same, *normal);
     }
     assert_eq!(seen.len(), 8);
@@ -150,12 +135,7 @@ fn smooth_decides_over_a_file_s_normals() {
 
 #[test]
 fn the_framing_camera_sees_every_vertex() {
-    for (at, radius, aspect) in [
-        (0.0, 1.0, 1.0),
-        (1e3, 0.5, 2.0),
-        (-5.0, 1e6, 0.4),
-        (0.0, 1e-6, 1.0),
-    ] {
+    for (at, radius, aspect) in [(0.0, 1.0, 1.0), (1e3, 0.5, 2.0), (-5.0, 1e6, 0.4), (0.0, 1e-6, 1.0)] {
         let ball = shape::sphere(Vec3::splat(at), radius, 3);
         let camera = frame::camera(&ball, aspect).unwrap();
         let forward = (camera.target - camera.eye).normalize();
@@ -178,10 +158,7 @@ fn the_framing_camera_sees_every_vertex() {
 
 #[test]
 fn a_mesh_of_one_place_is_framed() {
-    let dot = Mesh {
-        positions: vec![Vec3::splat(7.0)],
-        ..Mesh::default()
-    };
+    let dot = Mesh { positions: vec![Vec3::splat(7.0)], ..Mesh::default() };
     let camera = frame::camera(&dot, 1.0).unwrap();
     assert_ne!(camera.eye, camera.target);
 }

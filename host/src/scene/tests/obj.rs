@@ -9,9 +9,7 @@ use super::{Folder, TRIANGLE, assert_refused};
 use crate::scene::{Mesh, Scene, mtl, obj};
 
 fn mesh(text: &str) -> Mesh {
-    obj::parse(Path::new("a.obj"), BufReader::new(text.as_bytes()), 9)
-        .unwrap()
-        .mesh
+    obj::parse(Path::new("a.obj"), BufReader::new(text.as_bytes()), 9).unwrap().mesh
 }
 
 fn with_material(mtl: &str) -> (Scene, Vec<String>) {
@@ -30,21 +28,13 @@ const REFUSED: &[(&str, usize, &str)] = &[
     ("v 1 2 # 3\n", 1, "three numbers"),
     ("vn 1 2\n", 1, "three numbers"),
     ("vn 1 2 x\n", 1, "no number"),
-    (
-        "v 0 0 0\nf 1 1 2\n",
-        2,
-        "vertex 2 does not exist, 1 precede",
-    ),
+    ("v 0 0 0\nf 1 1 2\n", 2, "vertex 2 does not exist, 1 precede"),
     ("v 0 0 0\nf 1 1 0\n", 2, "count from 1"),
     ("v 0 0 0\nf 1 1 -2\n", 2, "vertex -2 does not exist"),
     ("v 0 0 0\nf 1 1 -9223372036854775808\n", 2, "does not exist"),
     ("v 0 0 0\nf 1 1 9223372036854775807\n", 2, "does not exist"),
     ("v 0 0 0\nf 1 1 9223372036854775808\n", 2, "no whole number"),
-    (
-        "v 0 0 0\nf 1/1 1/1 1/1\n",
-        2,
-        "texture vertex 1 does not exist",
-    ),
+    ("v 0 0 0\nf 1/1 1/1 1/1\n", 2, "texture vertex 1 does not exist"),
     ("v 0 0 0\nf 1//1 1//1 1//1\n", 2, "normal 1 does not exist"),
     ("v 0 0 0\nvn 0 0 1\nf 1//0 1//1 1//1\n", 3, "normal 0"),
     ("v 0 0 0\nf 1/1/1/1 1 1\n", 2, ""),
@@ -101,27 +91,15 @@ fn what_is_no_regular_file_is_refused_without_waiting_for_it() {
     let pipe = folder.path("pipe.obj");
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.unwrap().success());
-    assert_refused(
-        &folder.refuse("pipe.obj"),
-        "pipe.obj",
-        None,
-        "no regular file",
-    );
+    assert_refused(&folder.refuse("pipe.obj"), "pipe.obj", None, "no regular file");
 }
 
 #[test]
 fn a_file_beyond_the_limit_is_refused_by_its_size() {
     let folder = Folder::new(&[("big.obj", b"v")]);
-    let file = std::fs::File::options()
-        .write(true)
-        .open(folder.path("big.obj"));
+    let file = std::fs::File::options().write(true).open(folder.path("big.obj"));
     file.unwrap().set_len((4 << 30) + 1).unwrap();
-    assert_refused(
-        &folder.refuse("big.obj"),
-        "big.obj",
-        None,
-        "4294967297 bytes",
-    );
+    assert_refused(&folder.refuse("big.obj"), "big.obj", None, "4294967297 bytes");
 }
 
 #[cfg(unix)]
@@ -148,23 +126,14 @@ fn triangles_beyond_the_limit_are_refused() {
     let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 1 2\n";
     let parse = |most| obj::parse(Path::new("a.obj"), &text[..], most);
     assert_eq!(parse(4).unwrap().mesh.triangles.len(), 4);
-    assert_refused(
-        &parse(3).unwrap_err(),
-        "a.obj",
-        Some(5),
-        "more than 3 triangles",
-    );
+    assert_refused(&parse(3).unwrap_err(), "a.obj", Some(5), "more than 3 triangles");
 }
 
 #[test]
 fn indices_relative_polygons_marks_and_colours_are_read() {
-    let text =
-        "\u{feff}v 0 0 0 1 0 0\r\nv 1 0 0\r\nv 1 1 0 0.5\r\nv 0 1 0 # four\r\nf -4 -3 -2 -1\r\n";
+    let text = "\u{feff}v 0 0 0 1 0 0\r\nv 1 0 0\r\nv 1 1 0 0.5\r\nv 0 1 0 # four\r\nf -4 -3 -2 -1\r\n";
     let mesh = mesh(text);
-    assert_eq!(
-        mesh.positions,
-        [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]
-    );
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
     assert_eq!(mesh.triangles, [[0, 1, 2], [0, 2, 3]]);
     assert!(mesh.normals.is_empty());
 }
@@ -191,23 +160,16 @@ fn missing_materials_are_grey_and_warned_of_once() {
     assert_eq!(scene.materials.len(), 1);
     assert_eq!(scene.materials[0].name, "default");
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    assert!(
-        warnings[0].contains("a.obj:1: material file \"b.mtl\" not found"),
-        "{warnings:?}"
-    );
+    assert!(warnings[0].contains("a.obj:1: material file \"b.mtl\" not found"), "{warnings:?}");
     let (_, warnings) = folder.load("c.obj").unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
-    assert!(
-        warnings[0].contains("c.obj:2: material \"x\" and 1 more"),
-        "{warnings:?}"
-    );
+    assert!(warnings[0].contains("c.obj:2: material \"x\" and 1 more"), "{warnings:?}");
     assert!(folder.load("d.obj").unwrap().1.is_empty());
 }
 
 #[test]
 fn material_files_are_found_with_blanks_and_as_a_list() {
-    let obj =
-        b"mtllib a b.mtl\nmtllib c.mtl d.mtl\nv 0 0 0\nusemtl a b\nf 1 1 1\nusemtl d#1\nf 1 1 1\n";
+    let obj = b"mtllib a b.mtl\nmtllib c.mtl d.mtl\nv 0 0 0\nusemtl a b\nf 1 1 1\nusemtl d#1\nf 1 1 1\n";
     let folder = Folder::new(&[
         ("x.obj", obj),
         ("a b.mtl", b"newmtl a b\nKd 1 0 0\n"),
@@ -246,19 +208,12 @@ fn materials_that_make_no_sense_are_refused() {
 
 #[test]
 fn textures_and_clamped_numbers_are_warned_of_once_a_file() {
-    let (scene, warnings) =
-        with_material("newmtl m\nKd 2 -1 0.5\nKs 0.5\nNi 0\nmap_Kd a.png\nmap_Ks b c.png\n");
+    let (scene, warnings) = with_material("newmtl m\nKd 2 -1 0.5\nKs 0.5\nNi 0\nmap_Kd a.png\nmap_Ks b c.png\n");
     assert_eq!(scene.materials[0].diffuse, Vec3::new(1.0, 0.0, 0.5));
     assert_eq!(scene.materials[0].specular, Vec3::splat(0.5));
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(
-        warnings[0].contains("a.mtl:5: map_Kd and 1 more ignored"),
-        "{warnings:?}"
-    );
-    assert!(
-        warnings[1].contains("a.mtl:2: Kd and 1 more out of range"),
-        "{warnings:?}"
-    );
+    assert!(warnings[0].contains("a.mtl:5: map_Kd and 1 more ignored"), "{warnings:?}");
+    assert!(warnings[1].contains("a.mtl:2: Kd and 1 more out of range"), "{warnings:?}");
 }
 
 #[test]
@@ -280,9 +235,6 @@ fn materials_map_to_the_illumination_model() {
     assert_eq!((filtered.transmission, filtered.ior), (Vec3::Y * 0.5, 1.0));
     // Some exporters write this of everything.
     let opaque = material("Kd 1 1 1\nillum 4\nd 1\nTf 1 1 1\nNi 1\n");
-    assert_eq!(
-        (opaque.transmission, opaque.diffuse),
-        (Vec3::ZERO, Vec3::ONE)
-    );
+    assert_eq!((opaque.transmission, opaque.diffuse), (Vec3::ZERO, Vec3::ONE));
     assert_eq!(material("illum 4\nNi 1.3\n").ior, 1.3);
 }

@@ -29,10 +29,7 @@ fn the_documented_example_loads_as_documented() {
     assert_eq!(scene.ambient, Vec3::splat(0.1));
     assert_eq!(
         scene.lights[0],
-        Light::Point {
-            position: Vec3::new(2.0, 4.0, 3.0),
-            colour: Vec3::new(1.0, 0.9, 0.8) * 0.8,
-        }
+        Light::Point { position: Vec3::new(2.0, 4.0, 3.0), colour: Vec3::new(1.0, 0.9, 0.8) * 0.8 }
     );
     let Light::Spot { outer, inner, .. } = scene.lights[2] else {
         panic!("{:?}", scene.lights[2]);
@@ -68,27 +65,11 @@ fn numbers_are_read_as_toml_writes_them() {
 const REFUSED: &[(&str, usize, &str)] = &[
     ("[[mesh]\n", 1, ""),
     ("x = 1\nx = 2\n", 2, "duplicate key"),
-    (
-        "[[mesh]]\nshape = \"sphere\"\n\n[[lihgt]]\nkind = \"point\"\n",
-        4,
-        "did you mean \"light\"?",
-    ),
-    (
-        "[[mesh]]\nshape = \"sphere\"\ncolour = 1\n",
-        3,
-        "unknown key \"colour\"",
-    ),
+    ("[[mesh]]\nshape = \"sphere\"\n\n[[lihgt]]\nkind = \"point\"\n", 4, "did you mean \"light\"?"),
+    ("[[mesh]]\nshape = \"sphere\"\ncolour = 1\n", 3, "unknown key \"colour\""),
     ("[background]\ncolour = [0, 0, 0]\n", 1, "needs \"color\""),
-    (
-        "[background]\ncolor = [0, 0, 0]\nambient = [0, 0, 0]\n",
-        3,
-        "above the first table",
-    ),
-    (
-        "[background]\ncolor = [0, 0, 0]\nzenith = [0, 0, 0]\n",
-        2,
-        "remove the one",
-    ),
+    ("[background]\ncolor = [0, 0, 0]\nambient = [0, 0, 0]\n", 3, "above the first table"),
+    ("[background]\ncolor = [0, 0, 0]\nzenith = [0, 0, 0]\n", 2, "remove the one"),
     ("[background]\nzenith = [0, 0, 0]\n", 1, "needs \"horizon\""),
     ("[background]\ncolor = [0, 0]\n", 2, "not 2 of them"),
     ("[background]\ncolor = [\n0,\n-1, 0]\n", 4, "at least 0"),
@@ -101,47 +82,19 @@ const REFUSED: &[(&str, usize, &str)] = &[
     ("[light]\nkind = \"point\"\n", 1, "[[light]]"),
     ("[[render]]\nsize = [1, 1]\n", 1, "[render]"),
     ("[render]\nsize = [0, 1]\n", 2, "between 1 and 16384"),
-    (
-        "[render]\nsize = [1.5, 1]\n",
-        2,
-        "a whole number, not a float",
-    ),
+    ("[render]\nsize = [1.5, 1]\n", 2, "a whole number, not a float"),
     ("[render]\nsize = 5\n", 2, "two whole numbers"),
     ("[render]\nsamples = 65\n", 2, "between 1 and 64"),
     ("[render]\nbounces = -1\n", 2, "between 0 and 32"),
     ("[render]\nmin_contribution = 2\n", 2, "between 0 and 1"),
     ("[render]\nculling = 1\n", 2, "true or false"),
-    (
-        "\n[[camera]]\nname = \"a\"\ntarget = [0, 0, 0]\n",
-        2,
-        "needs \"eye\"",
-    ),
+    ("\n[[camera]]\nname = \"a\"\ntarget = [0, 0, 0]\n", 2, "needs \"eye\""),
     ("[[camera]]\nname = \" \"\n", 2, "give a name"),
-    (
-        "[[camera]]\nname = \"a\"\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n",
-        4,
-        "camera \"a\" looks at its own eye",
-    ),
-    (
-        "[[camera]]\nname = \"a\"\neye = [0, 5, 0]\ntarget = [0, 0, 0]\n",
-        4,
-        "camera \"a\" has its up along",
-    ),
-    (
-        "[[camera]]\nname = \"a\"\neye = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, -2, 0]\n",
-        5,
-        "up aside",
-    ),
-    (
-        "[[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nup = [0, 0, 0]\n",
-        5,
-        "up aside",
-    ),
-    (
-        "[[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 180\n",
-        5,
-        "between 0 and 180",
-    ),
+    ("[[camera]]\nname = \"a\"\neye = [1, 1, 1]\ntarget = [1, 1, 1]\n", 4, "camera \"a\" looks at its own eye"),
+    ("[[camera]]\nname = \"a\"\neye = [0, 5, 0]\ntarget = [0, 0, 0]\n", 4, "camera \"a\" has its up along"),
+    ("[[camera]]\nname = \"a\"\neye = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, -2, 0]\n", 5, "up aside"),
+    ("[[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nup = [0, 0, 0]\n", 5, "up aside"),
+    ("[[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 180\n", 5, "between 0 and 180"),
     (
         "[[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n\
       [[camera]]\nname = \"a\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n",
@@ -150,144 +103,44 @@ const REFUSED: &[(&str, usize, &str)] = &[
     ),
     ("[[light]]\nposition = [0, 0, 0]\n", 1, "needs \"kind\""),
     ("[[light]]\nkind = \"pont\"\n", 2, "did you mean \"point\"?"),
-    (
-        "[[light]]\nkind = \"point\"\n",
-        1,
-        "a point light needs \"position\"",
-    ),
-    (
-        "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nangle = 3\n",
-        4,
-        "unknown key \"angle\" in a point light",
-    ),
-    (
-        "[[light]]\nkind = \"point\"\ncolor = [0, -1, 0]\n",
-        3,
-        "at least 0",
-    ),
-    (
-        "[[light]]\nkind = \"point\"\ncolor = [1e38, 0, 0]\nintensity = 1e38\n",
-        4,
-        "lower the intensity",
-    ),
-    (
-        "[[light]]\nkind = \"directional\"\ndirection = [0, 0, 0]\n",
-        3,
-        "the direction is zero",
-    ),
-    (
-        "[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 1, 0]\n",
-        4,
-        "move its target",
-    ),
-    (
-        "[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 0, 0]\nangle = 180\n",
-        5,
-        "between 0 and 180",
-    ),
+    ("[[light]]\nkind = \"point\"\n", 1, "a point light needs \"position\""),
+    ("[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\nangle = 3\n", 4, "unknown key \"angle\" in a point light"),
+    ("[[light]]\nkind = \"point\"\ncolor = [0, -1, 0]\n", 3, "at least 0"),
+    ("[[light]]\nkind = \"point\"\ncolor = [1e38, 0, 0]\nintensity = 1e38\n", 4, "lower the intensity"),
+    ("[[light]]\nkind = \"directional\"\ndirection = [0, 0, 0]\n", 3, "the direction is zero"),
+    ("[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 1, 0]\n", 4, "move its target"),
+    ("[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 0, 0]\nangle = 180\n", 5, "between 0 and 180"),
     (
         "[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 0, 0]\nangle = 9\nsoftness = 1.5\n",
         6,
         "between 0 and 1",
     ),
     ("[[material]]\ndiffuse = [0, 0, 0]\n", 1, "needs \"name\""),
-    (
-        "[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n",
-        4,
-        "a second material \"a\"",
-    ),
-    (
-        "[[material]]\nname = \"a\"\ndiffuse = [0, 0, 1.5]\n",
-        3,
-        "between 0 and 1",
-    ),
-    (
-        "[[material]]\nname = \"a\"\nior = 0.5\n",
-        3,
-        "between 1 and 4",
-    ),
-    (
-        "[[material]]\nname = \"a\"\nshininess = -1\n",
-        3,
-        "at least 0",
-    ),
-    (
-        "[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0] }\n",
-        3,
-        "needs \"size\"",
-    ),
-    (
-        "[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0], size = 0 }\n",
-        3,
-        "greater than 0",
-    ),
-    (
-        "[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0], size = 1, sise = 1 }\n",
-        3,
-        "unknown key \"sise\"",
-    ),
+    ("[[material]]\nname = \"a\"\n[[material]]\nname = \"a\"\n", 4, "a second material \"a\""),
+    ("[[material]]\nname = \"a\"\ndiffuse = [0, 0, 1.5]\n", 3, "between 0 and 1"),
+    ("[[material]]\nname = \"a\"\nior = 0.5\n", 3, "between 1 and 4"),
+    ("[[material]]\nname = \"a\"\nshininess = -1\n", 3, "at least 0"),
+    ("[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0] }\n", 3, "needs \"size\""),
+    ("[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0], size = 0 }\n", 3, "greater than 0"),
+    ("[[material]]\nname = \"a\"\nchecker = { color = [0, 0, 0], size = 1, sise = 1 }\n", 3, "unknown key \"sise\""),
     ("[[mesh]]\nmaterial = \"a\"\n", 1, "\"file\" or \"shape\""),
-    (
-        "[[mesh]]\nfile = \"a.obj\"\nshape = \"box\"\n",
-        3,
-        "a file or a shape",
-    ),
-    (
-        "[[mesh]]\nfile = \"a.obj\"\nradius = 1\n",
-        3,
-        "unknown key \"radius\"",
-    ),
+    ("[[mesh]]\nfile = \"a.obj\"\nshape = \"box\"\n", 3, "a file or a shape"),
+    ("[[mesh]]\nfile = \"a.obj\"\nradius = 1\n", 3, "unknown key \"radius\""),
     ("[[mesh]]\nfile = \"b.obj\"\n", 2, "no such file"),
     ("[[mesh]]\nfile = \"\"\n", 2, "give a name"),
     ("[[mesh]]\nfile = \".\"\n", 2, "this is a folder"),
     ("[[mesh]]\nfile = \"scene.toml\"\n", 2, "is no .obj"),
     ("[[mesh]]\nshape = \"cube\"\n", 2, "unknown shape \"cube\""),
-    (
-        "[[mesh]]\nshape = \"sphere\"\nradius = 0\n",
-        3,
-        "greater than 0",
-    ),
-    (
-        "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 9\n",
-        3,
-        "between 0 and 8",
-    ),
-    (
-        "[[mesh]]\nshape = \"sphere\"\nradius = 3e38\ncenter = [3e38, 0, 0]\n",
-        1,
-        "leaves the range",
-    ),
-    (
-        "[[mesh]]\nshape = \"quad\"\n",
-        1,
-        "a quad needs \"corners\"",
-    ),
-    (
-        "[[mesh]]\nshape = \"quad\"\ncorners = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n",
-        3,
-        "not 3 of them",
-    ),
-    (
-        "[[mesh]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]\n",
-        4,
-        "swap them",
-    ),
-    (
-        "[[mesh]]\nfile = \"a.obj\"\nscale = [1, 0, 1]\n",
-        3,
-        "other than 0",
-    ),
+    ("[[mesh]]\nshape = \"sphere\"\nradius = 0\n", 3, "greater than 0"),
+    ("[[mesh]]\nshape = \"sphere\"\nsubdivisions = 9\n", 3, "between 0 and 8"),
+    ("[[mesh]]\nshape = \"sphere\"\nradius = 3e38\ncenter = [3e38, 0, 0]\n", 1, "leaves the range"),
+    ("[[mesh]]\nshape = \"quad\"\n", 1, "a quad needs \"corners\""),
+    ("[[mesh]]\nshape = \"quad\"\ncorners = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\n", 3, "not 3 of them"),
+    ("[[mesh]]\nshape = \"box\"\nmin = [0, 0, 0]\nmax = [1, 0, 1]\n", 4, "swap them"),
+    ("[[mesh]]\nfile = \"a.obj\"\nscale = [1, 0, 1]\n", 3, "other than 0"),
     ("[[mesh]]\nfile = \"a.obj\"\nscale = 0\n", 3, "other than 0"),
-    (
-        "[[mesh]]\nfile = \"a.obj\"\nrotate = [inf, 0, 0]\n",
-        3,
-        "finite",
-    ),
-    (
-        "[[mesh]]\nfile = \"a.obj\"\nmaterial = \"rad\"\n[[material]]\nname = \"red\"\n",
-        3,
-        "did you mean \"red\"?",
-    ),
+    ("[[mesh]]\nfile = \"a.obj\"\nrotate = [inf, 0, 0]\n", 3, "finite"),
+    ("[[mesh]]\nfile = \"a.obj\"\nmaterial = \"rad\"\n[[material]]\nname = \"red\"\n", 3, "did you mean \"red\"?"),
 ];
 
 #[test]
@@ -317,12 +170,7 @@ fn text_that_is_not_utf8_is_refused() {
 fn a_fault_in_a_mesh_names_the_mesh() {
     let scene = b"[[mesh]]\nfile = \"b.obj\"\n";
     let folder = Folder::new(&[("scene.toml", scene), ("b.obj", b"v 0 0\n")]);
-    assert_refused(
-        &folder.refuse("scene.toml"),
-        "b.obj",
-        Some(1),
-        "three numbers",
-    );
+    assert_refused(&folder.refuse("scene.toml"), "b.obj", Some(1), "three numbers");
 }
 
 #[test]
@@ -339,16 +187,12 @@ fn a_material_overrides_what_it_says_of_a_material_file() {
     let [warning] = &warnings[..] else {
         panic!("{warnings:?}");
     };
-    assert!(
-        warning.ends_with("scene.toml:7: no surface has the material \"idle\""),
-        "{warning}"
-    );
+    assert!(warning.ends_with("scene.toml:7: no surface has the material \"idle\""), "{warning}");
 }
 
 #[test]
 fn a_mesh_s_material_covers_it_all_and_may_be_one_of_its_file() {
-    let obj =
-        b"mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n";
+    let obj = b"mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl red\nf 1 2 3\nusemtl blue\nf 3 2 1\n";
     let mtl = b"newmtl red\nKd 1 0 0\nnewmtl blue\nKd 0 0 1\n";
     let scene = b"[[mesh]]\nfile = \"b.obj\"\nmaterial = \"blue\"\n";
     let folder = Folder::new(&[("scene.toml", scene), ("b.obj", obj), ("b.mtl", mtl)]);
@@ -360,8 +204,7 @@ fn a_mesh_s_material_covers_it_all_and_may_be_one_of_its_file() {
 
 #[test]
 fn materials_of_one_name_in_two_files_stay_apart_and_a_file_twice_is_one() {
-    let scene =
-        b"[[mesh]]\nfile = \"a.obj\"\n[[mesh]]\nfile = \"b.obj\"\n[[mesh]]\nfile = \"a.obj\"\n";
+    let scene = b"[[mesh]]\nfile = \"a.obj\"\n[[mesh]]\nfile = \"b.obj\"\n[[mesh]]\nfile = \"a.obj\"\n";
     let a = b"mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
     let b = b"mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl m\nf 1 2 3\n";
     let folder = Folder::new(&[

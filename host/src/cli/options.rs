@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::method::Method;
 use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
@@ -57,6 +58,9 @@ pub(super) struct On {
     /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
     #[arg(long, value_enum, default_value_t = Precision::Exact, hide_possible_values = false)]
     pub precision: Precision,
+    /// How rays are followed; every method gives the same picture
+    #[arg(long, value_enum, default_value_t = Method::IfIf)]
+    pub method: Method,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -167,7 +171,7 @@ impl On {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
         let (precision, adapter) = (self.precision, self.adapter.clone());
-        Ok(Choice { device, precision, adapter, no_passthrough: self.no_passthrough, threads })
+        Ok(Choice { device, precision, method: self.method, adapter, no_passthrough: self.no_passthrough, threads })
     }
 }
 

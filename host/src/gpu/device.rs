@@ -119,6 +119,8 @@ impl Gpu {
     }
 }
 
+/// Keeps the first fault, its lines made one.
 fn note(fault: &Mutex<Option<String>>, message: String) {
-    fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(message);
+    let lines: Vec<&str> = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
+    fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(lines.join("; "));
 }

@@ -7,13 +7,15 @@ use eyerays_shader::data::Features;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::stage::{self, NON_FINITE, RECORDS, Wave};
-use eyerays_shader::traverse::{self, IfIf, Packet};
+use eyerays_shader::traverse::{
+    self, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile,
+};
 use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::method::Method;
+use crate::method::{Method, Traversal};
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -50,11 +52,16 @@ pub struct Records<R: Scalar> {
 ///
 /// # Errors
 /// If the film or the threads can't be had.
-pub fn render<R>(packed: &Packed, method: Method, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Result<(Film, Rays)>
+pub fn render<R>(
+    packed: &Packed,
+    traversal: Traversal,
+    threads: usize,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<(Film, Rays)>
 where
     R: Scalar<Record: Send + Sync>,
 {
-    observe::<R>(packed, method, threads, done, &())
+    observe::<R>(packed, traversal, threads, done, &())
 }
 
 /// [`render`], with somebody who looks on.
@@ -62,7 +69,11 @@ where
 /// # Errors
 /// As [`render`].
 pub fn observe<R>(
-    packed: &Packed, method: Method, threads: usize, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>,
+    packed: &Packed,
+    traversal: Traversal,
+    threads: usize,
+    done: &(dyn Fn(u64) + Sync),
+    observer: &dyn Observer<R>,
 ) -> Result<(Film, Rays)>
 where
     R: Scalar<Record: Send + Sync>,
@@ -74,7 +85,7 @@ where
     pool.install(|| {
         // A tile a task: coarser splitting leaves threads idle at the end.
         tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-            let (film, secondary) = render_tile(packed, method, region, observer);
+            let (film, secondary) = render_tile(packed, traversal, region, observer);
             let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             keep::<R>(region, &film, image, rays);
             rays.secondary += secondary;
@@ -101,7 +112,10 @@ fn tiles(packed: &Packed) -> Vec<Region> {
 
 /// Every sample of a tile; its film and how many secondary rays it took.
 fn render_tile<R: Scalar>(
-    packed: &Packed, method: Method, region: Region, observer: &dyn Observer<R>,
+    packed: &Packed,
+    traversal: Traversal,
+    region: Region,
+    observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
     let slots = packed.frame(region, 0).limits.z as usize;
     let black = R::store(V3::zero(), 0);
@@ -115,14 +129,16 @@ fn render_tile<R: Scalar>(
     let mut secondary = 0;
     for sample in 0..packed.samples() {
         let frame = packed.frame(region, sample);
-        let mut geometry =
-            Geometry { frame: &frame, features: packed.features, nodes: &packed.nodes, triangles: &packed.triangles };
+        let mut geometry = Geometry {
+            frame: &frame,
+            features: packed.features,
+            tuning: traversal.tuning,
+            nodes: &packed.nodes,
+            triangles: &packed.triangles,
+        };
         let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, s).inside).collect();
         loop {
-            match method {
-                Method::IfIf => trace::<R, IfIf>(&geometry, &looks, &queue, &mut records),
-                Method::Packet => trace::<R, Packet<Alone>>(&geometry, &looks, &queue, &mut records),
-            }
+            trace::<R>(traversal.method, &geometry, &looks, &queue, &mut records);
             observer.wave(&geometry, &queue, &records);
             shade(&geometry, &looks, &mut queue, &mut records);
             if queue.is_empty() {
@@ -135,9 +151,33 @@ fn render_tile<R: Scalar>(
     (records.film, secondary)
 }
 
+/// [`trace_by`] the method of this name.
+fn trace<R: Scalar>(
+    method: Method,
+    geometry: &Geometry<'_>,
+    looks: &Looks<'_>,
+    queue: &[u32],
+    records: &mut Records<R>,
+) {
+    let trace = match method {
+        Method::IfIf => trace_by::<R, IfIf>,
+        Method::WhileWhile => trace_by::<R, WhileWhile>,
+        Method::Speculative => trace_by::<R, Speculative<Alone>>,
+        Method::Packet => trace_by::<R, Packet<Alone>>,
+        Method::SequentialStack => trace_by::<R, Hybrid<Alone, StackMax, Sequential>>,
+        Method::SequentialCut => trace_by::<R, Hybrid<Alone, Cut, Sequential>>,
+        Method::InterleavedStack => trace_by::<R, Hybrid<Alone, StackMax, Interleaved>>,
+        Method::InterleavedCut => trace_by::<R, Hybrid<Alone, Cut, Interleaved>>,
+    };
+    trace(geometry, looks, queue, records);
+}
+
 /// The stages of a wave that follow rays.
-fn trace<R: Scalar, M: traverse::Method<R>>(
-    geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &[u32], records: &mut Records<R>,
+fn trace_by<R: Scalar, M: traverse::Method<R>>(
+    geometry: &Geometry<'_>,
+    looks: &Looks<'_>,
+    queue: &[u32],
+    records: &mut Records<R>,
 ) {
     for &slot in queue {
         records.hits[slot as usize] = stage::trace::<R, M>(geometry, slot, &records.paths);

@@ -8,7 +8,7 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, Want};
-use crate::method::Method;
+use crate::method::Traversal;
 use crate::pack::Packed;
 use crate::rays::Rays;
 
@@ -44,7 +44,7 @@ pub struct Choice {
     /// How numbers are computed.
     pub precision: Precision,
     /// How rays are followed.
-    pub method: Method,
+    pub traversal: Traversal,
     /// A GPU's number or part of its name.
     pub adapter: Option<String>,
     /// Translate kernels by naga, as on machines without SPIR-V passthrough.
@@ -134,7 +134,7 @@ impl Chosen {
     }
 
     fn on_gpu(&self, gpu: &Gpu, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.method)?;
+        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
         let (rendering, time) = repeated(repeat, || renderer.render(done))?;
         let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();
         let last = rendering.into_iter().last().expect("at least one rendering");
@@ -150,11 +150,11 @@ impl Chosen {
     }
 
     fn on_cpu(&self, packed: &Packed, why: String, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let (method, threads) = (self.choice.method, self.choice.threads);
+        let (traversal, threads) = (self.choice.traversal, self.choice.threads);
         let (rendering, time) = repeated(repeat, || match self.choice.precision {
-            Precision::Exact => cpu::render::<f32>(packed, method, threads, done),
-            Precision::Fast => cpu::render::<Fast>(packed, method, threads, done),
-            Precision::Reference => cpu::render::<f64>(packed, method, threads, done),
+            Precision::Exact => cpu::render::<f32>(packed, traversal, threads, done),
+            Precision::Fast => cpu::render::<Fast>(packed, traversal, threads, done),
+            Precision::Reference => cpu::render::<f64>(packed, traversal, threads, done),
         })?;
         let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };

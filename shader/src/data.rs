@@ -278,6 +278,35 @@ pub struct Frame {
     pub limits: UVec4,
 }
 
+/// Thresholds of the hybrid methods (thesis 6.2.3).
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Tuning(pub u32);
+
+impl Tuning {
+    /// Parts a full stack of `stack_max` nodes, or a child that less than `cut` percent of a packet want.
+    pub const fn new(stack_max: u32, cut: u32) -> Self {
+        Tuning(stack_max | (cut << 8))
+    }
+
+    /// Nodes that wait when a packet parts.
+    #[inline(always)]
+    pub fn stack_max(self) -> u32 {
+        self.0 & 0xff
+    }
+
+    /// Percent of a packet below which rays part.
+    #[inline(always)]
+    pub fn cut(self) -> u32 {
+        self.0 >> 8
+    }
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Tuning::new(8, 25)
+    }
+}
+
 /// Which effects a scene asks for; a kernel holds no instruction for the others.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, Default)]
 pub struct Features(pub u32);

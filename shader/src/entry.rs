@@ -4,12 +4,12 @@
 //! its accesses to match.
 
 use crate::buffer::{read, write};
-use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle};
+use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning};
 use crate::launch::{WORKGROUP, counter};
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Wave};
-use crate::traverse::{IfIf, Packet};
+use crate::traverse::{Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile};
 use crate::warp::Subgroup;
 use glam::{UVec3, UVec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add};
@@ -69,7 +69,8 @@ macro_rules! shading_entries {
         /// Shades the slots of a wave.
         #[spirv(compute(threads(64)))]
         pub fn $shade(
-            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3,
+            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -89,7 +90,7 @@ macro_rules! shading_entries {
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, nodes, triangles };
+            let geometry = Geometry { frame, features, tuning: Tuning(0), nodes, triangles };
             let looks = Looks { normals, materials, lights };
             let wave = Wave { paths, hits, shadows, film };
             if stage::shade::<$real>(&geometry, &looks, slot, wave) {
@@ -114,7 +115,9 @@ macro_rules! tracing_entries {
         /// Traces the rays of a wave.
         #[spirv(compute(threads(64)))]
         pub fn $trace(
-            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3,
+            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -128,14 +131,16 @@ macro_rules! tracing_entries {
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, nodes, triangles };
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, triangles };
             write(hits, slot, stage::trace::<$real, $method>(&geometry, slot, paths));
         }
 
         /// Traces the shadow rays of a wave: one row of threads a light.
         #[spirv(compute(threads(64)))]
         pub fn $shadow(
-            #[spirv(global_invocation_id)] id: UVec3, #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(global_invocation_id)] id: UVec3,
+            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
@@ -151,7 +156,7 @@ macro_rules! tracing_entries {
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, nodes, triangles };
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, triangles };
             let answer = stage::shadow::<$real, $method>(&geometry, lights, slot, id.y, paths, hits);
             write(shadows, id.y * geometry.slots() + slot, answer);
         }
@@ -160,7 +165,36 @@ macro_rules! tracing_entries {
 
 shading_entries!(f32, exact_shade, exact_advance);
 shading_entries!(Fast, fast_shade, fast_advance);
-tracing_entries!(f32, IfIf, exact_trace_if_if, exact_shadow_if_if);
-tracing_entries!(Fast, IfIf, fast_trace_if_if, fast_shadow_if_if);
-tracing_entries!(f32, Packet<Subgroup>, subgroup_exact_trace_packet, subgroup_exact_shadow_packet);
-tracing_entries!(Fast, Packet<Subgroup>, subgroup_fast_trace_packet, subgroup_fast_shadow_packet);
+
+/// Both precisions of methods that do not vote, and of those that do.
+macro_rules! methods {
+    ($($method:ty: $exact:ident $exact_shadow:ident $fast:ident $fast_shadow:ident;)*) => {
+        $(
+            tracing_entries!(f32, $method, $exact, $exact_shadow);
+            tracing_entries!(Fast, $method, $fast, $fast_shadow);
+        )*
+    };
+}
+
+methods! {
+    IfIf: exact_trace_if_if exact_shadow_if_if fast_trace_if_if fast_shadow_if_if;
+    WhileWhile: exact_trace_while_while exact_shadow_while_while fast_trace_while_while fast_shadow_while_while;
+    Packet<Subgroup>:
+        subgroup_exact_trace_packet subgroup_exact_shadow_packet
+        subgroup_fast_trace_packet subgroup_fast_shadow_packet;
+    Speculative<Subgroup>:
+        subgroup_exact_trace_speculative subgroup_exact_shadow_speculative
+        subgroup_fast_trace_speculative subgroup_fast_shadow_speculative;
+    Hybrid<Subgroup, StackMax, Sequential>:
+        subgroup_exact_trace_sequential_stack subgroup_exact_shadow_sequential_stack
+        subgroup_fast_trace_sequential_stack subgroup_fast_shadow_sequential_stack;
+    Hybrid<Subgroup, Cut, Sequential>:
+        subgroup_exact_trace_sequential_cut subgroup_exact_shadow_sequential_cut
+        subgroup_fast_trace_sequential_cut subgroup_fast_shadow_sequential_cut;
+    Hybrid<Subgroup, StackMax, Interleaved>:
+        subgroup_exact_trace_interleaved_stack subgroup_exact_shadow_interleaved_stack
+        subgroup_fast_trace_interleaved_stack subgroup_fast_shadow_interleaved_stack;
+    Hybrid<Subgroup, Cut, Interleaved>:
+        subgroup_exact_trace_interleaved_cut subgroup_exact_shadow_interleaved_cut
+        subgroup_fast_trace_interleaved_cut subgroup_fast_shadow_interleaved_cut;
+}

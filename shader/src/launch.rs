@@ -51,3 +51,5 @@ pub mod counter {
 
 /// The specialisation constant that holds the scene's [`Features`](crate::data::Features).
 pub const FEATURES_ID: u32 = 1;
+/// The specialisation constant that holds the [`Tuning`](crate::data::Tuning).
+pub const TUNING_ID: u32 = 2;

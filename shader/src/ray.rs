@@ -90,3 +90,12 @@ impl<R: Real> Hit<R> {
         Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), slot: nothing, primitive: nothing }
     }
 }
+
+#[cfg(not(target_arch = "spirv"))]
+impl<const N: usize> Shear<crate::real::Wide<N>> {
+    /// One lane's shear.
+    pub(crate) fn lane(&self, i: usize) -> Shear<f32> {
+        let (x_major, y_major) = (self.x_major.0[i] != 0, self.y_major.0[i] != 0);
+        Shear { x: self.x.0[i], y: self.y.0[i], x_major, y_major }
+    }
+}

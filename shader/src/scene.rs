@@ -1,6 +1,6 @@
 //! What a launch sees of the scene in device memory.
 
-use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle};
+use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning};
 
 /// The launch and what its rays meet.
 #[derive(Clone, Copy)]
@@ -9,6 +9,8 @@ pub struct Geometry<'a> {
     pub frame: &'a Frame,
     /// Which effects there are; a constant of the compiled kernel on the GPU.
     pub features: Features,
+    /// When hybrid methods part; a constant of the compiled kernel on the GPU.
+    pub tuning: Tuning,
     /// Child pairs; the root is pair 0.
     pub nodes: &'a [NodePair],
     /// Triangles in leaf order.

@@ -9,6 +9,8 @@ use crate::real::Mask;
 pub trait Warp {
     /// Does it hold in any lane?
     fn any<M: Mask>(mask: M) -> bool;
+    /// In how many lanes does it hold?
+    fn count<M: Mask>(mask: M) -> u32;
 }
 
 /// A ray by itself, or the lanes of one value.
@@ -18,6 +20,10 @@ impl Warp for Alone {
     #[inline(always)]
     fn any<M: Mask>(mask: M) -> bool {
         mask.any()
+    }
+    #[inline(always)]
+    fn count<M: Mask>(mask: M) -> u32 {
+        mask.count()
     }
 }
 
@@ -30,5 +36,10 @@ impl Warp for Subgroup {
     #[inline(always)]
     fn any<M: Mask>(mask: M) -> bool {
         spirv_std::arch::subgroup_any(mask.any())
+    }
+    #[inline(always)]
+    fn count<M: Mask>(mask: M) -> u32 {
+        let ballot = spirv_std::arch::subgroup_ballot(mask.any());
+        ballot.x.count_ones() + ballot.y.count_ones() + ballot.z.count_ones() + ballot.w.count_ones()
     }
 }

@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
 use eyerays_bvh::Quality;
+use eyerays_shader::data::Tuning;
 use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::method::Method;
+use crate::method::{Method, Traversal};
 use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
@@ -63,6 +64,12 @@ pub(super) struct On {
     /// How rays are followed; every method gives the same picture
     #[arg(long, value_enum, default_value_t = Method::IfIf)]
     pub method: Method,
+    /// Stack methods: nodes that wait when a packet parts, 1 to 63
+    #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
+    pub stack_max: u32,
+    /// Cut methods: percent of a packet that must want a node for it to stay together
+    #[arg(long, value_name = "PERCENT", default_value_t = Tuning::default().cut())]
+    pub cut: u32,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -172,8 +179,15 @@ impl On {
         if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
+        if !(1..=63).contains(&self.stack_max) {
+            return Err(Error::new(format!("--stack-max {} is not within 1 to 63", self.stack_max)));
+        }
+        if self.cut > 100 {
+            return Err(Error::new(format!("--cut {} is more than 100 percent", self.cut)));
+        }
+        let traversal = Traversal { method: self.method, tuning: Tuning::new(self.stack_max, self.cut) };
         let (precision, adapter) = (self.precision, self.adapter.clone());
-        Ok(Choice { device, precision, method: self.method, adapter, no_passthrough: self.no_passthrough, threads })
+        Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
     }
 }
 

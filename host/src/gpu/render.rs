@@ -14,7 +14,7 @@ use super::timer::Timer;
 use super::{module, readback};
 use crate::error::Result;
 use crate::film::Film;
-use crate::method::Method;
+use crate::method::{Method, Traversal};
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -56,12 +56,12 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, method: Method) -> Result<Self> {
-        gpu.can_vote(method)?;
+    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: Traversal) -> Result<Self> {
+        gpu.can_vote(traversal.method)?;
         let slots = buffers::most_slots(gpu, packed)?;
         let bands = bands(packed.settings.size, slots);
         let layout = buffers::layout(gpu);
-        let compiler = Compiler::new(gpu, &layout, exact, method);
+        let compiler = Compiler::new(gpu, &layout, exact, traversal);
         let lit = !packed.lights.is_empty();
         let primary = compiler.stages(packed.features, lit);
         let secondary = packed.has_secondary_rays().then(|| {
@@ -193,17 +193,17 @@ struct Compiler<'a> {
     gpu: &'a Gpu,
     layout: wgpu::PipelineLayout,
     exact: bool,
-    method: Method,
+    traversal: Traversal,
 }
 
 impl<'a> Compiler<'a> {
-    fn new(gpu: &'a Gpu, layout: &wgpu::BindGroupLayout, exact: bool, method: Method) -> Self {
+    fn new(gpu: &'a Gpu, layout: &wgpu::BindGroupLayout, exact: bool, traversal: Traversal) -> Self {
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
-        Compiler { gpu, layout, exact, method }
+        Compiler { gpu, layout, exact, traversal }
     }
 
     /// The stages that follow no ray are in the modules without votes.
@@ -212,12 +212,16 @@ impl<'a> Compiler<'a> {
     }
 
     fn tracing(&self, features: Features, stage: &str) -> wgpu::ComputePipeline {
-        self.stage(self.method.module(self.exact), features, &format!("{stage}_{}", self.method.entry()))
+        self.stage(
+            self.traversal.method.module(self.exact),
+            features,
+            &format!("{stage}_{}", self.traversal.method.entry()),
+        )
     }
 
     fn stage(&self, (spirv, prefix): (&[u8], &str), features: Features, stage: &str) -> wgpu::ComputePipeline {
         let name = format!("{prefix}_{stage}");
-        let module = module::create(self.gpu, &module::specialise(spirv, features), &name);
+        let module = module::create(self.gpu, &module::specialise(spirv, features, self.traversal.tuning), &name);
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(&name),
             layout: Some(&self.layout),

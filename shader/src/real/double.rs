@@ -1,10 +1,12 @@
 //! `f64`: the reference that errors are measured against, from the same kernels.
 
 use super::{Real, Scalar, V3};
+use crate::ray::{Hit, Ray};
 
 impl Real for f64 {
     type Mask = bool;
     type Index = u32;
+    type Lane = f64;
     const ROUNDOFF: f64 = 1.0 / (1u64 << 53) as f64;
 
     fn splat(x: f32) -> f64 {
@@ -42,6 +44,11 @@ impl Real for f64 {
     }
     fn select_index(mask: bool, a: u32, b: u32) -> u32 {
         if mask { a } else { b }
+    }
+    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
+        if mask {
+            f(ray, hit);
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 use super::single::{comparisons, records};
 use super::{Real, Scalar, V3};
 use crate::data;
+use crate::ray::{Hit, Ray};
 use core::ops::{Add, Mul, Neg, Sub};
 use glam::{UVec4, Vec3};
 use spirv_std::num_traits::Float;
@@ -43,6 +44,7 @@ impl Neg for Fast {
 impl Real for Fast {
     type Mask = bool;
     type Index = u32;
+    type Lane = Fast;
     const ROUNDOFF: Fast = Fast(<f32 as Real>::ROUNDOFF);
 
     comparisons!(Fast, inner);

@@ -4,6 +4,7 @@
 //! | --- | --- | --- |
 //! | `f32` | exact: a GPU lane or one ray on the CPU, the same bits on both | correctly rounded; stated error |
 //! | [`Fast`] | `f32` at the device's own speed | the device's |
+//! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
 #[cfg(not(target_arch = "spirv"))]
@@ -13,22 +14,33 @@ mod power;
 mod single;
 pub mod soft;
 mod vector;
+#[cfg(not(target_arch = "spirv"))]
+mod wide;
 
 pub use fast::Fast;
 pub use vector::V3;
+#[cfg(not(target_arch = "spirv"))]
+pub use wide::{Wide, WideIndex, WideMask};
 
+use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
 /// One truth value a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
     /// Does it hold in any lane of this value?
     fn any(self) -> bool;
+    /// In how many lanes?
+    fn count(self) -> u32;
 }
 
 impl Mask for bool {
     #[inline(always)]
     fn any(self) -> bool {
         self
+    }
+    #[inline(always)]
+    fn count(self) -> u32 {
+        self as u32
     }
 }
 
@@ -41,6 +53,9 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     type Mask: Mask;
     /// An unsigned 32-bit integer a lane: ids and counts are no floats.
     type Index: Copy;
+
+    /// A lane by itself.
+    type Lane: Scalar;
 
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
@@ -70,6 +85,14 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn equals(i: u32, other: Self::Index) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
+
+    /// Runs `f` for every lane of the mask by itself.
+    fn lanes(
+        ray: &Ray<Self>,
+        hit: &mut Hit<Self>,
+        mask: Self::Mask,
+        f: impl FnMut(&Ray<Self::Lane>, &mut Hit<Self::Lane>),
+    );
 
     /// The lesser, by compare and select; `other` if either is NaN.
     #[inline(always)]

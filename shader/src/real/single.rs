@@ -2,6 +2,7 @@
 
 use super::{Real, Scalar, V3, power, soft};
 use crate::data;
+use crate::ray::{Hit, Ray};
 use glam::{UVec4, Vec3};
 
 /// The parts of [`Real`] and [`Scalar`] that exact and fast `f32` share: comparisons and bits.
@@ -46,6 +47,12 @@ macro_rules! comparisons {
         #[inline(always)]
         fn select_index(mask: bool, a: u32, b: u32) -> u32 {
             if mask { a } else { b }
+        }
+        #[inline(always)]
+        fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
+            if mask {
+                f(ray, hit);
+            }
         }
     };
 }
@@ -98,6 +105,7 @@ fn id(x: f32) -> f32 {
 impl Real for f32 {
     type Mask = bool;
     type Index = u32;
+    type Lane = f32;
     const ROUNDOFF: f32 = 1.0 / (1 << 24) as f32;
 
     comparisons!(id, id);

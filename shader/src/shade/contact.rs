@@ -81,7 +81,10 @@ mod tests {
 
     /// From a place on `vertices` towards `d`, and every way that grazes the surface more.
     fn leave_every_way(
-        vertices: [Vec3; 3], (u, v): (f32, f32), d: [f32; 3], others: &[[Vec3; 3]],
+        vertices: [Vec3; 3],
+        (u, v): (f32, f32),
+        d: [f32; 3],
+        others: &[[Vec3; 3]],
     ) -> Result<(), TestCaseError> {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = V3::<f32>::new(d[0], d[1], d[2]).normalised().0;

@@ -73,7 +73,10 @@ fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
 /// Light that a surface sends along `-direction`: Lambert's law and Phong's highlight.
 #[inline(always)]
 pub fn illuminate<R: Scalar>(
-    features: Features, surface: &Surface<R>, direction: V3<R>, incidence: &Incidence<R>,
+    features: Features,
+    surface: &Surface<R>,
+    direction: V3<R>,
+    incidence: &Incidence<R>,
 ) -> V3<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let cosine = surface.normal.dot(incidence.direction).max(zero).min(one);

@@ -31,7 +31,12 @@ impl<R: Scalar> Surface<R> {
     /// The surface of triangle `slot` at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
-        features: Features, looks: &Looks<'_>, slot: u32, triangle: &Triangle, direction: V3<R>, contact: &Contact<R>,
+        features: Features,
+        looks: &Looks<'_>,
+        slot: u32,
+        triangle: &Triangle,
+        direction: V3<R>,
+        contact: &Contact<R>,
     ) -> Self {
         let material: Material = read(looks.materials, triangle.material());
         let colour = |record| V3::<R>::splat(numbers(record));

@@ -55,7 +55,11 @@ pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, w
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
 #[inline(always)]
 fn lit<R: Scalar>(
-    geometry: &Geometry<'_>, lights: &[Light], slot: u32, direction: V3<R>, lit: (&Contact<R>, &Surface<R>),
+    geometry: &Geometry<'_>,
+    lights: &[Light],
+    slot: u32,
+    direction: V3<R>,
+    lit: (&Contact<R>, &Surface<R>),
     shadows: &[u32],
 ) -> (V3<R>, u32) {
     let (contact, surface) = lit;
@@ -79,7 +83,12 @@ fn lit<R: Scalar>(
 /// Adds a path's light to its pixel. What is not finite is left out and flagged, what is below 2^-100 is zero.
 #[inline(always)]
 fn add<R: Scalar>(
-    geometry: &Geometry<'_>, film: &mut [R::Record], pixel: u32, path: &Path<R>, light: V3<R>, rays: u32,
+    geometry: &Geometry<'_>,
+    film: &mut [R::Record],
+    pixel: u32,
+    path: &Path<R>,
+    light: V3<R>,
+    rays: u32,
 ) {
     let share = R::splat(f32::from_bits(geometry.frame.limits.x));
     let term = (light.times(path.weight) * share).map(|c| c.flush(FAINT));
@@ -94,7 +103,10 @@ fn add<R: Scalar>(
 /// Fresnel's shares of an interface.
 #[inline(always)]
 fn branch<R: Scalar>(
-    geometry: &Geometry<'_>, path: &Path<R>, place: u32, (contact, surface): (&Contact<R>, &Surface<R>),
+    geometry: &Geometry<'_>,
+    path: &Path<R>,
+    place: u32,
+    (contact, surface): (&Contact<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
@@ -146,7 +158,11 @@ impl<R: Scalar> Path<R> {
 /// Depth first, reflection before refraction: takes one branch in hand and lets the other wait.
 #[inline(always)]
 fn follow<R: Scalar>(
-    geometry: &Geometry<'_>, slot: u32, path: &Path<R>, branches: Branches<R>, paths: &mut [R::Record],
+    geometry: &Geometry<'_>,
+    slot: u32,
+    path: &Path<R>,
+    branches: Branches<R>,
+    paths: &mut [R::Record],
 ) -> bool {
     let Branches { mut reflected, refracted } = branches;
     let second = refracted.counts(geometry);

@@ -19,7 +19,12 @@ pub const FACES_AWAY: u32 = 2;
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
 pub fn shadow<R: Scalar, M: Method<R>>(
-    geometry: &Geometry<'_>, lights: &[Light], slot: u32, index: u32, paths: &[R::Record], hits: &[R::Record],
+    geometry: &Geometry<'_>,
+    lights: &[Light],
+    slot: u32,
+    index: u32,
+    paths: &[R::Record],
+    hits: &[R::Record],
 ) -> u32 {
     let (hit, place) = R::load(read(hits, slot));
     if place == Hit::<R>::NOTHING {

@@ -21,7 +21,19 @@ impl Cursor {
     /// At the root.
     #[inline(always)]
     pub fn new() -> Self {
-        Cursor { node: NodeRef::ROOT, done: false, depth: 0 }
+        Self::at(NodeRef::ROOT)
+    }
+
+    /// At a node, with nothing waiting.
+    #[inline(always)]
+    pub fn at(node: NodeRef) -> Self {
+        Cursor { node, done: false, depth: 0 }
+    }
+
+    /// How many nodes wait.
+    #[inline(always)]
+    pub fn depth(&self) -> u32 {
+        self.depth
     }
 
     /// Goes on to the nearer wanted child and lets the other wait, or pops if none is wanted.

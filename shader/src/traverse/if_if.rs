@@ -2,9 +2,8 @@
 //! every iteration at most one pair of boxes and at most one triangle.
 
 use super::cursor::{Cursor, Stack};
-use super::step::{children, occluded, triangle};
+use super::step::{occluded, pair, triangle};
 use super::{Method, Query};
-use crate::buffer::read;
 use crate::data::STACK;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
@@ -16,12 +15,14 @@ pub struct IfIf;
 /// One iteration: the two ifs.
 #[inline(always)]
 fn step<Q: Query, R: Scalar>(
-    geometry: &Geometry<'_>, ray: &Ray<R>, stack: &mut Stack, cursor: &mut Cursor, hit: &mut Hit<R>,
+    geometry: &Geometry<'_>,
+    ray: &Ray<R>,
+    stack: &mut Stack,
+    cursor: &mut Cursor,
+    hit: &mut Hit<R>,
 ) {
     if !cursor.node.is_leaf() {
-        let pair = read(geometry.nodes, cursor.node.index());
-        let wanted = children(&pair, ray, hit);
-        cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
+        pair(geometry, ray, hit, cursor, stack);
     }
     if cursor.node.is_leaf() && !cursor.done {
         triangle::<Q, R>(geometry, cursor.node, ray, hit);
@@ -38,9 +39,20 @@ impl<R: Scalar> Method<R> for IfIf {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = [0; STACK];
-        let mut cursor = Cursor::new();
-        while !cursor.done {
-            step::<Q, R>(geometry, ray, &mut stack, &mut cursor, hit);
-        }
+        finish::<Q, R>(geometry, ray, &mut stack, Cursor::new(), hit);
+    }
+}
+
+/// Runs a traversal from where it stands to its end.
+#[inline(always)]
+pub(super) fn finish<Q: Query, R: Scalar>(
+    geometry: &Geometry<'_>,
+    ray: &Ray<R>,
+    stack: &mut Stack,
+    mut cursor: Cursor,
+    hit: &mut Hit<R>,
+) {
+    while !cursor.done {
+        step::<Q, R>(geometry, ray, stack, &mut cursor, hit);
     }
 }

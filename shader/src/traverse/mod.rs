@@ -5,12 +5,18 @@
 //! own (the box test is monotone), so no order of visits can cull the winner.
 
 pub mod cursor;
+mod hybrid;
 mod if_if;
 mod packet;
+mod speculative;
 pub mod step;
+mod while_while;
 
+pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;
+pub use speculative::Speculative;
+pub use while_while::WhileWhile;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Real;

@@ -4,7 +4,7 @@
 use core::marker::PhantomData;
 
 use super::cursor::Cursor;
-use super::step::{children, occluded, triangle};
+use super::step::{children, leaf, occluded};
 use super::{Method, Query};
 use crate::buffer::read;
 use crate::data::STACK;
@@ -23,10 +23,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
         let mut cursor = Cursor::new();
         while !cursor.done {
             if cursor.node.is_leaf() {
-                while cursor.node.is_leaf() {
-                    triangle::<Q, R>(geometry, cursor.node, ray, hit);
-                    cursor.node = cursor.node.rest();
-                }
+                leaf::<Q, R>(geometry, cursor.node, ray, hit);
                 if Q::ANY && !W::any(!occluded(hit)) {
                     cursor.done = true;
                 } else {

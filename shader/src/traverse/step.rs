@@ -1,11 +1,12 @@
 //! The steps that every method is made of: two boxes, or one triangle.
 
 use super::Query;
+use super::cursor::{Cursor, Stack};
 use crate::buffer::read;
 use crate::data::{Features, NodePair, NodeRef, Triangle, numbers};
 use crate::intersect::{Crossing, Span, cross, slab};
 use crate::ray::{Hit, Ray};
-use crate::real::{Mask, Real, V3};
+use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
@@ -38,6 +39,24 @@ pub fn children<R: Real>(pair: &NodePair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<
     Wanted { left: meets(left), right: meets(right), right_first: right.near.lt(left.near) }
 }
 
+/// A single ray's visit of the pair that its traversal stands at.
+#[inline(always)]
+pub fn pair<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+    let pair = read(geometry.nodes, cursor.node.index());
+    let wanted = children(&pair, ray, hit);
+    cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
+}
+
+/// Tests every triangle of a leaf. Returns whether no ray of an any-hit query wants more.
+#[inline(always)]
+pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
+    while leaf.is_leaf() {
+        triangle::<Q, R>(geometry, leaf, ray, hit);
+        leaf = leaf.rest();
+    }
+    Q::ANY && !(!occluded(hit)).any()
+}
+
 /// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
 #[inline(always)]
 pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
@@ -59,10 +78,16 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 /// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
-    features: Features, triangle: &Triangle, slot: u32, crossing: &Crossing<R>, ray: &Ray<R>, hit: &mut Hit<R>,
+    features: Features,
+    triangle: &Triangle,
+    slot: u32,
+    crossing: &Crossing<R>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
 ) {
     let mut inside = crossing.inside & !R::equals(slot, ray.leaves);
-    if features.has(Features::CULLING) && !Q::ANY {
+    // The inside of glass is seen from behind.
+    if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
     let (least, greatest) = triangle.bounds();

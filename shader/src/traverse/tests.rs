@@ -1,10 +1,13 @@
 //! The same hit as brute force, on triangles that tie, overlap and degenerate.
 
 use super::step::{self, occluded};
-use super::{Closest, IfIf, Method, Occlusion, Packet, Query};
-use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle};
+use super::{
+    Closest, Cut, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative, StackMax,
+    WhileWhile,
+};
+use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning};
 use crate::ray::{Hit, Ray};
-use crate::real::{Fast, Scalar, V3};
+use crate::real::{Fast, Real, Scalar, V3, Wide};
 use crate::scene::Geometry;
 use crate::warp::Alone;
 use bytemuck::Zeroable;
@@ -52,10 +55,11 @@ impl World {
     }
 
     fn geometry(&self) -> Geometry<'_> {
-        Geometry { frame: &self.frame, features: self.features, nodes: &self.nodes, triangles: &self.triangles }
+        let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
+        Geometry { frame, features: self.features, tuning, nodes: &self.nodes, triangles: &self.triangles }
     }
 
-    fn trace<M: Method<R>, Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
+    fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
         M::traverse::<Q>(&self.geometry(), ray, &mut hit);
         hit
@@ -101,6 +105,17 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
     }
 }
 
+fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
+    check::<IfIf, R>(world, origin, direction);
+    check::<WhileWhile, R>(world, origin, direction);
+    check::<Speculative<Alone>, R>(world, origin, direction);
+    check::<Packet<Alone>, R>(world, origin, direction);
+    check::<Hybrid<Alone, StackMax, Sequential>, R>(world, origin, direction);
+    check::<Hybrid<Alone, StackMax, Interleaved>, R>(world, origin, direction);
+    check::<Hybrid<Alone, Cut, Sequential>, R>(world, origin, direction);
+    check::<Hybrid<Alone, Cut, Interleaved>, R>(world, origin, direction);
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(20_000))]
 
@@ -115,13 +130,48 @@ proptest! {
         let world = World::new(triangles, features);
         let beside: [f32; 3] = std::array::from_fn(|k| direction[k] + nudge[k]);
         for direction in [direction, beside] {
-            check::<IfIf, f32>(&world, origin, direction);
-            check::<Packet<Alone>, f32>(&world, origin, direction);
-            check::<IfIf, Fast>(&world, origin, direction);
-            check::<Packet<Alone>, Fast>(&world, origin, direction);
-            check::<IfIf, f64>(&world, origin, direction);
-            check::<Packet<Alone>, f64>(&world, origin, direction);
+            every_method::<f32>(&world, origin, direction);
+            every_method::<Fast>(&world, origin, direction);
+            every_method::<f64>(&world, origin, direction);
         }
+    }
+}
+
+/// Every lane of a packet, however incoherent, against the same ray by itself.
+fn check_packet<M: Method<Wide<8>>>(world: &World, rays: &[([f32; 3], [f32; 3]); 8]) {
+    let vector = |pick: fn(&([f32; 3], [f32; 3])) -> [f32; 3]| {
+        V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(pick(&rays[i]))))
+    };
+    let packet = Ray::new(vector(|r| r.0), vector(|r| r.1));
+    let closest = world.trace::<M, Closest, Wide<8>>(&packet, f32::MAX);
+    let shadows = world.trace::<M, Occlusion, Wide<8>>(&packet, 0.5);
+    for (i, (origin, direction)) in rays.iter().enumerate() {
+        let alone = ray::<f32>(*origin, *direction);
+        let (got, want) = (closest.lane(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
+        assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive), "lane {i}");
+        let want = occluded(&world.brute_force::<Occlusion, f32>(&alone, 0.5));
+        assert_eq!(occluded(&shadows.lane(i)), want, "lane {i}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(5_000))]
+
+    #[test]
+    fn packets_find_what_their_rays_find(
+        triangles in soup(), ends in prop::array::uniform8((grid(), grid())), same_origin: bool,
+    ) {
+        let rays = ends.map(|(from, to)| {
+            let origin = if same_origin { ends[0].0 } else { from };
+            let direction: [f32; 3] = std::array::from_fn(|k| to[k] - origin[k]);
+            (origin, if direction == [0.0; 3] { [1.0, 0.0, 0.0] } else { direction })
+        });
+        let world = World::new(triangles, Features::REFRACTION);
+        check_packet::<Packet<Alone>>(&world, &rays);
+        check_packet::<Hybrid<Alone, StackMax, Sequential>>(&world, &rays);
+        check_packet::<Hybrid<Alone, StackMax, Interleaved>>(&world, &rays);
+        check_packet::<Hybrid<Alone, Cut, Sequential>>(&world, &rays);
+        check_packet::<Hybrid<Alone, Cut, Interleaved>>(&world, &rays);
     }
 }
 
@@ -143,6 +193,8 @@ fn culling_hides_backs_from_sight_but_not_from_light() {
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
     assert!(occluded(&world.trace::<IfIf, Occlusion, f32>(&from(-0.5), f32::MAX)));
+    let glass = World::new(vec![Triangle::new(t, 4, 0, Triangle::TRANSPARENT); 2], Features::CULLING);
+    assert_eq!(glass.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, 4, "glass has an inside");
 }
 
 #[test]

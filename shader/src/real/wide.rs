@@ -1,0 +1,178 @@
+//! A CPU packet: arrays that the compiler vectorises. Every lane has the bits that `f32` alone has.
+
+use core::array::from_fn;
+use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
+
+use super::{Mask, Real, V3};
+use crate::ray::{Hit, Ray};
+
+/// `N` numbers, one a lane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct Wide<const N: usize>(pub [f32; N]);
+
+/// `N` truth values, all bits set or none, as vector registers compare.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct WideMask<const N: usize>(pub [u32; N]);
+
+/// `N` integers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(64))]
+pub struct WideIndex<const N: usize>(pub [u32; N]);
+
+macro_rules! lanewise {
+    ($type:ident, $trait:ident, $name:ident, $op:tt) => {
+        impl<const N: usize> $trait for $type<N> {
+            type Output = Self;
+            #[inline(always)]
+            fn $name(self, other: Self) -> Self {
+                $type(from_fn(|i| self.0[i] $op other.0[i]))
+            }
+        }
+    };
+}
+lanewise!(Wide, Add, add, +);
+lanewise!(Wide, Sub, sub, -);
+lanewise!(Wide, Mul, mul, *);
+lanewise!(WideMask, BitAnd, bitand, &);
+lanewise!(WideMask, BitOr, bitor, |);
+
+impl<const N: usize> Neg for Wide<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Wide(self.0.map(|x| -x))
+    }
+}
+
+impl<const N: usize> Not for WideMask<N> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        WideMask(self.0.map(|m| !m))
+    }
+}
+
+impl<const N: usize> Mask for WideMask<N> {
+    #[inline(always)]
+    fn any(self) -> bool {
+        self.0.iter().fold(0, |a, m| a | m) != 0
+    }
+    #[inline(always)]
+    fn count(self) -> u32 {
+        self.0.iter().map(|m| m & 1).sum()
+    }
+}
+
+/// The mask of a lane.
+#[inline(always)]
+fn bits(holds: bool) -> u32 {
+    if holds { u32::MAX } else { 0 }
+}
+
+impl<const N: usize> Real for Wide<N> {
+    type Mask = WideMask<N>;
+    type Index = WideIndex<N>;
+    type Lane = f32;
+    const ROUNDOFF: Self = Wide([<f32 as Real>::ROUNDOFF; N]);
+
+    #[inline(always)]
+    fn splat(x: f32) -> Self {
+        Wide([x; N])
+    }
+    #[inline(always)]
+    fn div(self, divisor: Self) -> Self {
+        Wide(from_fn(|i| Real::div(self.0[i], divisor.0[i])))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Wide(self.0.map(Real::sqrt))
+    }
+    #[inline(always)]
+    fn lt(self, other: Self) -> WideMask<N> {
+        WideMask(from_fn(|i| bits(self.0[i] < other.0[i])))
+    }
+    #[inline(always)]
+    fn le(self, other: Self) -> WideMask<N> {
+        WideMask(from_fn(|i| bits(self.0[i] <= other.0[i])))
+    }
+    #[inline(always)]
+    fn same(self, other: Self) -> WideMask<N> {
+        WideMask(from_fn(|i| bits(self.0[i] == other.0[i])))
+    }
+    #[inline(always)]
+    fn select(mask: WideMask<N>, a: Self, b: Self) -> Self {
+        Wide(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Wide(self.0.map(f32::abs))
+    }
+    #[inline(always)]
+    fn index(i: u32) -> WideIndex<N> {
+        WideIndex([i; N])
+    }
+    #[inline(always)]
+    fn precedes(i: u32, other: WideIndex<N>) -> WideMask<N> {
+        WideMask(other.0.map(|o| bits(i < o)))
+    }
+    #[inline(always)]
+    fn equals(i: u32, other: WideIndex<N>) -> WideMask<N> {
+        WideMask(other.0.map(|o| bits(i == o)))
+    }
+    #[inline(always)]
+    fn select_index(mask: WideMask<N>, a: WideIndex<N>, b: WideIndex<N>) -> WideIndex<N> {
+        WideIndex(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
+    }
+
+    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: WideMask<N>, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
+        for i in 0..N {
+            if mask.0[i] != 0 {
+                let mut lane = hit.lane(i);
+                f(&ray.lane(i), &mut lane);
+                hit.set_lane(i, &lane);
+            }
+        }
+    }
+}
+
+impl<const N: usize> V3<Wide<N>> {
+    /// Vectors of `N` lanes.
+    #[inline(always)]
+    pub fn of_lanes(lane: impl Fn(usize) -> V3<f32>) -> Self {
+        V3::new(Wide(from_fn(|i| lane(i).x)), Wide(from_fn(|i| lane(i).y)), Wide(from_fn(|i| lane(i).z)))
+    }
+
+    fn lane(&self, i: usize) -> V3<f32> {
+        V3::new(self.x.0[i], self.y.0[i], self.z.0[i])
+    }
+}
+
+impl<const N: usize> Ray<Wide<N>> {
+    /// One lane's ray.
+    fn lane(&self, i: usize) -> Ray<f32> {
+        Ray {
+            origin: self.origin.lane(i),
+            inverse: self.inverse.lane(i),
+            shear: self.shear.lane(i),
+            leaves: self.leaves.0[i],
+        }
+    }
+}
+
+impl<const N: usize> Hit<Wide<N>> {
+    /// One lane's hit.
+    #[inline(always)]
+    pub fn lane(&self, i: usize) -> Hit<f32> {
+        Hit { t: self.t.0[i], u: self.u.0[i], v: self.v.0[i], slot: self.slot.0[i], primitive: self.primitive.0[i] }
+    }
+
+    fn set_lane(&mut self, i: usize, hit: &Hit<f32>) {
+        self.t.0[i] = hit.t;
+        self.u.0[i] = hit.u;
+        self.v.0[i] = hit.v;
+        self.slot.0[i] = hit.slot;
+        self.primitive.0[i] = hit.primitive;
+    }
+}

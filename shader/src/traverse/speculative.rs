@@ -1,0 +1,41 @@
+//! Speculative while-while traversal (Aila and Laine 2009): a ray that has found a leaf sets it aside
+//! and goes on, until every ray of its warp has one.
+
+use core::marker::PhantomData;
+
+use super::cursor::Cursor;
+use super::step::{leaf, pair};
+use super::{Method, Query};
+use crate::data::{NodeRef, STACK};
+use crate::ray::{Hit, Ray};
+use crate::real::Scalar;
+use crate::scene::Geometry;
+use crate::warp::Warp;
+
+/// See the module.
+pub struct Speculative<W>(PhantomData<W>);
+
+impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
+    #[inline(always)]
+    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+        let mut stack = [0; STACK];
+        let mut cursor = Cursor::new();
+        while !cursor.done {
+            // An inner node stands for none.
+            let mut aside = NodeRef::ROOT;
+            while !cursor.done && !(cursor.node.is_leaf() && aside.is_leaf()) {
+                if cursor.node.is_leaf() {
+                    aside = cursor.node;
+                    cursor.pop(&stack);
+                } else {
+                    pair(geometry, ray, hit, &mut cursor, &mut stack);
+                }
+                if !W::any(!aside.is_leaf()) {
+                    break;
+                }
+            }
+            let found = aside.is_leaf() && leaf::<Q, R>(geometry, aside, ray, hit);
+            cursor.done = cursor.done || found;
+        }
+    }
+}

@@ -2,15 +2,18 @@
 
 use std::sync::Mutex;
 
+use eyerays_shader::camera;
 use eyerays_shader::data::Features;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::stage::{self, NON_FINITE, RECORDS, Wave};
-use eyerays_shader::traverse::IfIf;
+use eyerays_shader::traverse::{self, IfIf, Packet};
+use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::method::Method;
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -47,11 +50,11 @@ pub struct Records<R: Scalar> {
 ///
 /// # Errors
 /// If the film or the threads can't be had.
-pub fn render<R>(packed: &Packed, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Result<(Film, Rays)>
+pub fn render<R>(packed: &Packed, method: Method, threads: usize, done: &(dyn Fn(u64) + Sync)) -> Result<(Film, Rays)>
 where
     R: Scalar<Record: Send + Sync>,
 {
-    observe::<R>(packed, threads, done, &())
+    observe::<R>(packed, method, threads, done, &())
 }
 
 /// [`render`], with somebody who looks on.
@@ -59,7 +62,7 @@ where
 /// # Errors
 /// As [`render`].
 pub fn observe<R>(
-    packed: &Packed, threads: usize, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>,
+    packed: &Packed, method: Method, threads: usize, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>,
 ) -> Result<(Film, Rays)>
 where
     R: Scalar<Record: Send + Sync>,
@@ -71,7 +74,7 @@ where
     pool.install(|| {
         // A tile a task: coarser splitting leaves threads idle at the end.
         tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-            let (film, secondary) = render_tile(packed, region, observer);
+            let (film, secondary) = render_tile(packed, method, region, observer);
             let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             keep::<R>(region, &film, image, rays);
             rays.secondary += secondary;
@@ -97,7 +100,9 @@ fn tiles(packed: &Packed) -> Vec<Region> {
 }
 
 /// Every sample of a tile; its film and how many secondary rays it took.
-fn render_tile<R: Scalar>(packed: &Packed, region: Region, observer: &dyn Observer<R>) -> (Vec<R::Record>, u64) {
+fn render_tile<R: Scalar>(
+    packed: &Packed, method: Method, region: Region, observer: &dyn Observer<R>,
+) -> (Vec<R::Record>, u64) {
     let slots = packed.frame(region, 0).limits.z as usize;
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {
@@ -112,9 +117,14 @@ fn render_tile<R: Scalar>(packed: &Packed, region: Region, observer: &dyn Observ
         let frame = packed.frame(region, sample);
         let mut geometry =
             Geometry { frame: &frame, features: packed.features, nodes: &packed.nodes, triangles: &packed.triangles };
-        let mut queue: Vec<u32> = (0..slots as u32).collect();
+        let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, s).inside).collect();
         loop {
-            run_wave(&geometry, &looks, &mut queue, &mut records, observer);
+            match method {
+                Method::IfIf => trace::<R, IfIf>(&geometry, &looks, &queue, &mut records),
+                Method::Packet => trace::<R, Packet<Alone>>(&geometry, &looks, &queue, &mut records),
+            }
+            observer.wave(&geometry, &queue, &records);
+            shade(&geometry, &looks, &mut queue, &mut records);
             if queue.is_empty() {
                 break;
             }
@@ -125,21 +135,23 @@ fn render_tile<R: Scalar>(packed: &Packed, region: Region, observer: &dyn Observ
     (records.film, secondary)
 }
 
-/// Trace, shadow, shade; leaves the slots of the next wave in the queue.
-fn run_wave<R: Scalar>(
-    geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &mut Vec<u32>, records: &mut Records<R>,
-    observer: &dyn Observer<R>,
+/// The stages of a wave that follow rays.
+fn trace<R: Scalar, M: traverse::Method<R>>(
+    geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &[u32], records: &mut Records<R>,
 ) {
-    for &slot in queue.iter() {
-        records.hits[slot as usize] = stage::trace::<R, IfIf>(geometry, slot, &records.paths);
+    for &slot in queue {
+        records.hits[slot as usize] = stage::trace::<R, M>(geometry, slot, &records.paths);
     }
     for light in 0..geometry.light_count() {
-        for &slot in queue.iter() {
-            let answer = stage::shadow::<R, IfIf>(geometry, looks.lights, slot, light, &records.paths, &records.hits);
+        for &slot in queue {
+            let answer = stage::shadow::<R, M>(geometry, looks.lights, slot, light, &records.paths, &records.hits);
             records.shadows[(light * geometry.slots() + slot) as usize] = answer;
         }
     }
-    observer.wave(geometry, queue, records);
+}
+
+/// The last stage of a wave; leaves the slots of the next one in the queue.
+fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &mut Vec<u32>, records: &mut Records<R>) {
     let Records { paths, hits, shadows, film } = records;
     queue.retain(|&slot| {
         stage::shade(geometry, looks, slot, Wave::<R> { paths: &mut *paths, hits, shadows, film: &mut *film })

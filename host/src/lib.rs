@@ -7,6 +7,7 @@ pub mod error;
 pub mod film;
 pub mod gpu;
 pub mod image;
+pub mod method;
 pub mod output;
 pub mod pack;
 pub mod rays;

@@ -113,7 +113,6 @@ impl Packed {
         frame.forward.w = sample;
         frame.region = glam::UVec4::new(region.x, region.y, region.width, region.height);
         frame.limits.z = eyerays_shader::camera::slots(region.width, region.height);
-        frame.limits.w = self.levels();
         frame
     }
 }

@@ -8,6 +8,7 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, Want};
+use crate::method::Method;
 use crate::pack::Packed;
 use crate::rays::Rays;
 
@@ -42,6 +43,8 @@ pub struct Choice {
     pub device: DeviceWish,
     /// How numbers are computed.
     pub precision: Precision,
+    /// How rays are followed.
+    pub method: Method,
     /// A GPU's number or part of its name.
     pub adapter: Option<String>,
     /// Translate kernels by naga, as on machines without SPIR-V passthrough.
@@ -131,7 +134,7 @@ impl Chosen {
     }
 
     fn on_gpu(&self, gpu: &Gpu, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact)?;
+        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.method)?;
         let (rendering, time) = repeated(repeat, || renderer.render(done))?;
         let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();
         let last = rendering.into_iter().last().expect("at least one rendering");
@@ -147,11 +150,11 @@ impl Chosen {
     }
 
     fn on_cpu(&self, packed: &Packed, why: String, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let threads = self.choice.threads;
+        let (method, threads) = (self.choice.method, self.choice.threads);
         let (rendering, time) = repeated(repeat, || match self.choice.precision {
-            Precision::Exact => cpu::render::<f32>(packed, threads, done),
-            Precision::Fast => cpu::render::<Fast>(packed, threads, done),
-            Precision::Reference => cpu::render::<f64>(packed, threads, done),
+            Precision::Exact => cpu::render::<f32>(packed, method, threads, done),
+            Precision::Fast => cpu::render::<Fast>(packed, method, threads, done),
+            Precision::Reference => cpu::render::<f64>(packed, method, threads, done),
         })?;
         let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };

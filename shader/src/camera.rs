@@ -30,7 +30,7 @@ pub struct Pixel {
 #[inline(always)]
 pub fn pixel(frame: &Frame, slot: u32) -> Pixel {
     let (width, height) = (frame.region.z, frame.region.w);
-    let blocks = (width + BLOCK_WIDTH - 1) / BLOCK_WIDTH;
+    let blocks = width.div_ceil(BLOCK_WIDTH);
     let (block, lane) = (slot / (BLOCK_WIDTH * BLOCK_HEIGHT), slot % (BLOCK_WIDTH * BLOCK_HEIGHT));
     // A host never launches an empty region; the greater keeps a division by zero out of the kernel.
     let blocks = if blocks == 0 { 1 } else { blocks };

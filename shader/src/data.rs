@@ -273,8 +273,8 @@ pub struct Frame {
     pub top: UVec4,
     /// The region's left and top pixel, its width and height.
     pub region: UVec4,
-    /// Bits of a sample's share of its pixel, bits of the least contribution that is followed,
-    /// slots a launch has room for, and the number of pending rays a slot has room for.
+    /// Bits of a sample's share of its pixel, bits of the least contribution that is followed, slots a
+    /// launch has room for, 0.
     pub limits: UVec4,
 }
 

@@ -1,4 +1,7 @@
 //! The thin entry points: buffers to stages, nothing else.
+//!
+//! What any stage writes is declared writable by all, since the stages share one layout and naga wants
+//! its accesses to match.
 
 use crate::buffer::{read, write};
 use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle};
@@ -6,7 +9,8 @@ use crate::launch::{WORKGROUP, counter};
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Wave};
-use crate::traverse::IfIf;
+use crate::traverse::{IfIf, Packet};
+use crate::warp::Subgroup;
 use glam::{UVec3, UVec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
@@ -50,7 +54,7 @@ fn dispatch(at: u32, groups_x: u32, groups_y: u32, counters: &mut [u32]) {
 #[inline(always)]
 fn advance(lights: u32, counters: &mut [u32]) {
     let count = read(counters, counter::NEXT);
-    let groups = (count + WORKGROUP - 1) / WORKGROUP;
+    let groups = count.div_ceil(WORKGROUP);
     dispatch(counter::SLOTS, groups, 1, counters);
     dispatch(counter::SHADOWS, groups, lights, counters);
     write(counters, counter::COUNT, count);
@@ -73,10 +77,10 @@ macro_rules! shading_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &[UVec4],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &[u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 9)] film: &mut [UVec4],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &[u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 11)] next: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
         ) {
@@ -114,10 +118,10 @@ macro_rules! tracing_entries {
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &[UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &[u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &[u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
         ) {
             let features = Features(features);
             let slot = slot(features, frame, id.x, queue, counters);
@@ -136,11 +140,11 @@ macro_rules! tracing_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &[UVec4],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &[UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &[u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &[u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
         ) {
             let features = Features(features);
             let slot = slot(features, frame, id.x, queue, counters);
@@ -158,3 +162,5 @@ shading_entries!(f32, exact_shade, exact_advance);
 shading_entries!(Fast, fast_shade, fast_advance);
 tracing_entries!(f32, IfIf, exact_trace_if_if, exact_shadow_if_if);
 tracing_entries!(Fast, IfIf, fast_trace_if_if, fast_shadow_if_if);
+tracing_entries!(f32, Packet<Subgroup>, subgroup_exact_trace_packet, subgroup_exact_shadow_packet);
+tracing_entries!(Fast, Packet<Subgroup>, subgroup_fast_trace_packet, subgroup_fast_shadow_packet);

@@ -16,3 +16,4 @@ pub mod scene;
 pub mod shade;
 pub mod stage;
 pub mod traverse;
+pub mod warp;

@@ -4,3 +4,7 @@
 pub const EXACT: &[u8] = include_bytes!("../spirv/exact.spv");
 /// Arithmetic at the device's own speed, entries `fast_*`.
 pub const FAST: &[u8] = include_bytes!("../spirv/fast.spv");
+/// As [`EXACT`], methods that vote across a subgroup, entries `subgroup_exact_*`.
+pub const EXACT_SUBGROUP: &[u8] = include_bytes!("../spirv/exact_subgroup.spv");
+/// As [`FAST`], methods that vote across a subgroup, entries `subgroup_fast_*`.
+pub const FAST_SUBGROUP: &[u8] = include_bytes!("../spirv/fast_subgroup.spv");

@@ -1,1 +1,1 @@
-
+//! Whole-program tests of Eyerays.

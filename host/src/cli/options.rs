@@ -9,6 +9,7 @@ use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::method::Method;
 use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
@@ -18,14 +19,15 @@ const MOST_THREADS: usize = 1024;
 
 /// The scene and how to see it.
 #[derive(Args)]
+#[command(next_help_heading = "View")]
 pub(super) struct View {
-    /// Image width and height in pixels, for example 1920x1080
+    /// Image width and height in pixels, for example 1920x1080 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
-    /// Samples along a pixel's edge: N x N rays a pixel
+    /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
-    /// One of the scene's cameras, by name or number (from 0)
+    /// One of the scene's cameras, by name or number from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX", conflicts_with = "eye")]
     camera: Option<String>,
     /// Look from here instead, in the scene's units
@@ -34,13 +36,13 @@ pub(super) struct View {
     /// Look there
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "eye", allow_hyphen_values = true)]
     target: Option<Vec3>,
-    /// Vertical field of view in degrees
+    /// Vertical field of view in degrees [default: the camera's]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
-    /// How often a ray is reflected or refracted at most
+    /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
-    /// Least share of its pixel that a ray is followed for
+    /// Least share of its pixel that a ray is followed for [default: the scene's]
     #[arg(long, value_name = "SHARE")]
     min_contribution: Option<f32>,
     /// Skip triangles seen from behind
@@ -53,10 +55,14 @@ pub(super) struct View {
 
 /// Which device, and its arithmetic.
 #[derive(Args)]
+#[command(next_help_heading = "Device")]
 pub(super) struct On {
     /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
-    #[arg(long, value_enum, default_value_t = Precision::Exact, hide_possible_values = false)]
+    #[arg(long, value_enum, default_value_t = Precision::Exact)]
     pub precision: Precision,
+    /// How rays are followed; every method gives the same picture
+    #[arg(long, value_enum, default_value_t = Method::IfIf)]
+    pub method: Method,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -167,7 +173,7 @@ impl On {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
         let (precision, adapter) = (self.precision, self.adapter.clone());
-        Ok(Choice { device, precision, adapter, no_passthrough: self.no_passthrough, threads })
+        Ok(Choice { device, precision, method: self.method, adapter, no_passthrough: self.no_passthrough, threads })
     }
 }
 

@@ -28,10 +28,6 @@ pub(super) struct Render {
     /// Where to render
     #[arg(long, value_enum, default_value_t = DeviceWish::Auto)]
     device: DeviceWish,
-    #[command(flatten)]
-    on: On,
-    #[command(flatten)]
-    view: View,
     /// Brighten the picture by this many stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
     exposure: f32,
@@ -44,6 +40,10 @@ pub(super) struct Render {
     /// Print the summary as JSON to standard output
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    on: On,
+    #[command(flatten)]
+    view: View,
 }
 
 impl Render {

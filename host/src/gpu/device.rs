@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
 use crate::error::{Error, Result};
+use crate::method::Method;
 
 /// How kernels reach the driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -56,7 +57,7 @@ impl Gpu {
                 if want.naga { "--no-passthrough".to_owned() } else { format!("\"{}\"", report.name) }
             )));
         }
-        let mut features = adapter.features() & wgpu::Features::TIMESTAMP_QUERY;
+        let mut features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
         if route == Route::Passthrough {
             features |= wgpu::Features::PASSTHROUGH_SHADERS;
         }
@@ -82,6 +83,20 @@ impl Gpu {
         Ok(Gpu { report, route, device, queue, fault })
     }
 
+    /// Does the GPU have what a method needs?
+    ///
+    /// # Errors
+    /// It votes, and there is nobody to vote with.
+    pub(super) fn can_vote(&self, method: Method) -> Result<()> {
+        if method.votes() && !self.device.features().contains(wgpu::Features::SUBGROUP) {
+            return Err(Error::new(format!(
+                "\"{}\" has no subgroups to vote in: use --method if-if",
+                self.report.name
+            )));
+        }
+        Ok(())
+    }
+
     /// The first fault that the GPU reported since, if any.
     ///
     /// # Errors
@@ -104,6 +119,8 @@ impl Gpu {
     }
 }
 
+/// Keeps the first fault, its lines made one.
 fn note(fault: &Mutex<Option<String>>, message: String) {
-    fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(message);
+    let lines: Vec<&str> = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
+    fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(lines.join("; "));
 }

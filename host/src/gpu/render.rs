@@ -5,7 +5,6 @@ use std::time::Duration;
 use eyerays_shader::camera;
 use eyerays_shader::data::{Features, numbers};
 use eyerays_shader::launch::{WORKGROUP, counter};
-use eyerays_shader::modules;
 use eyerays_shader::stage::NON_FINITE;
 use glam::UVec4;
 
@@ -15,6 +14,7 @@ use super::timer::Timer;
 use super::{module, readback};
 use crate::error::Result;
 use crate::film::Film;
+use crate::method::Method;
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -56,16 +56,17 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, method: Method) -> Result<Self> {
+        gpu.can_vote(method)?;
         let slots = buffers::most_slots(gpu, packed)?;
         let bands = bands(packed.settings.size, slots);
         let layout = buffers::layout(gpu);
-        let compiler = Compiler::new(gpu, &layout, exact);
+        let compiler = Compiler::new(gpu, &layout, exact, method);
         let lit = !packed.lights.is_empty();
         let primary = compiler.stages(packed.features, lit);
         let secondary = packed.has_secondary_rays().then(|| {
             let features = Features(packed.features.0 | Features::SECONDARY);
-            (compiler.stage(&compiler.module(features), "advance"), compiler.stages(features, lit))
+            (compiler.shading(features, "advance"), compiler.stages(features, lit))
         });
         gpu.check()?;
         let most = |size: &dyn Fn(&Region) -> u32| bands.iter().map(size).max().unwrap_or(0).into();
@@ -187,40 +188,40 @@ impl<'a> Renderer<'a> {
     }
 }
 
-/// Compiles stages of one precision.
+/// Compiles the stages of one precision and method.
 struct Compiler<'a> {
     gpu: &'a Gpu,
     layout: wgpu::PipelineLayout,
-    spirv: &'static [u8],
-    precision: &'static str,
+    exact: bool,
+    method: Method,
 }
 
 impl<'a> Compiler<'a> {
-    fn new(gpu: &'a Gpu, layout: &wgpu::BindGroupLayout, exact: bool) -> Self {
-        let (spirv, precision) = if exact { (modules::EXACT, "exact") } else { (modules::FAST, "fast") };
+    fn new(gpu: &'a Gpu, layout: &wgpu::BindGroupLayout, exact: bool, method: Method) -> Self {
         let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
             label: None,
             bind_group_layouts: &[Some(layout)],
             immediate_size: 0,
         });
-        Compiler { gpu, layout, spirv, precision }
+        Compiler { gpu, layout, exact, method }
     }
 
-    fn name(&self, stage: &str) -> String {
-        format!("{}_{stage}", self.precision)
+    /// The stages that follow no ray are in the modules without votes.
+    fn shading(&self, features: Features, stage: &str) -> wgpu::ComputePipeline {
+        self.stage(Method::IfIf.module(self.exact), features, stage)
     }
 
-    fn module(&self, features: Features) -> wgpu::ShaderModule {
-        let entries = ["trace_if_if", "shadow_if_if", "shade", "advance"].map(|stage| self.name(stage));
-        module::create(self.gpu, &module::specialise(self.spirv, features), &entries)
+    fn tracing(&self, features: Features, stage: &str) -> wgpu::ComputePipeline {
+        self.stage(self.method.module(self.exact), features, &format!("{stage}_{}", self.method.entry()))
     }
 
-    fn stage(&self, module: &wgpu::ShaderModule, stage: &str) -> wgpu::ComputePipeline {
-        let name = self.name(stage);
+    fn stage(&self, (spirv, prefix): (&[u8], &str), features: Features, stage: &str) -> wgpu::ComputePipeline {
+        let name = format!("{prefix}_{stage}");
+        let module = module::create(self.gpu, &module::specialise(spirv, features), &name);
         self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(&name),
             layout: Some(&self.layout),
-            module,
+            module: &module,
             entry_point: Some(&name),
             compilation_options: Default::default(),
             cache: None,
@@ -228,11 +229,10 @@ impl<'a> Compiler<'a> {
     }
 
     fn stages(&self, features: Features, lit: bool) -> Pipelines {
-        let module = self.module(features);
         Pipelines {
-            trace: self.stage(&module, "trace_if_if"),
-            shadow: lit.then(|| self.stage(&module, "shadow_if_if")),
-            shade: self.stage(&module, "shade"),
+            trace: self.tracing(features, "trace"),
+            shadow: lit.then(|| self.tracing(features, "shadow")),
+            shade: self.shading(features, "shade"),
         }
     }
 }

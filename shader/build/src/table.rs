@@ -33,7 +33,11 @@ impl Module {
 }
 
 /// Every committed module.
-pub const MODULES: [Module; 2] = [
+///
+/// Methods that vote have modules of their own, so that a device without subgroups takes the others.
+pub const MODULES: [Module; 4] = [
     Module { name: "exact", prefix: "exact_", policy: Policy::Exact, protects: &[] },
     Module { name: "fast", prefix: "fast_", policy: Policy::Fast, protects: &["triangle::cross"] },
+    Module { name: "exact_subgroup", prefix: "subgroup_exact_", policy: Policy::Exact, protects: &[] },
+    Module { name: "fast_subgroup", prefix: "subgroup_fast_", policy: Policy::Fast, protects: &["triangle::cross"] },
 ];

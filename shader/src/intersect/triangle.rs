@@ -120,6 +120,18 @@ mod tests {
         assert!(hit([[0.25; 3]; 3], [0.0; 3], [1.0, 1.0, 1.0]).is_none());
     }
 
+    #[test]
+    fn edges_and_vertices_are_inside_either_way_around() {
+        let [a, b, c] = FLAT;
+        for triangle in [[a, b, c], [a, c, b]] {
+            for (x, y) in [(0.25, 0.0), (0.0, 0.25), (0.25, 0.25), (0.0, 0.0), (0.5, 0.0), (0.0, 0.5)] {
+                for z in [0.75, -0.75] {
+                    assert!(hit(triangle, [x, y, z], [0.0, 0.0, -z]).is_some(), "{x} {y} from {z}");
+                }
+            }
+        }
+    }
+
     fn fan_hits(hub: [f32; 3], rim: &[[f32; 3]], origin: [f32; 3], direction: [f32; 3]) -> usize {
         (0..rim.len()).filter(|&i| hit([hub, rim[i], rim[(i + 1) % rim.len()]], origin, direction).is_some()).count()
     }

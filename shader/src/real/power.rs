@@ -6,7 +6,7 @@ const SQRT_HALF: u32 = 0x3f35_04f3;
 
 /// Minimax for log2(1 + f) / f on [sqrt(1/2) - 1, sqrt(2) - 1]; largest error 6e-9 before rounding.
 const LOG: [f32; 10] = [
-    1.442_695,
+    core::f32::consts::LOG2_E,
     -0.721_347_33,
     0.480_897_9,
     -0.360_696_43,
@@ -19,7 +19,8 @@ const LOG: [f32; 10] = [
 ];
 
 /// Minimax for 2^f on [-1/2, 1/2]; largest relative error 2e-9 before rounding.
-const EXP: [f32; 7] = [1.0, 0.693_147_2, 0.240_226_46, 0.055_503_286, 0.009_618_489, 0.001_339_993_1, 0.000_153_457_99];
+const EXP: [f32; 7] =
+    [1.0, core::f32::consts::LN_2, 0.240_226_46, 0.055_503_286, 0.009_618_489, 0.001_339_993_1, 0.000_153_458];
 
 /// Base-2 logarithm of a positive normal number, within 4e-7 absolutely and, near 1, relatively.
 #[inline(always)]

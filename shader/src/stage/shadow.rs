@@ -18,7 +18,7 @@ pub const FACES_AWAY: u32 = 2;
 
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
-pub fn shadow<R: Scalar, M: Method>(
+pub fn shadow<R: Scalar, M: Method<R>>(
     geometry: &Geometry<'_>, lights: &[Light], slot: u32, index: u32, paths: &[R::Record], hits: &[R::Record],
 ) -> u32 {
     let (hit, place) = R::load(read(hits, slot));
@@ -33,6 +33,6 @@ pub fn shadow<R: Scalar, M: Method>(
         return FACES_AWAY;
     }
     let mut hit = Hit::none(limit);
-    M::traverse::<Occlusion, R>(geometry, &Ray::leaving(place, origin, direction), &mut hit);
+    M::traverse::<Occlusion>(geometry, &Ray::leaving(place, origin, direction), &mut hit);
     if step::occluded(&hit) { SHADOWED } else { REACHED }
 }

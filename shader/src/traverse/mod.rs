@@ -4,13 +4,16 @@
 //! ray meets, with t clamped into that box. An ancestor's box is entered no later than a triangle's
 //! own (the box test is monotone), so no order of visits can cull the winner.
 
+pub mod cursor;
 mod if_if;
+mod packet;
 pub mod step;
 
 pub use if_if::IfIf;
+pub use packet::Packet;
 
 use crate::ray::{Hit, Ray};
-use crate::real::Scalar;
+use crate::real::Real;
 use crate::scene::Geometry;
 
 /// What a ray asks for.
@@ -31,10 +34,10 @@ impl Query for Occlusion {
     const ANY: bool = true;
 }
 
-/// A way through the hierarchy, one ray a lane.
-pub trait Method {
+/// A way through the hierarchy, for rays over the numbers that it can follow.
+pub trait Method<R: Real> {
     /// Follows a ray from the root and leaves what it finds in `hit`, which holds its limit before.
-    fn traverse<Q: Query, R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
+    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
 #[cfg(test)]

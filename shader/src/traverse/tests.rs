@@ -1,11 +1,12 @@
 //! The same hit as brute force, on triangles that tie, overlap and degenerate.
 
 use super::step::{self, occluded};
-use super::{Closest, IfIf, Method, Occlusion, Query};
+use super::{Closest, IfIf, Method, Occlusion, Packet, Query};
 use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Scalar, V3};
 use crate::scene::Geometry;
+use crate::warp::Alone;
 use bytemuck::Zeroable;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -54,9 +55,9 @@ impl World {
         Geometry { frame: &self.frame, features: self.features, nodes: &self.nodes, triangles: &self.triangles }
     }
 
-    fn trace<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
+    fn trace<M: Method<R>, Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
-        IfIf::traverse::<Q, R>(&self.geometry(), ray, &mut hit);
+        M::traverse::<Q>(&self.geometry(), ray, &mut hit);
         hit
     }
 
@@ -90,12 +91,12 @@ fn soup() -> impl Strategy<Value = Vec<Triangle>> {
     })
 }
 
-fn check<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
+fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     let ray = ray::<R>(origin, direction);
     for limit in [f32::MAX, 0.5] {
-        let (got, want) = (world.trace::<Closest, R>(&ray, limit), world.brute_force::<Closest, R>(&ray, limit));
+        let (got, want) = (world.trace::<M, Closest, R>(&ray, limit), world.brute_force::<Closest, R>(&ray, limit));
         assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive));
-        let (got, want) = (world.trace::<Occlusion, R>(&ray, limit), world.brute_force::<Occlusion, R>(&ray, limit));
+        let (got, want) = (world.trace::<M, Occlusion, R>(&ray, limit), world.brute_force::<Occlusion, R>(&ray, limit));
         assert_eq!(occluded(&got), occluded(&want));
     }
 }
@@ -114,9 +115,12 @@ proptest! {
         let world = World::new(triangles, features);
         let beside: [f32; 3] = std::array::from_fn(|k| direction[k] + nudge[k]);
         for direction in [direction, beside] {
-            check::<f32>(&world, origin, direction);
-            check::<Fast>(&world, origin, direction);
-            check::<f64>(&world, origin, direction);
+            check::<IfIf, f32>(&world, origin, direction);
+            check::<Packet<Alone>, f32>(&world, origin, direction);
+            check::<IfIf, Fast>(&world, origin, direction);
+            check::<Packet<Alone>, Fast>(&world, origin, direction);
+            check::<IfIf, f64>(&world, origin, direction);
+            check::<Packet<Alone>, f64>(&world, origin, direction);
         }
     }
 }
@@ -126,7 +130,7 @@ fn ties_go_to_the_least_primitive_in_any_leaf_order() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     for order in [[7u32, 3, 9, 5, 8, 6, 4], [3, 4, 5, 6, 7, 8, 9], [9, 8, 7, 6, 5, 4, 3]] {
         let world = World::new(order.iter().map(|&id| Triangle::new(t, id, 0, 0)).collect(), 0);
-        let hit = world.trace::<Closest, f32>(&ray([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]), f32::MAX);
+        let hit = world.trace::<IfIf, Closest, f32>(&ray([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]), f32::MAX);
         assert_eq!((hit.primitive, hit.t), (3, 0.5));
     }
 }
@@ -136,9 +140,9 @@ fn culling_hides_backs_from_sight_but_not_from_light() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let world = World::new(vec![Triangle::new(t, 0, 0, 0), Triangle::new(t, 1, 0, 0)], Features::CULLING);
     let from = |z: f32| ray::<f32>([0.0, 0.0, z], [0.0, 0.0, -z]);
-    assert_eq!(world.trace::<Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
-    assert_eq!(world.trace::<Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
-    assert!(occluded(&world.trace::<Occlusion, f32>(&from(-0.5), f32::MAX)));
+    assert_eq!(world.trace::<IfIf, Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
+    assert_eq!(world.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
+    assert!(occluded(&world.trace::<IfIf, Occlusion, f32>(&from(-0.5), f32::MAX)));
 }
 
 #[test]
@@ -148,7 +152,7 @@ fn light_passes_transparent_triangles_only() {
     for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
         let world =
             World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Features::REFRACTION);
-        assert_eq!(occluded(&world.trace::<Occlusion, f32>(&down, f32::MAX)), blocked);
-        assert!(!occluded(&world.trace::<Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
+        assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
+        assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
     }
 }

@@ -1,0 +1,44 @@
+//! Packet traversal (thesis algorithm 6.1, after Günther et al. 2007): the lanes of a warp visit the
+//! same nodes, those that any of them wants, in the order that any of them prefers.
+
+use core::marker::PhantomData;
+
+use super::cursor::Cursor;
+use super::step::{children, occluded, triangle};
+use super::{Method, Query};
+use crate::buffer::read;
+use crate::data::STACK;
+use crate::ray::{Hit, Ray};
+use crate::real::Real;
+use crate::scene::Geometry;
+use crate::warp::Warp;
+
+/// See the module.
+pub struct Packet<W>(PhantomData<W>);
+
+impl<R: Real, W: Warp> Method<R> for Packet<W> {
+    #[inline(always)]
+    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+        let mut stack = [0; STACK];
+        let mut cursor = Cursor::new();
+        while !cursor.done {
+            if cursor.node.is_leaf() {
+                while cursor.node.is_leaf() {
+                    triangle::<Q, R>(geometry, cursor.node, ray, hit);
+                    cursor.node = cursor.node.rest();
+                }
+                if Q::ANY && !W::any(!occluded(hit)) {
+                    cursor.done = true;
+                } else {
+                    cursor.pop(&stack);
+                }
+            } else {
+                let pair = read(geometry.nodes, cursor.node.index());
+                let wanted = children(&pair, ray, hit);
+                let (left, right) = (W::any(wanted.left), W::any(wanted.right));
+                let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
+                cursor.descend(&pair, left, right, right_first, &mut stack);
+            }
+        }
+    }
+}

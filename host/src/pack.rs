@@ -180,10 +180,11 @@ fn normals(scene: &Scene) -> Vec<Normals> {
 
 fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
     let ior = if is_transparent(m) { m.ior } else { 0.0 };
-    let checker = match m.checker {
-        // Cells much larger than the scene are one cell, whatever their exact size.
-        Some(c) => colour(c.colour, ((1.0 / (f64::from(c.size) * scale)).clamp(1e-6, 1e30) as f32).to_bits()),
-        None => colour(Vec3::ZERO, 0),
+    // Cells much larger than the scene are one cell, whatever their exact size.
+    let cells = |size: f32| (1.0 / (f64::from(size) * scale)).clamp(1e-6, 1e30) as f32;
+    let (checker, checker_ambient) = match m.checker {
+        Some(c) => (colour(c.colour, cells(c.size).to_bits()), colour(c.ambient * ambient, 0)),
+        None => (colour(Vec3::ZERO, 0), colour(Vec3::ZERO, 0)),
     };
     MaterialRecord {
         ambient: colour(m.ambient * ambient, 0),
@@ -192,6 +193,7 @@ fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
         reflection: colour(m.reflection, ior.to_bits()),
         transmission: colour(m.transmission, 0),
         checker,
+        checker_ambient,
     }
 }
 

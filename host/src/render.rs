@@ -90,7 +90,7 @@ impl Chosen {
     pub fn new(choice: &Choice) -> Result<Chosen> {
         let cpu = |why: String| Chosen { device: Device::Cpu, choice: choice.clone(), why };
         if choice.device == DeviceWish::Cpu {
-            return Ok(cpu("asked for".to_owned()));
+            return Ok(cpu("--device cpu".to_owned()));
         }
         if choice.precision == Precision::Reference {
             return match choice.device {
@@ -103,13 +103,13 @@ impl Chosen {
         let asked = choice.device == DeviceWish::Gpu;
         let want = Want {
             adapter: choice.adapter.clone(),
-            software: asked,
+            software: asked || choice.adapter.is_some(),
             naga: choice.no_passthrough,
             exact: choice.precision == Precision::Exact,
         };
         match Gpu::open(&want) {
             Ok(gpu) => {
-                let why = if asked { "asked for" } else { "a GPU that works" }.to_owned();
+                let why = if asked { "--device gpu" } else { "a GPU that works" }.to_owned();
                 Ok(Chosen { device: Device::Gpu(Box::new(gpu)), choice: choice.clone(), why })
             }
             Err(error) if asked || choice.adapter.is_some() => Err(error),

@@ -231,6 +231,8 @@ pub struct Material {
     pub transmission: UVec4,
     /// The checker's second diffuse colour; the integer is the bits of cells per unit, 0 for none.
     pub checker: UVec4,
+    /// The second cells' ambient colour times the scene's ambient light.
+    pub checker_ambient: UVec4,
 }
 
 /// A light without extent.

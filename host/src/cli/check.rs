@@ -29,14 +29,18 @@ impl Check {
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
             super::print(&format!(
-                "{}: {} triangles, {} materials, {} lights; cameras {}\n",
+                "{}: {}, {}, {}; cameras {}\n",
                 self.scene.display(),
-                scene.mesh.triangles.len(),
-                scene.materials.len(),
-                scene.lights.len(),
+                count(scene.mesh.triangles.len(), "triangle"),
+                count(scene.materials.len(), "material"),
+                count(scene.lights.len(), "light"),
                 cameras.join(", ")
             ))?;
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+fn count(n: usize, noun: &str) -> String {
+    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }

@@ -1,6 +1,6 @@
 //! `eyerays diff`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -29,6 +29,10 @@ pub(super) struct Diff {
     /// A picture, or a scene to render on GPU and CPU
     first: PathBuf,
     /// The picture to compare with
+    #[arg(conflicts_with_all = [
+        "precision", "method", "stack_max", "cut", "adapter", "threads", "no_passthrough", "size", "samples", "camera",
+        "eye", "target", "fov", "bounces", "min_contribution", "cull", "bvh",
+    ])]
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)
     #[arg(short, long, value_name = "FILE")]
@@ -43,6 +47,10 @@ pub(super) struct Diff {
     on: On,
     #[command(flatten)]
     view: View,
+}
+
+fn has_extension(file: &Path, names: &[&str]) -> bool {
+    file.extension().is_some_and(|e| names.iter().any(|name| e.eq_ignore_ascii_case(name)))
 }
 
 impl Diff {
@@ -72,13 +80,21 @@ impl Diff {
     }
 
     fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
+        for file in [&self.first, second] {
+            if has_extension(file, &["toml", "obj"]) {
+                return Err(Error::file(
+                    file,
+                    "a scene is compared alone, from GPU and CPU; render two to compare them",
+                ));
+            }
+        }
         let names = [&self.first, second].map(|path| path.display().to_string());
         Ok((image::read(&self.first)?, image::read(second)?, names))
     }
 
     /// The unquantised films of a scene from GPU and CPU.
     fn renderings(&self, quiet: bool) -> Result<(Film, Film, [String; 2])> {
-        if self.first.extension().is_some_and(|e| ["png", "exr", "hdr"].iter().any(|x| e.eq_ignore_ascii_case(x))) {
+        if has_extension(&self.first, &["png", "exr", "hdr"]) {
             return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
         }
         if self.on.precision == Precision::Reference {

@@ -22,9 +22,9 @@ pub(super) struct Info {
 }
 
 impl Info {
-    pub fn run(&self) -> Result<ExitCode> {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         match &self.scene {
-            Some(path) => self.scene(path)?,
+            Some(path) => self.scene(path, quiet)?,
             None => self.adapters()?,
         }
         Ok(ExitCode::SUCCESS)
@@ -42,9 +42,9 @@ impl Info {
     }
 
     /// The thesis' table 7.1, for every quality of the hierarchy, with its cost and memory.
-    fn scene(&self, path: &PathBuf) -> Result<()> {
+    fn scene(&self, path: &PathBuf, quiet: bool) -> Result<()> {
         let (scene, warnings) = scene::load(path)?;
-        super::warn(&warnings, self.json);
+        super::warn(&warnings, quiet || self.json);
         let mut rows = Vec::new();
         for (name, quality) in [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)] {
             let packed = Packed::new(&scene, &scene.cameras[0], scene.settings, quality)?;

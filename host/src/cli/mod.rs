@@ -16,9 +16,13 @@ use crate::error::Result;
 /// Exit code of a command that failed on what it was given.
 const BAD_INPUT: u8 = 2;
 
+const CODES: &str = "\
+Pictures and tables go to files and standard output, summaries and messages to standard error.
+Exit codes: 0 done, 1 pictures that differ, 2 something wrong with what was given.";
+
 /// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
-#[command(name = "eyerays", version, about, max_term_width = 100)]
+#[command(name = "eyerays", version, about, max_term_width = 100, after_help = CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -33,10 +37,10 @@ struct Cli {
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene to a picture
-    #[command(after_help = render::EXAMPLES)]
+    #[command(after_help = render::EXAMPLES, allow_negative_numbers = true)]
     Render(Box<render::Render>),
     /// Compare two pictures, or a scene's pictures from GPU and CPU
-    #[command(after_help = diff::EXAMPLES)]
+    #[command(after_help = diff::EXAMPLES, allow_negative_numbers = true)]
     Diff(Box<diff::Diff>),
     /// List the GPUs of this machine, or tell a scene's figures
     Info(info::Info),
@@ -51,7 +55,7 @@ pub fn run() -> ExitCode {
     let outcome = match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
-        Command::Info(command) => command.run(),
+        Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
     };
     outcome.unwrap_or_else(|error| {

@@ -37,7 +37,7 @@ pub(super) struct View {
     /// Look there
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "eye", allow_hyphen_values = true)]
     target: Option<Vec3>,
-    /// Vertical field of view in degrees [default: the camera's]
+    /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
@@ -46,9 +46,9 @@ pub(super) struct View {
     /// Least share of its pixel that a ray is followed for [default: the scene's]
     #[arg(long, value_name = "SHARE")]
     min_contribution: Option<f32>,
-    /// Skip triangles seen from behind
-    #[arg(long)]
-    cull: bool,
+    /// Skip opaque triangles seen from behind [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    cull: Option<bool>,
     /// Quality of the hierarchy: a better one takes longer to build and is faster to trace
     #[arg(long, value_name = "QUALITY", value_enum, default_value_t = Bvh::Medium)]
     bvh: Bvh,
@@ -116,7 +116,7 @@ impl View {
             samples: self.samples.unwrap_or(own.samples),
             bounces: self.bounces.unwrap_or(own.bounces),
             min_contribution: self.min_contribution.unwrap_or(own.min_contribution),
-            culling: self.cull || own.culling,
+            culling: self.cull.unwrap_or(own.culling),
         };
         Film::check_size(settings.size.0, settings.size.1)?;
         if !(1..=Settings::MOST_SAMPLES).contains(&settings.samples) {

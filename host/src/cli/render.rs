@@ -35,7 +35,7 @@ pub(super) struct Render {
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u32,
     /// Render this many times and tell the median time
-    #[arg(long, value_name = "N", default_value_t = 1)]
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
     /// Print the summary as JSON to standard output
     #[arg(long)]
@@ -63,7 +63,7 @@ impl Render {
         let loaded = self.view.load(&self.scene, quiet)?;
         let chosen = Chosen::new(&choice)?;
         let (width, height) = loaded.packed.settings.size;
-        let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat.max(1)), quiet || self.json);
+        let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
         let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
         progress.finish_and_clear();
         let rendering = rendering?;

@@ -85,12 +85,17 @@ impl fmt::Display for Comparison {
         writeln!(out, "equal in every bit  {equal}")?;
         writeln!(out, "differing pixels    {} of {pixels}", self.differing_pixels)?;
         writeln!(out, "largest ulps        {ulps}")?;
-        writeln!(out, "largest difference  {:.6e}", self.largest_difference)?;
-        writeln!(out, "RMSE                {:.6e}", self.rmse)?;
+        writeln!(out, "largest difference  {}", short(self.largest_difference))?;
+        writeln!(out, "RMSE                {}", short(self.rmse))?;
         writeln!(out, "PSNR                {:.2} dB", self.psnr)?;
         let [a, b] = self.non_finite;
         write!(out, "non-finite values   {a} and {b}")
     }
+}
+
+/// Seven digits, and plain where a number is plain.
+fn short(x: f64) -> String {
+    if x == 0.0 { "0".to_owned() } else { format!("{x:.6e}") }
 }
 
 fn check_sizes(a: &Film, b: &Film) -> Result<()> {

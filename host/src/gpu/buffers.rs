@@ -2,7 +2,7 @@
 
 use bytemuck::NoUninit;
 use eyerays_shader::data::{Features, Frame};
-use eyerays_shader::launch::{binding, counter};
+use eyerays_shader::launch::{WORKGROUP, binding, counter};
 use eyerays_shader::stage::RECORDS;
 
 use super::device::Gpu;
@@ -54,7 +54,8 @@ pub(super) fn most_slots(gpu: &Gpu, packed: &Packed) -> Result<u32> {
     }
     let share = Share::of(packed);
     let memory = limit.min(MOST) / share.paths.max(share.shadows).max(RECORD);
-    let slots = memory.min(RAYS / (packed.lights.len() as u64).max(1)) / 32 * 32;
+    let threads = u64::from(gpu.device.limits().max_compute_workgroups_per_dimension) * u64::from(WORKGROUP);
+    let slots = memory.min(threads).min(RAYS / (packed.lights.len() as u64).max(1)) / 32 * 32;
     if memory < 32 {
         return Err(Error::new(format!(
             "a block of pixels needs buffers of {} bytes, but \"{}\" has at most {limit}: lower --bounces, remove lights, or use --device cpu",

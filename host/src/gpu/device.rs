@@ -48,7 +48,10 @@ impl Gpu {
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
         if report.is_software() && !want.software {
-            return Err(Error::new(format!("\"{}\" is no GPU but a program: --device gpu takes it", report.name)));
+            return Err(Error::new(format!(
+                "no hardware GPU; \"{}\" is software, which --device gpu takes",
+                report.name
+            )));
         }
         let route = if report.passthrough && !want.naga { Route::Passthrough } else { Route::Naga };
         if want.exact && (route == Route::Naga || !report.exact) {

@@ -64,9 +64,10 @@ impl Fields {
         }
     }
 
-    /// The whole material: grey and matt where nothing is said, ambient as diffuse.
+    /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse.
     pub fn finish(self, name: &str) -> Material {
-        let diffuse = self.diffuse.unwrap_or(GREY);
+        let glass = self.transmission.is_some_and(|t| t != Vec3::ZERO);
+        let diffuse = self.diffuse.unwrap_or(if glass { Vec3::ZERO } else { GREY });
         Material {
             name: name.to_owned(),
             ambient: self.ambient.unwrap_or(diffuse),
@@ -76,7 +77,7 @@ impl Fields {
             reflection: self.reflection.unwrap_or(Vec3::ZERO),
             transmission: self.transmission.unwrap_or(Vec3::ZERO),
             ior: self.ior.unwrap_or(GLASS),
-            checker: self.checker,
+            checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
         }
     }
 }
@@ -84,7 +85,8 @@ impl Fields {
 fn checker(mut table: Table) -> Result<Checker> {
     let colour = table.triple("color", Range::SHARE)?;
     let size = table.number("size", Range::LENGTH)?;
-    let checker = Checker { colour: table.need("color", colour)?, size: table.need("size", size)? };
+    let colour = table.need("color", colour)?;
+    let checker = Checker { colour, ambient: colour, size: table.need("size", size)? };
     table.done()?;
     Ok(checker)
 }

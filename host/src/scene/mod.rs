@@ -100,8 +100,10 @@ pub struct Material {
 /// A procedural checkerboard over the surface's two major axes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Checker {
-    /// The colour of every second cell; the others have the material's diffuse colour.
+    /// The diffuse colour of every second cell; the others have the material's.
     pub colour: Vec3,
+    /// The answer of those cells to the scene's ambient light.
+    pub ambient: Vec3,
     /// A cell's edge in world units.
     pub size: f32,
 }

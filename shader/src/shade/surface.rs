@@ -47,7 +47,7 @@ impl<R: Scalar> Surface<R> {
             features.has(Features::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
         Surface {
             normal,
-            ambient: colour(material.ambient),
+            ambient: if other { colour(material.checker_ambient) } else { colour(material.ambient) },
             diffuse: if other { colour(material.checker) } else { colour(material.diffuse) },
             specular: colour(material.specular),
             shininess: number(material.specular.w),

@@ -110,8 +110,9 @@ fn tiles(packed: &Packed) -> Vec<Region> {
         .collect()
 }
 
-/// Every sample of a tile; its film and how many secondary rays it took.
-fn render_tile<R: Scalar>(
+/// Every sample of a region, wherever its edges are: its film (row-major; the integers count shadow rays) and
+/// how many secondary rays it took.
+pub fn render_tile<R: Scalar>(
     packed: &Packed,
     traversal: Traversal,
     region: Region,

@@ -1,1 +1,72 @@
-//! Whole-program tests of Eyerays.
+//! What the whole-program tests share: the shipped scenes, the GPU at hand, and films side by side.
+
+pub mod model;
+
+use std::path::PathBuf;
+
+use eyerays::compare::compare;
+use eyerays::film::Film;
+use eyerays::gpu::{Gpu, Want};
+use eyerays::pack::Packed;
+use eyerays::scene::{self, Camera, Scene, Settings};
+use eyerays_bvh::Quality;
+
+/// The scenes that the project ships.
+pub const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
+
+/// A shipped scene by its name.
+///
+/// # Panics
+/// If it does not load.
+pub fn shipped(name: &str) -> Scene {
+    let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let (scene, _) = scene::load(&folder.join(name).with_extension("toml")).unwrap_or_else(|e| panic!("{e}"));
+    scene
+}
+
+/// The scene's own settings at another size and number of samples.
+pub fn settings(scene: &Scene, size: (u32, u32), samples: u32) -> Settings {
+    Settings { size, samples, ..scene.settings }
+}
+
+/// A scene packed at medium quality.
+///
+/// # Panics
+/// If no device could hold it.
+pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Packed {
+    Packed::new(scene, camera, settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The GPU that tests run on, a software one such as lavapipe too: `EYERAYS_ADAPTER` names one, else it is
+/// the best. Without any, a test has nothing to do and says so, unless `EYERAYS_REQUIRE_GPU` is `1`.
+///
+/// # Panics
+/// If there is none and there must be.
+pub fn gpu(want: &Want) -> Option<Gpu> {
+    let adapter = std::env::var("EYERAYS_ADAPTER").ok();
+    match Gpu::open(&Want { software: true, adapter, ..want.clone() }) {
+        Ok(gpu) => Some(gpu),
+        Err(error) => {
+            let required = std::env::var("EYERAYS_REQUIRE_GPU").is_ok_and(|value| value == "1");
+            assert!(!required, "EYERAYS_REQUIRE_GPU=1, but {error}");
+            eprintln!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// Asserts that two films have the same bits.
+///
+/// # Panics
+/// If they have not, with the differences.
+pub fn assert_same_bits(a: &Film, b: &Film, what: &str) {
+    let comparison = compare(a, b).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert!(a.bits_equal(b) && comparison.bit_equal, "{what}:\n{comparison}");
+}
+
+/// The largest difference of a channel of each pixel, row-major from the top left.
+pub fn differences(a: &Film, b: &Film) -> Vec<f32> {
+    let channel = |(a, b): (&f32, &f32)| (a - b).abs();
+    let pixel = |(a, b): (&[f32; 3], &[f32; 3])| a.iter().zip(b).map(channel).fold(0.0, f32::max);
+    a.pixels.iter().zip(&b.pixels).map(pixel).collect()
+}

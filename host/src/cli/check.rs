@@ -7,7 +7,6 @@ use clap::Args;
 use eyerays_bvh::Quality;
 
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::pack::Packed;
 use crate::scene;
 
@@ -22,7 +21,6 @@ impl Check {
         let (scene, warnings) = scene::load(&self.scene)?;
         super::warn(&warnings, quiet);
         let named = |e: Error| Error { file: e.file.or_else(|| Some(self.scene.clone())), ..e };
-        Film::check_size(scene.settings.size.0, scene.settings.size.1).map_err(named)?;
         for camera in &scene.cameras {
             Packed::new(&scene, camera, scene.settings, Quality::Fast).map_err(named)?;
         }

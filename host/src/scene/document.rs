@@ -8,6 +8,7 @@ use super::range::Range;
 use super::table::Table;
 use super::{Background, Camera, Light, Settings};
 use crate::error::Result;
+use crate::film::Film;
 
 /// Reads `[render]`; what it does not say is the default.
 ///
@@ -22,6 +23,8 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
     };
+    let (width, height) = settings.size;
+    Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message))?;
     table.done()?;
     Ok(settings)
 }

@@ -10,11 +10,14 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Stri
     let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
     match known.iter().copied().min_by_key(distance) {
         None => "there are none".into(),
-        Some(near) if distance(&near) <= (near.chars().count() / 3).max(1) => {
-            format!("did you mean {near:?}?")
-        }
+        Some(near) if is_near(name, near) => format!("did you mean {near:?}?"),
         Some(_) => format!("known are {}", known.join(", ")),
     }
+}
+
+/// Is `name` probably a misspelling of `known`?
+pub fn is_near(name: &str, known: &str) -> bool {
+    strsim::damerau_levenshtein(name, known) <= (known.chars().count() / 3).max(1)
 }
 
 #[cfg(test)]

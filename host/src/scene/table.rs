@@ -7,7 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::range::Range;
 use super::source::Source;
-use super::suggest::suggest;
+use super::suggest::{is_near, suggest};
 use crate::error::{Error, Result};
 
 /// A table whose keys are taken one by one.
@@ -55,25 +55,27 @@ impl<'s> Table<'s> {
         self.source.fault(entry.map_or(self.at, |entry| entry.at), message)
     }
 
-    /// The value of `key`, or the error that it is missing.
+    /// The value of `key`, or the error that it is missing, or that a key which nobody took misspells it.
     pub fn need<T>(&self, key: &str, value: Option<T>) -> Result<T> {
-        value.ok_or_else(|| self.fault(format!("{} needs {key:?}; add it", self.name)))
+        value.ok_or_else(|| {
+            let misspelt = self.entries.iter().find(|entry| entry.value.is_some() && is_near(&entry.key, key));
+            match misspelt {
+                Some(entry) => self.unknown(entry, &format!("did you mean {key:?}?")),
+                None => self.fault(format!("{} needs {key:?}; add it", self.name)),
+            }
+        })
     }
 
     /// Refuses every key that was not taken.
     pub fn done(self) -> Result<()> {
         match self.entries.iter().find(|entry| entry.value.is_some()) {
             None => Ok(()),
-            Some(entry) => Err(self.source.fault(
-                entry.at,
-                format!(
-                    "unknown key {:?} in {}; {}",
-                    entry.key,
-                    self.name,
-                    suggest(&entry.key, self.asked.iter().copied())
-                ),
-            )),
+            Some(entry) => Err(self.unknown(entry, &suggest(&entry.key, self.asked.iter().copied()))),
         }
+    }
+
+    fn unknown(&self, entry: &Entry, remedy: &str) -> Error {
+        self.source.fault(entry.at, format!("unknown key {:?} in {}; {remedy}", entry.key, self.name))
     }
 
     /// Is the key there? Does not take it.

@@ -1,0 +1,277 @@
+//! Whatever is wrong with what the program is given: one line that says what and where, exit code 2, and
+//! nothing half-written.
+
+mod program;
+
+use std::fs;
+
+use program::{Place, SCENE, TRIANGLE, has_gpu};
+
+#[test]
+fn missing_files_folders_and_unknown_kinds() {
+    let place = Place::new(&[("mesh.ply", "ply\n"), ("scene", SCENE)]);
+    fs::create_dir(place.path("folder.toml")).unwrap();
+    place.refuse_scene("missing.toml", &["no such file"]);
+    place.refuse_scene("missing.obj", &["no such file"]);
+    place.refuse_scene("missing/scene.toml", &["no such file"]);
+    place.refuse_scene("folder.toml", &["folder"]);
+    place.refuse_scene("mesh.ply", &["unknown kind", ".toml", ".obj"]);
+    place.refuse_scene("scene", &["unknown kind"]);
+}
+
+#[cfg(unix)]
+#[test]
+fn unreadable_files() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new(&[("secret.obj", TRIANGLE), ("secret.toml", SCENE)]);
+    for name in ["secret.obj", "secret.toml"] {
+        fs::set_permissions(place.path(name), fs::Permissions::from_mode(0)).unwrap();
+        if fs::read(place.path(name)).is_ok() {
+            return eprintln!("skipped: this user may read every file");
+        }
+        place.refuse_scene(name, &["no permission to read"]);
+    }
+}
+
+#[test]
+fn empty_files_and_files_without_triangles() {
+    let place = Place::new(&[
+        ("empty.obj", ""),
+        ("empty.toml", ""),
+        ("blank.toml", "\n\n"),
+        ("points.obj", "v 0 0 0\nv 1 0 0\n"),
+        ("nothing.toml", "[render]\nsize = [8, 8]\n"),
+        ("mesh_of_points.toml", "[[mesh]]\nfile = \"points.obj\"\n"),
+    ]);
+    place.refuse_scene("empty.obj", &["empty"]);
+    place.refuse_scene("empty.toml", &["empty"]);
+    place.refuse_scene("blank.toml", &["no [[mesh]]"]);
+    place.refuse_scene("points.obj", &["no face"]);
+    place.refuse_scene("nothing.toml", &["no [[mesh]]"]);
+    place.refuse(&["check", "mesh_of_points.toml"], &["points.obj", "no face"]);
+}
+
+#[test]
+fn faces_of_vertices_that_do_not_exist() {
+    for (index, why) in [
+        ("4", "vertex 4 does not exist, 3 precede"),
+        ("0", "vertex 0 does not exist"),
+        ("-4", "vertex -4 does not exist"),
+        ("4294967297", "does not exist"),
+        ("99999999999999999999", "no whole number"),
+        ("x", "no whole number"),
+    ] {
+        let mesh = format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {index}\n");
+        Place::new(&[("mesh.obj", &mesh)]).refuse_scene("mesh.obj", &["mesh.obj:4: ", why]);
+    }
+}
+
+#[test]
+fn coordinates_that_are_no_finite_numbers() {
+    for word in ["nan", "inf", "-inf", "1e39", "-1e39"] {
+        let mesh = TRIANGLE.replace("v 1 0 0", &format!("v 1 {word} 0"));
+        Place::new(&[("mesh.obj", &mesh)]).refuse_scene("mesh.obj", &["mesh.obj:2: ", word, "no finite number"]);
+        let scene = format!("{SCENE}center = [0, {word}, 0]\n");
+        let lines = scene.lines().count();
+        Place::new(&[("scene.toml", &scene)]).refuse_scene("scene.toml", &[&format!("scene.toml:{lines}: "), "finite"]);
+    }
+}
+
+#[test]
+fn colours_that_tobj_panics_on() {
+    let place = Place::new(&[
+        ("mesh.obj", &format!("mtllib mesh.mtl\nusemtl red\n{TRIANGLE}")),
+        ("mesh.mtl", "newmtl red\nKd 1 0\n"),
+    ]);
+    place.refuse(&["render", "mesh.obj", "-o", "out.png"], &["mesh.mtl:2: ", "Kd takes three numbers"]);
+    place.refuse(&["check", "mesh.obj"], &["mesh.mtl:2: "]);
+}
+
+#[test]
+fn names_that_leave_the_folder_of_their_file() {
+    for name in ["../secret.mtl", "/etc/passwd", "sub/../../secret.mtl", "..\\secret.mtl", "C:\\secret.mtl"] {
+        let mesh = format!("{TRIANGLE}mtllib {name}\n");
+        Place::new(&[("mesh.obj", &mesh)]).refuse_scene("mesh.obj", &["mesh.obj:5: ", "outside"]);
+        let texture = format!("newmtl red\nmap_Kd {name}\n");
+        let place = Place::new(&[("mesh.obj", &format!("mtllib a.mtl\n{TRIANGLE}")), ("a.mtl", &texture)]);
+        place.refuse(&["render", "mesh.obj", "-o", "out.png"], &["a.mtl:2: ", "outside"]);
+    }
+}
+
+#[test]
+fn a_scene_may_name_any_path_and_its_meshes_may_not() {
+    let outside = Place::new(&[("mesh.obj", TRIANGLE)]);
+    let name = outside.path("mesh.obj").display().to_string();
+    let place = Place::new(&[("scene.toml", &format!("[[mesh]]\nfile = {name:?}\n"))]);
+    place.succeed(&["check", "scene.toml"]);
+}
+
+#[test]
+fn misspelt_keys_and_sections() {
+    for (from, to, want) in [
+        ("size", "sise", ["scene.toml:2: ", "\"sise\"", "\"size\""]),
+        ("target", "tarjet", ["scene.toml:7: ", "\"tarjet\"", "\"target\""]),
+        ("[render]", "[rendr]", ["scene.toml:1: ", "\"rendr\"", "\"render\""]),
+        ("\"sphere\"", "\"spere\"", ["scene.toml:10: ", "\"spere\"", "\"sphere\""]),
+    ] {
+        Place::new(&[("scene.toml", &SCENE.replace(from, to))]).refuse_scene("scene.toml", &want);
+    }
+    let broken = SCENE.replace("size = [24, 18]", "size = [24, 18");
+    Place::new(&[("scene.toml", &broken)]).refuse_scene("scene.toml", &["scene.toml:"]);
+}
+
+#[test]
+fn cameras_that_look_at_themselves() {
+    let scene = SCENE.replace("target = [0, 0, 0]", "target = [0, 0, 4]");
+    Place::new(&[("scene.toml", &scene)]).refuse_scene("scene.toml", &["scene.toml:7: ", "camera \"front\"", "move"]);
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = ["render", "scene.toml", "-o", "out.png", "--eye", "1,2,3", "--target", "1,2,3"];
+    place.refuse(&render, &["--eye", "--target", "looks at itself"]);
+}
+
+#[test]
+fn pictures_of_no_size_or_too_large() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for (size, why) in
+        [("0x0", "empty"), ("0x9", "empty"), ("100000x100000", "too large"), ("4294967295x4294967295", "too large")]
+    {
+        place.refuse(&["render", "scene.toml", "-o", "out.png", "--size", size], &[size, why]);
+    }
+    for size in ["[0, 0]", "[100000, 100000]", "[30000, 30000]"] {
+        let scene = SCENE.replace("[24, 18]", size);
+        Place::new(&[("scene.toml", &scene)]).refuse_scene("scene.toml", &[]);
+    }
+}
+
+#[test]
+fn outputs_that_cannot_be_written() {
+    let place = Place::new(&[("scene.toml", SCENE), ("file", "")]);
+    fs::create_dir(place.path("folder.png")).unwrap();
+    for (output, why) in [
+        ("missing/out.png", "the folder does not exist"),
+        ("file/out.png", "the folder does not exist"),
+        ("folder.png", "is a directory"),
+        ("out.jpg", "\"jpg\""),
+        ("out", "no extension"),
+        ("", ""),
+    ] {
+        place.refuse(&["render", "scene.toml", "-o", output], &[output, why]);
+        place.refuse(&["diff", "a.png", "b.png", "-o", output], &[output, why]);
+    }
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_disk() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let full = ["render", "scene.toml", "--device", "cpu", "-o", "/dev/full"];
+    place.refuse(&full, &["/dev/full", "no space left"]);
+    let stdout = fs::File::options().write(true).open("/dev/full").unwrap();
+    let mut command = place.command(&["render", "scene.toml", "--device", "cpu", "-o", "-"]);
+    let output = command.stdout(stdout).output().unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("standard output: no space left"));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_read_only_picture_stays() {
+    use std::os::unix::fs::PermissionsExt;
+    let place = Place::new(&[("scene.toml", SCENE), ("out.png", "precious")]);
+    fs::set_permissions(place.path("out.png"), fs::Permissions::from_mode(0o400)).unwrap();
+    if fs::File::options().write(true).open(place.path("out.png")).is_ok() {
+        return eprintln!("skipped: this user may write every file");
+    }
+    place.refuse(&["render", "scene.toml", "-o", "out.png"], &["out.png", "no permission"]);
+}
+
+#[test]
+fn adapters_that_do_not_exist() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for adapter in ["nosuch", "99"] {
+        let render = ["render", "scene.toml", "-o", "out.png", "--adapter", adapter];
+        let named = format!("no adapter matches \"{adapter}\"");
+        let why = if has_gpu() { named.as_str() } else { "there is no GPU" };
+        place.refuse(&render, &[why]);
+        place.refuse(&[&render[..], &["--device", "gpu"]].concat(), &[why]);
+        place.refuse(&["diff", "scene.toml", "--adapter", adapter], &[why]);
+    }
+}
+
+/// Vulkan's loader alone is asked on Linux, so that a machine can be made to have no GPU.
+#[cfg(target_os = "linux")]
+#[test]
+fn machines_without_a_gpu() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let bare = |arguments: &[&str]| {
+        let mut command = place.command(arguments);
+        command.env("VK_DRIVER_FILES", "/nonexistent").env("VK_ICD_FILENAMES", "/nonexistent");
+        command
+    };
+    let why = ["there is no GPU", "--device cpu"];
+    place.refuse_run(&mut bare(&["render", "scene.toml", "-o", "out.png", "--device", "gpu"]), &why);
+    place.refuse_run(&mut bare(&["diff", "scene.toml"]), &why);
+    let auto = bare(&["render", "scene.toml", "-o", "out.png"]).output().unwrap();
+    let summary = String::from_utf8(auto.stderr).unwrap();
+    assert!(auto.status.success() && summary.contains("CPU") && summary.contains(why[0]), "{summary}");
+    let info = bare(&["info"]).output().unwrap();
+    assert!(info.status.success() && String::from_utf8_lossy(&info.stdout).contains("no GPU"));
+}
+
+#[test]
+fn options_that_contradict_each_other() {
+    let place = Place::new(&[("scene.toml", SCENE), ("a.png", "")]);
+    for (options, wants) in [
+        (&["--device", "gpu", "--precision", "reference"][..], &["--device cpu", "--precision exact"][..]),
+        (&["--no-passthrough"], &["--precision fast"]),
+        (&["--device", "cpu", "--adapter", "0"], &["--adapter"]),
+        (&["--json", "-o", "-"], &["--json", "name a file"]),
+    ] {
+        place.refuse(&[&["render", "scene.toml"], options].concat(), wants);
+    }
+    place.refuse(&["diff", "scene.toml", "--precision", "reference"], &["reference precision"]);
+    place.refuse(&["diff", "a.png"], &["a.png", "second"]);
+}
+
+#[test]
+fn options_out_of_range() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for [option, value] in [
+        ["--samples", "0"],
+        ["--samples", "65"],
+        ["--bounces", "65536"],
+        ["--min-contribution", "1.5"],
+        ["--min-contribution", "nan"],
+        ["--fov", "0"],
+        ["--fov", "180"],
+        ["--fov", "nan"],
+        ["--threads", "0"],
+        ["--threads", "100000"],
+        ["--exposure", "1000"],
+        ["--exposure", "nan"],
+        ["--bits", "12"],
+        ["--camera", "nosuch"],
+        ["--camera", "7"],
+    ] {
+        place.refuse(&["render", "scene.toml", "-o", "out.png", option, value], &[]);
+    }
+    place.refuse(&["render", "scene.toml", "--camera", "nosuch"], &["\"nosuch\"", "0 \"front\""]);
+}
+
+#[test]
+fn pictures_that_cannot_be_compared() {
+    let place = Place::new(&[("scene.toml", SCENE), ("text.png", "no picture")]);
+    place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "a.png"]);
+    place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "b.png", "--size", "23x18"]);
+    place.refuse(&["diff", "a.png", "missing.png"], &["missing.png", "no such file"]);
+    place.refuse(&["diff", "a.png", "text.png"], &["text.png"]);
+    place.refuse(&["diff", "a.png", "b.png", "-o", "map.png"], &["24x18", "23x18"]);
+    place.refuse(&["diff", "a.png", "a.png", "--tolerance=-1"], &["--tolerance"]);
+    place.refuse(&["diff", "a.png", "a.png", "--tolerance", "nan"], &["--tolerance"]);
+}
+
+#[test]
+fn lights_and_cameras_beyond_all_numbers() {
+    let light = format!("{SCENE}\n[[light]]\nkind = \"point\"\nposition = [1e38, 0, 0]\n");
+    Place::new(&[("scene.toml", &light)]).refuse_scene("scene.toml", &["light 1", "too far"]);
+}

@@ -1,0 +1,261 @@
+//! What the commands print, write and return when all is well.
+
+mod program;
+
+use std::fs;
+
+use eyerays::image;
+use eyerays::pack::Packed;
+use eyerays::scene;
+use eyerays_bvh::Quality;
+use program::{Place, SCENE, TRIANGLE, has_gpu, shipped};
+
+const PNG_END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
+
+#[test]
+fn a_cornell_box_is_on_disk() {
+    let place = Place::new(&[]);
+    let outcome = place.succeed(&["render", &shipped("cornell"), "-o", "cornell.png", "--device", "cpu"]);
+    let film = image::read(&place.path("cornell.png")).unwrap();
+    assert_eq!((film.width, film.height), (512, 512));
+    // A red wall to the left and a green one to the right.
+    let [left, right] = [60, 451].map(|x| film.pixel(x, 256).unwrap());
+    assert!(left[0] > 2.0 * left[1] && right[1] > 2.0 * right[0], "{left:?} {right:?}");
+    assert_eq!(place.names(), ["cornell.png"]);
+    let summary = outcome.stderr.strip_suffix('\n').unwrap();
+    assert!(!summary.contains('\n'), "{summary}");
+    for part in ["512x512", "exact", "CPU", "asked for", "262144 primary", "Mrays/s", "build", "0 non-finite pixels"] {
+        assert!(summary.contains(part), "{part}: {summary}");
+    }
+    assert!(outcome.stdout.is_empty());
+}
+
+#[test]
+fn a_bare_mesh_is_framed_lit_and_coloured() {
+    let mesh = format!("mtllib mesh.mtl\nusemtl red\n{TRIANGLE}");
+    let place = Place::new(&[("mesh.obj", &mesh), ("mesh.mtl", "newmtl red\nKd 1 0 0\nmap_Kd red.png\n")]);
+    let outcome = place.succeed(&["render", "mesh.obj", "--device", "cpu", "--size", "33x33"]);
+    assert_eq!(place.names(), ["mesh.mtl", "mesh.obj", "mesh.png"]);
+    let [warning, summary] = outcome.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{}", outcome.stderr) };
+    assert!(warning.starts_with("warning: ") && warning.contains("mesh.mtl") && warning.contains("map_Kd"));
+    assert!(summary.starts_with("mesh.png: 33x33"), "{summary}");
+    let film = image::read(&place.path("mesh.png")).unwrap();
+    assert!(film.pixels.iter().any(|&[r, g, b]| r > 0.1 && g == 0.0 && b == 0.0), "there is no red");
+}
+
+#[test]
+fn the_largest_coordinates_render() {
+    let mesh = "v -1e38 0 0\nv 1e38 0 0\nv 0 1e38 0\nf 1 2 3\n";
+    let place = Place::new(&[("large.obj", mesh), ("small.obj", &mesh.replace("e38", ""))]);
+    for name in ["large", "small"] {
+        let scene = format!("{name}.obj");
+        let outcome = place.succeed(&["render", &scene, "--device", "cpu", "--size", "41x41"]);
+        assert!(outcome.stderr.contains("0 non-finite pixels"));
+    }
+    place.succeed(&["diff", "large.png", "small.png", "--tolerance", "0.02"]);
+}
+
+#[test]
+fn a_dash_writes_a_picture_to_standard_output_and_nothing_else() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let outcome = place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "-"]);
+    let film = image::decode(std::io::Cursor::new(&outcome.stdout)).unwrap();
+    assert_eq!((film.width, film.height), (24, 18));
+    assert!(outcome.stdout.ends_with(PNG_END));
+    assert_eq!(place.names(), ["scene.toml"]);
+    assert!(outcome.stderr.starts_with("standard output: 24x18"), "{}", outcome.stderr);
+}
+
+#[test]
+fn quiet_says_nothing() {
+    let mesh = format!("mtllib missing.mtl\n{TRIANGLE}");
+    let place = Place::new(&[("mesh.obj", &mesh), ("scene.toml", SCENE)]);
+    for arguments in [
+        &["render", "mesh.obj", "-o", "a.png", "-q", "--device", "cpu"][..],
+        &["render", "mesh.obj", "-o", "b.png", "--quiet"],
+        &["diff", "a.png", "b.png", "-q"],
+        &["check", "mesh.obj", "-q"],
+    ] {
+        let outcome = place.succeed(arguments);
+        assert!(outcome.stdout.is_empty() && outcome.stderr.is_empty(), "{arguments:?}: {}", outcome.stderr);
+    }
+}
+
+#[test]
+fn json_tells_everything_of_a_rendering() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let outcome =
+        place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "out.png", "--json", "--samples", "2"]);
+    let json = outcome.json();
+    assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
+    assert_eq!((&json["width"], &json["height"], &json["samples"]), (&24.into(), &18.into(), &2.into()));
+    assert_eq!((&json["output"], &json["precision"]), (&"out.png".into(), &"exact".into()));
+    assert_eq!((&json["why"], &json["triangles"], &json["bounces"]), (&"asked for".into(), &80.into(), &5.into()));
+    assert!(json["device"].as_str().unwrap().starts_with("CPU ("));
+    let rays = &json["rays"];
+    assert_eq!((&rays["primary"], &rays["secondary"]), (&(24 * 18 * 4).into(), &0.into()));
+    assert!(rays["shadow"].as_u64().unwrap() > 0);
+    assert_eq!(rays["non_finite_pixels"], 0);
+    for time in ["mrays_per_second", "load_ms", "build_ms", "render_ms"] {
+        assert!(json[time].as_f64().is_some_and(|ms| ms > 0.0), "{time}: {json}");
+    }
+    assert!(json.as_object().unwrap().contains_key("device_ms") && json["device_ms"].is_null());
+}
+
+/// `auto` never takes a software adapter, and says so.
+#[test]
+fn auto_says_which_device_ran_and_why() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let adapters = place.succeed(&["info", "--json"]).json()["adapters"].take();
+    let best = adapters.as_array().unwrap().first();
+    let outcome = place.succeed(&["render", "scene.toml", "-o", "out.png"]);
+    let (device, why) = match best {
+        None => ("on CPU (", "there is no GPU"),
+        Some(best) if best["kind"] == "software" => ("on CPU (", "is no GPU but a program: --device gpu takes it"),
+        Some(best) => (best["name"].as_str().unwrap(), "a GPU that works"),
+    };
+    assert!(outcome.stderr.contains(device) && outcome.stderr.contains(why), "{}", outcome.stderr);
+}
+
+#[test]
+fn the_gpu_is_taken_when_asked_for() {
+    if !has_gpu() {
+        return;
+    }
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let json = place.succeed(&["render", "scene.toml", "-o", "a.exr", "--device", "gpu", "--json"]).json();
+    let adapters = place.succeed(&["info", "--json"]).json()["adapters"].take();
+    assert!(json["device"].as_str().unwrap().contains(adapters[0]["name"].as_str().unwrap()), "{json}");
+    assert_eq!(json["why"], "asked for");
+    place.succeed(&["render", "scene.toml", "-o", "b.exr", "--device", "cpu"]);
+    assert!(place.succeed(&["diff", "a.exr", "b.exr"]).text().contains("equal in every bit  yes"));
+    let naga = ["render", "scene.toml", "-o", "c.exr", "--device", "gpu", "--precision", "fast", "--no-passthrough"];
+    assert!(place.succeed(&naga).stderr.contains("through naga"));
+    let outcome = place.succeed(&["diff", "scene.toml", "--json"]).json();
+    assert_eq!(outcome["comparison"]["bit_equal"], true);
+    assert_eq!(outcome["comparison"]["differing_pixels"], 0);
+}
+
+#[test]
+fn every_format_is_written_and_read_again() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = |output: &str, more: &[&str]| {
+        place.succeed(&[&["render", "scene.toml", "--device", "cpu", "-o", output], more].concat());
+    };
+    render("a.exr", &[]);
+    render("b.exr", &["--threads", "3", "--bvh", "high"]);
+    render("a.hdr", &[]);
+    render("a.png", &[]);
+    render("b.PNG", &["--bits", "16"]);
+    render("bright.exr", &["--exposure", "1"]);
+    assert!(place.succeed(&["diff", "a.exr", "b.exr"]).text().contains("differing pixels    0 of 432"));
+    place.succeed(&["diff", "a.exr", "a.hdr", "--tolerance", "0.02"]);
+    place.succeed(&["diff", "a.exr", "a.png", "--tolerance", "0.01"]);
+    place.succeed(&["diff", "a.exr", "b.PNG", "--tolerance", "0.0001"]);
+    let [dark, bright] = ["a.exr", "bright.exr"].map(|name| image::read(&place.path(name)).unwrap());
+    assert!(dark.pixels.iter().flatten().zip(bright.pixels.iter().flatten()).all(|(a, b)| 2.0 * a == *b));
+}
+
+#[test]
+fn diff_returns_what_it_found() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {
+        place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", name, "--eye", eye, "--target", "0,0,0"]);
+    }
+    assert_eq!(place.run(&["diff", "a.exr", "b.exr"]).code, Some(0));
+    let different = place.run(&["diff", "a.exr", "c.exr", "-o", "map.png"]);
+    assert_eq!(different.code, Some(1), "{}", different.stderr);
+    for line in ["equal in every bit  no", "largest ulps", "largest difference", "RMSE", "PSNR"] {
+        assert!(different.text().contains(line), "{}", different.text());
+    }
+    assert_eq!(image::read(&place.path("map.png")).unwrap().width, 24);
+    assert_eq!(place.run(&["diff", "a.exr", "c.exr", "--tolerance", "10"]).code, Some(0));
+    let json = place.run(&["diff", "a.exr", "c.exr", "--json"]);
+    assert_eq!(json.code, Some(1));
+    let comparison = &json.json()["comparison"];
+    assert_eq!((&comparison["width"], &comparison["bit_equal"]), (&24.into(), &false.into()));
+    for number in ["differing_pixels", "largest_ulps", "largest_difference", "rmse", "psnr"] {
+        assert!(comparison[number].as_f64().is_some_and(|x| x > 0.0), "{number}: {comparison}");
+    }
+}
+
+#[test]
+fn check_tells_what_is_in_a_scene_and_writes_nothing() {
+    let place = Place::new(&[]);
+    for (name, parts) in [
+        ("cornell", ["2 lights", "cameras \"front\", \"inside\", \"ball\""]),
+        ("whitted", ["1 lights", "3 materials"]),
+        ("glass", ["2 lights", "\"above\""]),
+        ("lights", ["28 lights", "4 materials"]),
+    ] {
+        let outcome = place.succeed(&["check", &shipped(name)]);
+        assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
+        for part in parts {
+            assert!(outcome.text().contains(part), "{part}: {}", outcome.text());
+        }
+    }
+    assert!(place.names().is_empty());
+}
+
+/// The thesis' table 7.1, with the library's own numbers.
+#[test]
+fn info_tells_the_hierarchies_of_a_scene() {
+    let place = Place::new(&[]);
+    let path = shipped("whitted");
+    let (scene, _) = scene::load(path.as_ref()).unwrap();
+    let table = place.succeed(&["info", &path]);
+    let json = place.succeed(&["info", &path, "--json"]).json();
+    let rows: Vec<Vec<&str>> = table.text().lines().skip(1).map(|line| line.split_whitespace().collect()).collect();
+    for (row, (name, quality)) in
+        [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
+    {
+        let want = Packed::new(&scene, &scene.cameras[0], scene.settings, quality).unwrap().statistics;
+        let counts = [want.triangles, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
+        assert_eq!(rows[row][0], name);
+        assert_eq!(rows[row][1..5], counts, "{name}");
+        assert_eq!(rows[row][5], format!("{:.1}", want.sah_cost), "{name}");
+        let hierarchy = &json["hierarchies"][row];
+        assert_eq!(hierarchy["bvh"], name);
+        for (key, count) in ["triangles", "nodes", "leaves", "depth"].into_iter().zip(counts) {
+            assert_eq!(hierarchy[key].to_string(), count, "{name}, {key}");
+        }
+        assert!(hierarchy["node_bytes"].as_u64().unwrap() >= 64);
+        assert_eq!(hierarchy["triangle_bytes"], 48 * scene.mesh.triangles.len());
+    }
+    assert_eq!(rows.len(), 3);
+}
+
+#[test]
+fn info_lists_what_adapters_support() {
+    if !has_gpu() {
+        return;
+    }
+    let place = Place::new(&[]);
+    let text = place.succeed(&["info"]);
+    for part in ["driver", "SPIR-V passthrough", "subgroup", "largest buffer"] {
+        assert!(text.text().contains(part), "{}", text.text());
+    }
+    let adapters = place.succeed(&["info", "--json"]).json()["adapters"].take();
+    for key in ["index", "name", "backend", "kind", "passthrough", "subgroup", "max_buffer", "max_binding"] {
+        assert!(!adapters[0][key].is_null(), "{key}: {adapters}");
+    }
+}
+
+#[test]
+fn cameras_are_named_numbered_or_given() {
+    let second = "\n[[camera]]\nname = \"above\"\neye = [0, 5, 0]\ntarget = [0, 0, 0]\nup = [0, 0, -1]\n";
+    let place = Place::new(&[("scene.toml", &format!("{SCENE}{second}"))]);
+    let render = |output: &str, more: &[&str]| {
+        place.succeed(&[&["render", "scene.toml", "--device", "cpu", "-o", output], more].concat());
+        fs::read(place.path(output)).unwrap()
+    };
+    let above = render("a.exr", &["--camera", "above"]);
+    assert_eq!(above, render("b.exr", &["--camera", "1"]));
+    assert_ne!(above, render("c.exr", &[]));
+    let front = render("d.exr", &["--camera", "front"]);
+    assert_eq!(front, render("e.exr", &["--camera", "0"]));
+    assert_eq!(front, render("f.exr", &["--eye", "0,0,4", "--target", "0,0,0", "--fov", "45"]));
+    assert_ne!(front, render("g.exr", &["--fov", "60"]));
+    // Straight down, where the usual up has no direction.
+    render("h.exr", &["--eye", "0,5,0", "--target", "0,0,0"]);
+}

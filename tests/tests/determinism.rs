@@ -1,0 +1,121 @@
+//! One picture, whatever the threads, the hierarchy and the tiles.
+
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::method::Method;
+use eyerays::pack::{Packed, Region};
+use eyerays::rays::Rays;
+use eyerays_bvh::Quality;
+use eyerays_shader::real::{Fast, Scalar};
+use eyerays_shader::stage::NON_FINITE;
+use eyerays_tests::{SHIPPED, assert_same_bits, pack, settings, shipped};
+
+/// Edges that no tile's edge divides.
+const SIZE: (u32, u32) = (83, 61);
+
+fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed, threads: usize) -> (Film, Rays) {
+    cpu::render::<R>(packed, Method::default(), threads, &|_| ()).unwrap()
+}
+
+/// The same film at 1, 2 and 7 threads, and twice with each.
+fn any_number_of_threads<R: Scalar<Record: Send + Sync>>() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
+        let (film, rays) = render::<R>(&packed, 1);
+        for threads in [1, 2, 2, 7, 7] {
+            let (other, counted) = render::<R>(&packed, threads);
+            assert_same_bits(&film, &other, &format!("{name}, {threads} threads"));
+            assert_eq!(rays, counted, "{name}, {threads} threads");
+        }
+    }
+}
+
+#[test]
+fn threads_change_nothing_in_exact_precision() {
+    any_number_of_threads::<f32>();
+}
+
+#[test]
+fn threads_change_nothing_in_fast_precision() {
+    any_number_of_threads::<Fast>();
+}
+
+#[test]
+fn threads_change_nothing_in_reference_precision() {
+    any_number_of_threads::<f64>();
+}
+
+#[test]
+fn a_better_hierarchy_changes_nothing() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        for camera in &scene.cameras {
+            let of = |quality| {
+                let packed = Packed::new(&scene, camera, settings(&scene, SIZE, 1), quality).unwrap();
+                render::<f32>(&packed, 2)
+            };
+            let (film, rays) = of(Quality::Fast);
+            for quality in [Quality::Medium, Quality::High] {
+                let what = format!("{name}, camera {}, {quality:?}", camera.name);
+                let (other, counted) = of(quality);
+                assert_same_bits(&film, &other, &what);
+                assert_eq!(rays, counted, "{what}");
+            }
+        }
+    }
+}
+
+#[test]
+fn another_method_changes_nothing() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        for camera in &scene.cameras {
+            let packed = pack(&scene, camera, settings(&scene, SIZE, 1));
+            let (film, rays) = render::<f32>(&packed, 2);
+            for method in Method::ALL {
+                let what = format!("{name}, camera {}, {method:?}", camera.name);
+                let (other, counted) = cpu::render::<f32>(&packed, method, 2, &|_| ()).unwrap();
+                assert_same_bits(&film, &other, &what);
+                assert_eq!(rays, counted, "{what}");
+            }
+        }
+    }
+}
+
+/// Regions of one size that cover the image, in an order that jumps about.
+fn tiles((width, height): (u32, u32), (columns, rows): (u32, u32)) -> Vec<Region> {
+    let tops = (0..height).step_by(rows as usize);
+    let corners = tops.flat_map(|y| (0..width).step_by(columns as usize).map(move |x| (x, y)));
+    let mut tiles: Vec<Region> = corners
+        .map(|(x, y)| Region { x, y, width: (width - x).min(columns), height: (height - y).min(rows) })
+        .collect();
+    tiles.sort_by_key(|tile| (tile.x * 37 + tile.y * 101) % 64);
+    tiles
+}
+
+#[test]
+fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 2));
+        let (whole, rays) = render::<f32>(&packed, 2);
+        for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
+            let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
+            for tile in tiles(SIZE, size) {
+                let (records, secondary) = cpu::render_tile::<f32>(&packed, Method::default(), tile, &());
+                counted.secondary += secondary;
+                counted.primary += u64::from(tile.width * tile.height * packed.samples());
+                for (record, at) in records.into_iter().zip(0..) {
+                    let (colour, word) = f32::load(record);
+                    let (x, y) = (tile.x + at % tile.width, tile.y + at / tile.width);
+                    film.pixels[(y * SIZE.0 + x) as usize] = [colour.x, colour.y, colour.z];
+                    counted.shadow += u64::from(word & !NON_FINITE);
+                    counted.non_finite += u64::from(word & NON_FINITE != 0);
+                }
+            }
+            assert_same_bits(&whole, &film, &format!("{name}, tiles of {size:?}"));
+            assert_eq!(rays, counted, "{name}, tiles of {size:?}");
+        }
+    }
+}

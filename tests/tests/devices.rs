@@ -1,0 +1,199 @@
+//! One picture from GPU and CPU, in every bit. Without a GPU these tests do nothing, see [`gpu`].
+
+use std::iter;
+
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::gpu::{Gpu, Renderer, Want};
+use eyerays::method::Method;
+use eyerays::pack::Packed;
+use eyerays::rays::Rays;
+use eyerays::scene::{Background, Light, Material, Scene, Settings};
+use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
+use eyerays_tests::{assert_same_bits, gpu, pack, settings, shipped};
+use glam::Vec3;
+
+/// Size and samples: with and without whole blocks of pixels.
+const PICTURES: [((u32, u32), u32); 3] = [((96, 72), 1), ((37, 23), 2), ((21, 40), 3)];
+
+/// Compiling kernels takes the time here, so that most pictures must do with one method.
+const DEFAULT: &[Method] = &[Method::IfIf];
+
+fn exact() -> Option<Gpu> {
+    gpu(&Want { exact: true, ..Want::default() })
+}
+
+fn on_cpu(packed: &Packed) -> (Film, Rays) {
+    cpu::render::<f32>(packed, Method::default(), 0, &|_| ()).unwrap()
+}
+
+/// The GPU against the CPU, by each of these methods.
+fn assert_same(gpu: &Gpu, packed: &Packed, methods: &[Method], what: &str) {
+    let (film, rays) = on_cpu(packed);
+    assert_eq!(rays.non_finite, 0, "{what}");
+    for &method in methods {
+        let what = format!("{what}, {method:?}");
+        let renderer = Renderer::new(gpu, packed, true, method).unwrap_or_else(|e| panic!("{what}: {e}"));
+        let rendering = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+        assert_same_bits(&rendering.film, &film, &what);
+        assert_eq!(rendering.rays, rays, "{what}");
+    }
+}
+
+/// Every camera of a shipped scene by the default method, and the first by all of them.
+fn assert_scene(name: &str) {
+    let Some(gpu) = exact() else { return };
+    let scene = shipped(name);
+    for (camera, methods) in scene.cameras.iter().zip(iter::once(&Method::ALL[..]).chain(iter::repeat(DEFAULT))) {
+        for ((size, samples), methods) in PICTURES.into_iter().zip([DEFAULT, methods, DEFAULT]) {
+            let packed = pack(&scene, camera, settings(&scene, size, samples));
+            let what = format!("{name}, camera {}, {size:?} x {samples}", camera.name);
+            assert_same(&gpu, &packed, methods, &what);
+        }
+    }
+}
+
+#[test]
+fn cornell() {
+    assert_scene("cornell");
+}
+
+#[test]
+fn whitted() {
+    assert_scene("whitted");
+}
+
+#[test]
+fn glass_study() {
+    assert_scene("glass");
+}
+
+#[test]
+fn lights() {
+    assert_scene("lights");
+}
+
+#[test]
+fn twice_in_a_row() {
+    let Some(gpu) = exact() else { return };
+    let scene = shipped("whitted");
+    let packed = pack(&scene, &scene.cameras[2], settings(&scene, (70, 50), 2));
+    let renderer = Renderer::new(&gpu, &packed, true, Method::default()).unwrap();
+    let [first, second] = [0, 1].map(|_| renderer.render(&|_| ()).unwrap());
+    assert_same_bits(&first.film, &second.film, "twice");
+    assert_eq!(first.rays, second.rays);
+}
+
+/// Settings that take other kernels, buffers or waves than the shipped ones.
+#[test]
+fn every_setting() {
+    let Some(gpu) = exact() else { return };
+    let scene = shipped("whitted");
+    let own = settings(&scene, (50, 38), 1);
+    let mut dark = scene.clone();
+    dark.lights.clear();
+    for (what, methods, scene, settings) in [
+        ("no bounces", DEFAULT, &scene, Settings { bounces: 0, ..own }),
+        ("one bounce", DEFAULT, &scene, Settings { bounces: 1, ..own }),
+        ("every contribution", DEFAULT, &scene, Settings { min_contribution: 0.0, bounces: 7, ..own }),
+        ("no contribution", DEFAULT, &scene, Settings { min_contribution: 1.0, ..own }),
+        ("culling", &Method::ALL[..], &scene, Settings { culling: true, ..own }),
+        ("one pixel", DEFAULT, &scene, Settings { size: (1, 1), samples: 5, ..own }),
+        ("one row", DEFAULT, &scene, Settings { size: (301, 1), ..own }),
+        ("one column", DEFAULT, &scene, Settings { size: (1, 301), ..own }),
+        ("no lights", DEFAULT, &dark, own),
+    ] {
+        assert_same(&gpu, &pack(scene, &scene.cameras[0], settings), methods, what);
+    }
+}
+
+/// A mirror, a lens and a matt ground: every kind of ray, and few triangles.
+fn still_life() -> Scene {
+    let mut scene = empty();
+    add_box(&mut scene, matt(Vec3::new(0.7, 0.6, 0.5)), Vec3::new(-3.0, -1.1, -6.0), Vec3::new(3.0, -1.0, 0.0));
+    add_box(&mut scene, mirror(Vec3::splat(0.8)), Vec3::new(-1.2, -1.0, -4.5), Vec3::new(-0.1, 0.6, -3.5));
+    add_box(&mut scene, glass(Vec3::new(0.9, 1.0, 0.9)), Vec3::new(0.1, -0.9, -3.4), Vec3::new(1.0, 0.3, -2.5));
+    scene.background = Background::Gradient { horizon: Vec3::splat(0.6), zenith: Vec3::new(0.2, 0.3, 0.7) };
+    scene.ambient = Vec3::splat(0.2);
+    scene.lights = vec![lamp(Vec3::new(2.0, 3.0, 0.0)), sun(Vec3::new(-1.0, -2.0, -0.5))];
+    scene.cameras[0].fov = 60.0;
+    scene.settings = Settings { size: (61, 45), bounces: 8, min_contribution: 0.001, ..scene.settings };
+    scene
+}
+
+/// A GPU with less memory renders in more bands, down to one block of pixels each.
+#[test]
+fn bands() {
+    let Some(mut gpu) = exact() else { return };
+    let scene = still_life();
+    let packed = pack(&scene, &scene.cameras[0], Settings { samples: 2, ..scene.settings });
+    let block = u64::from(packed.levels()) * 3 * 16 * 32;
+    for blocks in [1, 2, 9, 40] {
+        gpu.report.max_binding = blocks * block;
+        assert_same(&gpu, &packed, DEFAULT, &format!("{blocks} blocks a band"));
+    }
+    gpu.report.max_binding = block - 1;
+    let error = Renderer::new(&gpu, &packed, true, Method::default()).err().expect("not even a block fits").to_string();
+    assert!(error.contains("lower --bounces") && error.contains(&block.to_string()), "{error}");
+}
+
+/// So many lights that a launch has few pixels. Lavapipe ends loops after 65,535 rounds in all, which would
+/// be too few for twice as many.
+#[test]
+fn thousands_of_lights() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = still_life();
+    let place = |i: u16| Vec3::new(f32::from(i % 64) / 8.0 - 4.0, f32::from(i / 64) / 8.0 - 3.5, 1.0);
+    let light = |i| Light::Point { position: place(i), colour: Vec3::splat(1.0 / 1024.0) };
+    scene.lights = (0..4096).map(light).collect();
+    let settings = Settings { size: (48, 36), bounces: 1, ..scene.settings };
+    assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), DEFAULT, "4096 lights");
+}
+
+/// Nothing escapes a closed box of mirrors, and its bounces end at their limit.
+#[test]
+fn ten_thousand_bounces() {
+    const BOUNCES: u32 = 10_000;
+    let mut scene = empty();
+    let inside = Material { ambient: Vec3::splat(1e-4), ..mirror(Vec3::ONE) };
+    add_box(&mut scene, inside, Vec3::new(-1.1, -0.7, -1.3), Vec3::new(0.9, 1.2, 0.8));
+    scene.ambient = Vec3::ONE;
+    scene.background = Background::Colour(Vec3::splat(1e6));
+    scene.cameras[0].fov = 70.0;
+    let settings = Settings { size: (9, 5), bounces: BOUNCES, ..scene.settings };
+    let packed = pack(&scene, &scene.cameras[0], settings);
+    let (film, rays) = on_cpu(&packed);
+    assert_eq!(rays.secondary, rays.primary * u64::from(BOUNCES));
+    assert!(film.pixels.iter().flatten().all(|channel| (channel - 1.0).abs() < 1e-3), "{:?}", film.pixels);
+    if let Some(gpu) = exact() {
+        assert_same(&gpu, &packed, DEFAULT, "mirrors");
+    }
+}
+
+/// Every waiting ray of a deep tree has its place.
+#[test]
+fn deep_trees_of_glass() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = still_life();
+    for z in 0..6 {
+        add_wall(&mut scene, glass(Vec3::ONE), Vec3::new(0.0, 0.0, -1.0 - 0.2 * z as f32), 0.5);
+    }
+    add_wall(&mut scene, glowing(Vec3::X), Vec3::new(0.0, 0.0, -2.4), 0.2);
+    for (bounces, min_contribution) in [(9, 0.0), (10_000, 0.002)] {
+        let settings = Settings { size: (19, 13), bounces, min_contribution, ..scene.settings };
+        assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), DEFAULT, &format!("{bounces} bounces"));
+    }
+}
+
+#[test]
+fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
+    let Some(mut gpu) = exact() else { return };
+    let scene = still_life();
+    let packed = pack(&scene, &scene.cameras[0], scene.settings);
+    gpu.report.max_binding = 1000;
+    let error = Renderer::new(&gpu, &packed, true, Method::default()).err().expect("it does not fit").to_string();
+    let size = size_of_val(packed.triangles.as_slice()).to_string();
+    for part in ["triangles", &size, "1000", &gpu.report.name, "--device cpu"] {
+        assert!(error.contains(part), "{error}: no {part}");
+    }
+}

@@ -54,7 +54,7 @@ pub struct Records<R: Scalar> {
 /// If the film or the threads can't be had.
 pub fn render<R>(
     packed: &Packed,
-    traversal: Traversal,
+    traversal: impl Into<Traversal>,
     threads: usize,
     done: &(dyn Fn(u64) + Sync),
 ) -> Result<(Film, Rays)>
@@ -70,7 +70,7 @@ where
 /// As [`render`].
 pub fn observe<R>(
     packed: &Packed,
-    traversal: Traversal,
+    traversal: impl Into<Traversal>,
     threads: usize,
     done: &(dyn Fn(u64) + Sync),
     observer: &dyn Observer<R>,
@@ -78,6 +78,7 @@ pub fn observe<R>(
 where
     R: Scalar<Record: Send + Sync>,
 {
+    let traversal = traversal.into();
     let (width, height) = packed.settings.size;
     let result = Mutex::new((Film::new(width, height)?, Rays::default()));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -114,10 +115,11 @@ fn tiles(packed: &Packed) -> Vec<Region> {
 /// how many secondary rays it took.
 pub fn render_tile<R: Scalar>(
     packed: &Packed,
-    traversal: Traversal,
+    traversal: impl Into<Traversal>,
     region: Region,
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
+    let traversal = traversal.into();
     let slots = packed.frame(region, 0).limits.z as usize;
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {

@@ -28,6 +28,18 @@ pub enum Method {
 }
 
 impl Method {
+    /// Every method.
+    pub const ALL: [Method; 8] = [
+        Method::IfIf,
+        Method::WhileWhile,
+        Method::Speculative,
+        Method::Packet,
+        Method::SequentialStack,
+        Method::SequentialCut,
+        Method::InterleavedStack,
+        Method::InterleavedCut,
+    ];
+
     /// Does it vote across the lanes of a subgroup?
     pub fn votes(self) -> bool {
         !matches!(self, Method::IfIf | Method::WhileWhile)

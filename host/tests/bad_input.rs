@@ -25,7 +25,7 @@ fn unreadable_files() {
     use std::os::unix::fs::PermissionsExt;
     let place = Place::new(&[("secret.obj", TRIANGLE), ("secret.toml", SCENE)]);
     for name in ["secret.obj", "secret.toml"] {
-        fs::set_permissions(place.path(name), fs::Permissions::from_mode(0)).unwrap();
+        fs::set_permissions(place.path(name), fs::Permissions::from_mode(0o000)).unwrap();
         if fs::read(place.path(name)).is_ok() {
             return eprintln!("skipped: this user may read every file");
         }

@@ -1,6 +1,6 @@
 //! `eyerays info`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Args;
@@ -42,7 +42,7 @@ impl Info {
     }
 
     /// The thesis' table 7.1, for every quality of the hierarchy, with its cost and memory.
-    fn scene(&self, path: &PathBuf, quiet: bool) -> Result<()> {
+    fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
         let (scene, warnings) = scene::load(path)?;
         super::warn(&warnings, quiet || self.json);
         let mut rows = Vec::new();

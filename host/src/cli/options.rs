@@ -1,6 +1,6 @@
 //! What the commands that render share.
 
-use std::path::PathBuf;
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use clap::{Args, ValueEnum};
@@ -96,7 +96,7 @@ pub(super) struct Loaded {
 
 impl View {
     /// Loads a scene and packs it for these options.
-    pub fn load(&self, path: &PathBuf, quiet: bool) -> Result<Loaded> {
+    pub fn load(&self, path: &Path, quiet: bool) -> Result<Loaded> {
         let start = Instant::now();
         let (scene, warnings) = scene::load(path)?;
         super::warn(&warnings, quiet);
@@ -104,7 +104,7 @@ impl View {
         let settings = self.settings(&scene)?;
         let camera = self.camera(&scene)?;
         let packed = Packed::new(&scene, &camera, settings, self.quality())
-            .map_err(|e| Error { file: e.file.or_else(|| Some(path.clone())), ..e })?;
+            .map_err(|e| Error { file: e.file.or_else(|| Some(path.to_owned())), ..e })?;
         Ok(Loaded { packed, load_time })
     }
 

@@ -24,14 +24,14 @@ pub fn specialise(spirv: &[u8], features: Features, tuning: Tuning) -> Vec<u32> 
     while let Some(&first) = rest.first() {
         let (instruction, after) = rest.split_at((first >> 16).max(1) as usize);
         rest = after;
-        match instruction {
-            &[head, target, DECORATION_SPEC_ID, FEATURES_ID] if head & 0xffff == OP_DECORATE => {
+        match *instruction {
+            [head, target, DECORATION_SPEC_ID, FEATURES_ID] if head & 0xffff == OP_DECORATE => {
                 constants.push((target, features.0));
             }
-            &[head, target, DECORATION_SPEC_ID, TUNING_ID] if head & 0xffff == OP_DECORATE => {
+            [head, target, DECORATION_SPEC_ID, TUNING_ID] if head & 0xffff == OP_DECORATE => {
                 constants.push((target, tuning.0));
             }
-            &[head, kind, id, default] if head & 0xffff == OP_SPEC_CONSTANT => {
+            [head, kind, id, default] if head & 0xffff == OP_SPEC_CONSTANT => {
                 let value = constants.iter().find(|c| c.0 == id).map_or(default, |c| c.1);
                 special.extend([(head & 0xffff_0000) | OP_CONSTANT, kind, id, value]);
             }

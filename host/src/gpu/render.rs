@@ -56,7 +56,8 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: Traversal) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
+        let traversal = traversal.into();
         gpu.can_vote(traversal.method)?;
         let slots = buffers::most_slots(gpu, packed)?;
         let bands = bands(packed.settings.size, slots);

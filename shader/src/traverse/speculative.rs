@@ -23,7 +23,7 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
         while !cursor.done {
             // An inner node stands for none.
             let mut aside = NodeRef::ROOT;
-            while !cursor.done && !(cursor.node.is_leaf() && aside.is_leaf()) {
+            while !(cursor.done || cursor.node.is_leaf() && aside.is_leaf()) {
                 if cursor.node.is_leaf() {
                     aside = cursor.node;
                     cursor.pop(&stack);

@@ -139,10 +139,9 @@ proptest! {
 
 /// Every lane of a packet, however incoherent, against the same ray by itself.
 fn check_packet<M: Method<Wide<8>>>(world: &World, rays: &[([f32; 3], [f32; 3]); 8]) {
-    let vector = |pick: fn(&([f32; 3], [f32; 3])) -> [f32; 3]| {
-        V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(pick(&rays[i]))))
-    };
-    let packet = Ray::new(vector(|r| r.0), vector(|r| r.1));
+    let origins = V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
+    let directions = V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
+    let packet = Ray::new(origins, directions);
     let closest = world.trace::<M, Closest, Wide<8>>(&packet, f32::MAX);
     let shadows = world.trace::<M, Occlusion, Wide<8>>(&packet, 0.5);
     for (i, (origin, direction)) in rays.iter().enumerate() {

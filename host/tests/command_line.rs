@@ -24,7 +24,8 @@ fn a_cornell_box_is_on_disk() {
     assert_eq!(place.names(), ["cornell.png"]);
     let summary = outcome.stderr.strip_suffix('\n').unwrap();
     assert!(!summary.contains('\n'), "{summary}");
-    for part in ["512x512", "exact", "CPU", "--device cpu", "262144 primary", "Mrays/s", "build", "0 non-finite pixels"] {
+    for part in ["512x512", "exact", "CPU", "--device cpu", "262144 primary", "Mrays/s", "build", "0 non-finite pixels"]
+    {
         assert!(summary.contains(part), "{part}: {summary}");
     }
     assert!(outcome.stdout.is_empty());

@@ -60,9 +60,7 @@ impl Diff {
         }
         let heat = self.output.clone().map(Destination::from);
         if let Some(destination) = &heat {
-            if self.json && matches!(destination, Destination::Stdout) {
-                return Err(Error::new("--json and -o - both write to standard output: name a file for the map"));
-            }
+            super::one_on_stdout(self.json, destination)?;
             destination.format()?;
             output::check_writable(destination)?;
         }

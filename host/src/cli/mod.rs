@@ -11,7 +11,8 @@ use std::process::ExitCode;
 
 use clap::{Parser, Subcommand};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::output::Destination;
 
 /// Exit code of a command that failed on what it was given.
 const BAD_INPUT: u8 = 2;
@@ -76,6 +77,14 @@ fn warn(warnings: &[String], quiet: bool) {
     for warning in warnings.iter().filter(|_| !quiet) {
         eprintln!("warning: {warning}");
     }
+}
+
+/// Standard output is for the JSON or for a picture.
+fn one_on_stdout(json: bool, picture: &Destination) -> Result<()> {
+    if json && matches!(picture, Destination::Stdout) {
+        return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
+    }
+    Ok(())
 }
 
 /// Prints a JSON value to standard output.

@@ -7,7 +7,7 @@ use clap::Args;
 
 use super::options::{On, View};
 use super::summary::{Summary, bar};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::image::{self, BitDepth, Encoding};
 use crate::output::{self, Destination};
 use crate::render::{Chosen, DeviceWish};
@@ -52,9 +52,7 @@ impl Render {
             Some(name) => Destination::from(name.clone()),
             None => Destination::from(default_output(&self.scene).as_path()),
         };
-        if self.json && matches!(destination, Destination::Stdout) {
-            return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
-        }
+        super::one_on_stdout(self.json, &destination)?;
         let encoding = Encoding { exposure_ev: self.exposure, bits: BitDepth::from_bits(self.bits)? };
         encoding.scale()?;
         destination.format()?;

@@ -4,7 +4,8 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
-use super::step::{children, leaf};
+use super::packet::visit_leaf;
+use super::step::children;
 use super::{Method, Query, if_if};
 use crate::buffer::read;
 use crate::data::{NodeRef, STACK};
@@ -94,12 +95,7 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
                     cursor.done = true;
                 }
             } else if cursor.node.is_leaf() {
-                leaf::<Q, R>(geometry, cursor.node, ray, hit);
-                if Q::ANY && !W::any(!super::step::occluded(hit)) {
-                    cursor.done = true;
-                } else {
-                    cursor.pop(&stack);
-                }
+                visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
                 let pair = read(geometry.nodes, cursor.node.index());
                 let wanted = children(&pair, ray, hit);

@@ -3,7 +3,7 @@
 
 use core::marker::PhantomData;
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Stack};
 use super::step::{children, leaf, occluded};
 use super::{Method, Query};
 use crate::buffer::read;
@@ -23,12 +23,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
         let mut cursor = Cursor::new();
         while !cursor.done {
             if cursor.node.is_leaf() {
-                leaf::<Q, R>(geometry, cursor.node, ray, hit);
-                if Q::ANY && !W::any(!occluded(hit)) {
-                    cursor.done = true;
-                } else {
-                    cursor.pop(&stack);
-                }
+                visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
                 let pair = read(geometry.nodes, cursor.node.index());
                 let wanted = children(&pair, ray, hit);
@@ -37,5 +32,22 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
         }
+    }
+}
+
+/// All rays test the leaf at hand; those of an any-hit query are done when the last has found something.
+#[inline(always)]
+pub(super) fn visit_leaf<Q: Query, R: Real, W: Warp>(
+    geometry: &Geometry<'_>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+    cursor: &mut Cursor,
+    stack: &Stack,
+) {
+    leaf::<Q, R>(geometry, cursor.node, ray, hit);
+    if Q::ANY && !W::any(!occluded(hit)) {
+        cursor.done = true;
+    } else {
+        cursor.pop(stack);
     }
 }

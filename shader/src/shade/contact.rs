@@ -24,6 +24,9 @@ pub struct Contact<R: Real> {
 /// that shape.
 const ROUNDOFFS: f32 = 64.0;
 
+/// A ray whose cosine is less than this would go too far before it has its clearance.
+const GRAZING: f32 = 1.0 / 32.0;
+
 impl<R: Scalar> Contact<R> {
     /// The place with weights `u` and `v` of the second and third vertex, seen along `direction`.
     #[inline(always)]
@@ -63,6 +66,17 @@ impl<R: Scalar> Contact<R> {
         let side = R::select(self.faces(direction), self.clearance, -self.clearance);
         (self.position + self.normal * side).map(|x| x.flush(TINY))
     }
+
+    /// [`Contact::leave`] along a unit direction itself, unless that grazes the surface: a ray beside its
+    /// own line sees another place, which lenses magnify.
+    #[inline(always)]
+    pub fn leave_along(&self, direction: V3<R>) -> V3<R> {
+        let cosine = self.normal.dot(direction).abs();
+        let grazes = cosine.lt(R::splat(GRAZING));
+        let step = self.clearance.div(R::select(grazes, R::splat(1.0), cosine));
+        let along = (self.position + direction * step).map(|x| x.flush(TINY));
+        V3::select(grazes, self.leave(direction), along)
+    }
 }
 
 #[cfg(test)]
@@ -93,9 +107,10 @@ mod tests {
             let across = contact.normal * contact.normal.dot(direction);
             let direction = (direction - across + across * graze).normalised().0;
             if contact.faces(direction) {
-                let origin = contact.leave(direction);
-                for other in others {
-                    prop_assert!(!meets(*other, origin, direction), "graze {graze}");
+                for origin in [contact.leave(direction), contact.leave_along(direction)] {
+                    for other in others {
+                        prop_assert!(!meets(*other, origin, direction), "graze {graze}");
+                    }
                 }
             }
         }

@@ -136,7 +136,7 @@ impl<R: Scalar> Path<R> {
     #[inline(always)]
     fn on(&self, leaves: u32, contact: &Contact<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
-            origin: contact.leave(direction),
+            origin: contact.leave_along(direction),
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,

@@ -35,6 +35,13 @@ impl Error {
     }
 }
 
+impl Error {
+    /// The same fault, of this file if it names none.
+    pub fn of(self, file: &Path) -> Self {
+        Error { file: self.file.or_else(|| Some(file.to_owned())), ..self }
+    }
+}
+
 impl fmt::Display for Error {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         if let Some(file) = &self.file {

@@ -218,6 +218,23 @@ fn machines_without_a_gpu() {
     assert!(info.status.success() && String::from_utf8_lossy(&info.stdout).contains("no GPU"));
 }
 
+/// On devices whose buffers four million triangles fill, such as lavapipe's.
+#[test]
+fn meshes_larger_than_the_buffers_of_a_device() {
+    if !has_gpu() {
+        return;
+    }
+    let sphere = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 8\n";
+    let place = Place::new(&[("scene.toml", &sphere.repeat(3))]);
+    let buffer = place.succeed(&["info", "--json"]).json()["adapters"][0]["max_binding"].as_u64().unwrap();
+    let size = 3 * 20 * 4u64.pow(8) * 48;
+    if buffer >= size {
+        return eprintln!("skipped: buffers of {buffer} bytes hold the mesh");
+    }
+    let render = ["render", "scene.toml", "-o", "out.png", "--device", "gpu", "--bvh", "fast", "--size", "8x8"];
+    place.refuse(&render, &["triangles", &size.to_string(), &buffer.to_string(), "--device cpu"]);
+}
+
 #[test]
 fn options_that_contradict_each_other() {
     let place = Place::new(&[("scene.toml", SCENE), ("a.png", "")]);

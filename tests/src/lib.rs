@@ -5,11 +5,16 @@ pub mod model;
 use std::path::PathBuf;
 
 use eyerays::compare::compare;
+use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::gpu::{Gpu, Want};
+use eyerays::method::{Method, Traversal};
 use eyerays::pack::Packed;
+use eyerays::rays::Rays;
 use eyerays::scene::{self, Camera, Scene, Settings};
 use eyerays_bvh::Quality;
+use eyerays_shader::data::Tuning;
+use eyerays_shader::real::Scalar;
 
 /// The scenes that the project ships.
 pub const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
@@ -53,6 +58,29 @@ pub fn gpu(want: &Want) -> Option<Gpu> {
             None
         }
     }
+}
+
+/// Every method; the hybrids parting early, late, and as they do by default.
+pub fn traversals() -> Vec<Traversal> {
+    let mut all = Vec::new();
+    for method in Method::ALL {
+        all.push(Traversal::from(method));
+        let limits: &[(u32, u32)] = match method {
+            Method::SequentialStack | Method::InterleavedStack => &[(1, 0), (63, 0)],
+            Method::SequentialCut | Method::InterleavedCut => &[(63, 0), (63, 100)],
+            _ => &[],
+        };
+        all.extend(limits.iter().map(|&(stack, cut)| Traversal { method, tuning: Tuning::new(stack, cut) }));
+    }
+    all
+}
+
+/// Renders on the CPU by the default method, with a thread a core.
+///
+/// # Panics
+/// If there is no memory for the film.
+pub fn on_cpu<R: Scalar<Record: Send + Sync>>(packed: &Packed) -> (Film, Rays) {
+    cpu::render::<R>(packed, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Asserts that two films have the same bits.

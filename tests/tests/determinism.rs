@@ -2,19 +2,19 @@
 
 use eyerays::cpu;
 use eyerays::film::Film;
-use eyerays::method::Method;
+use eyerays::method::Traversal;
 use eyerays::pack::{Packed, Region};
 use eyerays::rays::Rays;
 use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::NON_FINITE;
-use eyerays_tests::{SHIPPED, assert_same_bits, pack, settings, shipped};
+use eyerays_tests::{SHIPPED, assert_same_bits, pack, settings, shipped, traversals};
 
 /// Edges that no tile's edge divides.
 const SIZE: (u32, u32) = (83, 61);
 
 fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed, threads: usize) -> (Film, Rays) {
-    cpu::render::<R>(packed, Method::default(), threads, &|_| ()).unwrap()
+    cpu::render::<R>(packed, Traversal::default(), threads, &|_| ()).unwrap()
 }
 
 /// The same film at 1, 2 and 7 threads, and twice with each.
@@ -71,11 +71,11 @@ fn another_method_changes_nothing() {
     for name in SHIPPED {
         let scene = shipped(name);
         for camera in &scene.cameras {
-            let packed = pack(&scene, camera, settings(&scene, SIZE, 1));
+            let packed = pack(&scene, camera, settings(&scene, (41, 31), 1));
             let (film, rays) = render::<f32>(&packed, 2);
-            for method in Method::ALL {
-                let what = format!("{name}, camera {}, {method:?}", camera.name);
-                let (other, counted) = cpu::render::<f32>(&packed, method, 2, &|_| ()).unwrap();
+            for traversal in traversals() {
+                let what = format!("{name}, camera {}, {traversal:?}", camera.name);
+                let (other, counted) = cpu::render::<f32>(&packed, traversal, 2, &|_| ()).unwrap();
                 assert_same_bits(&film, &other, &what);
                 assert_eq!(rays, counted, "{what}");
             }
@@ -103,7 +103,7 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
             let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
             for tile in tiles(SIZE, size) {
-                let (records, secondary) = cpu::render_tile::<f32>(&packed, Method::default(), tile, &());
+                let (records, secondary) = cpu::render_tile::<f32>(&packed, Traversal::default(), tile, &());
                 counted.secondary += secondary;
                 counted.primary += u64::from(tile.width * tile.height * packed.samples());
                 for (record, at) in records.into_iter().zip(0..) {

@@ -1,54 +1,45 @@
 //! One picture from GPU and CPU, in every bit. Without a GPU these tests do nothing, see [`gpu`].
 
-use std::iter;
-
-use eyerays::cpu;
-use eyerays::film::Film;
 use eyerays::gpu::{Gpu, Renderer, Want};
-use eyerays::method::Method;
+use eyerays::method::{Method, Traversal};
 use eyerays::pack::Packed;
-use eyerays::rays::Rays;
 use eyerays::scene::{Background, Light, Material, Scene, Settings};
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
-use eyerays_tests::{assert_same_bits, gpu, pack, settings, shipped};
+use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
 use glam::Vec3;
 
 /// Size and samples: with and without whole blocks of pixels.
 const PICTURES: [((u32, u32), u32); 3] = [((96, 72), 1), ((37, 23), 2), ((21, 40), 3)];
 
-/// Compiling kernels takes the time here, so that most pictures must do with one method.
-const DEFAULT: &[Method] = &[Method::IfIf];
-
 fn exact() -> Option<Gpu> {
     gpu(&Want { exact: true, ..Want::default() })
 }
 
-fn on_cpu(packed: &Packed) -> (Film, Rays) {
-    cpu::render::<f32>(packed, Method::default(), 0, &|_| ()).unwrap()
-}
-
-/// The GPU against the CPU, by each of these methods.
-fn assert_same(gpu: &Gpu, packed: &Packed, methods: &[Method], what: &str) {
-    let (film, rays) = on_cpu(packed);
+fn assert_same_by(gpu: &Gpu, packed: &Packed, traversals: &[Traversal], what: &str) {
+    let (film, rays) = on_cpu::<f32>(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
-    for &method in methods {
-        let what = format!("{what}, {method:?}");
-        let renderer = Renderer::new(gpu, packed, true, method).unwrap_or_else(|e| panic!("{what}: {e}"));
+    for &traversal in traversals {
+        let what = format!("{what}, {traversal:?}");
+        let renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
         let rendering = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
         assert_same_bits(&rendering.film, &film, &what);
         assert_eq!(rendering.rays, rays, "{what}");
     }
 }
 
-/// Every camera of a shipped scene by the default method, and the first by all of them.
+/// The GPU against the CPU by the default method.
+fn assert_same(gpu: &Gpu, packed: &Packed, what: &str) {
+    assert_same_by(gpu, packed, &[Traversal::default()], what);
+}
+
+/// Every camera of a shipped scene.
 fn assert_scene(name: &str) {
     let Some(gpu) = exact() else { return };
     let scene = shipped(name);
-    for (camera, methods) in scene.cameras.iter().zip(iter::once(&Method::ALL[..]).chain(iter::repeat(DEFAULT))) {
-        for ((size, samples), methods) in PICTURES.into_iter().zip([DEFAULT, methods, DEFAULT]) {
+    for camera in &scene.cameras {
+        for (size, samples) in PICTURES {
             let packed = pack(&scene, camera, settings(&scene, size, samples));
-            let what = format!("{name}, camera {}, {size:?} x {samples}", camera.name);
-            assert_same(&gpu, &packed, methods, &what);
+            assert_same(&gpu, &packed, &format!("{name}, camera {}, {size:?} x {samples}", camera.name));
         }
     }
 }
@@ -78,7 +69,7 @@ fn twice_in_a_row() {
     let Some(gpu) = exact() else { return };
     let scene = shipped("whitted");
     let packed = pack(&scene, &scene.cameras[2], settings(&scene, (70, 50), 2));
-    let renderer = Renderer::new(&gpu, &packed, true, Method::default()).unwrap();
+    let renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     let [first, second] = [0, 1].map(|_| renderer.render(&|_| ()).unwrap());
     assert_same_bits(&first.film, &second.film, "twice");
     assert_eq!(first.rays, second.rays);
@@ -92,18 +83,18 @@ fn every_setting() {
     let own = settings(&scene, (50, 38), 1);
     let mut dark = scene.clone();
     dark.lights.clear();
-    for (what, methods, scene, settings) in [
-        ("no bounces", DEFAULT, &scene, Settings { bounces: 0, ..own }),
-        ("one bounce", DEFAULT, &scene, Settings { bounces: 1, ..own }),
-        ("every contribution", DEFAULT, &scene, Settings { min_contribution: 0.0, bounces: 7, ..own }),
-        ("no contribution", DEFAULT, &scene, Settings { min_contribution: 1.0, ..own }),
-        ("culling", &Method::ALL[..], &scene, Settings { culling: true, ..own }),
-        ("one pixel", DEFAULT, &scene, Settings { size: (1, 1), samples: 5, ..own }),
-        ("one row", DEFAULT, &scene, Settings { size: (301, 1), ..own }),
-        ("one column", DEFAULT, &scene, Settings { size: (1, 301), ..own }),
-        ("no lights", DEFAULT, &dark, own),
+    for (what, scene, settings) in [
+        ("no bounces", &scene, Settings { bounces: 0, ..own }),
+        ("one bounce", &scene, Settings { bounces: 1, ..own }),
+        ("every contribution", &scene, Settings { min_contribution: 0.0, bounces: 7, ..own }),
+        ("no contribution", &scene, Settings { min_contribution: 1.0, ..own }),
+        ("culling", &scene, Settings { culling: true, ..own }),
+        ("one pixel", &scene, Settings { size: (1, 1), samples: 5, ..own }),
+        ("one row", &scene, Settings { size: (301, 1), ..own }),
+        ("one column", &scene, Settings { size: (1, 301), ..own }),
+        ("no lights", &dark, own),
     ] {
-        assert_same(&gpu, &pack(scene, &scene.cameras[0], settings), methods, what);
+        assert_same(&gpu, &pack(scene, &scene.cameras[0], settings), what);
     }
 }
 
@@ -121,6 +112,26 @@ fn still_life() -> Scene {
     scene
 }
 
+/// Every method, for every kind of ray.
+#[test]
+fn methods() {
+    let Some(gpu) = exact() else { return };
+    let scene = still_life();
+    let packed = pack(&scene, &scene.cameras[0], scene.settings);
+    assert_same_by(&gpu, &packed, &Method::ALL.map(Traversal::from), "methods");
+}
+
+/// Hybrids that part early and late, for primary rays alone: each compiles kernels of its own.
+#[test]
+fn tunings() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = shipped("whitted");
+    scene.lights.clear();
+    let settings = Settings { bounces: 0, culling: true, ..settings(&scene, (61, 43), 1) };
+    let packed = pack(&scene, &scene.cameras[2], settings);
+    assert_same_by(&gpu, &packed, &traversals(), "tunings");
+}
+
 /// A GPU with less memory renders in more bands, down to one block of pixels each.
 #[test]
 fn bands() {
@@ -130,10 +141,11 @@ fn bands() {
     let block = u64::from(packed.levels()) * 3 * 16 * 32;
     for blocks in [1, 2, 9, 40] {
         gpu.report.max_binding = blocks * block;
-        assert_same(&gpu, &packed, DEFAULT, &format!("{blocks} blocks a band"));
+        assert_same(&gpu, &packed, &format!("{blocks} blocks a band"));
     }
     gpu.report.max_binding = block - 1;
-    let error = Renderer::new(&gpu, &packed, true, Method::default()).err().expect("not even a block fits").to_string();
+    let error =
+        Renderer::new(&gpu, &packed, true, Traversal::default()).err().expect("not even a block fits").to_string();
     assert!(error.contains("lower --bounces") && error.contains(&block.to_string()), "{error}");
 }
 
@@ -147,7 +159,7 @@ fn thousands_of_lights() {
     let light = |i| Light::Point { position: place(i), colour: Vec3::splat(1.0 / 1024.0) };
     scene.lights = (0..4096).map(light).collect();
     let settings = Settings { size: (48, 36), bounces: 1, ..scene.settings };
-    assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), DEFAULT, "4096 lights");
+    assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), "4096 lights");
 }
 
 /// Nothing escapes a closed box of mirrors, and its bounces end at their limit.
@@ -162,11 +174,11 @@ fn ten_thousand_bounces() {
     scene.cameras[0].fov = 70.0;
     let settings = Settings { size: (9, 5), bounces: BOUNCES, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
-    let (film, rays) = on_cpu(&packed);
+    let (film, rays) = on_cpu::<f32>(&packed);
     assert_eq!(rays.secondary, rays.primary * u64::from(BOUNCES));
     assert!(film.pixels.iter().flatten().all(|channel| (channel - 1.0).abs() < 1e-3), "{:?}", film.pixels);
     if let Some(gpu) = exact() {
-        assert_same(&gpu, &packed, DEFAULT, "mirrors");
+        assert_same(&gpu, &packed, "mirrors");
     }
 }
 
@@ -181,7 +193,7 @@ fn deep_trees_of_glass() {
     add_wall(&mut scene, glowing(Vec3::X), Vec3::new(0.0, 0.0, -2.4), 0.2);
     for (bounces, min_contribution) in [(9, 0.0), (10_000, 0.002)] {
         let settings = Settings { size: (19, 13), bounces, min_contribution, ..scene.settings };
-        assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), DEFAULT, &format!("{bounces} bounces"));
+        assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), &format!("{bounces} bounces"));
     }
 }
 
@@ -191,7 +203,7 @@ fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
     let scene = still_life();
     let packed = pack(&scene, &scene.cameras[0], scene.settings);
     gpu.report.max_binding = 1000;
-    let error = Renderer::new(&gpu, &packed, true, Method::default()).err().expect("it does not fit").to_string();
+    let error = Renderer::new(&gpu, &packed, true, Traversal::default()).err().expect("it does not fit").to_string();
     let size = size_of_val(packed.triangles.as_slice()).to_string();
     for part in ["triangles", &size, "1000", &gpu.report.name, "--device cpu"] {
         assert!(error.contains(part), "{error}: no {part}");

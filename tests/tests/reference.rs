@@ -13,7 +13,7 @@ use eyerays_shader::real::{Real, Scalar};
 use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::shade::{Contact, Incidence, Surface, refract};
 use eyerays_shader::stage::{Path, REACHED};
-use eyerays_tests::{differences, pack, settings, shipped};
+use eyerays_tests::{differences, pack, shipped};
 
 /// The largest difference of a channel that rounding explains.
 const NEAR: f32 = 1e-4;

@@ -1,44 +1,54 @@
 //! Fast precision by both routes to the driver: passthrough, and naga's, which machines without Vulkan take.
 
-use eyerays::cpu;
-use eyerays::gpu::{Renderer, Route, Want};
-use eyerays::method::Method;
+use eyerays::gpu::{Gpu, Renderer, Route, Want};
+use eyerays::method::{Method, Traversal};
+use eyerays::pack::Packed;
+use eyerays::scene::Settings;
 use eyerays_shader::modules;
-use eyerays_tests::{SHIPPED, differences, gpu, pack, settings, shipped};
+use eyerays_tests::{SHIPPED, differences, gpu, on_cpu, pack, settings, shipped};
 
 /// At least 99.9 % of the pixels lie within 1e-4 of exact. (Measured with lavapipe at this size, over every scene
 /// and method: all do, and all but one of 19,200 within 1e-5.)
-fn assert_near(naga: bool) {
+fn assert_near(gpu: &Gpu, packed: &Packed, traversal: Traversal, what: &str) {
+    let (exact, _) = on_cpu::<f32>(packed);
+    let renderer = Renderer::new(gpu, packed, false, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let fast = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert_eq!(fast.rays.non_finite, 0, "{what}");
+    let differences = differences(&exact, &fast.film);
+    let far = differences.iter().filter(|&&difference| difference > 1e-4).count();
+    assert!(1000 * far <= differences.len(), "{what}: {far} pixels of {} differ", differences.len());
+}
+
+fn assert_scenes_near(naga: bool) {
     let Some(gpu) = gpu(&Want { naga, ..Want::default() }) else { return };
     assert!(!naga || gpu.route == Route::Naga);
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (160, 120), 1));
-        let (exact, _) = cpu::render::<f32>(&packed, Method::default(), 0, &|_| ()).unwrap();
-        for method in methods(name) {
-            let renderer = Renderer::new(&gpu, &packed, false, method).unwrap_or_else(|e| panic!("{name}: {e}"));
-            let fast = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{name}: {e}"));
-            assert_eq!(fast.rays.non_finite, 0, "{name}, {method:?}");
-            let differences = differences(&exact, &fast.film);
-            let far = differences.iter().filter(|&&difference| difference > 1e-4).count();
-            assert!(1000 * far <= differences.len(), "{name}, {method:?}: {far} pixels of {}", differences.len());
-        }
+        assert_near(&gpu, &packed, Traversal::default(), name);
     }
-}
-
-/// Compiling kernels takes the time here, so that one scene must do for the methods that are not the default.
-fn methods(scene: &str) -> Vec<Method> {
-    if scene == "whitted" { Method::ALL.to_vec() } else { vec![Method::default()] }
 }
 
 #[test]
 fn passthrough() {
-    assert_near(false);
+    assert_scenes_near(false);
 }
 
 #[test]
 fn through_naga() {
-    assert_near(true);
+    assert_scenes_near(true);
+}
+
+/// Primary rays alone, since every method compiles kernels of its own.
+#[test]
+fn methods_through_naga() {
+    let Some(gpu) = gpu(&Want { naga: true, ..Want::default() }) else { return };
+    let mut scene = shipped("whitted");
+    scene.lights.clear();
+    let packed = pack(&scene, &scene.cameras[0], Settings { bounces: 0, ..settings(&scene, (160, 120), 1) });
+    for method in Method::ALL {
+        assert_near(&gpu, &packed, method.into(), &format!("{method:?}"));
+    }
 }
 
 #[test]

@@ -20,7 +20,7 @@ impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let (scene, warnings) = scene::load(&self.scene)?;
         super::warn(&warnings, quiet);
-        let named = |e: Error| Error { file: e.file.or_else(|| Some(self.scene.clone())), ..e };
+        let named = |e: Error| e.of(&self.scene);
         for camera in &scene.cameras {
             Packed::new(&scene, camera, scene.settings, Quality::Fast).map_err(named)?;
         }

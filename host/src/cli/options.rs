@@ -103,8 +103,7 @@ impl View {
         let load_time = start.elapsed();
         let settings = self.settings(&scene)?;
         let camera = self.camera(&scene)?;
-        let packed = Packed::new(&scene, &camera, settings, self.quality())
-            .map_err(|e| Error { file: e.file.or_else(|| Some(path.to_owned())), ..e })?;
+        let packed = Packed::new(&scene, &camera, settings, self.quality()).map_err(|e| e.of(path))?;
         Ok(Loaded { packed, load_time })
     }
 

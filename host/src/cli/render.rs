@@ -64,7 +64,7 @@ impl Render {
         let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
         let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
         progress.finish_and_clear();
-        let rendering = rendering?;
+        let rendering = rendering.map_err(|e| e.of(&self.scene))?;
         image::write(&rendering.film, &destination, &encoding)?;
         let summary = Summary::new(&destination, &choice, &loaded, &rendering);
         if self.json {

@@ -52,9 +52,17 @@ pub(super) fn most_slots(gpu: &Gpu, packed: &Packed) -> Result<u32> {
             )));
         }
     }
+    let most = gpu.device.limits().max_compute_workgroups_per_dimension;
+    if packed.lights.len() as u64 > u64::from(most) {
+        return Err(Error::new(format!(
+            "the scene has {} lights, but \"{}\" takes at most {most}: remove some, or use --device cpu",
+            packed.lights.len(),
+            gpu.report.name
+        )));
+    }
     let share = Share::of(packed);
     let memory = limit.min(MOST) / share.paths.max(share.shadows).max(RECORD);
-    let threads = u64::from(gpu.device.limits().max_compute_workgroups_per_dimension) * u64::from(WORKGROUP);
+    let threads = u64::from(most) * u64::from(WORKGROUP);
     let slots = memory.min(threads).min(RAYS / (packed.lights.len() as u64).max(1)) / 32 * 32;
     if memory < 32 {
         return Err(Error::new(format!(

@@ -9,7 +9,7 @@ use eyerays::pack::Packed;
 use eyerays_shader::camera;
 use eyerays_shader::data::{Features, Light};
 use eyerays_shader::ray::Hit;
-use eyerays_shader::real::{Real, Scalar};
+use eyerays_shader::real::Scalar;
 use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::shade::{Contact, Incidence, Surface, refract};
 use eyerays_shader::stage::{Path, REACHED};

@@ -112,8 +112,8 @@ fn branch<R: Scalar>(
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let reflected = path.on(place, contact, mirrored, surface.reflection);
-    let none = path.on(place, contact, mirrored, V3::zero());
+    let reflected = path.on(place, contact.leave(mirrored), mirrored, surface.reflection);
+    let none = path.on(place, contact.position, mirrored, V3::zero());
     if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
         return Branches { reflected, refracted: none };
     }
@@ -121,12 +121,13 @@ fn branch<R: Scalar>(
     let eta = if contact.front { one.div(surface.ior) } else { surface.ior };
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
-    let reflected = path.on(place, contact, mirrored, V3::new(share, share, share));
+    // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
+    let reflected = path.on(place, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(place, contact, inwards, surface.transmission * (one - share));
+    let refracted = path.on(place, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }
@@ -134,9 +135,9 @@ fn branch<R: Scalar>(
 impl<R: Scalar> Path<R> {
     /// The path that goes on from a contact.
     #[inline(always)]
-    fn on(&self, leaves: u32, contact: &Contact<R>, direction: V3<R>, weight: V3<R>) -> Self {
+    fn on(&self, leaves: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
-            origin: contact.leave_along(direction),
+            origin,
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,

@@ -24,7 +24,7 @@ pub struct Path<R: Real> {
     pub bounces: u32,
     /// Rays that wait in this slot.
     pub pending: u32,
-    /// The triangle that it leaves, in leaf order, or [`Hit::NOTHING`].
+    /// The primitive that it leaves, or [`Hit::NOTHING`].
     pub leaves: u32,
 }
 

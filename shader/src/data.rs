@@ -328,7 +328,7 @@ pub struct Frame {
 }
 
 /// Thresholds of the hybrid methods (thesis 6.2.3).
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Tuning(pub u32);
 
 impl Tuning {

@@ -5,7 +5,7 @@
 
 use crate::buffer::{read, write};
 use crate::data::{Bounds, Features, Frame, Light, Material, NodePair, Normals, Tuning, WideNode};
-use crate::launch::{WORKGROUP, counter};
+use crate::launch::{ROW, WORKGROUP, counter};
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Asking, Wave};
@@ -26,6 +26,12 @@ const IDLE: u32 = u32::MAX;
 #[inline(always)]
 fn slots(features: Features, frame: &Frame, counters: &[u32]) -> u32 {
     if features.has(Features::SECONDARY) { read(counters, counter::COUNT) } else { frame.limits.z }
+}
+
+/// The number of a thread that follows a ray: in a stream it may be in a further row.
+#[inline(always)]
+fn thread(features: Features, id: UVec3) -> u32 {
+    if features.has(Features::STREAM) { id.y * ROW + id.x } else { id.x }
 }
 
 /// The slot of a thread: its own number in the first wave, an entry of the queue later.
@@ -142,7 +148,7 @@ macro_rules! tracing_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
-            let slot = slot(features, frame, id.x, queue, counters);
+            let slot = slot(features, frame, thread(features, id), queue, counters);
             if slot == IDLE {
                 return;
             }
@@ -169,13 +175,14 @@ macro_rules! tracing_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
-            let slot = slot(features, frame, id.x, queue, counters);
+            let slot = slot(features, frame, thread(features, id), queue, counters);
             if slot == IDLE {
                 return;
             }
             let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, wide, triangles, bounds };
-            let answer = stage::shadow::<$real, $method>(&geometry, Asking { lights, paths, hits }, slot, id.y);
-            write(shadows, id.y * geometry.slots() + slot, answer);
+            let light = if features.has(Features::STREAM) { 0 } else { id.y };
+            let answer = stage::shadow::<$real, $method>(&geometry, Asking { lights, paths, hits }, slot, light);
+            write(shadows, light * geometry.slots() + slot, answer);
         }
     };
 }

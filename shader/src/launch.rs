@@ -3,6 +3,10 @@
 /// Threads of a workgroup.
 pub const WORKGROUP: u32 = 64;
 
+/// Threads of a row of a launch that follows a stream: more than one row, since a launch has at most 65,535
+/// workgroups a dimension.
+pub const ROW: u32 = 1 << 21;
+
 /// Bindings of descriptor set 0, the same for every stage.
 pub mod binding {
     /// The [`Frame`](crate::data::Frame), uniform.

@@ -35,7 +35,7 @@ impl<R: Scalar> Path<R> {
         if geometry.features.has(Features::SECONDARY) {
             return Self::load(geometry.slots(), slot, 0, paths);
         }
-        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, slot));
+        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, geometry.features, slot));
         Path {
             origin,
             direction,

@@ -31,7 +31,7 @@ struct Branches<R: Real> {
 #[inline(always)]
 pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, film } = wave;
-    let pixel = camera::pixel(geometry.frame, slot);
+    let pixel = camera::pixel(geometry.frame, geometry.features, slot);
     if !pixel.inside {
         return false;
     }

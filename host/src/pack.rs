@@ -4,7 +4,8 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Quality, Statistics};
 use eyerays_shader::data::{
-    Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, pack,
+    Bounds, Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, WideNode,
+    pack,
 };
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
@@ -12,10 +13,17 @@ use glam::{DVec3, Vec3};
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
 
+/// References added by splitting triangles, as a share of the triangles.
+const SPLIT_BUDGET: f32 = 0.0;
+
 /// A scene as the kernels read it, owned, for one camera and one set of settings.
 pub struct Packed {
     /// Child pairs of the hierarchy.
     pub nodes: Vec<NodePair>,
+    /// The same hierarchy in nodes of eight children.
+    pub wide: Vec<WideNode>,
+    /// Own boxes by slot; empty if no triangle is split, so that each has its own.
+    pub bounds: Vec<Bounds>,
     /// Triangles in leaf order, in the normalised scene.
     pub triangles: Vec<Triangle>,
     /// Vertex normals in leaf order; empty if every mesh is flat.
@@ -62,7 +70,9 @@ impl Packed {
         let features = features(scene, &settings);
         let triangles = triangles(scene, scale, features);
         let start = Instant::now();
-        let bvh = eyerays_bvh::build(&triangles, quality).map_err(|e| Error::new(e.to_string()))?;
+        let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
+        let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
+        let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let statistics = Statistics::of(&bvh, &triangles);
         let lights = scene.lights.iter().enumerate().map(|(i, l)| light(l, i, scale)).collect::<Result<Vec<_>>>()?;
@@ -70,6 +80,8 @@ impl Packed {
             triangles: bvh.gather(&triangles),
             normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes,
+            wide: bvh.wide,
+            bounds: if SPLIT_BUDGET > 0.0 { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
             frame: frame(scene, camera, &settings, lights.len(), scale)?,
             lights,

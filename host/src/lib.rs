@@ -13,3 +13,4 @@ pub mod pack;
 pub mod rays;
 pub mod render;
 pub mod scene;
+pub mod stream;

@@ -182,6 +182,8 @@ pub struct Triangle {
 impl Triangle {
     /// The flag of a triangle that casts no shadow (thesis 3.2: opaque objects do).
     pub const TRANSPARENT: u32 = 1;
+    /// The same flag beside the material of an indexed triangle's vertex.
+    pub const CLEAR_VERTEX: u32 = 1 << 31;
 
     /// A record of three vertices in the normalised scene.
     pub fn new(vertices: [Vec3; 3], primitive: u32, material: u32, flags: u32) -> Self {
@@ -321,12 +323,12 @@ pub struct Frame {
     /// The region's left and top pixel, its width and height.
     pub region: UVec4,
     /// Bits of a sample's share of its pixel, bits of the least contribution that is followed, slots a
-    /// launch has room for, 0.
+    /// launch has room for, the word at which the vertices of indexed triangles start.
     pub limits: UVec4,
 }
 
 /// Thresholds of the hybrid methods (thesis 6.2.3).
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Tuning(pub u32);
 
 impl Tuning {
@@ -379,6 +381,16 @@ impl Features {
     pub const GRADIENT: u32 = 1 << 8;
     /// This launch follows secondary rays: its slots come from a queue.
     pub const SECONDARY: u32 = 1 << 9;
+    /// This launch follows rays that lie in memory as [`crate::stage::Segment`]s.
+    pub const STREAM: u32 = 1 << 10;
+    /// Triangles are given as indices of vertices, see [`crate::scene::Geometry::triangle`].
+    pub const INDEXED: u32 = 1 << 11;
+    /// Triangles are split: a slot holds a part, whose bounds are given.
+    pub const SPLIT: u32 = 1 << 12;
+    /// Pixels are taken row by row.
+    pub const LINEAR: u32 = 1 << 13;
+    /// Pixels are taken along a Morton curve.
+    pub const MORTON: u32 = 1 << 14;
 
     /// Is the effect asked for?
     #[inline(always)]

@@ -3,12 +3,17 @@
 use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Quality, Statistics};
+use eyerays_shader::camera;
 use eyerays_shader::data::{
     Bounds, Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, WideNode,
     pack,
 };
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
+
+mod words;
+
+pub use words::TriangleWords;
 
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
@@ -20,12 +25,12 @@ const SPLIT_BUDGET: f32 = 0.0;
 pub struct Packed {
     /// Child pairs of the hierarchy.
     pub nodes: Vec<NodePair>,
-    /// The same hierarchy in nodes of eight children.
+    /// The same hierarchy with nodes of eight children.
     pub wide: Vec<WideNode>,
-    /// Own boxes by slot; empty if no triangle is split, so that each has its own.
-    pub bounds: Vec<Bounds>,
-    /// Triangles in leaf order, in the normalised scene.
+    /// Triangles by slot, in the normalised scene; a split one has several slots.
     pub triangles: Vec<Triangle>,
+    /// Bounds by slot; empty unless triangles are split.
+    pub bounds: Vec<Bounds>,
     /// Vertex normals in leaf order; empty if every mesh is flat.
     pub normals: Vec<Normals>,
     /// Materials.
@@ -119,19 +124,35 @@ impl Packed {
         self.settings.samples * self.settings.samples
     }
 
-    /// The record of one launch.
-    pub fn frame(&self, region: Region, sample: u32) -> Frame {
+    /// Turns to another of the scene's cameras.
+    ///
+    /// # Errors
+    /// If there is no way to look so.
+    pub fn look(&mut self, scene: &Scene, camera: &Camera) -> Result<()> {
+        self.frame = frame(scene, camera, &self.settings, self.lights.len(), self.scale)?;
+        Ok(())
+    }
+
+    /// The record of one launch, whose slots are in the order of `features`.
+    pub fn frame(&self, region: Region, sample: u32, features: Features) -> Frame {
         let mut frame = self.frame;
         frame.forward.w = sample;
         frame.region = glam::UVec4::new(region.x, region.y, region.width, region.height);
-        frame.limits.z = eyerays_shader::camera::slots(region.width, region.height);
+        frame.limits.z = camera::slots(region.width, region.height, features);
+        frame.limits.w = self.triangles.len() as u32;
         frame
     }
 }
 
-/// The power of two that brings every vertex and the camera into [-1, 1].
+/// The power of two that brings every vertex and camera into [-1, 1].
 fn normalisation(scene: &Scene, camera: &Camera) -> f64 {
-    let extent = scene.mesh.positions.iter().chain([&camera.eye]).fold(0f32, |most, p| most.max(p.abs().max_element()));
+    let extent = scene
+        .mesh
+        .positions
+        .iter()
+        .chain(scene.cameras.iter().map(|c| &c.eye))
+        .chain([&camera.eye])
+        .fold(0f32, |most, p| most.max(p.abs().max_element()));
     if extent == 0.0 { 1.0 } else { (-f64::from(extent).log2().ceil()).exp2() }
 }
 

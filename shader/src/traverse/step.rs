@@ -8,6 +8,7 @@ use crate::intersect::{Crossing, Span, cross, slab};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
+use glam::UVec4;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
 const FOUND: f32 = -1.0;
@@ -32,11 +33,21 @@ pub struct Wanted<R: Real> {
 /// Tests both boxes of a pair.
 #[inline(always)]
 pub fn children<R: Real>(pair: &NodePair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
-    let span = |least, greatest| slab(V3::splat(numbers(least)), V3::splat(numbers(greatest)), ray);
-    let meets = |s: Span<R>| s.near.le(s.far) & s.near.le(hit.t);
-    let left = span(pair.left_min, pair.left_max);
-    let right = span(pair.right_min, pair.right_max);
-    Wanted { left: meets(left), right: meets(right), right_first: right.near.lt(left.near) }
+    let left = inside(pair.left_min, pair.left_max, ray);
+    let right = inside(pair.right_min, pair.right_max, ray);
+    Wanted { left: meets(&left, hit), right: meets(&right, hit), right_first: right.near.lt(left.near) }
+}
+
+// Functions, since closures are not always inlined, and what is not inlined is not compiled for the
+// processor's vectors.
+#[inline(always)]
+fn inside<R: Real>(least: UVec4, greatest: UVec4, ray: &Ray<R>) -> Span<R> {
+    slab(V3::splat(numbers(least)), V3::splat(numbers(greatest)), ray)
+}
+
+#[inline(always)]
+fn meets<R: Real>(span: &Span<R>, hit: &Hit<R>) -> R::Mask {
+    span.near.le(span.far) & span.near.le(hit.t)
 }
 
 /// A single ray's visit of the pair that its traversal stands at.

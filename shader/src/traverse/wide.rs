@@ -7,19 +7,27 @@
 //! triangle's own box by 2^-22 times it; the quantised boxes' margin of 2^-19 covers both, so a node is
 //! entered no later than any triangle's own box below it, and no order of visits can cull a hit.
 
+use core::marker::PhantomData;
+
 use super::resumable::{Progress, Resumable, follow};
-use super::step::{occluded, triangle};
+use super::step::occluded;
+#[cfg(not(target_arch = "spirv"))]
+use super::step::several;
+#[cfg(target_arch = "spirv")]
+use super::step::triangle;
 use super::{Method, Query};
 use crate::buffer::read;
-use crate::data::{NodeRef, STACK, WideNode, numbers};
+#[cfg(target_arch = "spirv")]
+use crate::data::NodeRef;
+use crate::data::{STACK, WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Lanes, Octet, Real, Scalar, V3};
+use crate::real::{Lanes, Native, Octet, Real, Scalar, V3, Vectors};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
-/// See the module.
-pub struct WideNodes;
+/// See the module. `V` are the vectors that test boxes and triangles.
+pub struct WideNodes<V = Native>(PhantomData<V>);
 
 /// Children that wait: inner nodes of one parent, or its triangles.
 #[derive(Clone, Copy)]
@@ -104,7 +112,7 @@ impl Groups {
     }
 }
 
-impl<R: Scalar> Resumable<R> for WideNodes {
+impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
     type Cursor = Groups;
     type Stack = Waiting;
     const EMPTY: Waiting = [0; 2 * STACK];
@@ -120,12 +128,10 @@ impl<R: Scalar> Resumable<R> for WideNodes {
         if cursor.triangles.waiting == 0 {
             let node = read(geometry.wide, cursor.take(inverted(ray), stack));
             Q::on_boxes(WideNode::ARITY as u32);
-            (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
+            (cursor.nodes, cursor.triangles) = open::<R, V>(&node, ray, hit);
         }
         if cursor.triangles.waiting != 0 {
-            let place = 31 - cursor.triangles.waiting.leading_zeros();
-            cursor.triangles.waiting &= !(1 << place);
-            triangle::<Q, R>(geometry, NodeRef::leaf(cursor.triangles.first + place, 1), ray, hit);
+            cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -133,7 +139,7 @@ impl<R: Scalar> Resumable<R> for WideNodes {
     }
 }
 
-impl<R: Scalar> Method<R> for WideNodes {
+impl<R: Scalar, V: Vectors<R>> Method<R> for WideNodes<V> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
@@ -151,25 +157,47 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
+fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
     let grid = Grid::new(node, ray);
-    let (mut met, mut first) = (0, 0);
+    let bits = [node.children.z, node.children.w];
+    let inverted = inverted(ray);
+    let (mut waiting, mut first) = (0, 0);
     while first < WideNode::ARITY as u32 {
-        met |= grid.meets(first, hit.t) << first;
-        first += R::Eight::COUNT;
-    }
-    let (inverted, mut waiting, mut i) = (inverted(ray), 0, 0);
-    while i < WideNode::ARITY as u32 {
-        let word = if i < 4 { node.children.z } else { node.children.w };
-        let child = (word >> (8 * (i & 3))) & 255;
-        let is_inner = (node.grid.w >> (24 + i)) & 1 == 1;
-        let place = if is_inner { 24 + (i ^ inverted) } else { child & 31 };
-        let bits = (child >> 5) << place;
-        waiting |= if (met >> i) & 1 == 1 { bits } else { 0 };
-        i += 1;
+        waiting |= V::Eight::gather(grid.meets::<V::Eight>(first, hit.t), bits, first, |child| {
+            // The places of inner nodes alone lie at 24 and above, and turn with the ray's order.
+            let turned = if child & 24 == 24 { inverted } else { 0 };
+            (child >> 5) << ((child & 31) ^ turned)
+        });
+        first += V::Eight::COUNT;
     }
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
     (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
+}
+
+/// Tests the triangle with the highest bit of a group and returns the others' bits.
+#[cfg(target_arch = "spirv")]
+#[inline(always)]
+fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
+    geometry: &Geometry<'_>,
+    group: Group,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) -> u32 {
+    let place = 31 - group.waiting.leading_zeros();
+    triangle::<Q, R>(geometry, NodeRef::leaf(group.first + place, 1), ray, hit);
+    group.waiting & !(1 << place)
+}
+
+/// Tests the triangles with the highest bits of a group and returns the others' bits.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
+    geometry: &Geometry<'_>,
+    group: Group,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) -> u32 {
+    several::<Q, R, V::Four>(geometry, group.first, group.waiting, ray, hit)
 }
 
 /// A node's grid in a ray's terms.
@@ -178,10 +206,12 @@ struct Grid<R: Real> {
     start: V3<R>,
     /// How far it is to the next plane.
     step: V3<R>,
-    /// Bytes of the planes that the ray enters by, an axis after the other.
-    near: [[u32; 2]; 3],
-    /// Bytes of the planes that it leaves by.
-    far: [[u32; 2]; 3],
+    /// Bytes of the lesser planes, an axis after the other.
+    low: [[u32; 2]; 3],
+    /// Bytes of the greater planes.
+    high: [[u32; 2]; 3],
+    /// Does the ray enter by the greater ones?
+    down: [bool; 3],
 }
 
 impl<R: Scalar> Grid<R> {
@@ -189,32 +219,29 @@ impl<R: Scalar> Grid<R> {
     fn new(node: &WideNode, ray: &Ray<R>) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
         let scale = V3::<R>::splat(Vec3::new(power(0), power(8), power(16)));
-        let low = |q: UVec4| [q.x, q.y];
-        let high = |q: UVec4| [q.z, q.w];
-        let sides = |inverse: R, low: [u32; 2], high: [u32; 2]| {
-            if inverse.lt(R::splat(0.0)) { (high, low) } else { (low, high) }
-        };
-        let x = sides(ray.inverse.x, low(node.low_x_low_y), high(node.low_z_high_x));
-        let y = sides(ray.inverse.y, high(node.low_x_low_y), low(node.high_y_high_z));
-        let z = sides(ray.inverse.z, low(node.low_z_high_x), high(node.high_y_high_z));
+        let first = |q: UVec4| [q.x, q.y];
+        let last = |q: UVec4| [q.z, q.w];
+        let zero = R::splat(0.0);
         Grid {
             start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
             step: scale.times(ray.inverse),
-            near: [x.0, y.0, z.0],
-            far: [x.1, y.1, z.1],
+            low: [first(node.low_x_low_y), last(node.low_x_low_y), first(node.low_z_high_x)],
+            high: [last(node.low_z_high_x), first(node.high_y_high_z), last(node.high_y_high_z)],
+            down: [ray.inverse.x.lt(zero), ray.inverse.y.lt(zero), ray.inverse.z.lt(zero)],
         }
     }
 
-    /// A bit for each of [`Lanes::COUNT`] boxes from `first` on that the ray meets before `limit`.
+    /// Which of [`Lanes::COUNT`] boxes from `first` on the ray meets before `limit`.
     #[inline(always)]
-    fn meets(&self, first: u32, limit: R) -> u32 {
-        let all = |v: V3<R>| V3::new(R::Eight::all(v.x), R::Eight::all(v.y), R::Eight::all(v.z));
-        let planes = |b: &[[u32; 2]; 3]| {
-            V3::new(R::Eight::bytes(b[0], first), R::Eight::bytes(b[1], first), R::Eight::bytes(b[2], first))
-        };
+    fn meets<E: Octet<R>>(&self, first: u32, limit: R) -> E::Mask {
+        let all = |v: V3<R>| V3::new(E::all(v.x), E::all(v.y), E::all(v.z));
         let (start, step) = (all(self.start), all(self.step));
-        let at = |q: V3<R::Eight>| q.times(step) + start;
-        let met = span(at(planes(&self.near)), at(planes(&self.far)));
-        R::Eight::bits(met.near.le(met.far) & met.near.le(R::Eight::all(limit)))
+        let x = E::sides(self.down[0], self.low[0], self.high[0], first);
+        let y = E::sides(self.down[1], self.low[1], self.high[1], first);
+        let z = E::sides(self.down[2], self.low[2], self.high[2], first);
+        let enter = V3::new(x.0, y.0, z.0).times(step) + start;
+        let leave = V3::new(x.1, y.1, z.1).times(step) + start;
+        let met = span(enter, leave);
+        met.near.le(met.far) & met.near.le(E::all(limit))
     }
 }

@@ -26,8 +26,8 @@ type Key = (bool, Traversal, Question);
 
 /// Dispatches of a submission.
 const BATCH: u32 = 8;
-/// A GPU is warm once a batch is no faster than one before by this many percent ...
-const NOISE: u32 = 3;
+/// A GPU is warm once a batch takes more than this share of the best before ...
+const NOISE: f64 = 0.97;
 /// ... and it has worked for at least so long, or at most so long.
 const LEAST_WARMING: Duration = Duration::from_millis(100);
 const MOST_WARMING: Duration = Duration::from_millis(1000);
@@ -112,7 +112,7 @@ impl<'a> Caster<'a> {
         let mut best = Duration::MAX;
         loop {
             let took = self.batch(cast, &kernel, BATCH)?.into_iter().min().unwrap_or_default();
-            let settled = took * 100 >= best * (100 - NOISE);
+            let settled = took.as_secs_f64() >= NOISE * best.as_secs_f64();
             best = best.min(took);
             if start.elapsed() >= MOST_WARMING || settled && start.elapsed() >= LEAST_WARMING {
                 break;

@@ -120,6 +120,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         self.max(other)
     }
 
+    /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
+    /// device likes.
+    #[inline(always)]
+    fn settle(self, least: f32) -> Self {
+        self.flush(least)
+    }
+
     /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
     /// become one is made zero at a named point, on every device alike.
     #[inline(always)]

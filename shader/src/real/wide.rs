@@ -179,6 +179,7 @@ impl<const N: usize> Ray<Wide<N>> {
         Ray {
             origin: self.origin.lane(i),
             inverse: self.inverse.lane(i),
+            offset: self.offset.lane(i),
             shear: self.shear.lane(i),
             leaves: self.leaves.0[i],
         }

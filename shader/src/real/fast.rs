@@ -70,6 +70,8 @@ impl Scalar for Fast {
     type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet<const N: usize> = Self;
 
     records!(Fast, inner);
 

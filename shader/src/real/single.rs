@@ -142,6 +142,10 @@ impl Scalar for f32 {
     type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet<const N: usize> = super::Wide<N>;
+    #[cfg(not(target_arch = "spirv"))]
+    const VECTORISES: bool = true;
 
     records!(id, id);
 

@@ -8,6 +8,7 @@ use crate::intersect::{Crossing, Span, cross, slab, span};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
+use glam::UVec4;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
 const FOUND: f32 = -1.0;
@@ -36,15 +37,23 @@ pub struct Wanted<R: Real> {
 /// [`CentredPair::MARGIN`] together, so that a box is met, and entered no later, wherever an own box in it is.
 #[inline(always)]
 pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
-    let span = |centre, half| {
-        let middle = V3::splat(numbers(centre)).times(ray.inverse) - ray.offset;
-        let reach = V3::splat(numbers(half)).times(ray.inverse.abs());
-        span(middle - reach, middle + reach)
-    };
-    let meets = |s: Span<R>| s.near.le(s.far) & s.near.le(hit.t);
-    let left = span(pair.left_centre, pair.left_half);
-    let right = span(pair.right_centre, pair.right_half);
-    Wanted { left: meets(left), right: meets(right), right_first: right.near.lt(left.near) }
+    let left = inside(pair.left_centre, pair.left_half, ray);
+    let right = inside(pair.right_centre, pair.right_half, ray);
+    Wanted { left: meets(&left, hit), right: meets(&right, hit), right_first: right.near.lt(left.near) }
+}
+
+// Functions, since closures are not always inlined, and what is not inlined is not compiled for the
+// processor's vectors.
+#[inline(always)]
+fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>) -> Span<R> {
+    let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
+    let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
+    span(half.fused(-reach, middle), half.fused(reach, middle))
+}
+
+#[inline(always)]
+fn meets<R: Real>(span: &Span<R>, hit: &Hit<R>) -> R::Mask {
+    span.near.le(span.far) & span.near.le(hit.t)
 }
 
 /// A single ray's visit of the pair that its traversal stands at.

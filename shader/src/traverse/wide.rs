@@ -14,7 +14,7 @@ use crate::buffer::read;
 use crate::data::{NodeRef, STACK, WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Octet, Real, Scalar, V3};
+use crate::real::{Lanes, Octet, Real, Scalar, V3};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
@@ -156,7 +156,7 @@ fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group
     let (mut met, mut first) = (0, 0);
     while first < WideNode::ARITY as u32 {
         met |= grid.meets(first, hit.t) << first;
-        first += R::Eight::LANES;
+        first += R::Eight::COUNT;
     }
     let (inverted, mut waiting, mut i) = (inverted(ray), 0, 0);
     while i < WideNode::ARITY as u32 {
@@ -205,7 +205,7 @@ impl<R: Scalar> Grid<R> {
         }
     }
 
-    /// A bit for each of [`Octet::LANES`] boxes from `first` on that the ray meets before `limit`.
+    /// A bit for each of [`Lanes::COUNT`] boxes from `first` on that the ray meets before `limit`.
     #[inline(always)]
     fn meets(&self, first: u32, limit: R) -> u32 {
         let all = |v: V3<R>| V3::new(R::Eight::all(v.x), R::Eight::all(v.y), R::Eight::all(v.z));

@@ -100,7 +100,7 @@ where
 }
 
 /// Threads to install work in; 0 is one a core.
-fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+pub(crate) fn pool(threads: usize) -> Result<rayon::ThreadPool> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.map_err(|e| Error::new(format!("can't start {threads} threads ({e}): ask for fewer")))
 }

@@ -1,6 +1,6 @@
 //! Axis-aligned boxes that are unions and nothing else, so that containment is exact.
 
-use eyerays_shader::data::{NodeRef, Triangle};
+use eyerays_shader::data::{Bounds as Record, NodeRef, Triangle, numbers, pack};
 use glam::Vec3;
 
 /// A closed box; the least and greatest corner.
@@ -18,6 +18,16 @@ impl Bounds {
     pub fn of(triangle: &Triangle) -> Self {
         let (min, max) = triangle.bounds();
         Bounds::new(min, max)
+    }
+
+    /// The box that a record holds.
+    pub fn read(record: &Record) -> Self {
+        Bounds::new(numbers(record.least), numbers(record.greatest))
+    }
+
+    /// The box's record.
+    pub fn write(self) -> Record {
+        Record { least: pack(self.min.into(), 0), greatest: pack(self.max.into(), 0) }
     }
 
     /// The box between two corners.

@@ -48,14 +48,14 @@ proptest! {
 
     #[test]
     fn every_promise_holds(triangles in any_mesh(), quality in quality()) {
-        build_and_check(&triangles, quality);
+        build_and_check(&whole(&triangles), quality);
     }
 }
 
 /// Builds on a pool of so many threads.
 fn build_with(threads: usize, triangles: &[Triangle], quality: Quality) -> eyerays_bvh::Bvh {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| build(triangles, quality).unwrap())
+    pool.install(|| build(&whole(triangles), quality).unwrap())
 }
 
 #[test]

@@ -18,6 +18,9 @@ pub use words::TriangleWords;
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
 
+/// References added by splitting triangles, as a share of the triangles.
+const SPLIT_BUDGET: f32 = 0.0;
+
 /// A scene as the kernels read it, owned, for one camera and one set of settings.
 pub struct Packed {
     /// Child pairs of the hierarchy.
@@ -72,16 +75,18 @@ impl Packed {
         let features = features(scene, &settings);
         let triangles = triangles(scene, scale, features);
         let start = Instant::now();
-        let bvh = eyerays_bvh::build(&triangles, quality).map_err(|e| Error::new(e.to_string()))?;
+        let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
+        let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
+        let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let statistics = Statistics::of(&bvh, &triangles);
         let lights = scene.lights.iter().enumerate().map(|(i, l)| light(l, i, scale)).collect::<Result<Vec<_>>>()?;
         Ok(Packed {
-            wide: Vec::new(),
-            bounds: Vec::new(),
             triangles: bvh.gather(&triangles),
             normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes,
+            wide: bvh.wide,
+            bounds: if SPLIT_BUDGET > 0.0 { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
             frame: frame(scene, camera, &settings, lights.len(), scale)?,
             lights,

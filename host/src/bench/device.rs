@@ -10,8 +10,6 @@ use crate::method::{Layout, Traversal};
 use crate::pack::Packed;
 use crate::stream::{Answers, Question, Stream};
 
-/// A GPU is warmed up for so long, so that its clocks are up.
-const WARM_UP: Duration = Duration::from_millis(20);
 /// Rays of a subgroup, at a multiple of which a stream is split.
 const SUBGROUP: usize = 128;
 
@@ -50,27 +48,40 @@ impl<'a> OnGpu<'a> {
         Ok(Uploaded(self.casters.iter().map(|(layout, c)| Ok((*layout, parts(c)?))).collect::<Result<_>>()?))
     }
 
-    /// Traces a stream once to warm up and then `repeat` times.
+    /// Traces a stream `repeat` times once the GPU is warm.
     pub fn run(&self, on: &Uploaded, exact: bool, how: Traversal, ask: Question, repeat: u32) -> Result<Run> {
         let of = |(layout, _): &&(Layout, _)| *layout == how.layout;
         let (_, caster) = self.casters.iter().find(of).ok_or_else(|| Error::new("a layout is not on the GPU"))?;
         let casts = &on.0.iter().find(|(layout, _)| *layout == how.layout).expect("uploaded in each layout").1;
-        let pass = || casts.iter().map(|cast| self.trace(caster, cast, exact, how, ask)).sum::<Result<Duration>>();
-        let start = Instant::now();
-        pass()?;
-        while start.elapsed() < WARM_UP {
-            pass()?;
+        let mut times = vec![Duration::ZERO; repeat as usize];
+        for cast in casts {
+            let of_part = self.times(caster, cast, (exact, how, ask), repeat)?;
+            times.iter_mut().zip(of_part).for_each(|(sum, time)| *sum += time);
         }
-        let times = (0..repeat.max(1)).map(|_| pass()).collect::<Result<Vec<_>>>()?;
         let parts = casts.iter().map(|cast| caster.answers(cast, ask)).collect::<Result<Vec<_>>>()?;
         Ok(Run { timing: Timing::of(&times), answers: joined(parts) })
     }
 
-    /// Device time of a dispatch; without a clock, wall-clock time around it.
-    fn trace(&self, caster: &Caster<'_>, cast: &Cast, exact: bool, how: Traversal, ask: Question) -> Result<Duration> {
-        let start = Instant::now();
-        let device_time = caster.trace(cast, exact, how, ask)?;
-        Ok(if self.gpu.report.timestamps { device_time } else { start.elapsed() })
+    /// Device times of dispatches; without a clock, wall-clock time around each.
+    fn times(
+        &self,
+        caster: &Caster<'_>,
+        cast: &Cast,
+        (exact, how, ask): (bool, Traversal, Question),
+        repeat: u32,
+    ) -> Result<Vec<Duration>> {
+        let report = &self.gpu.report;
+        // Software has no clocks of its own to raise, which would take minutes.
+        if report.timestamps && !report.is_software() {
+            return caster.measure(cast, exact, how, ask, repeat);
+        }
+        caster.trace(cast, exact, how, ask)?;
+        let time = |_| {
+            let start = Instant::now();
+            let device_time = caster.trace(cast, exact, how, ask)?;
+            Ok(if report.timestamps { device_time } else { start.elapsed() })
+        };
+        (0..repeat).map(time).collect()
     }
 }
 

@@ -169,9 +169,9 @@ fn counts(text: &mut Text, report: &Report) {
         };
         let mut row = vec![scene, kind.name().to_owned(), order, method];
         row.extend([
-            mean(&|r| r.visits),
-            mean(&|r| r.boxes),
-            mean(&|r| r.triangle_tests),
+            mean(&|r| Some(r.visits)),
+            mean(&|r| Some(r.boxes)),
+            mean(&|r| Some(r.triangle_tests)),
             mean(&|r| r.simd_efficiency),
         ]);
         rows.push(row);

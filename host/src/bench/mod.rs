@@ -14,6 +14,9 @@ mod sample;
 mod setup;
 mod timing;
 
+#[cfg(test)]
+mod tests;
+
 pub use csv::csv;
 pub use kind::Kind;
 pub use markdown::markdown;

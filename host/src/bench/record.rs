@@ -48,11 +48,11 @@ pub struct Record {
     /// Images a second if these rays were all.
     pub frames_per_s: f64,
     /// Visits a ray, see [`super::counts::Counts::visits`].
-    pub visits: Option<f64>,
+    pub visits: f64,
     /// Box tests a ray.
-    pub boxes: Option<f64>,
+    pub boxes: f64,
     /// Triangle tests a ray.
-    pub triangle_tests: Option<f64>,
+    pub triangle_tests: f64,
     /// Share of a packet's lanes that want the children it goes to.
     pub simd_efficiency: Option<f64>,
     /// Of the answers.

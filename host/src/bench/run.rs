@@ -1,6 +1,7 @@
 //! Every scene, view and kind of rays, every way.
 
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 
 use clap::ValueEnum;
 
@@ -75,7 +76,7 @@ impl<'a> Bench<'a> {
         report.scenes.push(SceneRow {
             scene: subject.name.clone(),
             triangles: statistics.triangles,
-            split_triangles: packed.triangles.len(),
+            split_triangles: statistics.references,
             nodes: statistics.nodes,
             leaves: statistics.leaves,
             depth: statistics.depth,
@@ -165,10 +166,8 @@ impl<'a> Bench<'a> {
         let mut by_method = HashMap::new();
         for trial in trials {
             let method = trial.traversal.method;
-            if !by_method.contains_key(&method)
-                && let Some(counts) = counts(packed, trial.traversal, threads, stream, ask)?
-            {
-                by_method.insert(method, counts);
+            if let Entry::Vacant(entry) = by_method.entry(method) {
+                entry.insert(counts(packed, trial.traversal, threads, stream, ask)?);
             }
         }
         let hash = Hash::of(packed, &reference);
@@ -188,7 +187,7 @@ impl<'a> Bench<'a> {
     fn record(&self, trial: &Trial, asked: &Asked<'_>, run: &Run) -> Record {
         let (traversal, timing) = (trial.traversal, run.timing);
         let (device, driver) = self.plan.device(trial.processor);
-        let counts = asked.counts.get(&traversal.method);
+        let counts = asked.counts[&traversal.method];
         let rays = asked.stream.len();
         Record {
             scene: self.subject.name.clone(),
@@ -211,10 +210,10 @@ impl<'a> Bench<'a> {
             spread: timing.spread,
             mrays_per_s: rays as f64 / timing.median / 1e6,
             frames_per_s: 1.0 / timing.median,
-            visits: counts.map(|c| c.visits),
-            boxes: counts.map(|c| c.boxes),
-            triangle_tests: counts.map(|c| c.triangles),
-            simd_efficiency: counts.and_then(|c| c.simd_efficiency),
+            visits: counts.visits,
+            boxes: counts.boxes,
+            triangle_tests: counts.triangles,
+            simd_efficiency: counts.simd_efficiency,
             hash: Hash::of(self.packed, &run.answers).to_string(),
             differing: answers::differing(self.packed, &asked.reference, &run.answers),
         }

@@ -15,7 +15,7 @@ use crate::film::Film;
 use crate::gpu::{Gpu, Want};
 use crate::method::{Layout, Method, Order, Scheduling};
 use crate::output::{self, Destination, write_error};
-use crate::scene;
+use crate::scene::{self, Camera, Scene};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -227,15 +227,25 @@ impl Bench {
         for path in &self.scenes {
             let (scene, warnings) = scene::load(path)?;
             super::warn(&warnings, quiet);
-            let picked = self.rays.camera.iter().map(|wish| options::pick(&scene.cameras, wish).cloned());
-            let mut cameras = picked.collect::<Result<Vec<_>>>().map_err(|e| e.of(path))?;
-            if cameras.is_empty() {
-                cameras = scene.cameras[..if self.quick { 1 } else { scene.cameras.len() }].to_vec();
-            }
-            let name = self.name(path);
-            subjects.push(Subject { name, scene, cameras });
+            let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
+            subjects.push(Subject { name: self.name(path), scene, cameras });
         }
         Ok(subjects)
+    }
+
+    fn cameras(&self, scene: &Scene) -> Result<Vec<Camera>> {
+        let all = if self.quick { &scene.cameras[..1] } else { &scene.cameras[..] };
+        if self.rays.camera.is_empty() {
+            return Ok(all.to_vec());
+        }
+        let mut cameras: Vec<Camera> = Vec::new();
+        for wish in &self.rays.camera {
+            let camera = options::pick(&scene.cameras, wish)?;
+            if !cameras.contains(camera) {
+                cameras.push(camera.clone());
+            }
+        }
+        Ok(cameras)
     }
 
     /// A scene's name without folder and ending, unless another one has the same.

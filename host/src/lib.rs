@@ -1,5 +1,6 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+pub mod bench;
 pub mod cli;
 pub mod compare;
 pub mod cpu;

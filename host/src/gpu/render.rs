@@ -230,8 +230,8 @@ mod tests {
     fn bands_cover_every_pixel_once_and_fit() {
         for (size, slots) in [((1, 1), 32), ((100, 70), 32), ((100, 70), 512), ((100, 70), 1 << 22), ((9, 3), 64)] {
             let mut seen = vec![0; (size.0 * size.1) as usize];
-            for band in bands(size, slots) {
-                assert!(camera::slots(band.width, band.height) <= slots, "{size:?} {slots}: {band:?}");
+            for band in bands(size, slots, Features(0)) {
+                assert!(camera::slots(band.width, band.height, Features(0)) <= slots, "{size:?} {slots}: {band:?}");
                 for y in band.y..band.y + band.height {
                     for x in band.x..band.x + band.width {
                         seen[(y * size.0 + x) as usize] += 1;

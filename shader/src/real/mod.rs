@@ -108,6 +108,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         Self::select(other.lt(self), self, other)
     }
 
+    /// `self * a + b`, rounded once or twice, as suits the device: for tests that leave room for either, so that
+    /// only what they lead to has the same bits everywhere.
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
     /// As [`Real::min`], but of two zeros the device may take either: for what is only compared.
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {

@@ -100,7 +100,7 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
     !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
 }
 
-/// Divides, clamps into the box of the slot, and takes the lesser (t, primitive).
+/// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
     geometry: &Geometry<'_>,
@@ -116,13 +116,21 @@ fn keep<Q: Query, R: Real>(
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
-    let (least, greatest) = geometry.bounds(slot, triangle);
+    let (least, greatest) = triangle.bounds();
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
     let area = R::select(inside, crossing.area, R::splat(1.0));
-    let inside = inside & own.near.le(own.far);
+    let mut inside = inside & own.near.le(own.far);
     // A bound of zero may have either sign; of zeros `max` takes the second.
-    let t = crossing.depth.div(area).max(own.near.max(zero)).min(own.far.max(zero));
+    let mut t = crossing.depth.div(area).max(own.near.max(zero)).min(own.far.max(zero));
+    if features.has(Features::SPLIT) {
+        // A hit in another part of the triangle is moved behind the entry to this one, so that nothing that
+        // leads here can be culled; the part that holds it has it where it is.
+        let (least, greatest) = geometry.bounds(slot);
+        let part = slab(V3::splat(least), V3::splat(greatest), ray);
+        inside = inside & part.near.le(part.far);
+        t = t.max(part.near.max(zero));
+    }
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;

@@ -2,6 +2,7 @@
 
 mod check;
 mod diff;
+mod generate;
 mod info;
 mod options;
 mod render;
@@ -47,6 +48,9 @@ enum Command {
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
+    /// Make a scene of any number of triangles to measure with
+    #[command(after_help = generate::EXAMPLES)]
+    Generate(generate::Generate),
 }
 
 /// Runs the command line of this process.
@@ -58,6 +62,7 @@ pub fn run() -> ExitCode {
         Command::Diff(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
+        Command::Generate(command) => command.run(cli.quiet),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error}");

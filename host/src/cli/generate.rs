@@ -13,6 +13,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays generate hall --triangles 300000 -o hall.obj
   eyerays render hall.toml --camera view1 -o hall.png
+  eyerays generate forest --triangles 75000 --seed 7 -o scenes/forest.obj
 Writes FILE.obj, its materials to FILE.mtl, and to FILE.toml a scene with lights and the cameras view1 to view5.
 The same kind, triangles and seed give the same bytes on every machine.";
 

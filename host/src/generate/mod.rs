@@ -6,6 +6,7 @@
 mod circle;
 mod document;
 mod files;
+mod forest;
 mod frame;
 mod hall;
 mod model;
@@ -29,6 +30,8 @@ use model::Model;
 pub enum Kind {
     /// A closed room of regular furniture, as Conference
     Hall,
+    /// An open clearing around one detailed figure, as Fairy Forest
+    Forest,
 }
 
 /// What makes a scene what it is: the same recipe gives the same files.
@@ -52,6 +55,7 @@ impl Kind {
     pub fn name(self) -> &'static str {
         match self {
             Kind::Hall => "hall",
+            Kind::Forest => "forest",
         }
     }
 
@@ -59,6 +63,7 @@ impl Kind {
     fn model(self, triangles: u64, seed: u64) -> Model {
         let (mut model, least): (Model, &[&str]) = match self {
             Kind::Hall => (hall::model(seed), &hall::LEAST),
+            Kind::Forest => (forest::model(seed), &forest::LEAST),
         };
         model.fit(triangles, least);
         model

@@ -3,6 +3,7 @@
 //! They stand in for Conference, Fairy Forest and Sibenik, which are not ours to ship. The same kind, number and
 //! seed give the same bytes on every machine, since nothing but `+ - * /` and the square root makes them.
 
+mod cathedral;
 mod circle;
 mod document;
 mod files;
@@ -32,6 +33,8 @@ pub enum Kind {
     Hall,
     /// An open clearing around one detailed figure, as Fairy Forest
     Forest,
+    /// A nave of columns, arches and vaults, as Sibenik
+    Cathedral,
 }
 
 /// What makes a scene what it is: the same recipe gives the same files.
@@ -56,6 +59,7 @@ impl Kind {
         match self {
             Kind::Hall => "hall",
             Kind::Forest => "forest",
+            Kind::Cathedral => "cathedral",
         }
     }
 
@@ -64,6 +68,7 @@ impl Kind {
         let (mut model, least): (Model, &[&str]) = match self {
             Kind::Hall => (hall::model(seed), &hall::LEAST),
             Kind::Forest => (forest::model(seed), &forest::LEAST),
+            Kind::Cathedral => (cathedral::model(seed), &cathedral::LEAST),
         };
         model.fit(triangles, least);
         model

@@ -16,6 +16,9 @@ mod patch;
 mod random;
 mod shape;
 
+#[cfg(test)]
+mod tests;
+
 pub use files::Files;
 
 use std::io::Write;

@@ -1,6 +1,6 @@
 //! Axis-aligned boxes that are unions and nothing else, so that containment is exact.
 
-use eyerays_shader::data::{NodeRef, Triangle};
+use eyerays_shader::data::{Bounds as Record, NodeRef, Triangle, numbers, pack};
 use glam::Vec3;
 
 /// A closed box; the least and greatest corner.
@@ -20,6 +20,16 @@ impl Bounds {
         Bounds::new(min, max)
     }
 
+    /// The box that a record holds.
+    pub fn read(record: &Record) -> Self {
+        Bounds::new(numbers(record.least), numbers(record.greatest))
+    }
+
+    /// The box's record.
+    pub fn write(self) -> Record {
+        Record { least: pack(self.min.into(), 0), greatest: pack(self.max.into(), 0) }
+    }
+
     /// The box between two corners.
     pub fn new(min: Vec3, max: Vec3) -> Self {
         Bounds { min: min.into(), max: max.into() }
@@ -31,6 +41,19 @@ impl Bounds {
             min: zip(self.min, other.min, |a, b| if a < b { a } else { b }),
             max: zip(self.max, other.max, |a, b| if a > b { a } else { b }),
         }
+    }
+
+    /// What lies in both; perhaps [`Bounds::is_empty`].
+    pub fn intersection(self, other: Self) -> Self {
+        Bounds {
+            min: zip(self.min, other.min, |a, b| if a > b { a } else { b }),
+            max: zip(self.max, other.max, |a, b| if a < b { a } else { b }),
+        }
+    }
+
+    /// Is there no point inside?
+    pub fn is_empty(self) -> bool {
+        (0..3).any(|i| self.min[i] > self.max[i])
     }
 
     /// The least box around all.

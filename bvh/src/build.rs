@@ -1,22 +1,34 @@
-//! From triangles to a hierarchy.
+//! From references to a hierarchy.
 
-use eyerays_shader::data::{MAX_LEAF, NodePair, NodeRef, Triangle};
+use eyerays_shader::data::{BOX_PADDING, Bounds as Record, MAX_LEAF, NodePair, NodeRef, WideNode};
 
 use crate::{
-    BuildError, MAX_DEPTH, Quality, bounds::Bounds, cluster::Clusters, layout, search, topology::Topology, validate,
+    BuildError, MAX_DEPTH, Quality, Reference, References,
+    bounds::Bounds,
+    cluster::Clusters,
+    layout, search,
+    spatial::Tree,
+    topology::Topology,
+    validate::{self, validate},
+    wide::{validate_wide, wide},
 };
 
-/// A validated hierarchy.
+/// A validated hierarchy, as pairs and as wide nodes. Both have the same leaves' triangles at the same
+/// slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     /// The node pairs, the root's first, then in depth-first order.
     pub nodes: Vec<NodePair>,
-    /// The triangle at each slot that a leaf counts, as an index into the triangles given.
+    /// The wide nodes, the root first.
+    pub wide: Vec<WideNode>,
+    /// The triangle at each slot that a leaf counts, as an index into the triangles of the references.
     pub order: Vec<u32>,
+    /// The own box at each slot: that of the triangle, or of the part that the slot stands for.
+    pub bounds: Vec<Record>,
 }
 
 impl Bvh {
-    /// Sorts what belongs to the triangles, or the triangles themselves, into the order of slots.
+    /// Brings what belongs to the triangles, or the triangles themselves, into the order of slots.
     ///
     /// # Panics
     ///
@@ -26,52 +38,71 @@ impl Bvh {
     }
 }
 
-/// Builds the hierarchy of triangles in the normalised scene.
+/// Builds the hierarchy of references to triangles in the normalised scene.
 ///
-/// The same triangles give the same hierarchy, whatever the number of rayon's threads. Every box
-/// contains exactly what is below it, no leaf has more than [`MAX_LEAF`] triangles, and no path has
-/// more than [`MAX_DEPTH`] pairs.
+/// The same references give the same hierarchy, whatever the number of rayon's threads. Every box of
+/// a pair contains exactly what is below it, no leaf has more than [`MAX_LEAF`] references, and no path
+/// has more than [`MAX_DEPTH`] pairs; [`validate_wide`] tells what wide nodes promise.
 ///
 /// # Errors
 ///
-/// [`BuildError::NoTriangles`], [`BuildError::TooManyTriangles`], and [`BuildError::Coordinate`] if
-/// a vertex is not finite and in [-1, 1]. Any other error is a defect of the builder that its
-/// validation found.
-pub fn build(triangles: &[Triangle], quality: Quality) -> Result<Bvh, BuildError> {
-    let count = check_count(triangles.len())?;
-    check_coordinates(triangles)?;
-    let bounds: Vec<Bounds> = triangles.iter().map(Bounds::of).collect();
-    let bvh = match bounds[..] {
-        [only] => Bvh { nodes: vec![layout::single(only)], order: vec![0] },
+/// [`BuildError::NoTriangles`], [`BuildError::TooManyTriangles`], and [`BuildError::Reference`] if a
+/// box is none, or not in [-1, 1] but for its padding. Any other error is a defect of the builder that
+/// its validation found.
+pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
+    let list = &references.list;
+    check_count(list.len())?;
+    check_boxes(list)?;
+    let bounds: Vec<Bounds> = list.iter().map(|r| Bounds::read(&r.bounds)).collect();
+    let (mut nodes, mut order) = match bounds[..] {
+        [only] => (vec![layout::single(only)], vec![0]),
         _ => {
-            let mut topology = topology(&bounds, count, quality);
+            let mut topology = topology(&bounds, references.tree.as_ref(), quality);
             topology.limit_depth(MAX_DEPTH);
-            Bvh { nodes: layout::pairs(&mut topology, &bounds), order: topology.order }
+            (layout::pairs(&mut topology, &bounds), topology.order)
         }
     };
-    validate::order(&bvh.order, triangles.len())?;
-    validate::nodes(&bvh.nodes, triangles.len(), |slot| bounds[bvh.order[slot as usize] as usize])?;
+    validate::order(&order, list.len())?;
+    let wide = wide(&nodes, &mut order, &bounds);
+    wide.renumber(&mut nodes, &mut order);
+    let at = |&slot: &u32| list[slot as usize];
+    let bvh = Bvh {
+        nodes,
+        wide: wide.nodes,
+        order: order.iter().map(|slot| at(slot).triangle).collect(),
+        bounds: order.iter().map(|slot| at(slot).bounds).collect(),
+    };
+    validate(&bvh.nodes, &bvh.bounds)?;
+    validate_wide(&bvh.wide, &bvh.bounds)?;
     Ok(bvh)
 }
 
 /// The tree before its depth is limited.
-fn topology(bounds: &[Bounds], count: u32, quality: Quality) -> Topology {
+fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topology {
+    let count = bounds.len() as u32;
     if count <= MAX_LEAF {
         return Topology::run(count);
     }
-    let clusters = Clusters::of(bounds);
+    let clusters = match tree {
+        Some(tree) => Clusters::between(&tree.starts),
+        None => Clusters::of(bounds),
+    };
     let primitives: Vec<Bounds> = (0..clusters.len() as u32)
         .map(|group| {
             let members = clusters.members(group).iter();
             Bounds::around(members.map(|&t| bounds[t as usize]))
         })
         .collect();
-    let tree = search::search(&primitives, &quality.parameters());
-    Topology::of(&tree, &clusters)
+    let parameters = quality.parameters();
+    let found = match tree {
+        Some(tree) => search::improve(tree, &primitives, &parameters),
+        None => search::search(&primitives, &parameters),
+    };
+    Topology::of(&found, &clusters)
 }
 
-/// A number of triangles that references can count.
-fn check_count(count: usize) -> Result<u32, BuildError> {
+/// A number of references that a node's can count.
+pub(crate) fn check_count(count: usize) -> Result<u32, BuildError> {
     match u32::try_from(count) {
         Ok(0) => Err(BuildError::NoTriangles),
         Ok(fits) if fits <= NodeRef::MAX_INDEX => Ok(fits),
@@ -80,13 +111,14 @@ fn check_count(count: usize) -> Result<u32, BuildError> {
 }
 
 /// obvhs must not see a NaN, nor areas that overflow.
-fn check_coordinates(triangles: &[Triangle]) -> Result<(), BuildError> {
-    let normalised = |t: &Triangle| {
-        let coordinates = t.vertices().map(|v| v.to_array());
-        coordinates.as_flattened().iter().all(|c| c.abs() <= 1.0)
+fn check_boxes(references: &[Reference]) -> Result<(), BuildError> {
+    const MOST: f32 = 1.0 + BOX_PADDING;
+    let normalised = |reference: &Reference| {
+        let Bounds { min, max } = Bounds::read(&reference.bounds);
+        (0..3).all(|i| -MOST <= min[i] && min[i] <= max[i] && max[i] <= MOST)
     };
-    match triangles.iter().find(|t| !normalised(t)) {
-        Some(t) => Err(BuildError::Coordinate { primitive: t.primitive() }),
+    match references.iter().position(|r| !normalised(r)) {
+        Some(reference) => Err(BuildError::Reference { reference: reference as u32 }),
         None => Ok(()),
     }
 }

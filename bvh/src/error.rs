@@ -2,10 +2,11 @@
 
 use eyerays_shader::data::{MAX_LEAF, NodeRef};
 
-use crate::MAX_DEPTH;
+use crate::{MAX_DEPTH, MAX_WIDE_DEPTH};
 
-/// Why [`build`](crate::build()) or [`validate`](crate::validate()) refuses. The first three are
-/// faults of the input; the others mean that a hierarchy must not be traversed.
+/// Why [`split`](crate::split()), [`build`](crate::build()), [`validate`](crate::validate()) or
+/// [`validate_wide`](crate::validate_wide()) refuses. The first four are faults of the input; the
+/// others mean that a hierarchy must not be traversed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
     /// There is nothing to build a tree of.
@@ -13,11 +14,11 @@ pub enum BuildError {
     NoTriangles,
     /// A node reference cannot number so many triangles.
     #[error(
-        "the scene has {count} triangles, but a node reference holds {most}: split the scene or simplify its meshes",
+        "the scene has {count} triangles or parts of them, but a node reference holds {most}: split the scene or simplify its meshes",
         most = NodeRef::MAX_INDEX
     )]
     TooManyTriangles {
-        /// Triangles given.
+        /// Triangles or references given.
         count: usize,
     },
     /// A coordinate is NaN, infinite or outside the normalised scene.
@@ -27,6 +28,12 @@ pub enum BuildError {
     Coordinate {
         /// The primitive's number in the scene.
         primitive: u32,
+    },
+    /// A reference's box is none or does not lie in the normalised scene.
+    #[error("reference {reference} has a box that does not lie in [-1, 1]: split the normalised scene's triangles")]
+    Reference {
+        /// The reference's place among those given.
+        reference: u32,
     },
     /// A reference leads past the end of the node pairs.
     #[error("pair {pair} refers to pair {child} of {pairs}: rebuild the hierarchy")]
@@ -88,5 +95,59 @@ pub enum BuildError {
     TooDeep {
         /// The first such pair on the way down.
         pair: u32,
+    },
+    /// A wide node's bytes make no sense: its grid, a child's byte, or the mask of inner children.
+    #[error("wide node {node} is malformed: rebuild the hierarchy")]
+    WideNodeMalformed {
+        /// The node.
+        node: u32,
+    },
+    /// A wide node's inner child lies past the end of the nodes.
+    #[error("wide node {node} refers to node {child} of {nodes}: rebuild the hierarchy")]
+    WideNodeOutOfRange {
+        /// The node that has the child.
+        node: u32,
+        /// The node referred to.
+        child: u32,
+        /// Nodes there are.
+        nodes: usize,
+    },
+    /// A wide node has two parents, or is its own ancestor.
+    #[error("wide node {node} is reached twice, so this is no tree: rebuild the hierarchy")]
+    WideNodeReachedTwice {
+        /// The node.
+        node: u32,
+    },
+    /// A wide node is part of no path from the root.
+    #[error("wide node {node} is never reached from the root: rebuild the hierarchy")]
+    WideNodeUnreached {
+        /// The least such node.
+        node: u32,
+    },
+    /// A wide node's leaf leads past the end of the triangles.
+    #[error(
+        "wide node {node} has a leaf of {count} triangles from {first} on, but there are {triangles}: rebuild the hierarchy"
+    )]
+    WideLeafOutOfRange {
+        /// The node that has the leaf.
+        node: u32,
+        /// First slot of the run.
+        first: u64,
+        /// Length of the run.
+        count: u32,
+        /// Triangles there are.
+        triangles: usize,
+    },
+    /// A child's quantised box does not contain what is below it with the margin it must have.
+    #[error("a box of wide node {node} does not contain what is below it by the margin: rebuild the hierarchy")]
+    WideBoxTooSmall {
+        /// The node.
+        node: u32,
+    },
+    /// A traversal stack could overflow.
+    #[error("wide node {node} lies deeper than {most} levels: rebuild the hierarchy", most = MAX_WIDE_DEPTH)]
+    WideNodeTooDeep {
+        /// The first such node on the way down.
+        node: u32,
     },
 }

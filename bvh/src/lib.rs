@@ -1,12 +1,13 @@
 //! Bounding volume hierarchies for Eyerays.
 //!
-//! [`build`] turns triangles into the node pairs that every traversal method walks. obvhs searches
-//! the topology by surface area; this crate keeps input that obvhs cannot digest away from it,
-//! bounds the depth, computes every box itself and validates the result, because the kernels index
-//! without checks and cull without tolerance.
+//! [`split`] turns triangles into references, once a scene; [`build`] turns references into the node
+//! pairs that most traversal methods walk and the wide nodes that one walks, over one order of slots.
+//! obvhs searches the topology by surface area; this crate keeps input that obvhs cannot digest away
+//! from it, bounds the depth, computes every box itself and validates the result, because the kernels
+//! index without checks and cull without tolerance.
 //!
-//! The stages run one way, a file each: bounds, cluster (with morton), search (with reinsertion),
-//! topology, depth, layout (with median), validate.
+//! The stages run one way, a file each: bounds, reference, spatial, cluster (with morton), search (with
+//! reinsertion), topology, depth, layout (with median), wide, validate.
 
 mod bounds;
 mod build;
@@ -17,15 +18,20 @@ mod layout;
 mod median;
 mod morton;
 mod quality;
+mod reference;
 mod reinsertion;
 mod search;
+mod spatial;
 mod statistics;
 mod topology;
 mod validate;
+mod wide;
 
 pub use build::{Bvh, build};
 pub use depth::MAX_DEPTH;
 pub use error::BuildError;
 pub use quality::Quality;
+pub use reference::{Reference, References, split};
 pub use statistics::Statistics;
 pub use validate::validate;
+pub use wide::{MAX_WIDE_DEPTH, validate_wide};

@@ -6,6 +6,7 @@ use crate::{
     Bvh,
     bounds::Bounds,
     validate::{children, is_empty},
+    wide::{Child, Record},
 };
 
 /// Figures of a hierarchy.
@@ -13,6 +14,8 @@ use crate::{
 pub struct Statistics {
     /// Triangles.
     pub triangles: usize,
+    /// References to triangles or parts of them, each in a slot of its own (thesis: split triangles).
+    pub references: usize,
     /// Inner nodes and leaves.
     pub nodes: usize,
     /// Leaves.
@@ -25,7 +28,16 @@ pub struct Statistics {
     pub sah_cost: f64,
     /// Bytes of the node pairs.
     pub node_bytes: usize,
-    /// Bytes of the triangles.
+    /// Wide nodes.
+    pub wide_nodes: usize,
+    /// The most wide nodes on a path from the root.
+    pub wide_depth: u32,
+    /// As [`Statistics::sah_cost`], of the wide nodes: for each node [`Statistics::TRAVERSAL`], for each
+    /// triangle [`Statistics::INTERSECTION`]. Quantised boxes are what counts.
+    pub wide_sah_cost: f64,
+    /// Bytes of the wide nodes.
+    pub wide_bytes: usize,
+    /// Bytes of the triangles by slot.
     pub triangle_bytes: usize,
 }
 
@@ -39,12 +51,17 @@ impl Statistics {
     pub fn of(bvh: &Bvh, triangles: &[Triangle]) -> Self {
         let mut statistics = Statistics {
             triangles: triangles.len(),
+            references: bvh.order.len(),
             nodes: bvh.nodes.len(),
             leaves: 0,
             depth: 0,
             sah_cost: 0.0,
             node_bytes: size_of_val(&bvh.nodes[..]),
-            triangle_bytes: size_of_val(triangles),
+            wide_nodes: bvh.wide.len(),
+            wide_depth: 0,
+            wide_sah_cost: 0.0,
+            wide_bytes: size_of_val(&bvh.wide[..]),
+            triangle_bytes: size_of::<Triangle>() * bvh.order.len(),
         };
         let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
         let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
@@ -64,7 +81,35 @@ impl Statistics {
             }
         }
         statistics.nodes += statistics.leaves;
+        statistics.wide(bvh);
         statistics
+    }
+
+    /// Fills in the figures of the wide nodes.
+    fn wide(&mut self, bvh: &Bvh) {
+        let mut open = vec![(0u32, 1u32, None)];
+        let mut root = 0.0;
+        while let Some((node, depth, area)) = open.pop() {
+            let record = Record::decode(&bvh.wide[node as usize]).expect("a validated node");
+            let half_area = |planes| f64::from(record.grid.bounds(planes).half_area());
+            let real = || record.children.into_iter().filter(|child| child.0 != Child::None);
+            let area = area.unwrap_or_else(|| {
+                let all = Bounds::around(real().map(|(_, planes)| record.grid.bounds(planes)));
+                root = f64::from(all.half_area());
+                root
+            });
+            self.wide_depth = self.wide_depth.max(depth);
+            self.wide_sah_cost += Self::TRAVERSAL * area / root;
+            let mut next = record.first_child;
+            for (child, planes) in real() {
+                if let Child::Leaf { count, .. } = child {
+                    self.wide_sah_cost += Self::INTERSECTION * f64::from(count) * half_area(planes) / root;
+                } else {
+                    open.push((next, depth + 1, Some(half_area(planes))));
+                    next += 1;
+                }
+            }
+        }
     }
 }
 
@@ -76,6 +121,7 @@ fn real_children(pair: &NodePair) -> impl Iterator<Item = (Bounds, NodeRef)> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::wide::Grid;
     use glam::{Vec3, vec3};
 
     /// A box of edge 1 from `x` on.
@@ -85,26 +131,40 @@ mod tests {
 
     #[test]
     fn a_tree_by_hand() {
+        let mut children = [Record::NOWHERE; 8];
+        children[0] = (Child::Leaf { place: 0, count: 2 }, [[0; 3], [64; 3]]);
+        children[4] = (Child::Leaf { place: 2, count: 3 }, [[64; 3], [128; 3]]);
+        let grid = Grid { origin: [0.0; 3], exponent: [-6; 3] };
+        let wide = Record { grid, first_child: 0, first_triangle: 0, children }.encode();
         let inner = (Vec3::ZERO, vec3(2.0, 1.0, 1.0), NodeRef::inner(1));
         let bvh = Bvh {
             nodes: vec![
                 NodePair::new(inner, unit(3.0, NodeRef::leaf(5, 4))),
                 NodePair::new(unit(0.0, NodeRef::leaf(0, 2)), unit(1.0, NodeRef::leaf(2, 3))),
             ],
+            wide: vec![wide],
             order: (0..9).collect(),
+            bounds: vec![Bounds::EMPTY.write(); 9],
         };
         let triangles = [Triangle::new([Vec3::ZERO; 3], 0, 0, 0); 9];
         let statistics = Statistics::of(&bvh, &triangles);
         // Half areas: root 9, inner node 5, each leaf 3.
         let cost = 1.0 + 5.0 / 9.0 + (2.0 + 3.0 + 4.0) * 3.0 / 9.0;
         assert!((statistics.sah_cost - cost).abs() < 1e-12);
+        // Cubes of edge 1 in one of edge 2.
+        assert_eq!(statistics.wide_sah_cost, 1.0 + (2.0 + 3.0) / 4.0);
         let expected = Statistics {
             triangles: 9,
+            references: 9,
             nodes: 5,
             leaves: 3,
             depth: 2,
             sah_cost: statistics.sah_cost,
             node_bytes: 128,
+            wide_nodes: 1,
+            wide_depth: 1,
+            wide_sah_cost: statistics.wide_sah_cost,
+            wide_bytes: 80,
             triangle_bytes: 432,
         };
         assert_eq!(statistics, expected);
@@ -113,7 +173,7 @@ mod tests {
     #[test]
     fn an_empty_sibling_counts_for_nothing() {
         let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
-        let bvh = crate::build(&[triangle], crate::Quality::Medium).unwrap();
+        let bvh = crate::build(&crate::split(&[triangle], 0.0).unwrap(), crate::Quality::Medium).unwrap();
         let statistics = Statistics::of(&bvh, &[triangle]);
         assert_eq!((statistics.nodes, statistics.leaves, statistics.depth), (2, 1, 1));
         assert_eq!(statistics.sah_cost, Statistics::TRAVERSAL + Statistics::INTERSECTION);

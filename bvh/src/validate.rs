@@ -1,41 +1,22 @@
 //! The proof that kernels may index a hierarchy without checks.
 
-use eyerays_shader::data::{MAX_LEAF, NodePair, NodeRef, Triangle, numbers};
+use eyerays_shader::data::{Bounds as Record, MAX_LEAF, NodePair, NodeRef, numbers};
 
 use crate::{BuildError, MAX_DEPTH, bounds::Bounds};
 
-/// Checks a hierarchy over `triangles`, which are in the order of slots: every pair is reached
-/// exactly once from the root, every slot lies in exactly one leaf, every box contains exactly what
-/// is below it, and no path has more than [`MAX_DEPTH`] pairs. Takes linear time.
+/// Checks a hierarchy over the own boxes of slots: every pair is reached exactly once from the root,
+/// every slot lies in exactly one leaf, every box contains exactly what is below it, and no path has
+/// more than [`MAX_DEPTH`] pairs. Takes linear time.
 ///
 /// # Errors
 ///
 /// The first rule broken on a walk in depth-first order; what was never reached comes last.
-pub fn validate(nodes: &[NodePair], triangles: &[Triangle]) -> Result<(), BuildError> {
-    self::nodes(nodes, triangles.len(), |slot| Bounds::of(&triangles[slot as usize]))
-}
-
-/// Checks that `order` names each of `count` triangles exactly once.
-pub(crate) fn order(order: &[u32], count: usize) -> Result<(), BuildError> {
-    let mut once = Once::new(count);
-    for &triangle in order {
-        if !once.meet(triangle) {
-            return Err(BuildError::TriangleTwice { triangle });
-        }
-    }
-    match once.missing() {
-        Some(triangle) => Err(BuildError::TriangleLost { triangle }),
-        None => Ok(()),
-    }
-}
-
-/// As [`validate`], with a function from a slot to the box of its triangle.
-pub(crate) fn nodes(nodes: &[NodePair], triangles: usize, bounds: impl Fn(u32) -> Bounds) -> Result<(), BuildError> {
+pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError> {
+    let triangles = bounds.len();
     if triangles == 0 {
         return Err(BuildError::NoTriangles);
     }
-    let mut walk =
-        Walk { nodes, triangles, bounds, pairs: Once::new(nodes.len()), slots: Once::new(triangles), open: Vec::new() };
+    let mut walk = Walk { nodes, bounds, pairs: Once::new(nodes.len()), slots: Once::new(triangles), open: Vec::new() };
     walk.enter(0, NodeRef::ROOT, 0)?;
     while let Some((pair, level)) = walk.open.pop() {
         for (bounds, reference) in children(&nodes[pair as usize]) {
@@ -49,6 +30,20 @@ pub(crate) fn nodes(nodes: &[NodePair], triangles: usize, bounds: impl Fn(u32) -
         return Err(BuildError::PairUnreached { pair });
     }
     match walk.slots.missing() {
+        Some(triangle) => Err(BuildError::TriangleLost { triangle }),
+        None => Ok(()),
+    }
+}
+
+/// Checks that `order` names each of `count` references exactly once.
+pub(crate) fn order(order: &[u32], count: usize) -> Result<(), BuildError> {
+    let mut once = Once::new(count);
+    for &triangle in order {
+        if !once.meet(triangle) {
+            return Err(BuildError::TriangleTwice { triangle });
+        }
+    }
+    match once.missing() {
         Some(triangle) => Err(BuildError::TriangleLost { triangle }),
         None => Ok(()),
     }
@@ -69,17 +64,16 @@ pub(crate) fn is_empty(bounds: Bounds, reference: NodeRef) -> bool {
 }
 
 /// A walk through the tree and what it has met so far.
-struct Walk<'a, F> {
+struct Walk<'a> {
     nodes: &'a [NodePair],
-    triangles: usize,
-    bounds: F,
+    bounds: &'a [Record],
     pairs: Once,
     slots: Once,
     /// Pairs to visit, and how many are above each.
     open: Vec<(u32, u32)>,
 }
 
-impl<F: Fn(u32) -> Bounds> Walk<'_, F> {
+impl Walk<'_> {
     /// Checks one child of `pair`, which has `level` pairs above it.
     fn child(&mut self, pair: u32, level: u32, bounds: Bounds, reference: NodeRef) -> Result<(), BuildError> {
         let below = if reference.is_leaf() {
@@ -112,27 +106,28 @@ impl<F: Fn(u32) -> Bounds> Walk<'_, F> {
     fn leaf(&mut self, pair: u32, leaf: NodeRef) -> Result<Bounds, BuildError> {
         let (first, count) = (leaf.index(), leaf.count());
         let slots = first..first + count;
-        if count > MAX_LEAF || slots.end as usize > self.triangles {
-            return Err(BuildError::LeafOutOfRange { pair, first, count, triangles: self.triangles });
+        let triangles = self.bounds.len();
+        if count > MAX_LEAF || slots.end as usize > triangles {
+            return Err(BuildError::LeafOutOfRange { pair, first, count, triangles });
         }
         match slots.clone().find(|&slot| !self.slots.meet(slot)) {
             Some(triangle) => Err(BuildError::TriangleTwice { triangle }),
-            None => Ok(Bounds::around(slots.map(&self.bounds))),
+            None => Ok(Bounds::around(slots.map(|slot| Bounds::read(&self.bounds[slot as usize])))),
         }
     }
 }
 
 /// Numbers that may be met once each.
-struct Once(Vec<bool>);
+pub(crate) struct Once(Vec<bool>);
 
 impl Once {
     /// Numbers below `count`, none met.
-    fn new(count: usize) -> Self {
+    pub fn new(count: usize) -> Self {
         Once(vec![false; count])
     }
 
     /// Marks a number; false if it is out of range or was met before.
-    fn meet(&mut self, number: u32) -> bool {
+    pub fn meet(&mut self, number: u32) -> bool {
         match self.0.get_mut(number as usize) {
             Some(met) => !std::mem::replace(met, true),
             None => false,
@@ -140,7 +135,7 @@ impl Once {
     }
 
     /// The least number not met.
-    fn missing(&self) -> Option<u32> {
+    pub fn missing(&self) -> Option<u32> {
         self.0.iter().position(|met| !met).map(|i| i as u32)
     }
 }

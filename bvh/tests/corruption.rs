@@ -4,22 +4,20 @@ mod common;
 
 use common::*;
 use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, build, validate};
-use eyerays_shader::data::{NodePair, NodeRef, Triangle};
+use eyerays_shader::data::{Bounds, NodePair, NodeRef, pack};
 
-/// A valid tree, and its triangles in the order of slots.
-fn valid() -> (Vec<NodePair>, Vec<Triangle>) {
-    let triangles = scattered(300, 29);
-    let bvh = build(&triangles, Quality::Medium).unwrap();
-    let sorted = bvh.gather(&triangles);
-    assert_eq!(validate(&bvh.nodes, &sorted), Ok(()));
-    (bvh.nodes, sorted)
+/// A valid tree, and the own boxes of its slots.
+fn valid() -> (Vec<NodePair>, Vec<Bounds>) {
+    let bvh = build(&whole(&mixed()), Quality::Medium).unwrap();
+    assert_eq!(validate(&bvh.nodes, &bvh.bounds), Ok(()));
+    (bvh.nodes, bvh.bounds)
 }
 
 /// What validation says after a change.
-fn after(change: impl FnOnce(&mut Vec<NodePair>, &mut Vec<Triangle>)) -> BuildError {
-    let (mut nodes, mut triangles) = valid();
-    change(&mut nodes, &mut triangles);
-    validate(&nodes, &triangles).expect_err("a corrupted tree")
+fn after(change: impl FnOnce(&mut Vec<NodePair>, &mut Vec<Bounds>)) -> BuildError {
+    let (mut nodes, mut bounds) = valid();
+    change(&mut nodes, &mut bounds);
+    validate(&nodes, &bounds).expect_err("a corrupted tree")
 }
 
 /// The first pair whose left child is of the kind asked for.
@@ -73,7 +71,7 @@ fn pair_that_nothing_refers_to() {
 
 #[test]
 fn leaf_out_of_range() {
-    let error = after(|_, triangles| triangles.truncate(299));
+    let error = after(|_, bounds| bounds.truncate(299));
     assert!(matches!(error, BuildError::LeafOutOfRange { triangles: 299, .. }));
     for count in [6, 7] {
         let error = after(|nodes, _| {
@@ -86,7 +84,7 @@ fn leaf_out_of_range() {
 
 #[test]
 fn triangle_in_no_leaf() {
-    let error = after(|_, triangles| triangles.push(triangles[0]));
+    let error = after(|_, bounds| bounds.push(bounds[0]));
     assert_eq!(error, BuildError::TriangleLost { triangle: 300 });
     let error = after(|nodes, _| {
         let pair = nodes.iter().position(|n| n.left().count() > 1).unwrap();
@@ -123,13 +121,13 @@ fn shrink(nodes: &mut [NodePair], pair: usize, face: usize) {
 
 #[test]
 fn any_face_of_any_box_too_small_by_the_least_step() {
-    let (nodes, triangles) = valid();
+    let (nodes, bounds) = valid();
     for pair in 0..nodes.len() {
         for face in 0..12 {
             let mut nodes = nodes.clone();
             shrink(&mut nodes, pair, face);
             let error = BuildError::BoxTooSmall { pair: pair as u32 };
-            assert_eq!(validate(&nodes, &triangles), Err(error), "face {face}");
+            assert_eq!(validate(&nodes, &bounds), Err(error), "face {face}");
         }
     }
 }
@@ -141,35 +139,36 @@ fn box_of_nan() {
 }
 
 /// A path of `pairs`, each with a leaf of one triangle on the left.
-fn chain(pairs: u32) -> (Vec<NodePair>, Vec<Triangle>) {
-    let triangles = duplicates(pairs + 1);
-    let (min, max) = triangles[0].bounds();
+fn chain(pairs: u32) -> (Vec<NodePair>, Vec<Bounds>) {
+    let (min, max) = duplicates(1)[0].bounds();
+    let bounds = vec![Bounds { least: pack(min, 0), greatest: pack(max, 0) }; pairs as usize + 1];
     let node = |i: u32| {
         let next = if i + 1 < pairs { NodeRef::inner(i + 1) } else { NodeRef::leaf(pairs, 1) };
         NodePair::new((min, max, NodeRef::leaf(i, 1)), (min, max, next))
     };
-    ((0..pairs).map(node).collect(), triangles)
+    ((0..pairs).map(node).collect(), bounds)
 }
 
 #[test]
 fn too_deep_by_one() {
-    let (nodes, triangles) = chain(MAX_DEPTH);
-    assert_eq!(validate(&nodes, &triangles), Ok(()));
-    let (nodes, triangles) = chain(MAX_DEPTH + 1);
+    let (nodes, bounds) = chain(MAX_DEPTH);
+    assert_eq!(validate(&nodes, &bounds), Ok(()));
+    let (nodes, bounds) = chain(MAX_DEPTH + 1);
     let error = BuildError::TooDeep { pair: MAX_DEPTH };
-    assert_eq!(validate(&nodes, &triangles), Err(error));
+    assert_eq!(validate(&nodes, &bounds), Err(error));
 }
 
 #[test]
 fn empty_sibling_belongs_to_one_triangle_only() {
-    let triangles = scattered(2, 31);
-    let one = build(&triangles[..1], Quality::Medium).unwrap().nodes;
-    assert_eq!(validate(&one, &triangles[..1]), Ok(()));
+    let references = whole(&scattered(2, 31));
+    let bounds = [references.list[0].bounds, references.list[1].bounds];
+    let one = build(&references.list[..1].to_vec().into(), Quality::Medium).unwrap().nodes;
+    assert_eq!(validate(&one, &bounds[..1]), Ok(()));
     let error = BuildError::TriangleTwice { triangle: 0 };
-    assert_eq!(validate(&one, &triangles), Err(error.clone()));
+    assert_eq!(validate(&one, &bounds), Err(error.clone()));
 
     let mut moved = one.clone();
     moved[0].right_max.x = 1.0f32.to_bits();
-    assert_eq!(validate(&moved, &triangles[..1]), Err(error));
+    assert_eq!(validate(&moved, &bounds[..1]), Err(error));
     assert_eq!(validate(&one, &[]), Err(BuildError::NoTriangles));
 }

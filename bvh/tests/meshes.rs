@@ -5,8 +5,8 @@ mod common;
 use std::time::{Duration, Instant};
 
 use common::*;
-use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, Statistics, build};
-use eyerays_shader::data::{NodePair, Triangle};
+use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, Reference, Statistics, build, split};
+use eyerays_shader::data::{Bounds, NodePair, Triangle, pack};
 use glam::{Vec3, vec3};
 
 /// Many times what these builds take on a busy machine. Where clusters are not kept away from obvhs,
@@ -17,7 +17,7 @@ const PATIENCE: Duration = Duration::from_secs(10);
 fn depth(triangles: &[Triangle]) -> u32 {
     let depth = |quality| {
         let start = Instant::now();
-        let bvh = build_and_check(triangles, quality);
+        let bvh = build_and_check(&whole(triangles), quality);
         assert!(start.elapsed() < PATIENCE, "{quality:?}: {:?}", start.elapsed());
         Statistics::of(&bvh, triangles).depth
     };
@@ -27,30 +27,30 @@ fn depth(triangles: &[Triangle]) -> u32 {
 #[test]
 fn no_triangles() {
     for quality in QUALITIES {
-        assert_eq!(build(&[], quality), Err(BuildError::NoTriangles));
+        assert_eq!(build(&Vec::new().into(), quality), Err(BuildError::NoTriangles));
     }
+    assert_eq!(split(&[], 0.0), Err(BuildError::NoTriangles));
 }
 
 #[test]
 fn few_triangles() {
     for count in 1..=12 {
-        build_and_check_all(&scattered(count, 7));
-        build_and_check_all(&duplicates(count));
+        build_and_check_all(&whole(&scattered(count, 7)));
+        build_and_check_all(&whole(&duplicates(count)));
     }
 }
 
 #[test]
 fn one_triangle_has_an_empty_sibling() {
-    let triangles = scattered(1, 3);
-    let bvh = build(&triangles, Quality::Medium).unwrap();
-    assert_eq!(bvh.nodes.len(), 1);
+    let bvh = build(&whole(&scattered(1, 3)), Quality::Medium).unwrap();
+    assert_eq!((bvh.nodes.len(), bvh.wide.len()), (1, 1));
     assert_eq!(bvh.nodes[0].right(), NodePair::EMPTY.2);
 }
 
 #[test]
 fn a_leaf_full_is_still_a_pair() {
     for count in 2..=5 {
-        let bvh = build(&scattered(count, 5), Quality::Medium).unwrap();
+        let bvh = build(&whole(&scattered(count, 5)), Quality::Medium).unwrap();
         assert_eq!(bvh.nodes.len(), 1);
         assert_eq!(bvh.nodes[0].left().count() + bvh.nodes[0].right().count(), count);
     }
@@ -132,8 +132,24 @@ fn coordinates_outside_the_scene_are_refused_by_primitive() {
         let mut vertices = triangles[31].vertices();
         vertices[2][axis] = fault;
         triangles[31] = Triangle::new(vertices, 4711, 0, 0);
-        let error = build(&triangles, Quality::Medium).unwrap_err();
+        let error = split(&triangles, 0.0).unwrap_err();
         assert_eq!(error, BuildError::Coordinate { primitive: 4711 });
         assert!(error.to_string().contains("primitive 4711"));
+    }
+}
+
+#[test]
+fn references_outside_the_scene_are_refused_by_their_place() {
+    let good = whole(&scattered(50, 9));
+    let bounds = |least: f32, greatest: f32| Bounds {
+        least: pack(vec3(0.0, least, 0.0), 0),
+        greatest: pack(vec3(0.5, greatest, 0.5), 0),
+    };
+    for bad in [(f32::NAN, 0.5), (0.5, f32::NAN), (0.5, 0.25), (-1.5, 0.0), (0.0, f32::INFINITY), (0.0, 1.001)] {
+        let mut references = good.clone();
+        references.list[17] = Reference { bounds: bounds(bad.0, bad.1), ..references.list[17] };
+        let error = build(&references, Quality::Medium).unwrap_err();
+        assert_eq!(error, BuildError::Reference { reference: 17 });
+        assert!(error.to_string().contains("reference 17"));
     }
 }

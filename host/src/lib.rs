@@ -14,3 +14,4 @@ pub mod pack;
 pub mod rays;
 pub mod render;
 pub mod scene;
+pub mod stream;

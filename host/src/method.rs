@@ -1,20 +1,22 @@
-//! Ways through the hierarchy, by name.
+//! Ways through the hierarchy, by name, and the switches around them.
 
-use eyerays_shader::data::Tuning;
+use eyerays_shader::data::{Features, Tuning};
 use eyerays_shader::modules;
 
 /// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
-///
-/// On the CPU a ray is a packet of its own, so that methods that vote become their single-ray kin.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
 pub enum Method {
-    /// Every ray by itself, one pair of boxes and one triangle at a time
+    /// What was measured to be fastest for the device and each kind of ray
     #[default]
+    Auto,
+    /// Every ray by itself, one pair of boxes and one triangle at a time
     IfIf,
     /// Every ray by itself, pairs of boxes until it is at a leaf
     WhileWhile,
     /// As while-while, but on past a leaf until every ray of a subgroup has one
     Speculative,
+    /// Every ray by itself, through nodes of eight quantised boxes (CWBVH)
+    Wide,
     /// The rays of a subgroup together, by votes
     Packet,
     /// Together until a small stack is full, then each ray by itself
@@ -28,11 +30,12 @@ pub enum Method {
 }
 
 impl Method {
-    /// Every method.
-    pub const ALL: [Method; 8] = [
+    /// Every method but [`Method::Auto`], which is one of them.
+    pub const ALL: [Method; 9] = [
         Method::IfIf,
         Method::WhileWhile,
         Method::Speculative,
+        Method::Wide,
         Method::Packet,
         Method::SequentialStack,
         Method::SequentialCut,
@@ -42,15 +45,21 @@ impl Method {
 
     /// Does it vote across the lanes of a subgroup?
     pub fn votes(self) -> bool {
-        !matches!(self, Method::IfIf | Method::WhileWhile)
+        !matches!(self, Method::IfIf | Method::WhileWhile | Method::Wide)
+    }
+
+    /// Can it go on with another ray at any step, as persistent subgroups ask?
+    pub fn is_resumable(self) -> bool {
+        !self.votes()
     }
 
     /// Its part of an entry point's name.
-    pub(crate) fn entry(self) -> &'static str {
+    fn entry(self) -> &'static str {
         match self {
-            Method::IfIf => "if_if",
+            Method::Auto | Method::IfIf => "if_if",
             Method::WhileWhile => "while_while",
             Method::Speculative => "speculative",
+            Method::Wide => "wide",
             Method::Packet => "packet",
             Method::SequentialStack => "sequential_stack",
             Method::SequentialCut => "sequential_cut",
@@ -58,9 +67,116 @@ impl Method {
             Method::InterleavedCut => "interleaved_cut",
         }
     }
+}
+
+/// How a GPU's subgroups come by their rays (thesis 6.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
+pub enum Scheduling {
+    /// What was measured to be fastest for the method and each kind of ray
+    #[default]
+    Auto,
+    /// A thread a ray
+    Grid,
+    /// As many threads as the GPU holds, which take new rays when they are done
+    Persistent,
+}
+
+/// Which pixels' rays lie beside each other (thesis 6.1).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
+pub enum Order {
+    /// Blocks of 8x4 pixels, row by row
+    #[default]
+    Tiled,
+    /// Pixels row by row
+    Linear,
+    /// Pixels along a Morton curve in squares of 64
+    Morton,
+}
+
+/// How triangles lie in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
+pub enum Layout {
+    /// Each with its vertices, in the order of the hierarchy
+    #[default]
+    Gathered,
+    /// Three indices each, and the vertices once
+    Indexed,
+}
+
+/// A method and its switches.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+pub struct Traversal {
+    /// How rays are followed.
+    pub method: Method,
+    /// When a hybrid's packet parts.
+    pub tuning: Tuning,
+    /// How subgroups come by their rays; a CPU has none.
+    pub scheduling: Scheduling,
+    /// Which pixels' rays lie beside each other.
+    pub order: Order,
+    /// How triangles lie in memory.
+    pub layout: Layout,
+}
+
+impl From<Method> for Traversal {
+    fn from(method: Method) -> Self {
+        Traversal { method, ..Traversal::default() }
+    }
+}
+
+/// What kind of processor follows the rays.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Processor {
+    /// Through wgpu.
+    Gpu,
+    /// By threads.
+    Cpu,
+}
+
+/// How alike neighbouring rays are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Coherence {
+    /// From one point, side by side: primary rays.
+    Primary,
+    /// From neighbouring places to one point: shadow rays of primary hits.
+    Shadow,
+    /// Every other.
+    Scattered,
+}
+
+impl Traversal {
+    /// The bits that kernels are specialised for.
+    pub fn features(&self) -> Features {
+        let order = match self.order {
+            Order::Tiled => 0,
+            Order::Linear => Features::LINEAR,
+            Order::Morton => Features::MORTON,
+        };
+        Features(order | if self.layout == Layout::Indexed { Features::INDEXED } else { 0 })
+    }
+
+    /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for.
+    pub fn resolved(self, processor: Processor, coherence: Coherence) -> Traversal {
+        let method = match (self.method, processor, coherence) {
+            (Method::Auto, ..) => Method::IfIf,
+            (chosen, ..) => chosen,
+        };
+        let scheduling = match self.scheduling {
+            Scheduling::Auto => Scheduling::Grid,
+            _ if !method.is_resumable() => Scheduling::Grid,
+            chosen => chosen,
+        };
+        Traversal { method, scheduling, ..self }
+    }
+
+    /// Its kernels' part of an entry point's name.
+    pub(crate) fn entry(&self) -> String {
+        let persistent = if self.scheduling == Scheduling::Persistent { "_persistent" } else { "" };
+        format!("{}{persistent}", self.method.entry())
+    }
 
     /// The module with its kernels, and how their names begin.
-    pub(crate) fn module(self, exact: bool) -> (&'static [u8], &'static str) {
+    pub(crate) fn module(&self, exact: bool) -> (&'static [u8], &'static str) {
         match (exact, self.votes()) {
             (true, false) => (modules::EXACT, "exact"),
             (false, false) => (modules::FAST, "fast"),
@@ -68,19 +184,9 @@ impl Method {
             (false, true) => (modules::FAST_SUBGROUP, "subgroup_fast"),
         }
     }
-}
 
-/// A method, and when it parts if it is a hybrid.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Traversal {
-    /// How rays are followed.
-    pub method: Method,
-    /// When a hybrid's packet parts.
-    pub tuning: Tuning,
-}
-
-impl From<Method> for Traversal {
-    fn from(method: Method) -> Self {
-        Traversal { method, tuning: Tuning::default() }
+    /// Do its kernels vote across the lanes of a subgroup?
+    pub fn votes(&self) -> bool {
+        self.method.votes() || self.scheduling == Scheduling::Persistent
     }
 }

@@ -122,6 +122,51 @@ impl NodePair {
     }
 }
 
+/// Eight siblings in 80 bytes, their boxes quantised to a grid (Ylitie, Karras and Laine 2017: CWBVH).
+///
+/// A box of child `i` lies between `origin + low[i] * 2^e` and `origin + high[i] * 2^e` on each axis.
+/// Quantised boxes are wider than what they hold by at least [`WideNode::MARGIN`], which covers the
+/// rounding of a box test that scales the grid instead of the box; see `traverse::wide`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct WideNode {
+    /// The grid's origin; a byte an axis is the biased exponent of its step 2^e, x in the lowest; bit
+    /// 24 + `i` tells that child `i` is an inner node.
+    pub grid: UVec4,
+    /// Number of the first inner child, whose siblings follow in the order of their slots; the first
+    /// triangle; then a byte a child, see [`WideNode::INNER`].
+    pub children: UVec4,
+    /// A byte a child: low x in the first two words, low y in the last two.
+    pub low_x_low_y: UVec4,
+    /// Low z, high x.
+    pub low_z_high_x: UVec4,
+    /// High y, high z.
+    pub high_y_high_z: UVec4,
+}
+
+impl WideNode {
+    /// Children of a node.
+    pub const ARITY: usize = 8;
+    /// The most triangles of a child.
+    pub const MAX_LEAF: u32 = 3;
+    /// In a child's byte: 0 for no child; `INNER + 24 + i` for an inner node at slot `i`; else the first
+    /// triangle's place behind the node's first in bits 0 to 4, and a bit set from bit 5 on for each of
+    /// its triangles.
+    pub const INNER: u32 = 1 << 5;
+    /// How much wider than a child its quantised box is at least, on every side.
+    pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
+}
+
+/// What bounds a reference to a part of a triangle: the box of that part, padded by [`BOX_PADDING`].
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Bounds {
+    /// Least corner; the integer is 0.
+    pub least: UVec4,
+    /// Greatest corner; the integer is 0.
+    pub greatest: UVec4,
+}
+
 /// A triangle in leaf order.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
@@ -137,6 +182,8 @@ pub struct Triangle {
 impl Triangle {
     /// The flag of a triangle that casts no shadow (thesis 3.2: opaque objects do).
     pub const TRANSPARENT: u32 = 1;
+    /// The same flag beside the material of an indexed triangle's vertex.
+    pub const CLEAR_VERTEX: u32 = 1 << 31;
 
     /// A record of three vertices in the normalised scene.
     pub fn new(vertices: [Vec3; 3], primitive: u32, material: u32, flags: u32) -> Self {
@@ -276,12 +323,12 @@ pub struct Frame {
     /// The region's left and top pixel, its width and height.
     pub region: UVec4,
     /// Bits of a sample's share of its pixel, bits of the least contribution that is followed, slots a
-    /// launch has room for, 0.
+    /// launch has room for, the word at which the vertices of indexed triangles start.
     pub limits: UVec4,
 }
 
 /// Thresholds of the hybrid methods (thesis 6.2.3).
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Tuning(pub u32);
 
 impl Tuning {
@@ -334,6 +381,16 @@ impl Features {
     pub const GRADIENT: u32 = 1 << 8;
     /// This launch follows secondary rays: its slots come from a queue.
     pub const SECONDARY: u32 = 1 << 9;
+    /// This launch follows rays that lie in memory as [`crate::stage::Segment`]s.
+    pub const STREAM: u32 = 1 << 10;
+    /// Triangles are given as indices of vertices, see [`crate::scene::Geometry::triangle`].
+    pub const INDEXED: u32 = 1 << 11;
+    /// Triangles are split: a slot holds a part, whose bounds are given.
+    pub const SPLIT: u32 = 1 << 12;
+    /// Pixels are taken row by row.
+    pub const LINEAR: u32 = 1 << 13;
+    /// Pixels are taken along a Morton curve.
+    pub const MORTON: u32 = 1 << 14;
 
     /// Is the effect asked for?
     #[inline(always)]

@@ -4,13 +4,16 @@
 //! its accesses to match.
 
 use crate::buffer::{read, write};
-use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning};
-use crate::launch::{WORKGROUP, counter};
+use crate::data::{Bounds, Features, Frame, Light, Material, NodePair, Normals, Tuning, WideNode};
+use crate::launch::{ROW, WORKGROUP, counter};
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
-use crate::stage::{self, Wave};
-use crate::traverse::{Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile};
-use crate::warp::Subgroup;
+use crate::stage::{self, Asking, Wave};
+use crate::traverse::{
+    Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
+    WideNodes,
+};
+use crate::warp::{Subgroup, take};
 use glam::{UVec3, UVec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
@@ -19,16 +22,28 @@ use spirv_std::spirv;
 /// What a slot index beyond the wave stands for.
 const IDLE: u32 = u32::MAX;
 
+/// How many slots the wave has: those of the launch in the first wave, those of the queue later.
+#[inline(always)]
+fn slots(features: Features, frame: &Frame, counters: &[u32]) -> u32 {
+    if features.has(Features::SECONDARY) { read(counters, counter::COUNT) } else { frame.limits.z }
+}
+
+/// The number of a thread that follows a ray: in a stream it may be in a further row.
+#[inline(always)]
+fn thread(features: Features, id: UVec3) -> u32 {
+    if features.has(Features::STREAM) { id.y * ROW + id.x } else { id.x }
+}
+
 /// The slot of a thread: its own number in the first wave, an entry of the queue later.
 #[inline(always)]
 fn slot(features: Features, frame: &Frame, thread: u32, queue: &[u32], counters: &[u32]) -> u32 {
-    if features.has(Features::SECONDARY) {
-        if thread < read(counters, counter::COUNT) { read(queue, thread) } else { IDLE }
-    } else if thread < frame.limits.z {
-        thread
-    } else {
-        IDLE
-    }
+    if thread < slots(features, frame, counters) { queued(features, thread, queue) } else { IDLE }
+}
+
+/// The slot of a wave's ray by its number.
+#[inline(always)]
+fn queued(features: Features, number: u32, queue: &[u32]) -> u32 {
+    if features.has(Features::SECONDARY) { read(queue, number) } else { number }
 }
 
 /// Adds a slot to the next wave.
@@ -59,6 +74,8 @@ fn advance(lights: u32, counters: &mut [u32]) {
     dispatch(counter::SHADOWS, groups, lights, counters);
     write(counters, counter::COUNT, count);
     write(counters, counter::NEXT, 0);
+    write(counters, counter::TRACED, 0);
+    write(counters, counter::ASKED, 0);
     let rays = read(counters, counter::RAYS);
     write(counters, counter::RAYS, rays.wrapping_add(count));
 }
@@ -73,7 +90,7 @@ macro_rules! shading_entries {
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] normals: &[Normals],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
@@ -84,13 +101,15 @@ macro_rules! shading_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 11)] next: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
             let slot = slot(features, frame, id.x, queue, counters);
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, tuning: Tuning(0), nodes, triangles };
+            let geometry = Geometry { frame, features, tuning: Tuning(0), nodes, wide, triangles, bounds };
             let looks = Looks { normals, materials, lights };
             let wave = Wave { paths, hits, shadows, film };
             if stage::shade::<$real>(&geometry, &looks, slot, wave) {
@@ -120,18 +139,20 @@ macro_rules! tracing_entries {
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
-            let slot = slot(features, frame, id.x, queue, counters);
+            let slot = slot(features, frame, thread(features, id), queue, counters);
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, triangles };
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, wide, triangles, bounds };
             write(hits, slot, stage::trace::<$real, $method>(&geometry, slot, paths));
         }
 
@@ -143,22 +164,96 @@ macro_rules! tracing_entries {
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
             #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[Triangle],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
-            let slot = slot(features, frame, id.x, queue, counters);
+            let slot = slot(features, frame, thread(features, id), queue, counters);
             if slot == IDLE {
                 return;
             }
-            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, triangles };
-            let answer = stage::shadow::<$real, $method>(&geometry, lights, slot, id.y, paths, hits);
-            write(shadows, id.y * geometry.slots() + slot, answer);
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, wide, triangles, bounds };
+            let light = if features.has(Features::STREAM) { 0 } else { id.y };
+            let answer = stage::shadow::<$real, $method>(&geometry, Asking { lights, paths, hits }, slot, light);
+            write(shadows, light * geometry.slots() + slot, answer);
+        }
+    };
+}
+
+/// The stages of one precision that follow rays, by one method, in persistent subgroups.
+macro_rules! persistent_entries {
+    ($real:ty, $method:ty, $trace:ident, $shadow:ident) => {
+        /// Traces the rays of a wave.
+        #[spirv(compute(threads(64)))]
+        pub fn $trace(
+            #[spirv(subgroup_local_invocation_id)] lane: u32,
+            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
+            #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
+        ) {
+            let features = Features(features);
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, wide, triangles, bounds };
+            let (count, paths, queue) = (slots(features, frame, counters), &*paths, &*queue);
+            stage::persistent::<$real, $method, Closest, Subgroup>(
+                &geometry,
+                count,
+                move |wants| take(wants, lane, counters, counter::TRACED),
+                move |number| (stage::traced::<$real>(&geometry, queued(features, number, queue), paths), true),
+                move |number, _, hit| write(hits, queued(features, number, queue), stage::found(hit)),
+            );
+        }
+
+        /// Traces the shadow rays of a wave, light after light.
+        #[spirv(compute(threads(64)))]
+        pub fn $shadow(
+            #[spirv(subgroup_local_invocation_id)] lane: u32,
+            #[spirv(spec_constant(id = 1, default = 0))] features: u32,
+            #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
+            #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[NodePair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
+        ) {
+            let features = Features(features);
+            let geometry = Geometry { frame, features, tuning: Tuning(tuning), nodes, wide, triangles, bounds };
+            let asking = Asking { lights, paths: &*paths, hits: &*hits };
+            let (count, queue) = (slots(features, frame, counters), &*queue);
+            // A launch without slots takes no number; the guard spares the division's panic.
+            let row = if count == 0 { 1 } else { count };
+            let rows = if features.has(Features::STREAM) { 1 } else { geometry.light_count() };
+            stage::persistent::<$real, $method, Occlusion, Subgroup>(
+                &geometry,
+                count * rows,
+                move |wants| take(wants, lane, counters, counter::ASKED),
+                move |number| stage::asked(&geometry, asking, queued(features, number % row, queue), number / row),
+                move |number, traced, hit| {
+                    let answer = if traced { stage::answered(hit) } else { stage::FACES_AWAY };
+                    let slot = queued(features, number % row, queue);
+                    write(shadows, number / row * geometry.slots() + slot, answer);
+                },
+            );
         }
     };
 }
@@ -166,8 +261,8 @@ macro_rules! tracing_entries {
 shading_entries!(f32, exact_shade, exact_advance);
 shading_entries!(Fast, fast_shade, fast_advance);
 
-/// Both precisions of methods that do not vote, and of those that do.
-macro_rules! methods {
+/// Both precisions of a method, a thread a ray.
+macro_rules! grid {
     ($($method:ty: $exact:ident $exact_shadow:ident $fast:ident $fast_shadow:ident;)*) => {
         $(
             tracing_entries!(f32, $method, $exact, $exact_shadow);
@@ -176,9 +271,20 @@ macro_rules! methods {
     };
 }
 
-methods! {
+/// Both precisions of a method, in persistent subgroups.
+macro_rules! persistent {
+    ($($method:ty: $exact:ident $exact_shadow:ident $fast:ident $fast_shadow:ident;)*) => {
+        $(
+            persistent_entries!(f32, $method, $exact, $exact_shadow);
+            persistent_entries!(Fast, $method, $fast, $fast_shadow);
+        )*
+    };
+}
+
+grid! {
     IfIf: exact_trace_if_if exact_shadow_if_if fast_trace_if_if fast_shadow_if_if;
     WhileWhile: exact_trace_while_while exact_shadow_while_while fast_trace_while_while fast_shadow_while_while;
+    WideNodes: exact_trace_wide exact_shadow_wide fast_trace_wide fast_shadow_wide;
     Packet<Subgroup>:
         subgroup_exact_trace_packet subgroup_exact_shadow_packet
         subgroup_fast_trace_packet subgroup_fast_shadow_packet;
@@ -197,4 +303,16 @@ methods! {
     Hybrid<Subgroup, Cut, Interleaved>:
         subgroup_exact_trace_interleaved_cut subgroup_exact_shadow_interleaved_cut
         subgroup_fast_trace_interleaved_cut subgroup_fast_shadow_interleaved_cut;
+}
+
+persistent! {
+    IfIf:
+        subgroup_exact_trace_if_if_persistent subgroup_exact_shadow_if_if_persistent
+        subgroup_fast_trace_if_if_persistent subgroup_fast_shadow_if_if_persistent;
+    WhileWhile:
+        subgroup_exact_trace_while_while_persistent subgroup_exact_shadow_while_while_persistent
+        subgroup_fast_trace_while_while_persistent subgroup_fast_shadow_while_while_persistent;
+    WideNodes:
+        subgroup_exact_trace_wide_persistent subgroup_exact_shadow_wide_persistent
+        subgroup_fast_trace_wide_persistent subgroup_fast_shadow_wide_persistent;
 }

@@ -3,6 +3,10 @@
 /// Threads of a workgroup.
 pub const WORKGROUP: u32 = 64;
 
+/// Threads of a row of a launch that follows a stream: more than one row, since a launch has at most 65,535
+/// workgroups a dimension.
+pub const ROW: u32 = 1 << 21;
+
 /// Bindings of descriptor set 0, the same for every stage.
 pub mod binding {
     /// The [`Frame`](crate::data::Frame), uniform.
@@ -31,6 +35,12 @@ pub mod binding {
     pub const NEXT: u32 = 11;
     /// The [`counter`](crate::launch::counter)s.
     pub const COUNTERS: u32 = 12;
+    /// Nodes of eight children.
+    pub const WIDE: u32 = 13;
+    /// Bounds of the parts of split triangles.
+    pub const BOUNDS: u32 = 14;
+    /// How many bindings there are.
+    pub const COUNT: u32 = 15;
 }
 
 /// Places in the buffer of counters.
@@ -45,6 +55,10 @@ pub mod counter {
     pub const NEXT: u32 = 7;
     /// Secondary rays of this launch.
     pub const RAYS: u32 = 8;
+    /// Rays that persistent subgroups have taken to trace in this wave.
+    pub const TRACED: u32 = 9;
+    /// Shadow rays that they have taken.
+    pub const ASKED: u32 = 10;
     /// Words in all.
     pub const LENGTH: u32 = 12;
 }

@@ -1,4 +1,4 @@
-#![cfg_attr(target_arch = "spirv", no_std)]
+#![cfg_attr(target_arch = "spirv", no_std, feature(asm_experimental_arch))]
 //! Everything a ray of Eyerays meets, written once: rust-gpu compiles it to SPIR-V, rustc to native code.
 
 pub mod buffer;

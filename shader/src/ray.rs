@@ -11,7 +11,7 @@ pub struct Ray<R: Real> {
     pub inverse: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
-    /// The triangle that it leaves, in leaf order, which it can't meet again; [`Hit::NOTHING`] for none.
+    /// The primitive that it leaves, which it can't meet again; [`Hit::NOTHING`] for none.
     pub leaves: R::Index,
 }
 
@@ -69,10 +69,12 @@ impl<R: Real> Shear<R> {
 pub struct Hit<R: Real> {
     /// Distance in lengths of the ray's direction. Nothing beyond counts.
     pub t: R,
-    /// Weight of the triangle's second vertex.
+    /// Weight of the triangle's second vertex, times `area`.
     pub u: R,
-    /// Weight of the third.
+    /// Weight of the third, times `area`.
     pub v: R,
+    /// What the weights are still to be divided by, see [`Hit::weights`].
+    pub area: R,
     /// Where the triangle lies in leaf order; [`Hit::NOTHING`] if there is none.
     pub slot: R::Index,
     /// The triangle's number in the scene, which decides ties.
@@ -87,7 +89,14 @@ impl<R: Real> Hit<R> {
     #[inline(always)]
     pub fn none(limit: R) -> Self {
         let nothing = R::index(Self::NOTHING);
-        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), slot: nothing, primitive: nothing }
+        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), area: R::splat(1.0), slot: nothing, primitive: nothing }
+    }
+
+    /// Weights of the triangle's second and third vertex. They are divided once a ray, not once a triangle
+    /// that was the best for a while.
+    #[inline(always)]
+    pub fn weights(&self) -> (R, R) {
+        (self.u.div(self.area), self.v.div(self.area))
     }
 }
 

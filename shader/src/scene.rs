@@ -1,6 +1,8 @@
 //! What a launch sees of the scene in device memory.
 
-use crate::data::{Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning};
+use crate::buffer::read;
+use crate::data::{Bounds, Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning, WideNode, numbers};
+use glam::{UVec4, Vec3};
 
 /// The launch and what its rays meet.
 #[derive(Clone, Copy)]
@@ -13,8 +15,12 @@ pub struct Geometry<'a> {
     pub tuning: Tuning,
     /// Child pairs; the root is pair 0.
     pub nodes: &'a [NodePair],
-    /// Triangles in leaf order.
-    pub triangles: &'a [Triangle],
+    /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
+    pub wide: &'a [WideNode],
+    /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
+    pub triangles: &'a [UVec4],
+    /// Bounds by slot ([`Features::SPLIT`]).
+    pub bounds: &'a [Bounds],
 }
 
 impl Geometry<'_> {
@@ -28,6 +34,34 @@ impl Geometry<'_> {
     #[inline(always)]
     pub fn slots(&self) -> u32 {
         self.frame.limits.z
+    }
+
+    /// The triangle at a slot: a record of its own, gathered before; or a record of three vertices'
+    /// numbers and the primitive, whose vertices carry the material and the flags.
+    #[inline(always)]
+    pub fn triangle(&self, slot: u32) -> Triangle {
+        let word = |i| read(self.triangles, i);
+        if self.features.has(Features::INDEXED) {
+            let corners = word(slot);
+            let vertex = |i: u32| word(self.frame.limits.w + i);
+            let (mut a, mut b, mut c) = (vertex(corners.x), vertex(corners.y), vertex(corners.z));
+            (a.w, b.w, c.w) = (corners.w, b.w & !Triangle::CLEAR_VERTEX, b.w >> 31);
+            Triangle { a, b, c }
+        } else {
+            Triangle { a: word(3 * slot), b: word(3 * slot + 1), c: word(3 * slot + 2) }
+        }
+    }
+
+    /// The box that a hit at a slot must lie in (least, greatest corner): the triangle's own, or that of
+    /// the part that the slot stands for.
+    #[inline(always)]
+    pub fn bounds(&self, slot: u32, triangle: &Triangle) -> (Vec3, Vec3) {
+        if self.features.has(Features::SPLIT) {
+            let bounds = read(self.bounds, slot);
+            (numbers(bounds.least), numbers(bounds.greatest))
+        } else {
+            triangle.bounds()
+        }
     }
 }
 

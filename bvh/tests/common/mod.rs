@@ -2,8 +2,8 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
-use eyerays_bvh::{Bvh, MAX_DEPTH, Quality, build};
-use eyerays_shader::data::{MAX_LEAF, NodePair, NodeRef, Triangle, numbers};
+use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, References, build, split};
+use eyerays_shader::data::{Bounds, MAX_LEAF, NodePair, NodeRef, Triangle, WideNode, numbers};
 use glam::{Vec3, vec3};
 
 pub const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Medium, Quality::High];
@@ -67,6 +67,15 @@ pub fn grid(edge: u32) -> Vec<Triangle> {
     }))
 }
 
+/// Long thin triangles, as diagonals of the scene: their boxes overlap and they do not.
+pub fn slivers(count: u32) -> Vec<Triangle> {
+    let corner = |i: u32, z: f32| vec3(i as f32 / count as f32 - 1.0, 0.01 * z, z);
+    mesh((0..count).map(|i| {
+        let to = corner(i, 0.9) + vec3(1.0, 0.7, 0.0);
+        [corner(i, -0.9), to, to + vec3(0.0, 0.01, 0.02)]
+    }))
+}
+
 /// Small triangles all over, from a seed.
 pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
     let mut state = seed;
@@ -81,39 +90,65 @@ pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
     }))
 }
 
+/// 300 triangles, some of which share leaves.
+pub fn mixed() -> Vec<Triangle> {
+    let mut triangles = scattered(280, 29);
+    triangles.extend(duplicates(20));
+    triangles
+}
+
+/// A reference for each triangle, as a scene without split triangles has.
+pub fn whole(triangles: &[Triangle]) -> References {
+    split(triangles, 0.0).expect("a valid mesh")
+}
+
 /// Builds and checks at every quality.
-pub fn build_and_check_all(triangles: &[Triangle]) {
+pub fn build_and_check_all(references: &References) {
     for quality in QUALITIES {
-        build_and_check(triangles, quality);
+        build_and_check(references, quality);
     }
 }
 
 /// Builds, and checks every promise of the result.
-pub fn build_and_check(triangles: &[Triangle], quality: Quality) -> Bvh {
-    let bvh = build(triangles, quality).expect("a valid mesh");
-    let sorted = bvh.gather(triangles);
-    let mut primitives: Vec<u32> = sorted.iter().map(Triangle::primitive).collect();
-    primitives.sort();
-    let mut expected: Vec<u32> = triangles.iter().map(Triangle::primitive).collect();
+pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
+    let bvh = build(references, quality).expect("valid references");
+    let key = |triangle: u32, b: Bounds| (triangle, b.least.to_array(), b.greatest.to_array());
+    let mut slots: Vec<_> = bvh.order.iter().zip(&bvh.bounds).map(|(&t, &b)| key(t, b)).collect();
+    slots.sort();
+    let mut expected: Vec<_> = references.list.iter().map(|r| key(r.triangle, r.bounds)).collect();
     expected.sort();
-    assert_eq!(primitives, expected, "slots lost or doubled a triangle");
+    assert_eq!(slots, expected, "slots lost or doubled a reference");
 
-    let mut walk = Walk { nodes: &bvh.nodes, triangles: &sorted, pairs: 0, slots: 0 };
+    let mut walk = Walk { nodes: &bvh.nodes, bounds: &bvh.bounds, pairs: 0, met: vec![false; references.list.len()] };
     walk.pair(0, 1);
     assert_eq!(walk.pairs as usize, bvh.nodes.len(), "pairs");
-    assert_eq!(walk.slots as usize, triangles.len(), "slots");
+    assert!(walk.met.iter().all(|met| *met), "slots");
+
+    let mut walk = WideWalk { nodes: &bvh.wide, bounds: &bvh.bounds, next: 0, met: 1 };
+    walk.node(0, 1);
+    assert_eq!(walk.met as usize, bvh.wide.len(), "wide nodes");
+    assert_eq!(walk.next as usize, references.list.len(), "slots of wide nodes");
     bvh
 }
 
-/// A walk in depth-first order, which is the order that pairs and slots must have.
+/// A walk in depth-first order, which is the order that pairs must have.
 struct Walk<'a> {
     nodes: &'a [NodePair],
-    triangles: &'a [Triangle],
+    bounds: &'a [Bounds],
     pairs: u32,
-    slots: u32,
+    met: Vec<bool>,
 }
 
 type Corners = (Vec3, Vec3);
+
+fn union(a: Corners, b: Corners) -> Corners {
+    (a.0.min(b.0), a.1.max(b.1))
+}
+
+fn around(bounds: &[Bounds]) -> Corners {
+    let corners = bounds.iter().map(|b| (numbers(b.least), numbers(b.greatest)));
+    corners.reduce(union).expect("a leaf has triangles")
+}
 
 impl Walk<'_> {
     fn pair(&mut self, pair: u32, depth: u32) -> Corners {
@@ -124,12 +159,12 @@ impl Walk<'_> {
         let left = (numbers(left_min), numbers(left_max));
         let right = (numbers(right_min), numbers(right_max));
         assert_eq!(self.child(NodeRef(left_min.w), depth), left, "left box");
-        if self.triangles.len() == 1 {
+        if self.bounds.len() == 1 {
             assert_eq!((right.0, right.1, NodeRef(right_min.w)), NodePair::EMPTY);
             return left;
         }
         assert_eq!(self.child(NodeRef(right_min.w), depth), right, "right box");
-        (left.0.min(right.0), left.1.max(right.1))
+        union(left, right)
     }
 
     /// The box that a child must have, computed from what is below it.
@@ -137,13 +172,100 @@ impl Walk<'_> {
         if !child.is_leaf() {
             return self.pair(child.index(), depth + 1);
         }
-        assert_eq!(child.index(), self.slots, "slots are not in order");
         assert!(child.count() <= MAX_LEAF);
-        self.slots += child.count();
-        self.triangles[child.index() as usize..self.slots as usize]
-            .iter()
-            .map(Triangle::bounds)
-            .reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
-            .expect("a leaf has triangles")
+        let slots = child.index() as usize..(child.index() + child.count()) as usize;
+        for met in &mut self.met[slots.clone()] {
+            assert!(!std::mem::replace(met, true), "a slot is met twice");
+        }
+        around(&self.bounds[slots])
     }
+}
+
+/// A walk over wide nodes, whose slots must come in the order of the walk.
+struct WideWalk<'a> {
+    nodes: &'a [WideNode],
+    bounds: &'a [Bounds],
+    /// The next slot.
+    next: u32,
+    /// Nodes met or known of.
+    met: u32,
+}
+
+impl WideWalk<'_> {
+    /// The box around what is below a node.
+    fn node(&mut self, number: u32, depth: u32) -> Corners {
+        assert!(depth <= MAX_WIDE_DEPTH, "too deep");
+        let node = self.nodes[number as usize];
+        let metas = bytes([node.children.z, node.children.w]);
+        let leaves: u32 = metas.iter().enumerate().map(|(i, &meta)| triangles(meta, i)).sum();
+        let inner = metas.iter().enumerate().filter(|&(i, &meta)| meta == inner_meta(i)).count() as u32;
+        if leaves > 0 {
+            assert_eq!(node.children.y, self.next, "a node's triangles come first");
+        }
+        if inner > 0 {
+            assert_eq!(node.children.x, self.met, "inner children are in a row");
+        }
+        assert!(leaves <= 24 && leaves + inner > 0);
+        (self.next, self.met) = (self.next + leaves, self.met + inner);
+        let mut child = node.children.x;
+        let mut all: Option<Corners> = None;
+        for (slot, &meta) in metas.iter().enumerate() {
+            let is_inner = meta == inner_meta(slot);
+            assert_eq!(node.grid.w >> (24 + slot) & 1 == 1, is_inner, "the mask");
+            let below = match (is_inner, triangles(meta, slot)) {
+                (true, _) => self.node(child, depth + 1),
+                (_, 0) => continue,
+                (_, count) => {
+                    let first = (node.children.y + u32::from(meta & 31)) as usize;
+                    around(&self.bounds[first..first + count as usize])
+                }
+            };
+            child += u32::from(is_inner);
+            keeps_margin(&node, slot, below);
+            all = Some(all.map_or(below, |all| union(all, below)));
+        }
+        all.expect("a node has a child")
+    }
+}
+
+fn bytes(words: [u32; 2]) -> [u8; 8] {
+    std::array::from_fn(|i| (words[i / 4] >> (8 * (i % 4))) as u8)
+}
+
+fn inner_meta(slot: usize) -> u8 {
+    32 + 24 + slot as u8
+}
+
+/// Triangles of a child.
+fn triangles(meta: u8, slot: usize) -> u32 {
+    if meta == inner_meta(slot) {
+        return 0;
+    }
+    let count = (meta >> 5).count_ones();
+    assert_eq!(u32::from(meta >> 5), (1 << count) - 1, "a child's byte");
+    count
+}
+
+/// Checks a child's planes against what is below it, in whole multiples of 2^-80.
+fn keeps_margin(node: &WideNode, slot: usize, (least, greatest): Corners) {
+    let WideNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, grid, .. } = *node;
+    let low = [[a.x, a.y], [a.z, a.w], [b.x, b.y]].map(|w| i128::from(bytes(w)[slot]));
+    let high = [[b.z, b.w], [c.x, c.y], [c.z, c.w]].map(|w| i128::from(bytes(w)[slot]));
+    for axis in 0..3 {
+        let exponent = (grid.w >> (8 * axis) & 0xff) as i32 - 127;
+        assert!((-30..=0).contains(&exponent));
+        let origin = f32::from_bits(grid[axis]);
+        assert!(origin.abs() <= 1.01);
+        let plane = |number: i128| fixed(origin) + (number << (80 + exponent));
+        let margin = fixed(WideNode::MARGIN);
+        assert!(plane(low[axis]) <= fixed(least[axis]) - margin);
+        assert!(plane(high[axis]) >= fixed(greatest[axis]) + margin);
+    }
+}
+
+/// A coordinate in multiples of 2^-80, in which all of the tests' are whole.
+fn fixed(x: f32) -> i128 {
+    let scaled = f64::from(x) * 2f64.powi(80);
+    assert_eq!(scaled.fract(), 0.0, "{x}");
+    scaled as i128
 }

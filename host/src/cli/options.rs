@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::method::{Method, Traversal};
+use crate::method::{Layout, Method, Order, Scheduling, Traversal};
 use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
@@ -62,7 +62,7 @@ pub(super) struct On {
     #[arg(long, value_enum, default_value_t = Precision::Exact)]
     pub precision: Precision,
     /// How rays are followed; every method gives the same picture
-    #[arg(long, value_enum, default_value_t = Method::IfIf)]
+    #[arg(long, value_enum, default_value_t = Method::Auto)]
     pub method: Method,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
@@ -70,6 +70,15 @@ pub(super) struct On {
     /// Cut methods: percent of a packet that must want a node for it to stay together
     #[arg(long, value_name = "PERCENT", default_value_t = Tuning::default().cut())]
     pub cut: u32,
+    /// How a GPU's subgroups come by their rays: if-if, while-while and wide can do both
+    #[arg(long, value_enum, default_value_t = Scheduling::Auto)]
+    pub scheduling: Scheduling,
+    /// Which pixels' rays lie beside each other
+    #[arg(long, value_enum, default_value_t = Order::Tiled)]
+    pub order: Order,
+    /// How triangles lie in memory
+    #[arg(long, value_enum, default_value_t = Layout::Gathered)]
+    pub triangles: Layout,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -184,7 +193,13 @@ impl On {
         if self.cut > 100 {
             return Err(Error::new(format!("--cut {} is more than 100 percent", self.cut)));
         }
-        let traversal = Traversal { method: self.method, tuning: Tuning::new(self.stack_max, self.cut) };
+        let traversal = Traversal {
+            method: self.method,
+            tuning: Tuning::new(self.stack_max, self.cut),
+            scheduling: self.scheduling,
+            order: self.order,
+            layout: self.triangles,
+        };
         let (precision, adapter) = (self.precision, self.adapter.clone());
         Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
     }

@@ -1,16 +1,16 @@
-//! Device memory: the scene's, and a launch's.
+//! Device memory of launches.
 
-use bytemuck::NoUninit;
-use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::data::Frame;
 use eyerays_shader::launch::{WORKGROUP, binding, counter};
 use eyerays_shader::stage::RECORDS;
 
 use super::device::Gpu;
+use super::scene::SceneBuffers;
 use crate::error::{Error, Result};
 use crate::pack::Packed;
 
 /// What stands for a buffer that the scene does not need.
-const DUMMY: u64 = 16;
+pub(super) const DUMMY: u64 = 16;
 /// Bytes of a record.
 const RECORD: u64 = 16;
 /// The most memory one kind of record takes; a larger picture is rendered in more bands.
@@ -36,22 +36,9 @@ impl Share {
 /// The most slots of a launch on this GPU.
 ///
 /// # Errors
-/// If not even a block of pixels fits, or the scene is larger than a buffer.
+/// If not even a block of pixels fits.
 pub(super) fn most_slots(gpu: &Gpu, packed: &Packed) -> Result<u32> {
     let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
-    let scene = [
-        ("hierarchy", size_of_val(packed.nodes.as_slice())),
-        ("triangles", size_of_val(packed.triangles.as_slice())),
-        ("normals", size_of_val(packed.normals.as_slice())),
-    ];
-    for (name, size) in scene {
-        if size as u64 > limit {
-            return Err(Error::new(format!(
-                "the scene's {name} take {size} bytes, but \"{}\" has buffers of at most {limit}: use --device cpu",
-                gpu.report.name
-            )));
-        }
-    }
     let most = gpu.device.limits().max_compute_workgroups_per_dimension;
     if packed.lights.len() as u64 > u64::from(most) {
         return Err(Error::new(format!(
@@ -74,9 +61,36 @@ pub(super) fn most_slots(gpu: &Gpu, packed: &Packed) -> Result<u32> {
     Ok(slots.max(32) as u32)
 }
 
-/// The buffers of a renderer, bound.
+/// Bytes of the memory that the stages of a launch exchange.
+#[derive(Default)]
+pub(super) struct Room {
+    pub paths: u64,
+    pub hits: u64,
+    pub shadows: u64,
+    pub film: u64,
+    pub queue: u64,
+}
+
+impl Room {
+    /// For launches of `slots` slots and `pixels` pixels.
+    pub fn of(packed: &Packed, slots: u64, pixels: u64) -> Room {
+        let share = Share::of(packed);
+        Room {
+            paths: share.paths * slots,
+            hits: RECORD * slots,
+            shadows: share.shadows * slots,
+            film: RECORD * pixels,
+            queue: if packed.has_secondary_rays() { 4 * slots } else { 0 },
+        }
+    }
+}
+
+/// The memory of launches, bound together with a scene.
 pub(super) struct Buffers {
     pub frame: wgpu::Buffer,
+    pub paths: wgpu::Buffer,
+    pub hits: wgpu::Buffer,
+    pub shadows: wgpu::Buffer,
     pub film: wgpu::Buffer,
     pub counters: wgpu::Buffer,
     /// A copy of the counters for indirect dispatches, which a buffer in use can't serve.
@@ -86,11 +100,9 @@ pub(super) struct Buffers {
 }
 
 impl Buffers {
-    /// Uploads the scene and takes the memory of launches of `slots` slots and `pixels` pixels.
-    pub fn new(gpu: &Gpu, packed: &Packed, layout: &wgpu::BindGroupLayout, slots: u64, pixels: u64) -> Result<Buffers> {
+    /// Takes the memory of launches in a scene.
+    pub fn new(gpu: &Gpu, layout: &wgpu::BindGroupLayout, scene: &SceneBuffers, room: &Room) -> Result<Buffers> {
         use wgpu::BufferUsages as Use;
-        let share = Share::of(packed);
-        let queue = if packed.has_secondary_rays() { 4 * slots } else { 0 };
         let empty = |name, size: u64, usage| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(name),
@@ -99,29 +111,18 @@ impl Buffers {
                 mapped_at_creation: false,
             })
         };
-        let nodes = upload(gpu, "nodes", &packed.nodes)?;
-        let triangles = upload(gpu, "triangles", &packed.triangles)?;
-        let smooth = packed.features.has(Features::SMOOTH);
-        let normals = upload(gpu, "normals", if smooth { &packed.normals } else { &[] })?;
-        let materials = upload(gpu, "materials", &packed.materials)?;
-        let lights = upload(gpu, "lights", &packed.lights)?;
         let frame = empty("frame", size_of::<Frame>() as u64, Use::UNIFORM | Use::COPY_DST);
-        let paths = empty("paths", share.paths * slots, Use::STORAGE);
-        let hits = empty("hits", RECORD * slots, Use::STORAGE);
-        let shadows = empty("shadows", share.shadows * slots, Use::STORAGE);
-        let film = empty("film", RECORD * pixels, Use::STORAGE | Use::COPY_SRC | Use::COPY_DST);
-        let queues = [empty("queue", queue, Use::STORAGE), empty("queue", queue, Use::STORAGE)];
+        let paths = empty("paths", room.paths, Use::STORAGE | Use::COPY_DST);
+        let hits = empty("hits", room.hits, Use::STORAGE | Use::COPY_SRC);
+        let shadows = empty("shadows", room.shadows, Use::STORAGE | Use::COPY_SRC);
+        let film = empty("film", room.film, Use::STORAGE | Use::COPY_SRC | Use::COPY_DST);
+        let queues = [empty("queue", room.queue, Use::STORAGE), empty("queue", room.queue, Use::STORAGE)];
         let words = 4 * u64::from(counter::LENGTH);
         let counters = empty("counters", words, Use::STORAGE | Use::COPY_SRC | Use::COPY_DST);
         let arguments = empty("arguments", words, Use::INDIRECT | Use::COPY_DST);
         let groups = [0, 1].map(|turn| {
-            let bound = [
+            let launch = [
                 (binding::FRAME, &frame),
-                (binding::NODES, &nodes),
-                (binding::TRIANGLES, &triangles),
-                (binding::NORMALS, &normals),
-                (binding::MATERIALS, &materials),
-                (binding::LIGHTS, &lights),
                 (binding::PATHS, &paths),
                 (binding::HITS, &hits),
                 (binding::SHADOWS, &shadows),
@@ -130,26 +131,27 @@ impl Buffers {
                 (binding::NEXT, &queues[1 - turn]),
                 (binding::COUNTERS, &counters),
             ];
-            let entries =
-                bound.map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() });
+            let entries: Vec<_> = (launch.into_iter().chain(scene.bound()))
+                .map(|(binding, buffer)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
+                .collect();
             gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries: &entries })
         });
         gpu.check()?;
-        Ok(Buffers { frame, film, counters, arguments, groups })
+        Ok(Buffers { frame, paths, hits, shadows, film, counters, arguments, groups })
     }
 }
 
 /// The layout that every stage shares.
 pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
     use wgpu::BufferBindingType::{Storage, Uniform};
-    let entries: Vec<_> = (binding::FRAME..=binding::COUNTERS)
+    let entries: Vec<_> = (0..binding::COUNT)
         .map(|binding| wgpu::BindGroupLayoutEntry {
             binding,
             visibility: wgpu::ShaderStages::COMPUTE,
             ty: wgpu::BindingType::Buffer {
                 ty: match binding {
                     binding::FRAME => Uniform,
-                    binding::NODES..=binding::LIGHTS => Storage { read_only: true },
+                    binding::NODES..=binding::LIGHTS | binding::WIDE | binding::BOUNDS => Storage { read_only: true },
                     _ => Storage { read_only: false },
                 },
                 has_dynamic_offset: false,
@@ -159,25 +161,4 @@ pub(super) fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
         })
         .collect();
     gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: Some("eyerays"), entries: &entries })
-}
-
-/// A read-only buffer of records, or a dummy of zeros.
-fn upload<T: NoUninit>(gpu: &Gpu, name: &str, records: &[T]) -> Result<wgpu::Buffer> {
-    let bytes: &[u8] = bytemuck::cast_slice(records);
-    // A dummy has room for the largest record, since a kernel may be validated against its size.
-    let size = (bytes.len() as u64).max(DUMMY).max(size_of::<T>() as u64);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
-        size,
-        usage: wgpu::BufferUsages::STORAGE,
-        mapped_at_creation: true,
-    });
-    gpu.check()?;
-    let mapped = buffer.get_mapped_range_mut(..);
-    mapped
-        .map_err(|e| Error::new(format!("can't upload the {name} to \"{}\": {e}", gpu.report.name)))?
-        .slice(..bytes.len())
-        .copy_from_slice(bytes);
-    buffer.unmap();
-    Ok(buffer)
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
 use crate::error::{Error, Result};
-use crate::method::Method;
+use crate::method::{Coherence, Method, Processor, Scheduling, Traversal};
 
 /// How kernels reach the driver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,18 +86,22 @@ impl Gpu {
         Ok(Gpu { report, route, device, queue, fault })
     }
 
-    /// Does the GPU have what a method needs?
+    /// The method and scheduling for rays of some coherence.
     ///
     /// # Errors
-    /// It votes, and there is nobody to vote with.
-    pub(super) fn can_vote(&self, method: Method) -> Result<()> {
-        if method.votes() && !self.device.features().contains(wgpu::Features::SUBGROUP) {
-            return Err(Error::new(format!(
-                "\"{}\" has no subgroups to vote in: use --method if-if",
-                self.report.name
-            )));
+    /// What was asked for votes, and there is nobody to vote with.
+    pub fn resolved(&self, traversal: Traversal, coherence: Coherence) -> Result<Traversal> {
+        let resolved = traversal.resolved(Processor::Gpu, coherence);
+        if !resolved.votes() || self.device.features().contains(wgpu::Features::SUBGROUP) {
+            return Ok(resolved);
         }
-        Ok(())
+        if resolved.method != traversal.method && traversal.scheduling != Scheduling::Persistent {
+            return Ok(Traversal { method: Method::IfIf, scheduling: Scheduling::Grid, ..traversal });
+        }
+        Err(Error::new(format!(
+            "\"{}\" has no subgroups to vote in: use --method if-if --scheduling grid",
+            self.report.name
+        )))
     }
 
     /// The first fault that the GPU reported since, if any.

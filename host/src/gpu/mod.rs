@@ -2,13 +2,17 @@
 
 mod adapter;
 mod buffers;
+mod cast;
 mod device;
+mod kernel;
 mod module;
 mod readback;
 mod render;
+mod scene;
 mod timer;
 
 pub use adapter::{AdapterReport, adapters};
+pub use cast::{Cast, Caster};
 pub use device::{Gpu, Route, Want};
 pub use module::specialise;
 pub use render::{GpuRendering, Renderer};

@@ -4,17 +4,19 @@ use std::time::Duration;
 
 use eyerays_shader::camera;
 use eyerays_shader::data::{Features, numbers};
-use eyerays_shader::launch::{WORKGROUP, counter};
+use eyerays_shader::launch::counter;
 use eyerays_shader::stage::NON_FINITE;
 use glam::UVec4;
 
-use super::buffers::{self, Buffers};
+use super::buffers::{self, Buffers, Room};
 use super::device::Gpu;
+use super::kernel::{Compiler, Kernel};
+use super::readback;
+use super::scene::SceneBuffers;
 use super::timer::Timer;
-use super::{module, readback};
 use crate::error::Result;
 use crate::film::Film;
-use crate::method::{Method, Traversal};
+use crate::method::{Coherence, Traversal};
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -33,19 +35,34 @@ pub struct GpuRendering {
     pub device_time: Option<Duration>,
 }
 
-/// A scene's kernels, compiled for its features.
-struct Pipelines {
-    trace: wgpu::ComputePipeline,
-    shadow: Option<wgpu::ComputePipeline>,
-    shade: wgpu::ComputePipeline,
+/// The kernels of a wave, compiled for a scene's features.
+struct Stages {
+    trace: Kernel,
+    shadow: Option<Kernel>,
+    shade: Kernel,
+}
+
+impl Stages {
+    /// The stages of the first wave, whose rays are alike, or of a further one.
+    fn new(compiler: &Compiler<'_>, packed: &Packed, further: bool) -> Result<Stages> {
+        let features = Features(packed.features.0 | if further { Features::SECONDARY } else { 0 });
+        let [traced, asked] = if further { [Coherence::Scattered; 2] } else { [Coherence::Primary, Coherence::Shadow] };
+        let lit = !packed.lights.is_empty();
+        Ok(Stages {
+            trace: compiler.tracing(features, "trace", traced)?,
+            shadow: lit.then(|| compiler.tracing(features, "shadow", asked)).transpose()?,
+            shade: compiler.shading(features, "shade"),
+        })
+    }
 }
 
 /// A scene on a GPU, ready to be rendered any number of times.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     packed: &'a Packed,
-    primary: Pipelines,
-    secondary: Option<(wgpu::ComputePipeline, Pipelines)>,
+    traversal: Traversal,
+    primary: Stages,
+    secondary: Option<(Kernel, Stages)>,
     buffers: Buffers,
     timer: Option<Timer>,
     bands: Vec<Region>,
@@ -58,22 +75,22 @@ impl<'a> Renderer<'a> {
     /// What does not fit the GPU, or what its driver reports.
     pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
-        gpu.can_vote(traversal.method)?;
         let slots = buffers::most_slots(gpu, packed)?;
-        let bands = bands(packed.settings.size, slots);
+        let bands = bands(packed.settings.size, slots, traversal.features());
         let layout = buffers::layout(gpu);
         let compiler = Compiler::new(gpu, &layout, exact, traversal);
-        let lit = !packed.lights.is_empty();
-        let primary = compiler.stages(packed.features, lit);
-        let secondary = packed.has_secondary_rays().then(|| {
-            let features = Features(packed.features.0 | Features::SECONDARY);
-            (compiler.shading(features, "advance"), compiler.stages(features, lit))
-        });
+        let primary = Stages::new(&compiler, packed, false)?;
+        let secondary = match packed.has_secondary_rays() {
+            true => Some((compiler.shading(packed.features, "advance"), Stages::new(&compiler, packed, true)?)),
+            false => None,
+        };
         gpu.check()?;
         let most = |size: &dyn Fn(&Region) -> u32| bands.iter().map(size).max().unwrap_or(0).into();
-        let slots = most(&|r| camera::slots(r.width, r.height));
-        let buffers = Buffers::new(gpu, packed, &layout, slots, most(&|r| r.width * r.height))?;
-        Ok(Renderer { gpu, packed, primary, secondary, buffers, timer: Timer::new(gpu), bands })
+        let slots = most(&|r| camera::slots(r.width, r.height, traversal.features()));
+        let room = Room::of(packed, slots, most(&|r| r.width * r.height));
+        let scene = SceneBuffers::new(gpu, packed, traversal.layout, compiler.hierarchies())?;
+        let buffers = Buffers::new(gpu, &layout, &scene, &room)?;
+        Ok(Renderer { gpu, packed, traversal, primary, secondary, buffers, timer: Timer::new(gpu, 1), bands })
     }
 
     /// Renders the picture. `done` hears of every finished share of the pixels.
@@ -103,7 +120,7 @@ impl<'a> Renderer<'a> {
     /// One sample of a band: the first wave, and further ones until no ray is left. Returns the
     /// secondary rays and the device time.
     fn launch(&self, band: Region, sample: u32) -> Result<(u64, Duration)> {
-        let frame = self.packed.frame(band, sample);
+        let frame = self.packed.frame(band, sample, self.traversal.features());
         self.gpu.queue.write_buffer(&self.buffers.frame, 0, bytemuck::bytes_of(&frame));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         if sample == 0 {
@@ -136,33 +153,29 @@ impl<'a> Renderer<'a> {
 
     fn submit(&self, mut encoder: wgpu::CommandEncoder) -> Result<Duration> {
         if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
+            timer.resolve(&mut encoder, 1);
         }
         self.gpu.queue.submit([encoder.finish()]);
         match &self.timer {
-            Some(timer) => timer.read(self.gpu),
+            Some(timer) => Ok(timer.read(self.gpu, 1)?[0]),
             None => self.gpu.wait().map(|()| Duration::ZERO),
         }
     }
 
     fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, first: bool, last: bool) -> wgpu::ComputePass<'e> {
-        let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(first, last));
+        let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(0, first, last));
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes })
     }
 
     /// One thread a slot, and one a slot and light.
     fn first_wave(&self, encoder: &mut wgpu::CommandEncoder, slots: u32, last: bool) {
-        let groups = slots.div_ceil(WORKGROUP);
         let mut pass = self.pass(encoder, true, last);
         pass.set_bind_group(0, &self.buffers.groups[0], &[]);
-        pass.set_pipeline(&self.primary.trace);
-        pass.dispatch_workgroups(groups, 1, 1);
+        self.primary.trace.run(&mut pass, slots, 1);
         if let Some(shadow) = &self.primary.shadow {
-            pass.set_pipeline(shadow);
-            pass.dispatch_workgroups(groups, self.packed.lights.len() as u32, 1);
+            shadow.run(&mut pass, slots, self.packed.lights.len() as u32);
         }
-        pass.set_pipeline(&self.primary.shade);
-        pass.dispatch_workgroups(groups, 1, 1);
+        self.primary.shade.run(&mut pass, slots, 1);
     }
 
     /// The same over the slots that still have a ray, as many as the GPU has counted.
@@ -172,80 +185,24 @@ impl<'a> Renderer<'a> {
         {
             let mut pass = self.pass(encoder, false, false);
             pass.set_bind_group(0, &groups[turn], &[]);
-            pass.set_pipeline(advance);
-            pass.dispatch_workgroups(1, 1, 1);
+            advance.run(&mut pass, 1, 1);
         }
         encoder.copy_buffer_to_buffer(counters, 0, arguments, 0, arguments.size());
         let mut pass = self.pass(encoder, false, last);
         pass.set_bind_group(0, &groups[turn], &[]);
-        pass.set_pipeline(&stages.trace);
-        pass.dispatch_workgroups_indirect(arguments, 4 * u64::from(counter::SLOTS));
+        stages.trace.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SLOTS));
         if let Some(shadow) = &stages.shadow {
-            pass.set_pipeline(shadow);
-            pass.dispatch_workgroups_indirect(arguments, 4 * u64::from(counter::SHADOWS));
+            shadow.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SHADOWS));
         }
-        pass.set_pipeline(&stages.shade);
-        pass.dispatch_workgroups_indirect(arguments, 4 * u64::from(counter::SLOTS));
-    }
-}
-
-/// Compiles the stages of one precision and method.
-struct Compiler<'a> {
-    gpu: &'a Gpu,
-    layout: wgpu::PipelineLayout,
-    exact: bool,
-    traversal: Traversal,
-}
-
-impl<'a> Compiler<'a> {
-    fn new(gpu: &'a Gpu, layout: &wgpu::BindGroupLayout, exact: bool, traversal: Traversal) -> Self {
-        let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(layout)],
-            immediate_size: 0,
-        });
-        Compiler { gpu, layout, exact, traversal }
-    }
-
-    /// The stages that follow no ray are in the modules without votes.
-    fn shading(&self, features: Features, stage: &str) -> wgpu::ComputePipeline {
-        self.stage(Method::IfIf.module(self.exact), features, stage)
-    }
-
-    fn tracing(&self, features: Features, stage: &str) -> wgpu::ComputePipeline {
-        self.stage(
-            self.traversal.method.module(self.exact),
-            features,
-            &format!("{stage}_{}", self.traversal.method.entry()),
-        )
-    }
-
-    fn stage(&self, (spirv, prefix): (&[u8], &str), features: Features, stage: &str) -> wgpu::ComputePipeline {
-        let name = format!("{prefix}_{stage}");
-        let module = module::create(self.gpu, &module::specialise(spirv, features, self.traversal.tuning), &name);
-        self.gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(&name),
-            layout: Some(&self.layout),
-            module: &module,
-            entry_point: Some(&name),
-            compilation_options: Default::default(),
-            cache: None,
-        })
-    }
-
-    fn stages(&self, features: Features, lit: bool) -> Pipelines {
-        Pipelines {
-            trace: self.tracing(features, "trace"),
-            shadow: lit.then(|| self.tracing(features, "shadow")),
-            shade: self.shading(features, "shade"),
-        }
+        stages.shade.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SLOTS));
     }
 }
 
 /// Cuts the image into regions of at most `slots` slots: whole rows, if that many fit.
-fn bands((width, height): (u32, u32), slots: u32) -> Vec<Region> {
-    let columns = width.min((slots / 32 * 8).max(8));
-    let rows = (slots / camera::slots(columns, 4) * 4).max(4);
+fn bands((width, height): (u32, u32), slots: u32, features: Features) -> Vec<Region> {
+    let (least, most) = camera::blocks(features);
+    let columns = width.min((slots / (least * most) * least).max(least));
+    let rows = (slots / camera::slots(columns, most, features) * most).max(most);
     let tops = (0..height).step_by(rows as usize);
     tops.flat_map(|y| (0..width).step_by(columns as usize).map(move |x| (x, y)))
         .map(|(x, y)| Region { x, y, width: (width - x).min(columns), height: (height - y).min(rows) })

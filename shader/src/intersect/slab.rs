@@ -6,7 +6,7 @@ use crate::real::{Real, V3};
 /// Where a ray is inside a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Span<R: Real> {
-    /// Where it enters, at least 0.
+    /// Where it enters, at least 0. Zeros may have either sign.
     pub near: R,
     /// Where it leaves, widened by the rounding of both bounds.
     pub far: R,
@@ -22,9 +22,15 @@ pub struct Span<R: Real> {
 pub fn slab<R: Real>(least: V3<R>, greatest: V3<R>, ray: &Ray<R>) -> Span<R> {
     let a = (least - ray.origin).times(ray.inverse);
     let b = (greatest - ray.origin).times(ray.inverse);
-    let (enter, leave) = (a.min(b), a.max(b));
+    span(a.lesser(b), a.greater(b))
+}
+
+/// Where a ray is between three pairs of planes, given where it enters and leaves each pair.
+#[inline(always)]
+pub fn span<R: Real>(enter: V3<R>, leave: V3<R>) -> Span<R> {
     let widen = R::splat(1.0) + R::splat(8.0) * R::ROUNDOFF;
-    Span { near: enter.x.max(enter.y).max(enter.z.max(R::splat(0.0))), far: leave.x.min(leave.y).min(leave.z) * widen }
+    let near = enter.x.greater(enter.y).greater(enter.z.greater(R::splat(0.0)));
+    Span { near, far: leave.x.lesser(leave.y).lesser(leave.z) * widen }
 }
 
 #[cfg(test)]

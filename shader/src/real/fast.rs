@@ -58,19 +58,14 @@ impl Real for Fast {
     fn sqrt(self) -> Fast {
         Fast(Float::sqrt(self.0))
     }
-
-    #[inline(always)]
-    fn min(self, other: Fast) -> Fast {
-        Fast(self.0.min(other.0))
-    }
-
-    #[inline(always)]
-    fn max(self, other: Fast) -> Fast {
-        Fast(self.0.max(other.0))
-    }
 }
 
 impl Scalar for Fast {
+    #[cfg(target_arch = "spirv")]
+    type Eight = Self;
+    #[cfg(not(target_arch = "spirv"))]
+    type Eight = super::Wide<8>;
+
     records!(Fast, inner);
 
     #[inline(always)]

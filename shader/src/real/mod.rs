@@ -7,6 +7,8 @@
 //! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
+#[cfg(target_arch = "spirv")]
+mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
 mod fast;
@@ -106,6 +108,18 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         Self::select(other.lt(self), self, other)
     }
 
+    /// As [`Real::min`], but of two zeros the device may take either: for what is only compared.
+    #[inline(always)]
+    fn lesser(self, other: Self) -> Self {
+        self.min(other)
+    }
+
+    /// As [`Real::max`], with the licence of [`Real::lesser`].
+    #[inline(always)]
+    fn greater(self, other: Self) -> Self {
+        self.max(other)
+    }
+
     /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
     /// become one is made zero at a named point, on every device alike.
     #[inline(always)]
@@ -114,8 +128,24 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     }
 }
 
+/// Numbers that the eight boxes of a wide node are tested with: all at once on a CPU with vectors, one by
+/// one on a GPU, where other rays fill the lanes.
+pub trait Octet<S: Scalar>: Real {
+    /// How many boxes at once; a divisor of 8.
+    const LANES: u32;
+
+    /// A ray's number in every lane.
+    fn all(x: S) -> Self;
+    /// The numbers of [`Octet::LANES`] bytes from byte `first` on of two words, the lowest byte first.
+    fn bytes(words: [u32; 2], first: u32) -> Self;
+    /// A bit a lane, the first in the lowest.
+    fn bits(mask: Self::Mask) -> u32;
+}
+
 /// A single lane, as shading takes it.
 pub trait Scalar: Real<Mask = bool, Index = u32> {
+    /// What tests the boxes of a wide node.
+    type Eight: Octet<Self>;
     /// Three numbers and an integer in device memory.
     type Record: Copy + Default;
 
@@ -132,6 +162,36 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     /// Neither NaN nor infinite?
     fn is_finite(self) -> bool;
 }
+
+/// One box at a time.
+macro_rules! octet_of_one {
+    ($type:ty) => {
+        impl Octet<$type> for $type {
+            const LANES: u32 = 1;
+
+            #[inline(always)]
+            fn all(x: $type) -> Self {
+                x
+            }
+            #[inline(always)]
+            fn bytes(words: [u32; 2], first: u32) -> Self {
+                let word = if first < 4 { words[0] } else { words[1] };
+                Self::splat(((word >> (8 * (first & 3))) & 255) as f32)
+            }
+            #[inline(always)]
+            fn bits(mask: bool) -> u32 {
+                mask as u32
+            }
+        }
+    };
+}
+
+#[cfg(target_arch = "spirv")]
+octet_of_one!(f32);
+#[cfg(target_arch = "spirv")]
+octet_of_one!(Fast);
+#[cfg(not(target_arch = "spirv"))]
+octet_of_one!(f64);
 
 /// Products of two numbers of at least this magnitude, and sums of such products, are normal.
 pub const SMALL: f32 = 1.0 / (1u64 << 40) as f32;

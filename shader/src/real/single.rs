@@ -48,6 +48,16 @@ macro_rules! comparisons {
         fn select_index(mask: bool, a: u32, b: u32) -> u32 {
             if mask { a } else { b }
         }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
+        fn lesser(self, other: Self) -> Self {
+            $wrap(super::device::lesser($inner(self), $inner(other)))
+        }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
+        fn greater(self, other: Self) -> Self {
+            $wrap(super::device::greater($inner(self), $inner(other)))
+        }
         #[inline(always)]
         fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
             if mask {
@@ -128,6 +138,11 @@ impl Real for f32 {
 }
 
 impl Scalar for f32 {
+    #[cfg(target_arch = "spirv")]
+    type Eight = Self;
+    #[cfg(not(target_arch = "spirv"))]
+    type Eight = super::Wide<8>;
+
     records!(id, id);
 
     #[inline(always)]

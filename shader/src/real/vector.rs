@@ -80,6 +80,18 @@ impl<R: Real> V3<R> {
         V3::new(self.x.max(other.x), self.y.max(other.y), self.z.max(other.z))
     }
 
+    /// Lesser components, by [`Real::lesser`].
+    #[inline(always)]
+    pub fn lesser(self, other: Self) -> Self {
+        V3::new(self.x.lesser(other.x), self.y.lesser(other.y), self.z.lesser(other.z))
+    }
+
+    /// Greater components, by [`Real::greater`].
+    #[inline(always)]
+    pub fn greater(self, other: Self) -> Self {
+        V3::new(self.x.greater(other.x), self.y.greater(other.y), self.z.greater(other.z))
+    }
+
     /// The greatest component.
     #[inline(always)]
     pub fn greatest(self) -> R {

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
-use super::{Mask, Real, V3};
+use super::{Fast, Mask, Octet, Real, V3};
 use crate::ray::{Hit, Ray};
 
 /// `N` numbers, one a lane.
@@ -137,6 +137,30 @@ impl<const N: usize> Real for Wide<N> {
     }
 }
 
+macro_rules! octet {
+    ($scalar:ty, $inner:expr) => {
+        impl Octet<$scalar> for Wide<8> {
+            const LANES: u32 = 8;
+
+            #[inline(always)]
+            fn all(x: $scalar) -> Self {
+                Wide([$inner(x); 8])
+            }
+            #[inline(always)]
+            fn bytes(words: [u32; 2], _first: u32) -> Self {
+                let bytes = (u64::from(words[1]) << 32 | u64::from(words[0])).to_le_bytes();
+                Wide(bytes.map(f32::from))
+            }
+            #[inline(always)]
+            fn bits(mask: WideMask<8>) -> u32 {
+                (0..8).map(|i| (mask.0[i] & 1) << i).sum()
+            }
+        }
+    };
+}
+octet!(f32, core::convert::identity);
+octet!(Fast, |x: Fast| x.0);
+
 impl<const N: usize> V3<Wide<N>> {
     /// Vectors of `N` lanes.
     #[inline(always)]
@@ -165,13 +189,21 @@ impl<const N: usize> Hit<Wide<N>> {
     /// One lane's hit.
     #[inline(always)]
     pub fn lane(&self, i: usize) -> Hit<f32> {
-        Hit { t: self.t.0[i], u: self.u.0[i], v: self.v.0[i], slot: self.slot.0[i], primitive: self.primitive.0[i] }
+        Hit {
+            t: self.t.0[i],
+            u: self.u.0[i],
+            v: self.v.0[i],
+            area: self.area.0[i],
+            slot: self.slot.0[i],
+            primitive: self.primitive.0[i],
+        }
     }
 
     fn set_lane(&mut self, i: usize, hit: &Hit<f32>) {
         self.t.0[i] = hit.t;
         self.u.0[i] = hit.u;
         self.v.0[i] = hit.v;
+        self.area.0[i] = hit.area;
         self.slot.0[i] = hit.slot;
         self.primitive.0[i] = hit.primitive;
     }

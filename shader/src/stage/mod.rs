@@ -6,14 +6,18 @@
 //! the slots that still have one, the next secondary ray.
 
 mod path;
+mod persistent;
+mod segment;
 mod shade;
 mod shadow;
 mod trace;
 
 pub use path::{Path, RECORDS};
+pub use persistent::persistent;
+pub use segment::Segment;
 pub use shade::{Wave, shade};
-pub use shadow::{FACES_AWAY, REACHED, SHADOWED, shadow};
-pub use trace::trace;
+pub use shadow::{Asking, FACES_AWAY, REACHED, SHADOWED, answered, asked, shadow};
+pub use trace::{found, trace, traced};
 
 /// In a film record's integer: some contribution to the pixel was no finite number and was left out.
 pub const NON_FINITE: u32 = 1 << 31;

@@ -24,7 +24,7 @@ pub struct Path<R: Real> {
     pub bounces: u32,
     /// Rays that wait in this slot.
     pub pending: u32,
-    /// The triangle that it leaves, in leaf order, or [`Hit::NOTHING`].
+    /// The primitive that it leaves, or [`Hit::NOTHING`].
     pub leaves: u32,
 }
 
@@ -35,7 +35,7 @@ impl<R: Scalar> Path<R> {
         if geometry.features.has(Features::SECONDARY) {
             return Self::load(geometry.slots(), slot, 0, paths);
         }
-        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, slot));
+        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, geometry.features, slot));
         Path {
             origin,
             direction,

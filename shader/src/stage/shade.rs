@@ -31,7 +31,7 @@ struct Branches<R: Real> {
 #[inline(always)]
 pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, film } = wave;
-    let pixel = camera::pixel(geometry.frame, slot);
+    let pixel = camera::pixel(geometry.frame, geometry.features, slot);
     if !pixel.inside {
         return false;
     }
@@ -41,7 +41,7 @@ pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, w
         add(geometry, film, pixel.index, &path, background(geometry.features, geometry.frame, path.direction), 0);
         return pop(geometry, slot, &path, paths);
     }
-    let triangle = read(geometry.triangles, place);
+    let triangle = geometry.triangle(place);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
     let surface = Surface::new(geometry.features, looks, place, &triangle, path.direction, &contact);
     let (light, rays) = lit(geometry, looks.lights, slot, path.direction, (&contact, &surface), shadows);
@@ -49,7 +49,7 @@ pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, w
     if !geometry.features.has(Features::REFLECTION) && !geometry.features.has(Features::REFRACTION) {
         return false;
     }
-    follow(geometry, slot, &path, branch(geometry, &path, place, (&contact, &surface)), paths)
+    follow(geometry, slot, &path, branch(geometry, &path, triangle.primitive(), (&contact, &surface)), paths)
 }
 
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
@@ -105,16 +105,16 @@ fn add<R: Scalar>(
 fn branch<R: Scalar>(
     geometry: &Geometry<'_>,
     path: &Path<R>,
-    place: u32,
+    leaves: u32,
     (contact, surface): (&Contact<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let reflected = path.on(place, contact.leave(mirrored), mirrored, surface.reflection);
-    let none = path.on(place, contact.position, mirrored, V3::zero());
+    let none = path.on(leaves, contact.position, mirrored, V3::zero());
     if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
+        let reflected = path.on(leaves, contact.leave(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
@@ -122,12 +122,12 @@ fn branch<R: Scalar>(
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
     // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
-    let reflected = path.on(place, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
+    let reflected = path.on(leaves, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(place, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
+    let refracted = path.on(leaves, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }

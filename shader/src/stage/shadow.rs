@@ -1,9 +1,9 @@
-//! Whether a light reaches what a slot's ray hit (thesis algorithm 3.2).
+//! Whether a light reaches what a slot's ray hit (thesis algorithm 3.2), or a ray of a stream its end.
 
-use super::Path;
+use super::{Path, Segment};
 use crate::buffer::read;
-use crate::data::Light;
-use crate::ray::{Hit, Ray};
+use crate::data::{Features, Light};
+use crate::ray::Hit;
 use crate::real::Scalar;
 use crate::scene::Geometry;
 use crate::shade::{Contact, shadow_ray};
@@ -16,28 +16,50 @@ pub const SHADOWED: u32 = 1;
 /// The place faces away from the light, or there is no place: no ray was traced.
 pub const FACES_AWAY: u32 = 2;
 
+/// What asks for shadow rays.
+#[derive(Clone, Copy)]
+pub struct Asking<'a, R: Scalar> {
+    /// Lights in file order.
+    pub lights: &'a [Light],
+    /// Paths by level, record and slot, or the stream's rays.
+    pub paths: &'a [R::Record],
+    /// (t, u, v) and triangle by slot.
+    pub hits: &'a [R::Record],
+}
+
+/// The ray from a slot's hit towards light `index`, and whether it is to be traced at all.
+#[inline(always)]
+pub fn asked<R: Scalar>(geometry: &Geometry<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> (Segment<R>, bool) {
+    if geometry.features.has(Features::STREAM) {
+        return (Segment::load(geometry, slot, asking.paths), true);
+    }
+    let path = Path::<R>::current(geometry, slot, asking.paths);
+    let (hit, place) = R::load(read(asking.hits, slot));
+    if place == Hit::<R>::NOTHING {
+        let nowhere = Segment { origin: path.origin, direction: path.direction, limit: hit.x, leaves: path.leaves };
+        return (nowhere, false);
+    }
+    let triangle = geometry.triangle(place);
+    let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
+    let light = read(asking.lights, index);
+    let (origin, direction, limit) = shadow_ray(geometry.features, &light, &contact);
+    (Segment { origin, direction, limit, leaves: triangle.primitive() }, contact.faces(direction))
+}
+
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
-pub fn shadow<R: Scalar, M: Method<R>>(
-    geometry: &Geometry<'_>,
-    lights: &[Light],
-    slot: u32,
-    index: u32,
-    paths: &[R::Record],
-    hits: &[R::Record],
-) -> u32 {
-    let (hit, place) = R::load(read(hits, slot));
-    if place == Hit::<R>::NOTHING {
+pub fn shadow<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> u32 {
+    let (segment, faces) = asked(geometry, asking, slot, index);
+    if !faces {
         return FACES_AWAY;
     }
-    let path = Path::<R>::current(geometry, slot, paths);
-    let contact = Contact::new(&read(geometry.triangles, place), hit.y, hit.z, path.direction);
-    let light = read(lights, index);
-    let (origin, direction, limit) = shadow_ray(geometry.features, &light, &contact);
-    if !contact.faces(direction) {
-        return FACES_AWAY;
-    }
-    let mut hit = Hit::none(limit);
-    M::traverse::<Occlusion>(geometry, &Ray::leaving(place, origin, direction), &mut hit);
-    if step::occluded(&hit) { SHADOWED } else { REACHED }
+    let mut hit = Hit::none(segment.limit);
+    M::traverse::<Occlusion>(geometry, &segment.ray(), &mut hit);
+    answered(&hit)
+}
+
+/// The answer of a ray that was traced.
+#[inline(always)]
+pub fn answered<R: Scalar>(hit: &Hit<R>) -> u32 {
+    if step::occluded(hit) { SHADOWED } else { REACHED }
 }

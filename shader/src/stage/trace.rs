@@ -1,16 +1,34 @@
-//! The closest hit of a slot's ray, primary or secondary.
+//! The closest hit of a slot's ray, primary, secondary or of a stream.
 
-use super::Path;
-use crate::ray::{Hit, Ray};
+use super::{Path, Segment};
+use crate::data::Features;
+use crate::ray::Hit;
 use crate::real::{Scalar, V3};
 use crate::scene::Geometry;
 use crate::traverse::{Closest, Method};
 
-/// Traces a slot's ray; returns (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
+/// A slot's ray.
+#[inline(always)]
+pub fn traced<R: Scalar>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
+    if geometry.features.has(Features::STREAM) {
+        return Segment::load(geometry, slot, paths);
+    }
+    let path = Path::<R>::current(geometry, slot, paths);
+    Segment { origin: path.origin, direction: path.direction, limit: R::splat(f32::MAX), leaves: path.leaves }
+}
+
+/// What is kept of a hit: (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
+#[inline(always)]
+pub fn found<R: Scalar>(hit: &Hit<R>) -> R::Record {
+    let (u, v) = hit.weights();
+    R::store(V3::new(hit.t, u, v), hit.slot)
+}
+
+/// Traces a slot's ray; returns what [`found`] does.
 #[inline(always)]
 pub fn trace<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
-    let path = Path::<R>::current(geometry, slot, paths);
-    let mut hit = Hit::none(R::splat(f32::MAX));
-    M::traverse::<Closest>(geometry, &Ray::leaving(path.leaves, path.origin, path.direction), &mut hit);
-    R::store(V3::new(hit.t, hit.u, hit.v), hit.slot)
+    let segment = traced::<R>(geometry, slot, paths);
+    let mut hit = Hit::none(segment.limit);
+    M::traverse::<Closest>(geometry, &segment.ray(), &mut hit);
+    found(&hit)
 }

@@ -1,5 +1,6 @@
 //! Where a traversal stands, and its stack.
 
+use super::resumable::Progress;
 use crate::data::{NodePair, NodeRef, STACK};
 
 /// Nodes that wait. It is kept beside its [`Cursor`], since rust-gpu lets no pointer live in a struct
@@ -63,6 +64,23 @@ impl Cursor {
             self.depth -= 1;
             self.node = NodeRef(stack[self.depth as usize & (STACK - 1)]);
         }
+    }
+}
+
+impl Progress for Cursor {
+    #[inline(always)]
+    fn start() -> Self {
+        Self::new()
+    }
+
+    #[inline(always)]
+    fn finished() -> Self {
+        Cursor { node: NodeRef::ROOT, done: true, depth: 0 }
+    }
+
+    #[inline(always)]
+    fn is_done(&self) -> bool {
+        self.done
     }
 }
 

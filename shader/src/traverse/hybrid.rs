@@ -4,9 +4,10 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
-use super::packet::visit_leaf;
+use super::packet::{goes, visit_leaf};
+use super::resumable::finish;
 use super::step::children;
-use super::{Method, Query, if_if};
+use super::{IfIf, Method, Query};
 use crate::buffer::read;
 use crate::data::{NodeRef, STACK};
 use crate::ray::{Hit, Ray};
@@ -19,7 +20,7 @@ pub trait Switch {
     /// Does it part for good, `depth` nodes waiting?
     fn full(geometry: &Geometry<'_>, depth: u32) -> bool;
     /// Do those who want a child part from the `active` rays of the packet?
-    fn few(geometry: &Geometry<'_>, wanting: u32, active: u32) -> bool;
+    fn few(geometry: &Geometry<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
 }
 
 /// Parts when a small stack is full (thesis: stack max).
@@ -31,7 +32,7 @@ impl Switch for StackMax {
         depth >= geometry.tuning.stack_max()
     }
     #[inline(always)]
-    fn few(_: &Geometry<'_>, _: u32, _: u32) -> bool {
+    fn few(_: &Geometry<'_>, _: impl FnOnce() -> u32, _: impl FnOnce() -> u32) -> bool {
         false
     }
 }
@@ -45,8 +46,8 @@ impl Switch for Cut {
         false
     }
     #[inline(always)]
-    fn few(geometry: &Geometry<'_>, wanting: u32, active: u32) -> bool {
-        100 * wanting < geometry.tuning.cut() * active
+    fn few(geometry: &Geometry<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool {
+        100 * wanting() < geometry.tuning.cut() * active()
     }
 }
 
@@ -75,6 +76,7 @@ pub struct Hybrid<W, S, T>(PhantomData<(W, S, T)>);
 struct Later<R: Real> {
     nodes: Stack,
     rays: [R::Mask; STACK],
+    count: usize,
 }
 
 impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
@@ -82,13 +84,11 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = [0; STACK];
         let mut cursor = Cursor::new();
-        let everyone = R::splat(0.0).le(R::splat(0.0));
-        let mut later = Later::<R> { nodes: [0; STACK], rays: [everyone; STACK] };
-        let mut waiting = 0;
+        let mut later = Later::<R> { nodes: [0; STACK], rays: [everyone::<R>(); STACK], count: 0 };
         while !cursor.done {
             if S::full(geometry, cursor.depth()) {
                 if T::MEETS {
-                    alone::<Q, R>(geometry, cursor.node, everyone, ray, hit);
+                    alone::<Q, R>(geometry, cursor.node, everyone::<R>(), ray, hit);
                     cursor.pop(&stack);
                 } else {
                     part::<Q, R>(geometry, &cursor, &stack, ray, hit);
@@ -98,32 +98,51 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
                 let pair = read(geometry.nodes, cursor.node.index());
+                Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
-                let mut go = |node: NodeRef, rays: R::Mask, hit: &mut Hit<R>| {
-                    let few = S::few(geometry, W::count(rays), W::count(everyone));
-                    if few && rays.any() {
-                        if T::MEETS || waiting == STACK {
-                            alone::<Q, R>(geometry, node, rays, ray, hit);
-                        } else {
-                            later.nodes[waiting & (STACK - 1)] = node.0;
-                            later.rays[waiting & (STACK - 1)] = rays;
-                            waiting += 1;
-                        }
-                    }
-                    W::any(rays) && !few
-                };
-                let left = go(pair.left(), wanted.left, hit);
-                let right = go(pair.right(), wanted.right, hit);
+                let left = together::<Q, R, W, S, T>(geometry, pair.left(), wanted.left, ray, (hit, &mut later));
+                let right = together::<Q, R, W, S, T>(geometry, pair.right(), wanted.right, ray, (hit, &mut later));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
         }
-        while waiting > 0 {
-            waiting -= 1;
-            let at = waiting & (STACK - 1);
+        while later.count > 0 {
+            later.count -= 1;
+            let at = later.count & (STACK - 1);
             alone::<Q, R>(geometry, NodeRef(later.nodes[at]), later.rays[at], ray, hit);
         }
     }
+}
+
+/// All rays of the packet.
+#[inline(always)]
+fn everyone<R: Real>() -> R::Mask {
+    R::splat(0.0).le(R::splat(0.0))
+}
+
+/// Does the packet go to a child together? If too few rays want it, they go by themselves, at once or later.
+#[inline(always)]
+fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
+    geometry: &Geometry<'_>,
+    node: NodeRef,
+    rays: R::Mask,
+    ray: &Ray<R>,
+    (hit, later): (&mut Hit<R>, &mut Later<R>),
+) -> bool {
+    if !S::few(geometry, || W::count(rays), || W::count(everyone::<R>())) {
+        return goes::<Q, R, W>(rays);
+    }
+    if !rays.any() {
+        return false;
+    }
+    if T::MEETS || later.count == STACK {
+        alone::<Q, R>(geometry, node, rays, ray, hit);
+    } else {
+        later.nodes[later.count & (STACK - 1)] = node.0;
+        later.rays[later.count & (STACK - 1)] = rays;
+        later.count += 1;
+    }
+    false
 }
 
 /// Every ray of the mask follows a branch by itself.
@@ -131,21 +150,20 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
 fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     R::lanes(ray, hit, rays, |ray, hit| {
         let mut stack = [0; STACK];
-        if_if::finish::<Q, R::Lane>(geometry, ray, &mut stack, Cursor::at(node), hit);
+        finish::<Q, R::Lane, IfIf>(geometry, ray, hit, Cursor::at(node), &mut stack);
     });
 }
 
 /// Every ray goes on by itself with what the packet has left.
 #[inline(always)]
 fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
-    let everyone = R::splat(0.0).le(R::splat(0.0));
-    R::lanes(ray, hit, everyone, |ray, hit| {
+    R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
         let mut stack = [0; STACK];
         let mut i = 0;
         while i < cursor.depth() as usize {
             stack[i & (STACK - 1)] = shared[i & (STACK - 1)];
             i += 1;
         }
-        if_if::finish::<Q, R::Lane>(geometry, ray, &mut stack, *cursor, hit);
+        finish::<Q, R::Lane, IfIf>(geometry, ray, hit, *cursor, &mut stack);
     });
 }

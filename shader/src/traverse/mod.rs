@@ -8,15 +8,18 @@ pub mod cursor;
 mod hybrid;
 mod if_if;
 mod packet;
+pub mod resumable;
 mod speculative;
 pub mod step;
 mod while_while;
+mod wide;
 
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;
+pub use wide::WideNodes;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
@@ -26,6 +29,16 @@ use crate::scene::Geometry;
 pub trait Query {
     /// Is any hit enough, and do transparent triangles not count? (Shadow rays, thesis 3.2.)
     const ANY: bool;
+
+    /// Is told that a ray, or a packet, tests boxes of this number. Statistics alone listen.
+    #[inline(always)]
+    fn on_boxes(_tested: u32) {}
+    /// Is told that a ray, or a packet, tests a triangle.
+    #[inline(always)]
+    fn on_triangle() {}
+    /// Is told that a packet goes to a child; `_lanes` counts those of its rays that want it.
+    #[inline(always)]
+    fn on_child(_lanes: impl FnOnce() -> u32) {}
 }
 
 /// The closest hit.

@@ -26,13 +26,24 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
                 let pair = read(geometry.nodes, cursor.node.index());
+                Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
-                let (left, right) = (W::any(wanted.left), W::any(wanted.right));
+                let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
         }
     }
+}
+
+/// Does the packet go to a child that these rays want?
+#[inline(always)]
+pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
+    let any = W::any(wanting);
+    if any {
+        Q::on_child(|| W::count(wanting));
+    }
+    any
 }
 
 /// All rays test the leaf at hand; those of an any-hit query are done when the last has found something.

@@ -28,7 +28,7 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
                     aside = cursor.node;
                     cursor.pop(&stack);
                 } else {
-                    pair(geometry, ray, hit, &mut cursor, &mut stack);
+                    pair::<Q, R>(geometry, ray, hit, &mut cursor, &mut stack);
                 }
                 if !W::any(!aside.is_leaf()) {
                     break;

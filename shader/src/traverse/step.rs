@@ -41,8 +41,15 @@ pub fn children<R: Real>(pair: &NodePair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<
 
 /// A single ray's visit of the pair that its traversal stands at.
 #[inline(always)]
-pub fn pair<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+pub fn pair<Q: Query, R: Scalar>(
+    geometry: &Geometry<'_>,
+    ray: &Ray<R>,
+    hit: &Hit<R>,
+    cursor: &mut Cursor,
+    stack: &mut Stack,
+) {
     let pair = read(geometry.nodes, cursor.node.index());
+    Q::on_boxes(2);
     let wanted = children(&pair, ray, hit);
     cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
 }
@@ -60,12 +67,13 @@ pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: 
 /// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
 #[inline(always)]
 pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
-    let triangle = read(geometry.triangles, leaf.index());
+    Q::on_triangle();
+    let triangle = geometry.triangle(leaf.index());
     let [a, b, c] = triangle.vertices();
     let from = |p| V3::splat(p) - ray.origin;
     let crossing = cross(from(a), from(b), from(c), ray.shear, ray.shear.cycle(ray.inverse).z);
     if crossing.any() && counts::<Q>(geometry.features, &triangle) {
-        keep::<Q, R>(geometry.features, &triangle, leaf.index(), &crossing, ray, hit);
+        keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
 }
 
@@ -75,38 +83,40 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
     !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
 }
 
-/// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
+/// Divides, clamps into the box of the slot, and takes the lesser (t, primitive).
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
-    features: Features,
+    geometry: &Geometry<'_>,
     triangle: &Triangle,
     slot: u32,
     crossing: &Crossing<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
-    let mut inside = crossing.inside & !R::equals(slot, ray.leaves);
+    let (primitive, features, zero) = (triangle.primitive(), geometry.features, R::splat(0.0));
+    let mut inside = crossing.inside & !R::equals(primitive, ray.leaves);
     // The inside of glass is seen from behind.
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
-    let (least, greatest) = triangle.bounds();
+    let (least, greatest) = geometry.bounds(slot, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
     let area = R::select(inside, crossing.area, R::splat(1.0));
-    let t = crossing.depth.div(area).max(own.near).min(own.far);
     let inside = inside & own.near.le(own.far);
+    // A bound of zero may have either sign; of zeros `max` takes the second.
+    let t = crossing.depth.div(area).max(own.near.max(zero)).min(own.far.max(zero));
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;
     }
-    let primitive = triangle.primitive();
     let tie = t.same(hit.t) & R::precedes(primitive, hit.primitive);
     let better = inside & (t.lt(hit.t) | tie);
     if better.any() {
         hit.t = R::select(better, t, hit.t);
-        hit.u = R::select(better, crossing.u.div(area), hit.u);
-        hit.v = R::select(better, crossing.v.div(area), hit.v);
+        hit.u = R::select(better, crossing.u, hit.u);
+        hit.v = R::select(better, crossing.v, hit.v);
+        hit.area = R::select(better, area, hit.area);
         hit.slot = R::select_index(better, R::index(slot), hit.slot);
         hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
     }

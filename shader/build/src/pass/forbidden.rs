@@ -75,12 +75,15 @@ impl Rules {
     }
 }
 
-/// Does the specification fix every bit of the result? Not of a minimum, a maximum or a sign of
-/// floats, which may treat zeros and NaN either way.
+/// Does the specification fix every bit of the result? Not of a sign of floats, which may treat zeros and
+/// NaN either way. A minimum or maximum may return either of two zeros too: `Real::lesser` and `greater`,
+/// where the kernels' own come from, are for what is only compared.
 fn is_exact(op: GlslStd450Op) -> bool {
     matches!(
         op,
         GlslStd450Op::FAbs
+            | GlslStd450Op::FMin
+            | GlslStd450Op::FMax
             | GlslStd450Op::Floor
             | GlslStd450Op::Ceil
             | GlslStd450Op::Trunc

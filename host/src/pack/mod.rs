@@ -3,21 +3,34 @@
 use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Quality, Statistics};
+use eyerays_shader::camera;
 use eyerays_shader::data::{
-    Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, pack,
+    Bounds, Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, WideNode,
+    pack,
 };
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
 
+mod words;
+
+pub use words::TriangleWords;
+
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
+
+/// References added by splitting triangles, as a share of the triangles.
+const SPLIT_BUDGET: f32 = 0.0;
 
 /// A scene as the kernels read it, owned, for one camera and one set of settings.
 pub struct Packed {
     /// Child pairs of the hierarchy.
     pub nodes: Vec<NodePair>,
-    /// Triangles in leaf order, in the normalised scene.
+    /// The same hierarchy with nodes of eight children.
+    pub wide: Vec<WideNode>,
+    /// Triangles by slot, in the normalised scene; a split one has several slots.
     pub triangles: Vec<Triangle>,
+    /// Bounds by slot; empty unless triangles are split.
+    pub bounds: Vec<Bounds>,
     /// Vertex normals in leaf order; empty if every mesh is flat.
     pub normals: Vec<Normals>,
     /// Materials.
@@ -62,7 +75,9 @@ impl Packed {
         let features = features(scene, &settings);
         let triangles = triangles(scene, scale, features);
         let start = Instant::now();
-        let bvh = eyerays_bvh::build(&triangles, quality).map_err(|e| Error::new(e.to_string()))?;
+        let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
+        let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
+        let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let statistics = Statistics::of(&bvh, &triangles);
         let lights = scene.lights.iter().enumerate().map(|(i, l)| light(l, i, scale)).collect::<Result<Vec<_>>>()?;
@@ -70,6 +85,8 @@ impl Packed {
             triangles: bvh.gather(&triangles),
             normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes,
+            wide: bvh.wide,
+            bounds: if SPLIT_BUDGET > 0.0 { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
             frame: frame(scene, camera, &settings, lights.len(), scale)?,
             lights,
@@ -107,19 +124,35 @@ impl Packed {
         self.settings.samples * self.settings.samples
     }
 
-    /// The record of one launch.
-    pub fn frame(&self, region: Region, sample: u32) -> Frame {
+    /// Turns to another of the scene's cameras.
+    ///
+    /// # Errors
+    /// If there is no way to look so.
+    pub fn look(&mut self, scene: &Scene, camera: &Camera) -> Result<()> {
+        self.frame = frame(scene, camera, &self.settings, self.lights.len(), self.scale)?;
+        Ok(())
+    }
+
+    /// The record of one launch, whose slots are in the order of `features`.
+    pub fn frame(&self, region: Region, sample: u32, features: Features) -> Frame {
         let mut frame = self.frame;
         frame.forward.w = sample;
         frame.region = glam::UVec4::new(region.x, region.y, region.width, region.height);
-        frame.limits.z = eyerays_shader::camera::slots(region.width, region.height);
+        frame.limits.z = camera::slots(region.width, region.height, features);
+        frame.limits.w = self.triangles.len() as u32;
         frame
     }
 }
 
-/// The power of two that brings every vertex and the camera into [-1, 1].
+/// The power of two that brings every vertex and camera into [-1, 1].
 fn normalisation(scene: &Scene, camera: &Camera) -> f64 {
-    let extent = scene.mesh.positions.iter().chain([&camera.eye]).fold(0f32, |most, p| most.max(p.abs().max_element()));
+    let extent = scene
+        .mesh
+        .positions
+        .iter()
+        .chain(scene.cameras.iter().map(|c| &c.eye))
+        .chain([&camera.eye])
+        .fold(0f32, |most, p| most.max(p.abs().max_element()));
     if extent == 0.0 { 1.0 } else { (-f64::from(extent).log2().ceil()).exp2() }
 }
 

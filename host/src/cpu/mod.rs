@@ -1,22 +1,26 @@
 //! The kernels on the CPU: tiles in parallel, each with the memory of a small launch.
 
+mod cast;
+
 use std::sync::Mutex;
 
 use eyerays_shader::camera;
 use eyerays_shader::data::Features;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::scene::{Geometry, Looks};
-use eyerays_shader::stage::{self, NON_FINITE, RECORDS, Wave};
+use eyerays_shader::stage::{self, Asking, NON_FINITE, RECORDS, Wave};
 use eyerays_shader::traverse::{
-    self, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile,
+    self, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile, WideNodes,
 };
 use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
 
+pub use cast::cast;
+
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::method::{Method, Traversal};
-use crate::pack::{Packed, Region};
+use crate::pack::{Packed, Region, TriangleWords};
 use crate::rays::Rays;
 
 /// Memory for the waiting rays of a tile, in bytes, that makes a tile smaller than [`TILE`].
@@ -81,9 +85,7 @@ where
     let traversal = traversal.into();
     let (width, height) = packed.settings.size;
     let result = Mutex::new((Film::new(width, height)?, Rays::default()));
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    let pool = pool.map_err(|e| Error::new(format!("can't start {threads} threads ({e}): ask for fewer")))?;
-    pool.install(|| {
+    pool(threads)?.install(|| {
         // A tile a task: coarser splitting leaves threads idle at the end.
         tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
             let (film, secondary) = render_tile(packed, traversal, region, observer);
@@ -95,6 +97,12 @@ where
         });
     });
     Ok(result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+}
+
+/// Threads to install work in; 0 is one a core.
+fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    pool.map_err(|e| Error::new(format!("can't start {threads} threads ({e}): ask for fewer")))
 }
 
 fn tiles(packed: &Packed) -> Vec<Region> {
@@ -120,7 +128,9 @@ pub fn render_tile<R: Scalar>(
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
     let traversal = traversal.into();
-    let slots = packed.frame(region, 0).limits.z as usize;
+    let features = Features(packed.features.0 | traversal.features().0);
+    let slots = packed.frame(region, 0, features).limits.z as usize;
+    let words = TriangleWords::of(packed, traversal.layout);
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {
         paths: vec![black; slots * (packed.levels() * RECORDS) as usize],
@@ -131,15 +141,17 @@ pub fn render_tile<R: Scalar>(
     let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
     let mut secondary = 0;
     for sample in 0..packed.samples() {
-        let frame = packed.frame(region, sample);
+        let frame = packed.frame(region, sample, features);
         let mut geometry = Geometry {
             frame: &frame,
-            features: packed.features,
+            features,
             tuning: traversal.tuning,
             nodes: &packed.nodes,
-            triangles: &packed.triangles,
+            wide: &packed.wide,
+            triangles: &words.0,
+            bounds: &packed.bounds,
         };
-        let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, s).inside).collect();
+        let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, features, s).inside).collect();
         loop {
             trace::<R>(traversal.method, &geometry, &looks, &queue, &mut records);
             observer.wave(&geometry, &queue, &records);
@@ -148,7 +160,7 @@ pub fn render_tile<R: Scalar>(
                 break;
             }
             secondary += queue.len() as u64;
-            geometry.features = Features(packed.features.0 | Features::SECONDARY);
+            geometry.features = Features(features.0 | Features::SECONDARY);
         }
     }
     (records.film, secondary)
@@ -163,7 +175,8 @@ fn trace<R: Scalar>(
     records: &mut Records<R>,
 ) {
     let trace = match method {
-        Method::IfIf => trace_by::<R, IfIf>,
+        Method::Auto | Method::IfIf => trace_by::<R, IfIf>,
+        Method::Wide => trace_by::<R, WideNodes>,
         Method::WhileWhile => trace_by::<R, WhileWhile>,
         Method::Speculative => trace_by::<R, Speculative<Alone>>,
         Method::Packet => trace_by::<R, Packet<Alone>>,
@@ -187,7 +200,12 @@ fn trace_by<R: Scalar, M: traverse::Method<R>>(
     }
     for light in 0..geometry.light_count() {
         for &slot in queue {
-            let answer = stage::shadow::<R, M>(geometry, looks.lights, slot, light, &records.paths, &records.hits);
+            let answer = stage::shadow::<R, M>(
+                geometry,
+                Asking { lights: looks.lights, paths: &records.paths, hits: &records.hits },
+                slot,
+                light,
+            );
             records.shadows[(light * geometry.slots() + slot) as usize] = answer;
         }
     }

@@ -1,0 +1,231 @@
+//! Which nodes of the binary tree become wide nodes, at the least cost there is.
+//!
+//! Ylitie, Karras and Laine 2017, section 3.1: the cost of showing a subtree as at most `i` children of
+//! one wide node follows from that of its children's subtrees, from the leaves up.
+
+use eyerays_shader::data::WideNode;
+
+use super::binary::{Binary, Kind, Node};
+
+/// Cost of a step through a wide node, which tests eight boxes.
+pub(crate) const NODE: f32 = 1.0;
+/// Cost of a triangle test (the paper's).
+pub(crate) const TRIANGLE: f32 = 0.3;
+
+/// Most children of a node, and most roots that a subtree can be shown as.
+const ARITY: usize = WideNode::ARITY;
+
+/// Choices for every node of a binary tree.
+pub(crate) struct Plan {
+    choices: Vec<Choices>,
+}
+
+/// How to show a subtree as at most `i + 1` children, at place `i`.
+///
+/// At place 0: [`Choices::LEAF`] or [`Choices::INNER`]. Elsewhere: how many children the left subtree
+/// becomes, or 0 to do as at the place before. The last place also holds the children of the wide node
+/// that the subtree's root becomes.
+#[derive(Clone, Copy)]
+struct Choices([u8; ARITY]);
+
+impl Choices {
+    /// All triangles in one leaf.
+    const LEAF: u8 = 0;
+    /// A wide node.
+    const INNER: u8 = 1;
+}
+
+/// Costs of a subtree as at most 1 to 7 children.
+type Costs = [f32; ARITY - 1];
+
+impl Plan {
+    /// The best choices.
+    pub fn of(tree: &Binary) -> Self {
+        let mut costs: Vec<Costs> = vec![[0.0; ARITY - 1]; tree.nodes.len()];
+        let mut choices = vec![Choices([Choices::LEAF; ARITY]); tree.nodes.len()];
+        for (i, node) in tree.nodes.iter().enumerate().rev() {
+            let (cost, choice) = match node.kind {
+                Kind::Leaf => ([as_leaf(node); ARITY - 1], Choices([Choices::LEAF; ARITY])),
+                Kind::Inner(left, right) => best(node, &costs[left as usize], &costs[right as usize]),
+            };
+            (costs[i], choices[i]) = (cost, choice);
+        }
+        Plan { choices }
+    }
+
+    /// The children of the wide node that binary node `number` becomes, in depth-first order: their
+    /// numbers, and whether each is a leaf.
+    pub fn children(&self, tree: &Binary, number: u32, children: &mut Vec<(u32, bool)>) {
+        children.clear();
+        self.show(tree, number, ARITY, children);
+    }
+
+    /// Shows a subtree as at most `most` children; as all of them, not as itself.
+    fn show(&self, tree: &Binary, number: u32, most: usize, children: &mut Vec<(u32, bool)>) {
+        let Choices(choices) = self.choices[number as usize];
+        let place = (1..most).rev().find(|&place| choices[place] > 0);
+        match (place, tree.nodes[number as usize].kind) {
+            (Some(place), Kind::Inner(left, right)) => {
+                let share = usize::from(choices[place]);
+                self.show(tree, left, share, children);
+                self.show(tree, right, place + 1 - share, children);
+            }
+            _ => children.push((number, choices[0] == Choices::LEAF)),
+        }
+    }
+}
+
+/// As [`Plan::children`], whatever it costs: the nodes three levels below, which lowers what is left of
+/// the binary tree by three levels.
+pub(crate) fn three_levels(tree: &Binary, number: u32, children: &mut Vec<(u32, bool)>) {
+    fn show(tree: &Binary, number: u32, levels: u32, children: &mut Vec<(u32, bool)>) {
+        match tree.nodes[number as usize].kind {
+            Kind::Inner(left, right) if levels > 0 => {
+                show(tree, left, levels - 1, children);
+                show(tree, right, levels - 1, children);
+            }
+            kind => children.push((number, kind == Kind::Leaf)),
+        }
+    }
+    children.clear();
+    show(tree, number, LEVELS, children);
+}
+
+/// Levels of the binary tree that fit into any wide node.
+pub(crate) const LEVELS: u32 = WideNode::ARITY.ilog2();
+
+/// The cost of a leaf of all triangles below a node.
+fn as_leaf(node: &Node) -> f32 {
+    if node.count > WideNode::MAX_LEAF {
+        return f32::INFINITY;
+    }
+    node.bounds.half_area() * node.count as f32 * TRIANGLE
+}
+
+/// The best choices for an inner node, given its children's costs.
+fn best(node: &Node, left: &Costs, right: &Costs) -> (Costs, Choices) {
+    let mut choices = [0; ARITY];
+    let mut shared = [f32::INFINITY; ARITY];
+    for place in 1..ARITY {
+        for share in 1..=place {
+            let cost = left[share - 1] + right[place - share];
+            if cost < shared[place] {
+                (shared[place], choices[place]) = (cost, share as u8);
+            }
+        }
+    }
+    let (leaf, inner) = (as_leaf(node), shared[ARITY - 1] + node.bounds.half_area() * NODE);
+    let mut costs = [leaf.min(inner); ARITY - 1];
+    choices[0] = if leaf <= inner { Choices::LEAF } else { Choices::INNER };
+    for place in 1..ARITY - 1 {
+        if shared[place] < costs[place - 1] {
+            costs[place] = shared[place];
+        } else {
+            (costs[place], choices[place]) = (costs[place - 1], 0);
+        }
+    }
+    (costs, Choices(choices))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bounds::Bounds;
+
+    /// A tree over boxes, as nested lists of two would give it.
+    fn tree(leaves: &[Bounds], halve: impl Fn(usize) -> usize + Copy) -> Binary {
+        fn add(
+            nodes: &mut Vec<Node>,
+            number: usize,
+            leaves: &[Bounds],
+            first: u32,
+            halve: impl Fn(usize) -> usize + Copy,
+        ) {
+            let count = leaves.len() as u32;
+            let bounds = Bounds::around(leaves.iter().copied());
+            nodes[number] = Node { bounds, first, count, height: 0, kind: Kind::Leaf };
+            if count > 1 {
+                let (half, left) = (halve(leaves.len()), nodes.len());
+                nodes.extend([nodes[number]; 2]);
+                add(nodes, left, &leaves[..half], first, halve);
+                add(nodes, left + 1, &leaves[half..], first + half as u32, halve);
+                let height = 1 + nodes[left].height.max(nodes[left + 1].height);
+                nodes[number].kind = Kind::Inner(left as u32, left as u32 + 1);
+                nodes[number].height = height;
+            }
+        }
+        let mut nodes = vec![Node { bounds: leaves[0], first: 0, count: 0, height: 0, kind: Kind::Leaf }];
+        add(&mut nodes, 0, leaves, 0, halve);
+        Binary { nodes }
+    }
+
+    fn cubes(count: u32, step: f32) -> Vec<Bounds> {
+        let cube = |x: f32| Bounds { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 1.0] };
+        (0..count).map(|i| cube(i as f32 * step)).collect()
+    }
+
+    /// Least costs met so far, by node and most children.
+    type Memory = std::collections::HashMap<(u32, usize), f32>;
+
+    /// The least cost of showing a subtree as at most `most` children, by trying everything.
+    fn least(tree: &Binary, number: u32, most: usize, memory: &mut Memory) -> f32 {
+        if let Some(&known) = memory.get(&(number, most)) {
+            return known;
+        }
+        let node = &tree.nodes[number as usize];
+        let cost = match (node.kind, most) {
+            (Kind::Leaf, _) => as_leaf(node),
+            (_, 1) => as_leaf(node).min(least_inner(tree, number, memory)),
+            _ => least_shared(tree, number, most, memory).min(least(tree, number, most - 1, memory)),
+        };
+        memory.insert((number, most), cost);
+        cost
+    }
+
+    /// The least cost of a subtree whose root is a wide node.
+    fn least_inner(tree: &Binary, number: u32, memory: &mut Memory) -> f32 {
+        least_shared(tree, number, ARITY, memory) + tree.nodes[number as usize].bounds.half_area() * NODE
+    }
+
+    fn least_shared(tree: &Binary, number: u32, most: usize, memory: &mut Memory) -> f32 {
+        let Kind::Inner(left, right) = tree.nodes[number as usize].kind else { unreachable!() };
+        let costs = (1..most).map(|share| least(tree, left, share, memory) + least(tree, right, most - share, memory));
+        costs.fold(f32::INFINITY, f32::min)
+    }
+
+    #[test]
+    fn the_plan_costs_the_least_there_is() {
+        for (count, step) in [(2, 2.0), (5, 0.1), (9, 3.0), (40, 0.5), (100, 1.5)] {
+            for halve in [|n: usize| n / 2, |_: usize| 1, |n: usize| n.div_ceil(3)] {
+                let tree = tree(&cubes(count, step), halve);
+                let (got, want) = (cost(&tree, &Plan::of(&tree), 0), least_inner(&tree, 0, &mut Memory::new()));
+                assert!((got - want).abs() < 1e-3 * want, "{count} cubes {step} apart: {got} {want}");
+            }
+        }
+    }
+
+    /// The cost of the wide node that a binary node becomes.
+    fn cost(tree: &Binary, plan: &Plan, number: u32) -> f32 {
+        let mut children = Vec::new();
+        plan.children(tree, number, &mut children);
+        assert!(children.len() <= ARITY);
+        let below =
+            children.iter().map(
+                |&(child, is_leaf)| {
+                    if is_leaf { as_leaf(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
+                },
+            );
+        below.sum::<f32>() + tree.nodes[number as usize].bounds.half_area() * NODE
+    }
+
+    #[test]
+    fn three_levels_of_a_chain_and_of_a_full_tree() {
+        let mut children = Vec::new();
+        three_levels(&tree(&cubes(32, 1.0), |n| n / 2), 0, &mut children);
+        assert_eq!(children.len(), 8);
+        assert!(children.iter().all(|&(_, is_leaf)| !is_leaf));
+        three_levels(&tree(&cubes(32, 1.0), |_| 1), 0, &mut children);
+        assert_eq!(children.iter().filter(|&&(_, is_leaf)| is_leaf).count(), 3);
+        assert_eq!(children.len(), 4);
+    }
+}

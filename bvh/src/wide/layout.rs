@@ -1,0 +1,124 @@
+//! Wide nodes, and the order of triangles that both hierarchies share.
+
+use eyerays_shader::data::{NodePair, NodeRef, WideNode};
+
+use super::{
+    binary::{Binary, Node},
+    collapse::{LEVELS, Plan, three_levels},
+    grid::Grid,
+    octant,
+    record::{Child, Record},
+};
+use crate::{MAX_DEPTH, bounds::Bounds};
+
+/// The most wide nodes on a path from the root.
+///
+/// A traversal keeps the siblings that wait on a level in one entry, so it never holds more entries
+/// than this.
+pub const MAX_WIDE_DEPTH: u32 = 32;
+
+// A leaf of the binary tree may be one level more, and three levels always make one.
+const _: () = assert!((MAX_DEPTH + 1).div_ceil(LEVELS) <= MAX_WIDE_DEPTH);
+
+/// The wide nodes, and what they do to slots.
+pub(crate) struct Wide {
+    pub nodes: Vec<WideNode>,
+    /// The slot of depth-first order at each slot.
+    slots: Vec<u32>,
+}
+
+/// Makes wide nodes of node pairs, whose slots are in depth-first order: a parent before its children,
+/// the inner children of a node in a row, and what is below one of them before the next. `order` is
+/// sorted within large leaves of the pairs; [`Wide::renumber`] does the rest.
+pub(crate) fn wide(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Wide {
+    let tree = Binary::of(pairs, order, bounds);
+    let plan = Plan::of(&tree);
+    let mut wide = Wide { nodes: vec![nothing()], slots: Vec::with_capacity(order.len()) };
+    let mut children = Vec::new();
+    let mut open = vec![Open { number: 0, node: 0, level: 0 }];
+    while let Some(Open { number, node, level }) = open.pop() {
+        // With the plan's children, what is left may be one level of pairs lower only.
+        let rest = tree.nodes[node as usize].height.saturating_sub(1).div_ceil(LEVELS);
+        if level + 1 + rest <= MAX_WIDE_DEPTH {
+            plan.children(&tree, node, &mut children);
+        } else {
+            three_levels(&tree, node, &mut children);
+        }
+        let first = open.len();
+        wide.add(number, &tree, &children, |number, node| open.push(Open { number, node, level: level + 1 }));
+        open[first..].reverse();
+    }
+    wide
+}
+
+/// A wide node that is still to be made.
+struct Open {
+    /// Its number among wide nodes.
+    number: u32,
+    /// Its number in the binary tree.
+    node: u32,
+    /// Wide nodes above it.
+    level: u32,
+}
+
+impl Wide {
+    /// Makes wide node `number` of its children. Calls `open` with the numbers, wide and binary, of inner ones.
+    fn add(&mut self, number: u32, tree: &Binary, children: &[(u32, bool)], mut open: impl FnMut(u32, u32)) {
+        let node = |child: usize| &tree.nodes[children[child].0 as usize];
+        let first_triangle = self.slots.len() as u32;
+        let mut record = Record {
+            grid: Grid::around(Bounds::around((0..children.len()).map(|i| node(i).bounds))),
+            first_child: self.nodes.len() as u32,
+            first_triangle,
+            children: [Record::NOWHERE; WideNode::ARITY],
+        };
+        // Triangles stay in depth-first order, so that a large leaf of the pairs stays in one piece.
+        let mut places = [0; WideNode::ARITY];
+        for (i, place) in places.iter_mut().enumerate().take(children.len()) {
+            *place = self.slots.len() as u32 - first_triangle;
+            if children[i].1 {
+                self.slots.extend(run(node(i)));
+            }
+        }
+        let boxes: Vec<Bounds> = (0..children.len()).map(|i| node(i).bounds).collect();
+        for (slot, child) in octant::slots(&boxes).into_iter().enumerate() {
+            let Some(i) = child else { continue };
+            let (binary, is_leaf) = children[i];
+            let what = if is_leaf { Child::Leaf { place: places[i], count: node(i).count } } else { Child::Inner };
+            record.children[slot] = (what, record.grid.planes(boxes[i]));
+            if !is_leaf {
+                open(self.nodes.len() as u32, binary);
+                self.nodes.push(nothing());
+            }
+        }
+        self.nodes[number as usize] = record.encode();
+    }
+
+    /// Brings `order`, and the leaves of `pairs`, from the slots of depth-first order to those of the
+    /// wide nodes.
+    pub fn renumber(&self, pairs: &mut [NodePair], order: &mut Vec<u32>) {
+        let mut new = vec![0; order.len()];
+        for (slot, &old) in (0..).zip(&self.slots) {
+            new[old as usize] = slot;
+        }
+        *order = self.slots.iter().map(|&old| order[old as usize]).collect();
+        let moved = |reference: u32| match NodeRef(reference) {
+            leaf if leaf.is_leaf() => NodeRef::leaf(new[leaf.index() as usize], leaf.count()).0,
+            inner => inner.0,
+        };
+        for pair in pairs {
+            pair.left_min.w = moved(pair.left_min.w);
+            pair.right_min.w = moved(pair.right_min.w);
+        }
+    }
+}
+
+/// The slots below a node.
+fn run(node: &Node) -> std::ops::Range<u32> {
+    node.first..node.first + node.count
+}
+
+/// What stands for a node until it is made.
+fn nothing() -> WideNode {
+    bytemuck::Zeroable::zeroed()
+}

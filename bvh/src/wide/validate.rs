@@ -1,0 +1,123 @@
+//! The proof that kernels may index a wide hierarchy without checks.
+
+use eyerays_shader::data::{Bounds as BoundsRecord, WideNode};
+
+use super::{
+    MAX_WIDE_DEPTH,
+    record::{Child, Record},
+};
+use crate::{BuildError, bounds::Bounds, validate::Once};
+
+/// Checks a wide hierarchy over the own boxes of slots: every node is well-formed and reached exactly
+/// once from the root, every slot lies in exactly one leaf, every child's planes lie around what is
+/// below it with [`WideNode::MARGIN`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
+/// Takes linear time.
+///
+/// # Errors
+///
+/// The first rule broken on a walk in depth-first order; then what was never reached; then boxes.
+pub fn validate_wide(nodes: &[WideNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
+    if bounds.is_empty() {
+        return Err(BuildError::NoTriangles);
+    }
+    let mut walk =
+        Walk { nodes, bounds, met: Once::new(nodes.len()), slots: Once::new(bounds.len()), order: Vec::new() };
+    walk.all()?;
+    walk.boxes()
+}
+
+/// A walk through the tree and what it has met so far.
+struct Walk<'a> {
+    nodes: &'a [WideNode],
+    bounds: &'a [BoundsRecord],
+    met: Once,
+    slots: Once,
+    /// Nodes in the order of the walk: parents before children.
+    order: Vec<(u32, Record)>,
+}
+
+impl Walk<'_> {
+    /// Meets every node and every slot.
+    fn all(&mut self) -> Result<(), BuildError> {
+        let mut open = vec![(0, 0, 0)];
+        while let Some((parent, node, level)) = open.pop() {
+            let record = self.enter(parent, node, level)?;
+            let mut child = record.first_child;
+            for (what, _) in record.children {
+                match what {
+                    Child::None => {}
+                    Child::Inner => {
+                        open.push((node, child, level + 1));
+                        child = child.saturating_add(1);
+                    }
+                    Child::Leaf { place, count } => {
+                        self.leaf(node, u64::from(record.first_triangle) + u64::from(place), count)?;
+                    }
+                }
+            }
+        }
+        if let Some(node) = self.met.missing() {
+            return Err(BuildError::WideNodeUnreached { node });
+        }
+        match self.slots.missing() {
+            Some(triangle) => Err(BuildError::TriangleLost { triangle }),
+            None => Ok(()),
+        }
+    }
+
+    /// Meets the node that `parent` refers to.
+    fn enter(&mut self, parent: u32, node: u32, level: u32) -> Result<Record, BuildError> {
+        let Some(found) = self.nodes.get(node as usize) else {
+            return Err(BuildError::WideNodeOutOfRange { node: parent, child: node, nodes: self.nodes.len() });
+        };
+        if !self.met.meet(node) {
+            return Err(BuildError::WideNodeReachedTwice { node });
+        }
+        if level >= MAX_WIDE_DEPTH {
+            return Err(BuildError::WideNodeTooDeep { node });
+        }
+        let sound = |r: &Record| r.grid.is_sound() && r.children.iter().any(|c| c.0 != Child::None);
+        let record = Record::decode(found).filter(sound).ok_or(BuildError::WideNodeMalformed { node })?;
+        self.order.push((node, record));
+        Ok(record)
+    }
+
+    /// Meets the slots of a leaf.
+    fn leaf(&mut self, node: u32, first: u64, count: u32) -> Result<(), BuildError> {
+        let triangles = self.bounds.len();
+        if first + u64::from(count) > triangles as u64 {
+            return Err(BuildError::WideLeafOutOfRange { node, first, count, triangles });
+        }
+        let first = first as u32;
+        match (first..first + count).find(|&slot| !self.slots.meet(slot)) {
+            Some(triangle) => Err(BuildError::TriangleTwice { triangle }),
+            None => Ok(()),
+        }
+    }
+
+    /// Computes what is below every child, from the leaves up, and compares.
+    fn boxes(&self) -> Result<(), BuildError> {
+        let mut around = vec![Bounds::EMPTY; self.nodes.len()];
+        for (node, record) in self.order.iter().rev() {
+            let mut next = record.first_child as usize;
+            for (what, planes) in record.children {
+                let below = match what {
+                    Child::None => continue,
+                    Child::Inner => {
+                        next += 1;
+                        around[next - 1]
+                    }
+                    Child::Leaf { place, count } => {
+                        let first = (record.first_triangle + place) as usize;
+                        Bounds::around(self.bounds[first..first + count as usize].iter().map(Bounds::read))
+                    }
+                };
+                if !record.grid.contains(planes, below) {
+                    return Err(BuildError::WideBoxTooSmall { node: *node });
+                }
+                around[*node as usize] = around[*node as usize].union(below);
+            }
+        }
+        Ok(())
+    }
+}

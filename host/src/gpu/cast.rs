@@ -1,0 +1,188 @@
+//! Streams of rays on the GPU: one dispatch each, timed by itself.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+use bytemuck::Zeroable;
+use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::launch::{ROW, WORKGROUP};
+use glam::UVec4;
+
+use super::buffers::{self, Buffers, Room};
+use super::device::Gpu;
+use super::kernel::{Compiler, Kernel};
+use super::readback;
+use super::scene::{Hierarchies, SceneBuffers};
+use super::timer::Timer;
+use crate::error::{Error, Result};
+use crate::method::{Coherence, Layout, Traversal};
+use crate::pack::Packed;
+use crate::stream::{Answers, Question, Stream};
+
+/// What a kernel is compiled for: exact or fast, how, and what for.
+type Key = (bool, Traversal, Question);
+
+/// Dispatches of a submission.
+const BATCH: u32 = 8;
+/// A GPU is warm once a batch takes more than this share of the best before ...
+const NOISE: f64 = 0.97;
+/// ... and it has worked for at least so long, or at most so long.
+const LEAST_WARMING: Duration = Duration::from_millis(100);
+const MOST_WARMING: Duration = Duration::from_millis(1000);
+
+/// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
+pub struct Caster<'a> {
+    gpu: &'a Gpu,
+    packed: &'a Packed,
+    layout: Layout,
+    bindings: wgpu::BindGroupLayout,
+    scene: SceneBuffers,
+    kernels: RefCell<HashMap<Key, Rc<Kernel>>>,
+    timer: Option<Timer>,
+}
+
+/// A stream on the GPU, and room for its answers.
+pub struct Cast {
+    buffers: Buffers,
+    count: u32,
+}
+
+impl<'a> Caster<'a> {
+    /// Uploads a scene with both hierarchies and its triangles in a layout.
+    ///
+    /// # Errors
+    /// What does not fit the GPU, or what its driver reports.
+    pub fn new(gpu: &'a Gpu, packed: &'a Packed, layout: Layout) -> Result<Self> {
+        let scene = SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: true })?;
+        let (bindings, timer) = (buffers::layout(gpu), Timer::new(gpu, BATCH));
+        Ok(Caster { gpu, packed, layout, bindings, scene, kernels: RefCell::default(), timer })
+    }
+
+    /// Uploads a stream.
+    ///
+    /// # Errors
+    /// If it has more rays than a buffer holds, or what the GPU reports.
+    pub fn upload(&self, stream: &Stream) -> Result<Cast> {
+        let count = stream.len() as u64;
+        let (size, limit) = (32 * count, self.gpu.report.max_binding.min(self.gpu.report.max_buffer));
+        if size > limit {
+            return Err(Error::new(format!(
+                "{count} rays take {size} bytes, but \"{}\" has buffers of at most {limit}: use a smaller --size",
+                self.gpu.report.name
+            )));
+        }
+        let room = Room { paths: size, hits: 16 * count, shadows: 4 * count, ..Room::default() };
+        let buffers = Buffers::new(self.gpu, &self.bindings, &self.scene, &room)?;
+        let frame =
+            Frame { limits: UVec4::new(0, 0, count as u32, self.packed.triangles.len() as u32), ..Frame::zeroed() };
+        self.gpu.queue.write_buffer(&buffers.frame, 0, bytemuck::bytes_of(&frame));
+        self.gpu.queue.write_buffer(&buffers.paths, 0, bytemuck::cast_slice(stream.words()));
+        self.gpu.queue.submit([]);
+        self.gpu.wait()?;
+        Ok(Cast { buffers, count: count as u32 })
+    }
+
+    /// Traces a stream once, and returns what the dispatch took on the device (zero without a clock).
+    ///
+    /// # Errors
+    /// If the GPU can't run the method, or what it reports.
+    pub fn trace(&self, cast: &Cast, exact: bool, traversal: Traversal, question: Question) -> Result<Duration> {
+        let kernel = self.kernel(exact, traversal, question)?;
+        Ok(self.batch(cast, &kernel, 1)?[0])
+    }
+
+    /// What each of `repeats` dispatches takes on the device, one right after the other, once the GPU is
+    /// warm: an idle one has slow clocks (an H200 a sixth of its own), and takes some tenths of a second of
+    /// work to raise them.
+    ///
+    /// # Errors
+    /// As [`Caster::trace`].
+    pub fn measure(
+        &self,
+        cast: &Cast,
+        exact: bool,
+        traversal: Traversal,
+        question: Question,
+        repeats: u32,
+    ) -> Result<Vec<Duration>> {
+        let kernel = self.kernel(exact, traversal, question)?;
+        let start = Instant::now();
+        let mut best = Duration::MAX;
+        loop {
+            let took = self.batch(cast, &kernel, BATCH)?.into_iter().min().unwrap_or_default();
+            let settled = took.as_secs_f64() >= NOISE * best.as_secs_f64();
+            best = best.min(took);
+            if start.elapsed() >= MOST_WARMING || settled && start.elapsed() >= LEAST_WARMING {
+                break;
+            }
+        }
+        let mut times = Vec::new();
+        while times.len() < repeats as usize {
+            let batch = (repeats - times.len() as u32).min(BATCH);
+            times.extend(self.batch(cast, &kernel, batch)?);
+        }
+        Ok(times)
+    }
+
+    /// Dispatches one after the other in a submission, and what each took.
+    fn batch(&self, cast: &Cast, kernel: &Kernel, count: u32) -> Result<Vec<Duration>> {
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        for stretch in 0..count {
+            encoder.clear_buffer(&cast.buffers.counters, 0, None);
+            let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(stretch, true, true));
+            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
+            pass.set_bind_group(0, &cast.buffers.groups[0], &[]);
+            kernel.run(&mut pass, cast.count.min(ROW), cast.count.div_ceil(ROW));
+        }
+        if let Some(timer) = &self.timer {
+            timer.resolve(&mut encoder, count);
+        }
+        self.gpu.queue.submit([encoder.finish()]);
+        match &self.timer {
+            Some(timer) => timer.read(self.gpu, count),
+            None => self.gpu.wait().map(|()| vec![Duration::ZERO; count as usize]),
+        }
+    }
+
+    /// The answers of the last [`Caster::trace`] with this question.
+    ///
+    /// # Errors
+    /// What the GPU reports.
+    pub fn answers(&self, cast: &Cast, question: Question) -> Result<Answers> {
+        let count = u64::from(cast.count);
+        Ok(match question {
+            Question::Closest => {
+                let bytes = readback::read(self.gpu, &cast.buffers.hits, 16 * count)?;
+                let words: Vec<u32> = readback::words(&bytes).collect();
+                Answers::Closest(words.chunks_exact(4).map(UVec4::from_slice).collect())
+            }
+            Question::Occlusion => {
+                let bytes = readback::read(self.gpu, &cast.buffers.shadows, 4 * count)?;
+                Answers::Occlusion(readback::words(&bytes).collect())
+            }
+        })
+    }
+
+    /// The kernel for rays as they come: `auto` is resolved by the caller, who knows what they are.
+    fn kernel(&self, exact: bool, traversal: Traversal, question: Question) -> Result<Rc<Kernel>> {
+        let traversal = Traversal { layout: self.layout, ..traversal };
+        let key = (exact, traversal, question);
+        if let Some(kernel) = self.kernels.borrow().get(&key) {
+            return Ok(kernel.clone());
+        }
+        let compiler = Compiler::new(self.gpu, &self.bindings, exact, traversal);
+        let features = Features(self.packed.features.0 | Features::STREAM);
+        let stage = match question {
+            Question::Closest => "trace",
+            Question::Occlusion => "shadow",
+        };
+        let kernel = Rc::new(compiler.tracing(features, stage, Coherence::Scattered)?);
+        self.gpu.check()?;
+        self.kernels.borrow_mut().insert(key, kernel.clone());
+        Ok(kernel)
+    }
+}
+
+const _: () = assert!(ROW.is_multiple_of(WORKGROUP) && ROW / WORKGROUP <= 65_535);

@@ -1,0 +1,89 @@
+//! Rays in memory, to be traced as they are: what benchmarks and tests give to every method and device.
+
+use eyerays_shader::data::{numbers, pack};
+use eyerays_shader::ray::Hit;
+use glam::{UVec4, Vec3};
+
+/// A ray of a stream.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StreamRay {
+    /// Where it starts, in the normalised scene.
+    pub origin: Vec3,
+    /// Where it goes, of any length but zero.
+    pub direction: Vec3,
+    /// Nothing beyond this many lengths of the direction counts.
+    pub limit: f32,
+    /// The primitive that it leaves and can't meet, or [`StreamRay::NOWHERE`].
+    pub leaves: u32,
+}
+
+impl StreamRay {
+    /// It leaves no primitive.
+    pub const NOWHERE: u32 = Hit::<f32>::NOTHING;
+}
+
+/// Rays as kernels read them ([`eyerays_shader::stage::Segment`]).
+#[derive(Debug, Clone, Default)]
+pub struct Stream {
+    words: Vec<UVec4>,
+}
+
+impl Stream {
+    /// The rays in this order.
+    pub fn new(rays: impl ExactSizeIterator<Item = StreamRay>) -> Self {
+        let count = rays.len();
+        let mut words = vec![UVec4::ZERO; 2 * count];
+        for (i, ray) in rays.enumerate() {
+            words[i] = pack(ray.origin, ray.leaves);
+            words[count + i] = pack(ray.direction, ray.limit.to_bits());
+        }
+        Stream { words }
+    }
+
+    /// How many rays there are.
+    pub fn len(&self) -> usize {
+        self.words.len() / 2
+    }
+
+    /// Is there none?
+    pub fn is_empty(&self) -> bool {
+        self.words.is_empty()
+    }
+
+    /// Ray `i`.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn ray(&self, i: usize) -> StreamRay {
+        let (first, second) = (self.words[i], self.words[self.len() + i]);
+        StreamRay {
+            origin: numbers(first),
+            direction: numbers(second),
+            limit: f32::from_bits(second.w),
+            leaves: first.w,
+        }
+    }
+
+    /// Every ray's origin and the primitive it leaves, then every ray's direction and limit.
+    pub fn words(&self) -> &[UVec4] {
+        &self.words
+    }
+}
+
+/// What is asked of the rays of a stream.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Question {
+    /// The closest hit of each.
+    Closest,
+    /// Whether anything opaque lies before its limit.
+    Occlusion,
+}
+
+/// The answers to a [`Question`], by ray.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Answers {
+    /// The bits of (t, u, v), and the slot of the triangle or [`StreamRay::NOWHERE`].
+    Closest(Vec<UVec4>),
+    /// [`eyerays_shader::stage::REACHED`] or [`eyerays_shader::stage::SHADOWED`].
+    Occlusion(Vec<u32>),
+}

@@ -1,0 +1,66 @@
+//! Persistent subgroups (thesis 6.1, Aila and Laine 2009): as many as the device runs at once, whose
+//! lanes take another ray when they are done with theirs.
+
+use super::Segment;
+use crate::ray::{Hit, Ray};
+use crate::real::{Scalar, V3};
+use crate::scene::Geometry;
+use crate::traverse::Query;
+use crate::traverse::resumable::{Progress, Resumable};
+use crate::warp::Warp;
+
+/// A lane without a ray.
+const IDLE: u32 = u32::MAX;
+/// Percent of a subgroup that must be at work, or its idle lanes take new rays. (Each refill makes all wait
+/// for a ray's preparation.)
+const BUSY: u32 = 75;
+
+/// Follows rays until none is left. `take` gives each lane that wants a ray the number of one, `count` or
+/// more if there is none; `load` reads it, with whether it is to be traced at all; `store` is told the
+/// outcome.
+#[inline(always)]
+pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
+    geometry: &Geometry<'_>,
+    count: u32,
+    mut take: impl FnMut(bool) -> u32,
+    load: impl Fn(u32) -> (Segment<R>, bool),
+    mut store: impl FnMut(u32, bool, &Hit<R>),
+) {
+    let lanes = W::count(true);
+    let mut number = IDLE;
+    let mut traced = false;
+    let mut ray = Ray::new(V3::zero(), V3::splat(glam::Vec3::ONE));
+    let mut hit = Hit::none(R::splat(0.0));
+    let mut cursor = M::Cursor::finished();
+    let mut stack = M::EMPTY;
+    let mut least = (lanes * BUSY).div_ceil(100);
+    loop {
+        if number != IDLE && cursor.is_done() {
+            store(number, traced, &hit);
+            number = IDLE;
+        }
+        if least > 1 {
+            let next = take(number == IDLE);
+            if number == IDLE && next < count {
+                number = next;
+                let (segment, wanted) = load(next);
+                traced = wanted;
+                ray = segment.ray();
+                hit = Hit::none(segment.limit);
+                cursor = if wanted { M::Cursor::start() } else { M::Cursor::finished() };
+            }
+            // Once a lane has found none left, all see their rays to the end.
+            if W::any(number == IDLE) {
+                least = 1;
+            }
+        }
+        if !W::any(number != IDLE) {
+            return;
+        }
+        while W::count(!cursor.is_done()) >= least {
+            if !cursor.is_done() {
+                M::step::<Q>(geometry, &ray, &mut hit, &mut cursor, &mut stack);
+            }
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! A ray as it lies in memory.
+
+use crate::buffer::read;
+use crate::ray::Ray;
+use crate::real::{Scalar, V3};
+use crate::scene::Geometry;
+
+/// Where a ray starts, where it goes and how far.
+#[derive(Clone, Copy)]
+pub struct Segment<R> {
+    /// Where it starts, in the normalised scene.
+    pub origin: V3<R>,
+    /// Where it goes, of any length but zero.
+    pub direction: V3<R>,
+    /// Nothing beyond this many lengths of the direction counts.
+    pub limit: R,
+    /// The primitive that it leaves, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
+    pub leaves: u32,
+}
+
+impl<R: Scalar> Segment<R> {
+    /// Ray `index` of a stream: two records, all first ones before all second ones, so that
+    /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
+    #[inline(always)]
+    pub fn load(geometry: &Geometry<'_>, index: u32, stream: &[R::Record]) -> Self {
+        let (origin, leaves) = R::load(read(stream, index));
+        let (direction, limit) = R::load(read(stream, geometry.slots() + index));
+        Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), leaves }
+    }
+
+    /// The ray, ready for boxes and triangles.
+    #[inline(always)]
+    pub fn ray(&self) -> Ray<R> {
+        Ray::leaving(self.leaves, self.origin, self.direction)
+    }
+}

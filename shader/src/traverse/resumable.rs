@@ -1,0 +1,57 @@
+//! Single-ray methods as steps, so that whoever drives them may hand a lane another ray in between.
+
+use super::Query;
+use crate::ray::{Hit, Ray};
+use crate::real::Scalar;
+use crate::scene::Geometry;
+
+/// Where a traversal stands.
+pub trait Progress: Copy {
+    /// At the root.
+    fn start() -> Self;
+    /// Nothing to follow.
+    fn finished() -> Self;
+    /// Is nothing left to visit?
+    fn is_done(&self) -> bool;
+}
+
+/// A method that goes step by step. The stack is kept beside the cursor, since rust-gpu lets no pointer
+/// live in a struct that crosses a loop.
+pub trait Resumable<R: Scalar> {
+    /// The place in hand.
+    type Cursor: Progress;
+    /// The places that wait.
+    type Stack: Copy;
+    /// Nothing waits.
+    const EMPTY: Self::Stack;
+
+    /// One step of a traversal that is not done.
+    fn step<Q: Query>(
+        geometry: &Geometry<'_>,
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+        cursor: &mut Self::Cursor,
+        stack: &mut Self::Stack,
+    );
+}
+
+/// From the root to the end.
+#[inline(always)]
+pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    let mut stack = M::EMPTY;
+    finish::<Q, R, M>(geometry, ray, hit, M::Cursor::start(), &mut stack);
+}
+
+/// From where a traversal stands to its end.
+#[inline(always)]
+pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
+    geometry: &Geometry<'_>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+    mut cursor: M::Cursor,
+    stack: &mut M::Stack,
+) {
+    while !cursor.is_done() {
+        M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
+    }
+}

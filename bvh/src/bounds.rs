@@ -43,6 +43,19 @@ impl Bounds {
         }
     }
 
+    /// What lies in both; perhaps [`Bounds::is_empty`].
+    pub fn intersection(self, other: Self) -> Self {
+        Bounds {
+            min: zip(self.min, other.min, |a, b| if a > b { a } else { b }),
+            max: zip(self.max, other.max, |a, b| if a < b { a } else { b }),
+        }
+    }
+
+    /// Is there no point inside?
+    pub fn is_empty(self) -> bool {
+        (0..3).any(|i| self.min[i] > self.max[i])
+    }
+
     /// The least box around all.
     pub fn around(boxes: impl IntoIterator<Item = Bounds>) -> Self {
         boxes.into_iter().fold(Bounds::EMPTY, Bounds::union)

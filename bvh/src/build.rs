@@ -3,10 +3,11 @@
 use eyerays_shader::data::{BOX_PADDING, Bounds as Record, MAX_LEAF, NodePair, NodeRef, WideNode};
 
 use crate::{
-    BuildError, MAX_DEPTH, Quality, Reference,
+    BuildError, MAX_DEPTH, Quality, Reference, References,
     bounds::Bounds,
     cluster::Clusters,
     layout, search,
+    spatial::Tree,
     topology::Topology,
     validate::{self, validate},
     wide::{validate_wide, wide},
@@ -48,22 +49,23 @@ impl Bvh {
 /// [`BuildError::NoTriangles`], [`BuildError::TooManyTriangles`], and [`BuildError::Reference`] if a
 /// box is none, or not in [-1, 1] but for its padding. Any other error is a defect of the builder that
 /// its validation found.
-pub fn build(references: &[Reference], quality: Quality) -> Result<Bvh, BuildError> {
-    let count = check_count(references.len())?;
-    check_boxes(references)?;
-    let bounds: Vec<Bounds> = references.iter().map(|r| Bounds::read(&r.bounds)).collect();
+pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
+    let list = &references.list;
+    check_count(list.len())?;
+    check_boxes(list)?;
+    let bounds: Vec<Bounds> = list.iter().map(|r| Bounds::read(&r.bounds)).collect();
     let (mut nodes, mut order) = match bounds[..] {
         [only] => (vec![layout::single(only)], vec![0]),
         _ => {
-            let mut topology = topology(&bounds, count, quality);
+            let mut topology = topology(&bounds, references.tree.as_ref(), quality);
             topology.limit_depth(MAX_DEPTH);
             (layout::pairs(&mut topology, &bounds), topology.order)
         }
     };
-    validate::order(&order, references.len())?;
+    validate::order(&order, list.len())?;
     let wide = wide(&nodes, &mut order, &bounds);
     wide.renumber(&mut nodes, &mut order);
-    let at = |&slot: &u32| references[slot as usize];
+    let at = |&slot: &u32| list[slot as usize];
     let bvh = Bvh {
         nodes,
         wide: wide.nodes,
@@ -76,19 +78,27 @@ pub fn build(references: &[Reference], quality: Quality) -> Result<Bvh, BuildErr
 }
 
 /// The tree before its depth is limited.
-fn topology(bounds: &[Bounds], count: u32, quality: Quality) -> Topology {
+fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topology {
+    let count = bounds.len() as u32;
     if count <= MAX_LEAF {
         return Topology::run(count);
     }
-    let clusters = Clusters::of(bounds);
+    let clusters = match tree {
+        Some(tree) => Clusters::between(&tree.starts),
+        None => Clusters::of(bounds),
+    };
     let primitives: Vec<Bounds> = (0..clusters.len() as u32)
         .map(|group| {
             let members = clusters.members(group).iter();
             Bounds::around(members.map(|&t| bounds[t as usize]))
         })
         .collect();
-    let tree = search::search(&primitives, &quality.parameters());
-    Topology::of(&tree, &clusters)
+    let parameters = quality.parameters();
+    let found = match tree {
+        Some(tree) => search::improve(tree, &primitives, &parameters),
+        None => search::search(&primitives, &parameters),
+    };
+    Topology::of(&found, &clusters)
 }
 
 /// A number of references that a node's can count.

@@ -6,7 +6,7 @@
 //! from it, bounds the depth, computes every box itself and validates the result, because the kernels
 //! index without checks and cull without tolerance.
 //!
-//! The stages run one way, a file each: bounds, reference, cluster (with morton), search (with
+//! The stages run one way, a file each: bounds, reference, spatial, cluster (with morton), search (with
 //! reinsertion), topology, depth, layout (with median), wide, validate.
 
 mod bounds;
@@ -21,6 +21,7 @@ mod quality;
 mod reference;
 mod reinsertion;
 mod search;
+mod spatial;
 mod statistics;
 mod topology;
 mod validate;
@@ -30,7 +31,7 @@ pub use build::{Bvh, build};
 pub use depth::MAX_DEPTH;
 pub use error::BuildError;
 pub use quality::Quality;
-pub use reference::{Reference, split};
+pub use reference::{Reference, References, split};
 pub use statistics::Statistics;
 pub use validate::validate;
 pub use wide::{MAX_WIDE_DEPTH, validate_wide};

@@ -28,6 +28,9 @@ impl Quality {
             // 21 bits an axis resolve the normalised scene down to the padding of its boxes.
             sort_precision: SortPrecision::U64,
             max_prims_per_leaf: MAX_LEAF,
+            // A pair costs a ray as much as a triangle, as `Statistics` counts. With obvhs' 3, Sibenik's
+            // diffuse rays visit 4 % fewer pairs and two thirds more triangles.
+            collapse_traversal_cost: 1.0,
             ..preset
         }
     }

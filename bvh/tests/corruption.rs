@@ -8,7 +8,7 @@ use eyerays_shader::data::{Bounds, NodePair, NodeRef, pack};
 
 /// A valid tree, and the own boxes of its slots.
 fn valid() -> (Vec<NodePair>, Vec<Bounds>) {
-    let bvh = build(&whole(&scattered(300, 29)), Quality::Medium).unwrap();
+    let bvh = build(&whole(&mixed()), Quality::Medium).unwrap();
     assert_eq!(validate(&bvh.nodes, &bvh.bounds), Ok(()));
     (bvh.nodes, bvh.bounds)
 }
@@ -161,8 +161,8 @@ fn too_deep_by_one() {
 #[test]
 fn empty_sibling_belongs_to_one_triangle_only() {
     let references = whole(&scattered(2, 31));
-    let bounds = [references[0].bounds, references[1].bounds];
-    let one = build(&references[..1], Quality::Medium).unwrap().nodes;
+    let bounds = [references.list[0].bounds, references.list[1].bounds];
+    let one = build(&references.list[..1].to_vec().into(), Quality::Medium).unwrap().nodes;
     assert_eq!(validate(&one, &bounds[..1]), Ok(()));
     let error = BuildError::TriangleTwice { triangle: 0 };
     assert_eq!(validate(&one, &bounds), Err(error.clone()));

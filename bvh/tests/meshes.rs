@@ -27,7 +27,7 @@ fn depth(triangles: &[Triangle]) -> u32 {
 #[test]
 fn no_triangles() {
     for quality in QUALITIES {
-        assert_eq!(build(&[], quality), Err(BuildError::NoTriangles));
+        assert_eq!(build(&Vec::new().into(), quality), Err(BuildError::NoTriangles));
     }
     assert_eq!(split(&[], 0.0), Err(BuildError::NoTriangles));
 }
@@ -147,7 +147,7 @@ fn references_outside_the_scene_are_refused_by_their_place() {
     };
     for bad in [(f32::NAN, 0.5), (0.5, f32::NAN), (0.5, 0.25), (-1.5, 0.0), (0.0, f32::INFINITY), (0.0, 1.001)] {
         let mut references = good.clone();
-        references[17] = Reference { bounds: bounds(bad.0, bad.1), ..references[17] };
+        references.list[17] = Reference { bounds: bounds(bad.0, bad.1), ..references.list[17] };
         let error = build(&references, Quality::Medium).unwrap_err();
         assert_eq!(error, BuildError::Reference { reference: 17 });
         assert!(error.to_string().contains("reference 17"));

@@ -3,7 +3,7 @@
 mod common;
 
 use common::*;
-use eyerays_bvh::{Quality, build};
+use eyerays_bvh::{Bvh, Quality, build, split};
 use eyerays_shader::data::Triangle;
 use glam::Vec3;
 use proptest::{
@@ -34,6 +34,11 @@ fn any_mesh() -> impl Strategy<Value = Vec<Triangle>> {
         .prop_map(|all| mesh(all.into_iter().flat_map(|(vertices, times)| std::iter::repeat_n(vertices, times))))
 }
 
+/// No split triangles as often as some and many.
+fn budget() -> impl Strategy<Value = f32> {
+    prop_oneof![Just(0.0f32), Just(0.3), Just(1.0)]
+}
+
 fn quality() -> impl Strategy<Value = Quality> {
     (0..QUALITIES.len()).prop_map(|i| QUALITIES[i])
 }
@@ -47,15 +52,15 @@ proptest! {
     })]
 
     #[test]
-    fn every_promise_holds(triangles in any_mesh(), quality in quality()) {
-        build_and_check(&whole(&triangles), quality);
+    fn every_promise_holds(triangles in any_mesh(), budget in budget(), quality in quality()) {
+        build_and_check(&split(&triangles, budget).unwrap(), quality);
     }
 }
 
 /// Builds on a pool of so many threads.
-fn build_with(threads: usize, triangles: &[Triangle], quality: Quality) -> eyerays_bvh::Bvh {
+fn build_with(threads: usize, triangles: &[Triangle], budget: f32, quality: Quality) -> Bvh {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-    pool.install(|| build(&whole(triangles), quality).unwrap())
+    pool.install(|| build(&split(triangles, budget).unwrap(), quality).unwrap())
 }
 
 #[test]
@@ -64,8 +69,11 @@ fn threads_do_not_change_the_tree() {
     let mut triangles = grid(400);
     triangles.extend(scattered(20_000, 17));
     triangles.extend(grid(20));
-    for quality in QUALITIES {
-        let [one, two, seven] = [1, 2, 7].map(|n| build_with(n, &triangles, quality));
+    triangles.extend(slivers(200));
+    for (quality, budget) in
+        [(Quality::Fast, 0.0), (Quality::Medium, 0.0), (Quality::High, 0.0), (Quality::Medium, 0.1)]
+    {
+        let [one, two, seven] = [1, 2, 7].map(|n| build_with(n, &triangles, budget, quality));
         assert!(one == two && one == seven, "{quality:?}");
     }
 }

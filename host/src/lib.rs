@@ -1,10 +1,12 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+pub mod bench;
 pub mod cli;
 pub mod compare;
 pub mod cpu;
 pub mod error;
 pub mod film;
+pub mod generate;
 pub mod gpu;
 pub mod image;
 pub mod method;

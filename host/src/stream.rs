@@ -1,5 +1,7 @@
 //! Rays in memory, to be traced as they are: what benchmarks and tests give to every method and device.
 
+use std::ops::Range;
+
 use eyerays_shader::data::{numbers, pack};
 use eyerays_shader::ray::Hit;
 use glam::{UVec4, Vec3};
@@ -31,13 +33,30 @@ pub struct Stream {
 impl Stream {
     /// The rays in this order.
     pub fn new(rays: impl ExactSizeIterator<Item = StreamRay>) -> Self {
-        let count = rays.len();
+        Self::filled(rays.len(), rays)
+    }
+
+    /// The rays of all parts in this order.
+    pub fn of_parts(parts: &[Vec<StreamRay>]) -> Self {
+        Self::filled(parts.iter().map(Vec::len).sum(), parts.iter().flatten().copied())
+    }
+
+    fn filled(count: usize, rays: impl Iterator<Item = StreamRay>) -> Self {
         let mut words = vec![UVec4::ZERO; 2 * count];
         for (i, ray) in rays.enumerate() {
             words[i] = pack(ray.origin, ray.leaves);
             words[count + i] = pack(ray.direction, ray.limit.to_bits());
         }
         Stream { words }
+    }
+
+    /// Some of its rays, as a stream of their own.
+    ///
+    /// # Panics
+    /// If there are not so many.
+    pub fn part(&self, rays: Range<usize>) -> Self {
+        let seconds = self.len() + rays.start..self.len() + rays.end;
+        Stream { words: [&self.words[rays], &self.words[seconds]].concat() }
     }
 
     /// How many rays there are.

@@ -292,3 +292,33 @@ fn lights_and_cameras_beyond_all_numbers() {
     let light = format!("{SCENE}\n[[light]]\nkind = \"point\"\nposition = [1e38, 0, 0]\n");
     Place::new(&[("scene.toml", &light)]).refuse_scene("scene.toml", &["light 1", "too far"]);
 }
+
+#[test]
+fn benchmarks_that_can_not_be() {
+    let dark = SCENE.replace("[[mesh]]", "[[nothing]]");
+    let place = Place::new(&[("scene.toml", SCENE), ("dark.toml", &dark), ("old.md", "an older table")]);
+    for (more, wants) in [
+        (&["missing.toml"][..], &["missing.toml", "no such file"][..]),
+        (&["dark.toml"], &["dark.toml"]),
+        (&["--camera", "back"], &["scene.toml", "\"back\"", "0 \"front\""]),
+        (&["-o", "table.txt"], &["table.txt", ".md", ".csv", ".json"]),
+        (&["-o", "missing/table.md"], &["missing/table.md", "folder does not exist"]),
+        (&["--size", "0x10"], &["0x10"]),
+        (&["--size", "8192x8192"], &["8192x8192", "16777216 pixels"]),
+        (&["--ao-length", "0"], &["--ao-length"]),
+        (&["--ao-length", "inf"], &["--ao-length"]),
+        (&["--stack-max", "64"], &["--stack-max 64"]),
+        (&["--cut", "101"], &["--cut 101"]),
+        (&["--threads", "0"], &["--threads 0"]),
+        (&["--adapter", "0"], &["--adapter", "--device cpu"]),
+    ] {
+        place.refuse(&[&["bench", "scene.toml", "--device", "cpu"], more].concat(), wants);
+    }
+    place.refuse(&["bench", "missing.toml", "--device", "cpu", "-o", "old.md"], &["missing.toml"]);
+    for more in [&["--repeat", "0"][..], &["--methods", "fastest"], &["--kinds", ""], &["--precision", "reference"]] {
+        let outcome = place.run(&[&["bench", "scene.toml", "--device", "cpu"], more].concat());
+        assert_eq!(outcome.code, Some(2), "{more:?}");
+        assert!(outcome.stdout.is_empty() && outcome.stderr.starts_with("error: "), "{}", outcome.stderr);
+    }
+    assert_eq!(place.run(&["bench"]).code, Some(2));
+}

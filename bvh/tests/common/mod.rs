@@ -2,7 +2,7 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
-use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, Reference, build, split};
+use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, References, build, split};
 use eyerays_shader::data::{Bounds, MAX_LEAF, NodePair, NodeRef, Triangle, WideNode, numbers};
 use glam::{Vec3, vec3};
 
@@ -67,6 +67,15 @@ pub fn grid(edge: u32) -> Vec<Triangle> {
     }))
 }
 
+/// Long thin triangles, as diagonals of the scene: their boxes overlap and they do not.
+pub fn slivers(count: u32) -> Vec<Triangle> {
+    let corner = |i: u32, z: f32| vec3(i as f32 / count as f32 - 1.0, 0.01 * z, z);
+    mesh((0..count).map(|i| {
+        let to = corner(i, 0.9) + vec3(1.0, 0.7, 0.0);
+        [corner(i, -0.9), to, to + vec3(0.0, 0.01, 0.02)]
+    }))
+}
+
 /// Small triangles all over, from a seed.
 pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
     let mut state = seed;
@@ -81,29 +90,36 @@ pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
     }))
 }
 
+/// 300 triangles, some of which share leaves.
+pub fn mixed() -> Vec<Triangle> {
+    let mut triangles = scattered(280, 29);
+    triangles.extend(duplicates(20));
+    triangles
+}
+
 /// A reference for each triangle, as a scene without split triangles has.
-pub fn whole(triangles: &[Triangle]) -> Vec<Reference> {
+pub fn whole(triangles: &[Triangle]) -> References {
     split(triangles, 0.0).expect("a valid mesh")
 }
 
 /// Builds and checks at every quality.
-pub fn build_and_check_all(references: &[Reference]) {
+pub fn build_and_check_all(references: &References) {
     for quality in QUALITIES {
         build_and_check(references, quality);
     }
 }
 
 /// Builds, and checks every promise of the result.
-pub fn build_and_check(references: &[Reference], quality: Quality) -> Bvh {
+pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
     let bvh = build(references, quality).expect("valid references");
     let key = |triangle: u32, b: Bounds| (triangle, b.least.to_array(), b.greatest.to_array());
     let mut slots: Vec<_> = bvh.order.iter().zip(&bvh.bounds).map(|(&t, &b)| key(t, b)).collect();
     slots.sort();
-    let mut expected: Vec<_> = references.iter().map(|r| key(r.triangle, r.bounds)).collect();
+    let mut expected: Vec<_> = references.list.iter().map(|r| key(r.triangle, r.bounds)).collect();
     expected.sort();
     assert_eq!(slots, expected, "slots lost or doubled a reference");
 
-    let mut walk = Walk { nodes: &bvh.nodes, bounds: &bvh.bounds, pairs: 0, met: vec![false; references.len()] };
+    let mut walk = Walk { nodes: &bvh.nodes, bounds: &bvh.bounds, pairs: 0, met: vec![false; references.list.len()] };
     walk.pair(0, 1);
     assert_eq!(walk.pairs as usize, bvh.nodes.len(), "pairs");
     assert!(walk.met.iter().all(|met| *met), "slots");
@@ -111,7 +127,7 @@ pub fn build_and_check(references: &[Reference], quality: Quality) -> Bvh {
     let mut walk = WideWalk { nodes: &bvh.wide, bounds: &bvh.bounds, next: 0, met: 1 };
     walk.node(0, 1);
     assert_eq!(walk.met as usize, bvh.wide.len(), "wide nodes");
-    assert_eq!(walk.next as usize, references.len(), "slots of wide nodes");
+    assert_eq!(walk.next as usize, references.list.len(), "slots of wide nodes");
     bvh
 }
 

@@ -1,7 +1,9 @@
 //! The command line.
 
+mod bench;
 mod check;
 mod diff;
+mod generate;
 mod info;
 mod options;
 mod render;
@@ -19,7 +21,7 @@ const BAD_INPUT: u8 = 2;
 
 const CODES: &str = "\
 Pictures and tables go to files and standard output, summaries and messages to standard error.
-Exit codes: 0 done, 1 pictures that differ, 2 something wrong with what was given.";
+Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given.";
 
 /// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
@@ -43,10 +45,16 @@ enum Command {
     /// Compare two pictures, or a scene's pictures from GPU and CPU
     #[command(after_help = diff::EXAMPLES, allow_negative_numbers = true)]
     Diff(Box<diff::Diff>),
+    /// Measure every method, kind of rays and device, as tables
+    #[command(after_help = bench::EXAMPLES)]
+    Bench(Box<bench::Bench>),
     /// List the GPUs of this machine, or tell a scene's figures
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
+    /// Make a scene of any number of triangles to measure with
+    #[command(after_help = generate::EXAMPLES)]
+    Generate(generate::Generate),
 }
 
 /// Runs the command line of this process.
@@ -56,8 +64,10 @@ pub fn run() -> ExitCode {
     let outcome = match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
+        Command::Bench(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
+        Command::Generate(command) => command.run(cli.quiet),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error}");

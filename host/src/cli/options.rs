@@ -91,10 +91,20 @@ pub(super) struct On {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-enum Bvh {
+pub(super) enum Bvh {
     Fast,
     Medium,
     High,
+}
+
+impl Bvh {
+    pub fn quality(self) -> Quality {
+        match self {
+            Bvh::Fast => Quality::Fast,
+            Bvh::Medium => Quality::Medium,
+            Bvh::High => Quality::High,
+        }
+    }
 }
 
 /// A scene, loaded and packed, and what that took.
@@ -112,7 +122,7 @@ impl View {
         let load_time = start.elapsed();
         let settings = self.settings(&scene)?;
         let camera = self.camera(&scene)?;
-        let packed = Packed::new(&scene, &camera, settings, self.quality()).map_err(|e| e.of(path))?;
+        let packed = Packed::new(&scene, &camera, settings, self.bvh.quality()).map_err(|e| e.of(path))?;
         Ok(Loaded { packed, load_time })
     }
 
@@ -164,38 +174,21 @@ impl View {
         }
         Ok(camera)
     }
-
-    fn quality(&self) -> Quality {
-        match self.bvh {
-            Bvh::Fast => Quality::Fast,
-            Bvh::Medium => Quality::Medium,
-            Bvh::High => Quality::High,
-        }
-    }
 }
 
 impl On {
     /// The choice of devices these options make.
     pub fn choice(&self, device: DeviceWish) -> Result<Choice> {
-        let threads = self.threads.unwrap_or(0);
-        if self.threads == Some(0) || threads > MOST_THREADS {
-            return Err(Error::new(format!("--threads {threads} is not within 1 to {MOST_THREADS}")));
-        }
+        let threads = threads(self.threads)?;
         if self.no_passthrough && self.precision != Precision::Fast {
             return Err(Error::new("--no-passthrough can't keep exact arithmetic: add --precision fast"));
         }
         if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
-        if !(1..=63).contains(&self.stack_max) {
-            return Err(Error::new(format!("--stack-max {} is not within 1 to 63", self.stack_max)));
-        }
-        if self.cut > 100 {
-            return Err(Error::new(format!("--cut {} is more than 100 percent", self.cut)));
-        }
         let traversal = Traversal {
             method: self.method,
-            tuning: Tuning::new(self.stack_max, self.cut),
+            tuning: tuning(self.stack_max, self.cut)?,
             scheduling: self.scheduling,
             order: self.order,
             layout: self.triangles,
@@ -205,8 +198,28 @@ impl On {
     }
 }
 
+/// `--threads`; 0 is one a core.
+pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
+    match wish {
+        None => Ok(0),
+        Some(threads) if (1..=MOST_THREADS).contains(&threads) => Ok(threads),
+        Some(threads) => Err(Error::new(format!("--threads {threads} is not within 1 to {MOST_THREADS}"))),
+    }
+}
+
+/// `--stack-max` and `--cut`.
+pub(super) fn tuning(stack_max: u32, cut: u32) -> Result<Tuning> {
+    if !(1..=63).contains(&stack_max) {
+        return Err(Error::new(format!("--stack-max {stack_max} is not within 1 to 63")));
+    }
+    if cut > 100 {
+        return Err(Error::new(format!("--cut {cut} is more than 100 percent")));
+    }
+    Ok(Tuning::new(stack_max, cut))
+}
+
 /// The camera with this name, or this number.
-fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
+pub(super) fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
     let named = cameras.iter().find(|c| c.name == wish);
     let numbered = || wish.parse::<usize>().ok().and_then(|i| cameras.get(i));
     named.or_else(numbered).ok_or_else(|| {
@@ -216,7 +229,7 @@ fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
 }
 
 /// `WxH`.
-fn size(text: &str) -> std::result::Result<(u32, u32), String> {
+pub(super) fn size(text: &str) -> std::result::Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     parts.ok_or_else(|| "write a width and a height in pixels, for example 640x480".to_owned())
 }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use bytemuck::Zeroable;
 use eyerays_shader::data::{Features, Frame};
@@ -23,6 +23,14 @@ use crate::stream::{Answers, Question, Stream};
 
 /// What a kernel is compiled for: exact or fast, how, and what for.
 type Key = (bool, Traversal, Question);
+
+/// Dispatches of a submission.
+const BATCH: u32 = 8;
+/// A GPU is warm once a batch takes more than this share of the best before ...
+const NOISE: f64 = 0.97;
+/// ... and it has worked for at least so long, or at most so long.
+const LEAST_WARMING: Duration = Duration::from_millis(100);
+const MOST_WARMING: Duration = Duration::from_millis(1000);
 
 /// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
 pub struct Caster<'a> {
@@ -48,7 +56,7 @@ impl<'a> Caster<'a> {
     /// What does not fit the GPU, or what its driver reports.
     pub fn new(gpu: &'a Gpu, packed: &'a Packed, layout: Layout) -> Result<Self> {
         let scene = SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: true })?;
-        let (bindings, timer) = (buffers::layout(gpu), Timer::new(gpu));
+        let (bindings, timer) = (buffers::layout(gpu), Timer::new(gpu, BATCH));
         Ok(Caster { gpu, packed, layout, bindings, scene, kernels: RefCell::default(), timer })
     }
 
@@ -82,21 +90,59 @@ impl<'a> Caster<'a> {
     /// If the GPU can't run the method, or what it reports.
     pub fn trace(&self, cast: &Cast, exact: bool, traversal: Traversal, question: Question) -> Result<Duration> {
         let kernel = self.kernel(exact, traversal, question)?;
+        Ok(self.batch(cast, &kernel, 1)?[0])
+    }
+
+    /// What each of `repeats` dispatches takes on the device, one right after the other, once the GPU is
+    /// warm: an idle one has slow clocks (an H200 a sixth of its own), and takes some tenths of a second of
+    /// work to raise them.
+    ///
+    /// # Errors
+    /// As [`Caster::trace`].
+    pub fn measure(
+        &self,
+        cast: &Cast,
+        exact: bool,
+        traversal: Traversal,
+        question: Question,
+        repeats: u32,
+    ) -> Result<Vec<Duration>> {
+        let kernel = self.kernel(exact, traversal, question)?;
+        let start = Instant::now();
+        let mut best = Duration::MAX;
+        loop {
+            let took = self.batch(cast, &kernel, BATCH)?.into_iter().min().unwrap_or_default();
+            let settled = took.as_secs_f64() >= NOISE * best.as_secs_f64();
+            best = best.min(took);
+            if start.elapsed() >= MOST_WARMING || settled && start.elapsed() >= LEAST_WARMING {
+                break;
+            }
+        }
+        let mut times = Vec::new();
+        while times.len() < repeats as usize {
+            let batch = (repeats - times.len() as u32).min(BATCH);
+            times.extend(self.batch(cast, &kernel, batch)?);
+        }
+        Ok(times)
+    }
+
+    /// Dispatches one after the other in a submission, and what each took.
+    fn batch(&self, cast: &Cast, kernel: &Kernel, count: u32) -> Result<Vec<Duration>> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        encoder.clear_buffer(&cast.buffers.counters, 0, None);
-        {
-            let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(true, true));
+        for stretch in 0..count {
+            encoder.clear_buffer(&cast.buffers.counters, 0, None);
+            let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(stretch, true, true));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
             pass.set_bind_group(0, &cast.buffers.groups[0], &[]);
             kernel.run(&mut pass, cast.count.min(ROW), cast.count.div_ceil(ROW));
         }
         if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
+            timer.resolve(&mut encoder, count);
         }
         self.gpu.queue.submit([encoder.finish()]);
         match &self.timer {
-            Some(timer) => timer.read(self.gpu),
-            None => self.gpu.wait().map(|()| Duration::ZERO),
+            Some(timer) => timer.read(self.gpu, count),
+            None => self.gpu.wait().map(|()| vec![Duration::ZERO; count as usize]),
         }
     }
 

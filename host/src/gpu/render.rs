@@ -90,7 +90,7 @@ impl<'a> Renderer<'a> {
         let room = Room::of(packed, slots, most(&|r| r.width * r.height));
         let scene = SceneBuffers::new(gpu, packed, traversal.layout, compiler.hierarchies())?;
         let buffers = Buffers::new(gpu, &layout, &scene, &room)?;
-        Ok(Renderer { gpu, packed, traversal, primary, secondary, buffers, timer: Timer::new(gpu), bands })
+        Ok(Renderer { gpu, packed, traversal, primary, secondary, buffers, timer: Timer::new(gpu, 1), bands })
     }
 
     /// Renders the picture. `done` hears of every finished share of the pixels.
@@ -153,17 +153,17 @@ impl<'a> Renderer<'a> {
 
     fn submit(&self, mut encoder: wgpu::CommandEncoder) -> Result<Duration> {
         if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder);
+            timer.resolve(&mut encoder, 1);
         }
         self.gpu.queue.submit([encoder.finish()]);
         match &self.timer {
-            Some(timer) => timer.read(self.gpu),
+            Some(timer) => Ok(timer.read(self.gpu, 1)?[0]),
             None => self.gpu.wait().map(|()| Duration::ZERO),
         }
     }
 
     fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, first: bool, last: bool) -> wgpu::ComputePass<'e> {
-        let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(first, last));
+        let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(0, first, last));
         encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes })
     }
 
@@ -230,8 +230,8 @@ mod tests {
     fn bands_cover_every_pixel_once_and_fit() {
         for (size, slots) in [((1, 1), 32), ((100, 70), 32), ((100, 70), 512), ((100, 70), 1 << 22), ((9, 3), 64)] {
             let mut seen = vec![0; (size.0 * size.1) as usize];
-            for band in bands(size, slots) {
-                assert!(camera::slots(band.width, band.height) <= slots, "{size:?} {slots}: {band:?}");
+            for band in bands(size, slots, Features(0)) {
+                assert!(camera::slots(band.width, band.height, Features(0)) <= slots, "{size:?} {slots}: {band:?}");
                 for y in band.y..band.y + band.height {
                     for x in band.x..band.x + band.width {
                         seen[(y * size.0 + x) as usize] += 1;

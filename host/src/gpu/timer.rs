@@ -1,4 +1,4 @@
-//! Device time by timestamps at the first and the last pass of a submission.
+//! Device time by timestamps at the ends of passes.
 
 use std::time::Duration;
 
@@ -6,7 +6,7 @@ use super::device::Gpu;
 use super::readback;
 use crate::error::Result;
 
-/// Adds up what submissions take on the device.
+/// Times stretches of a submission on the device.
 pub(super) struct Timer {
     queries: wgpu::QuerySet,
     resolved: wgpu::Buffer,
@@ -14,17 +14,17 @@ pub(super) struct Timer {
 }
 
 impl Timer {
-    /// A timer, where the GPU has one.
-    pub fn new(gpu: &Gpu) -> Option<Timer> {
+    /// A timer of at most so many stretches a submission, where the GPU has a clock.
+    pub fn new(gpu: &Gpu, stretches: u32) -> Option<Timer> {
         gpu.report.timestamps.then(|| Timer {
             queries: gpu.device.create_query_set(&wgpu::QuerySetDescriptor {
                 label: None,
                 ty: wgpu::QueryType::Timestamp,
-                count: 2,
+                count: 2 * stretches,
             }),
             resolved: gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some("timestamps"),
-                size: 16,
+                size: 16 * u64::from(stretches),
                 usage: wgpu::BufferUsages::QUERY_RESOLVE | wgpu::BufferUsages::COPY_SRC,
                 mapped_at_creation: false,
             }),
@@ -32,25 +32,26 @@ impl Timer {
         })
     }
 
-    /// What a pass writes: the start if it is the first, the end if it is the last.
-    pub fn writes(&self, first: bool, last: bool) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
+    /// What a pass writes: a stretch's start if it is its first, the end if it is its last.
+    pub fn writes(&self, stretch: u32, first: bool, last: bool) -> Option<wgpu::ComputePassTimestampWrites<'_>> {
         (first || last).then_some(wgpu::ComputePassTimestampWrites {
             query_set: &self.queries,
-            beginning_of_pass_write_index: first.then_some(0),
-            end_of_pass_write_index: last.then_some(1),
+            beginning_of_pass_write_index: first.then_some(2 * stretch),
+            end_of_pass_write_index: last.then_some(2 * stretch + 1),
         })
     }
 
-    /// Ends a submission.
-    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder) {
-        encoder.resolve_query_set(&self.queries, 0..2, &self.resolved, 0);
+    /// Ends a submission of so many stretches. (One that was never timed would be waited for in vain.)
+    pub fn resolve(&self, encoder: &mut wgpu::CommandEncoder, stretches: u32) {
+        encoder.resolve_query_set(&self.queries, 0..2 * stretches, &self.resolved, 0);
     }
 
-    /// What the last submission took; waits for it.
-    pub fn read(&self, gpu: &Gpu) -> Result<Duration> {
-        let bytes = readback::read(gpu, &self.resolved, 16)?;
+    /// What each of so many stretches of the last submission took; waits for it.
+    pub fn read(&self, gpu: &Gpu, stretches: u32) -> Result<Vec<Duration>> {
+        let bytes = readback::read(gpu, &self.resolved, 16 * u64::from(stretches))?;
         let ticks: Vec<u64> =
             bytes.chunks_exact(8).map(|c| u64::from_le_bytes(c.try_into().expect("eight bytes"))).collect();
-        Ok(Duration::from_nanos((ticks[1].saturating_sub(ticks[0]) as f64 * self.nanoseconds) as u64))
+        let time = |ends: &[u64]| (ends[1].saturating_sub(ends[0]) as f64 * self.nanoseconds) as u64;
+        Ok(ticks.chunks_exact(2).map(|ends| Duration::from_nanos(time(ends))).collect())
     }
 }

@@ -55,6 +55,11 @@ impl Real for Fast {
     }
 
     #[inline(always)]
+    fn settle(self, _least: f32) -> Fast {
+        self
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Fast {
         Fast(Float::sqrt(self.0))
     }

@@ -114,6 +114,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         Self::select(other.lt(self), self, other)
     }
 
+    /// `self * a + b`, rounded once or twice, as suits the device: for tests that leave room for either, so that
+    /// only what they lead to has the same bits everywhere.
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
     /// As [`Real::min`], but of two zeros the device may take either: for what is only compared.
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {
@@ -124,6 +131,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     #[inline(always)]
     fn greater(self, other: Self) -> Self {
         self.max(other)
+    }
+
+    /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
+    /// device likes.
+    #[inline(always)]
+    fn settle(self, least: f32) -> Self {
+        self.flush(least)
     }
 
     /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
@@ -169,8 +183,8 @@ pub trait Octet<S: Scalar>: Lanes<S> {
         let (near, far) = if swapped { (high, low) } else { (low, high) };
         (Self::bytes(near, first), Self::bytes(far, first))
     }
-    /// All the bits that `f` makes of the bytes at the lanes of a mask.
-    fn gather(mask: Self::Mask, words: [u32; 2], first: u32, f: impl Fn(u32) -> u32) -> u32;
+    /// The bytes of `bits` at the lanes of a mask, each shifted to its place in a word.
+    fn gather(mask: Self::Mask, bits: [u32; 2], places: [u32; 2], first: u32) -> u32;
 }
 
 /// The vectors that a processor has for the numbers of `S`.
@@ -305,8 +319,8 @@ macro_rules! octet_of_one {
                 Self::splat(byte(words, first) as f32)
             }
             #[inline(always)]
-            fn gather(mask: bool, words: [u32; 2], first: u32, f: impl Fn(u32) -> u32) -> u32 {
-                if mask { f(byte(words, first)) } else { 0 }
+            fn gather(mask: bool, bits: [u32; 2], places: [u32; 2], first: u32) -> u32 {
+                if mask { byte(bits, first) << byte(places, first) } else { 0 }
             }
         }
     };

@@ -50,6 +50,11 @@ macro_rules! comparisons {
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
+        fn fused(self, a: Self, b: Self) -> Self {
+            $wrap(super::device::fused($inner(self), $inner(a), $inner(b)))
+        }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
         fn lesser(self, other: Self) -> Self {
             $wrap(super::device::lesser($inner(self), $inner(other)))
         }

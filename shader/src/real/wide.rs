@@ -193,10 +193,10 @@ macro_rules! lanes {
                 Wide(bytes(words).map(f32::from))
             }
             #[inline(always)]
-            fn gather(mask: WideMask<8>, words: [u32; 2], _first: u32, f: impl Fn(u32) -> u32) -> u32 {
-                let bytes = bytes(words);
-                let bits: [u32; 8] = from_fn(|i| mask.0[i] & f(u32::from(bytes[i])));
-                bits.iter().fold(0, |all, bits| all | bits)
+            fn gather(mask: WideMask<8>, bits: [u32; 2], places: [u32; 2], _first: u32) -> u32 {
+                let (bits, places) = (bytes(bits), bytes(places));
+                let all: [u32; 8] = from_fn(|i| mask.0[i] & (u32::from(bits[i]) << places[i]));
+                all.iter().fold(0, |all, bits| all | bits)
             }
         }
     };
@@ -224,6 +224,7 @@ impl<const N: usize> Ray<Wide<N>> {
         Ray {
             origin: self.origin.lane(i),
             inverse: self.inverse.lane(i),
+            offset: self.offset.lane(i),
             shear: self.shear.lane(i),
             leaves: self.leaves.0[i],
         }

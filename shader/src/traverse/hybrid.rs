@@ -158,15 +158,18 @@ fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
 /// Every ray of the mask follows a branch by itself.
 #[inline(always)]
 fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
+    Q::on_parted(true);
     R::lanes(ray, hit, rays, |ray, hit| {
         let mut stack = [0; STACK];
         finish::<Q, R::Lane, IfIf>(geometry, ray, hit, Cursor::at(node), &mut stack);
     });
+    Q::on_parted(false);
 }
 
 /// Every ray goes on by itself with what the packet has left.
 #[inline(always)]
 fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
+    Q::on_parted(true);
     R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
         let mut stack = [0; STACK];
         let mut i = 0;
@@ -176,4 +179,5 @@ fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &St
         }
         finish::<Q, R::Lane, IfIf>(geometry, ray, hit, *cursor, &mut stack);
     });
+    Q::on_parted(false);
 }

@@ -39,6 +39,9 @@ pub trait Query {
     /// Is told that a packet goes to a child; `_lanes` counts those of its rays that want it.
     #[inline(always)]
     fn on_child(_lanes: impl FnOnce() -> u32) {}
+    /// Is told that rays of a packet go on by themselves, one after the other, or that the packet does.
+    #[inline(always)]
+    fn on_parted(_parted: bool) {}
 }
 
 /// The closest hit.

@@ -22,7 +22,7 @@ use crate::data::NodeRef;
 use crate::data::{STACK, WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Lanes, Native, Octet, Real, Scalar, V3, Vectors};
+use crate::real::{Native, Octet, Real, Scalar, V3, Vectors};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
@@ -130,7 +130,9 @@ impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
             Q::on_boxes(WideNode::ARITY as u32);
             (cursor.nodes, cursor.triangles) = open::<R, V>(&node, ray, hit);
         }
-        if cursor.triangles.waiting != 0 {
+        let mut first = true;
+        while cursor.triangles.waiting != 0 && (first || geometry.tuning.cut() == 26) {
+            first = false;
             cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
@@ -158,18 +160,16 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
 fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
-    let grid = Grid::new(node, ray);
-    let bits = [node.children.z, node.children.w];
-    let inverted = inverted(ray);
-    let (mut waiting, mut first) = (0, 0);
-    while first < WideNode::ARITY as u32 {
-        waiting |= V::Eight::gather(grid.meets::<V::Eight>(first, hit.t), bits, first, |child| {
-            // The places of inner nodes alone lie at 24 and above, and turn with the ray's order.
-            let turned = if child & 24 == 24 { inverted } else { 0 };
-            (child >> 5) << ((child & 31) ^ turned)
-        });
-        first += V::Eight::COUNT;
-    }
+    let opening = Opening::new(node, ray, hit.t);
+    // A loop is not always unrolled.
+    let waiting = opening.turn::<V::Eight>(0)
+        | opening.turn::<V::Eight>(1)
+        | opening.turn::<V::Eight>(2)
+        | opening.turn::<V::Eight>(3)
+        | opening.turn::<V::Eight>(4)
+        | opening.turn::<V::Eight>(5)
+        | opening.turn::<V::Eight>(6)
+        | opening.turn::<V::Eight>(7);
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
     (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
 }
@@ -200,48 +200,74 @@ fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
     several::<Q, R, V::Four>(geometry, group.first, group.waiting, ray, hit)
 }
 
-/// A node's grid in a ray's terms.
-struct Grid<R: Real> {
+/// The places of four children given their bytes, of all at once (Ylitie et al. 2017, appendix).
+#[inline(always)]
+fn places(children: u32, inverted: u32) -> u32 {
+    // Places from 24 on, whose bits 3 and 4 are set, are those of inner nodes.
+    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
+    (children ^ (inverted & is_inner)) & 0x1f1f_1f1f
+}
+
+/// A node in a ray's terms.
+struct Opening<R: Real> {
     /// Where the ray meets the grid's origin.
     start: V3<R>,
     /// How far it is to the next plane.
     step: V3<R>,
+    /// Where the ray ends.
+    limit: R,
     /// Bytes of the lesser planes, an axis after the other.
     low: [[u32; 2]; 3],
     /// Bytes of the greater planes.
     high: [[u32; 2]; 3],
     /// Does the ray enter by the greater ones?
     down: [bool; 3],
+    /// A byte a child of what waits if it is met.
+    bits: [u32; 2],
+    /// A byte a child of where those bits lie.
+    places: [u32; 2],
 }
 
-impl<R: Scalar> Grid<R> {
+impl<R: Scalar> Opening<R> {
     #[inline(always)]
-    fn new(node: &WideNode, ray: &Ray<R>) -> Self {
+    fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
         let scale = V3::<R>::splat(Vec3::new(power(0), power(8), power(16)));
         let first = |q: UVec4| [q.x, q.y];
         let last = |q: UVec4| [q.z, q.w];
         let zero = R::splat(0.0);
-        Grid {
+        let (inverted, children) = (inverted(ray) * 0x0101_0101, last(node.children));
+        Opening {
             start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
             step: scale.times(ray.inverse),
+            limit,
             low: [first(node.low_x_low_y), last(node.low_x_low_y), first(node.low_z_high_x)],
             high: [last(node.low_z_high_x), first(node.high_y_high_z), last(node.high_y_high_z)],
             down: [ray.inverse.x.lt(zero), ray.inverse.y.lt(zero), ray.inverse.z.lt(zero)],
+            bits: [(children[0] >> 5) & 0x0707_0707, (children[1] >> 5) & 0x0707_0707],
+            places: [places(children[0], inverted), places(children[1], inverted)],
         }
     }
 
-    /// Which of [`Lanes::COUNT`] boxes from `first` on the ray meets before `limit`.
+    /// What waits of a box and those that are tested with it, if it is the first of them.
     #[inline(always)]
-    fn meets<E: Octet<R>>(&self, first: u32, limit: R) -> E::Mask {
+    fn turn<E: Octet<R>>(&self, first: u32) -> u32 {
+        if first.is_multiple_of(E::COUNT) {
+            E::gather(self.meets::<E>(first), self.bits, self.places, first)
+        } else {
+            0
+        }
+    }
+
+    /// Which of [`Lanes::COUNT`] boxes from `first` on the ray meets before its limit.
+    #[inline(always)]
+    fn meets<E: Octet<R>>(&self, first: u32) -> E::Mask {
         let all = |v: V3<R>| V3::new(E::all(v.x), E::all(v.y), E::all(v.z));
         let (start, step) = (all(self.start), all(self.step));
         let x = E::sides(self.down[0], self.low[0], self.high[0], first);
         let y = E::sides(self.down[1], self.low[1], self.high[1], first);
         let z = E::sides(self.down[2], self.low[2], self.high[2], first);
-        let enter = V3::new(x.0, y.0, z.0).times(step) + start;
-        let leave = V3::new(x.1, y.1, z.1).times(step) + start;
-        let met = span(enter, leave);
-        met.near.le(met.far) & met.near.le(E::all(limit))
+        let met = span(V3::new(x.0, y.0, z.0).fused(step, start), V3::new(x.1, y.1, z.1).fused(step, start));
+        met.near.le(met.far) & met.near.le(E::all(self.limit))
     }
 }

@@ -1,0 +1,249 @@
+//! Every scene, view and kind of rays, every way.
+
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+
+use clap::ValueEnum;
+
+use super::answers::{self, Hash};
+use super::counts::{Counts, counts};
+use super::device::{OnGpu, Run, Uploaded, on_cpu};
+use super::plan::Trial;
+use super::rays::{AO_SHARE, Sight, View, diagonal};
+use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
+use crate::cpu;
+use crate::error::{Error, Result};
+use crate::method::{Coherence, Method, Order, Processor, Traversal};
+use crate::pack::Packed;
+use crate::scene::{Camera, Settings};
+use crate::stream::{Answers, Question, Stream};
+
+/// Measures all that is planned. `begins` hears of every stream before it is traced.
+///
+/// # Errors
+/// A scene that can't be packed, or a GPU that can't hold it where the CPU is not measured.
+pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<Report> {
+    let mut report = Report { setup: plan.setup(), ..Report::default() };
+    for subject in subjects {
+        let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
+        let named = |e: Error| Error::new(format!("{}: {e}", subject.name));
+        let mut packed = Packed::new(&subject.scene, &subject.cameras[0], settings, plan.quality).map_err(named)?;
+        let mut views = Vec::new();
+        for &order in &plan.orders {
+            for camera in &subject.cameras {
+                packed.look(&subject.scene, camera).map_err(named)?;
+                views.push((camera, order, View::of(&packed, order)));
+            }
+        }
+        let bench = Bench::new(plan, subject, &packed, &mut report).map_err(named)?;
+        for (camera, order, view) in views {
+            bench.view(camera, order, &view, &mut report, begins).map_err(named)?;
+        }
+    }
+    Ok(report)
+}
+
+/// How many streams [`run`] tells of.
+pub fn streams(plan: &Plan, subjects: &[Subject]) -> usize {
+    let views: usize = subjects.iter().map(|subject| subject.cameras.len()).sum();
+    views * plan.orders.len() * plan.kinds.len()
+}
+
+/// A scene, ready to be measured.
+struct Bench<'a> {
+    plan: &'a Plan,
+    subject: &'a Subject,
+    packed: &'a Packed,
+    gpu: Option<OnGpu<'a>>,
+    /// In the normalised scene.
+    ao_length: f32,
+}
+
+/// A stream and what is known of it.
+struct Asked<'s> {
+    kind: Kind,
+    camera: &'s Camera,
+    stream: &'s Stream,
+    reference: Answers,
+    hash: Hash,
+    counts: HashMap<Method, Counts>,
+}
+
+impl<'a> Bench<'a> {
+    fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a Packed, report: &mut Report) -> Result<Self> {
+        let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.scale);
+        let statistics = &packed.statistics;
+        report.scenes.push(SceneRow {
+            scene: subject.name.clone(),
+            triangles: statistics.triangles,
+            split_triangles: statistics.references,
+            nodes: statistics.nodes,
+            leaves: statistics.leaves,
+            depth: statistics.depth,
+            wide_nodes: packed.wide.len(),
+            build_ms: packed.build_time.as_secs_f64() * 1e3,
+            ao_length,
+        });
+        let gpu = match plan.gpu.as_ref().map(|gpu| OnGpu::new(gpu, packed, &plan.layouts)).transpose() {
+            Err(error) if plan.cpu => {
+                report.note(format!("{}: the GPU is left out: {error}", subject.name));
+                None
+            }
+            gpu => gpu?,
+        };
+        let ao_length = (ao_length * packed.scale).clamp(1e-30, 1e30) as f32;
+        Ok(Bench { plan, subject, packed, gpu, ao_length })
+    }
+
+    fn view(
+        &self,
+        camera: &Camera,
+        order: Order,
+        view: &View,
+        report: &mut Report,
+        begins: &dyn Fn(&str),
+    ) -> Result<()> {
+        let place = format!("{} {}", self.subject.name, camera.name);
+        let sight = Sight::new(self.packed, view, self.plan.threads)?;
+        let (mut hash, mut rays) = (Hash::default(), 0);
+        for &kind in &self.plan.kinds {
+            begins(&format!("{place} {}", kind.name()));
+            let stream = sight.rays(kind, self.ao_length)?;
+            if stream.is_empty() {
+                report.note(format!("{place}: there are no {} rays", kind.name()));
+                continue;
+            }
+            if kind == Kind::Shadow && sight.lights() < self.packed.lights.len() {
+                report.note(format!("{place}: shadow rays go to the first {} lights", sight.lights()));
+            }
+            rays += stream.len();
+            let of_kind = self.kind(kind, camera, order, &stream, report)?;
+            hash.add(of_kind.0 as u32);
+            hash.add((of_kind.0 >> 32) as u32);
+        }
+        let (width, height) = self.plan.size;
+        report.views.push(ViewRow {
+            scene: self.subject.name.clone(),
+            view: camera.name.clone(),
+            order: name(order),
+            hit_share: sight.hits() as f64 / (f64::from(width) * f64::from(height)),
+            rays,
+            hash: hash.to_string(),
+        });
+        Ok(())
+    }
+
+    /// Measures a stream in every way, and returns the hash that exact answers have.
+    fn kind(&self, kind: Kind, camera: &Camera, order: Order, stream: &Stream, report: &mut Report) -> Result<Hash> {
+        let mut trials = self.plan.trials(self.packed, kind, order, &mut |note| report.note(note));
+        trials.retain(|trial| trial.processor == Processor::Cpu || self.gpu.is_some());
+        let asked = self.asked(kind, camera, stream, &trials)?;
+        let uploaded = match &self.gpu {
+            Some(gpu) if trials.iter().any(|trial| trial.processor == Processor::Gpu) => Some(gpu.upload(stream)?),
+            _ => None,
+        };
+        for trial in &trials {
+            let outcome = self.traced(trial, &asked, uploaded.as_ref());
+            match outcome {
+                Err(error) => report.faults.push(format!("{}: {error}", self.describe(trial, &asked))),
+                Ok(run) => {
+                    let record = self.record(trial, &asked, &run);
+                    if trial.exact && record.hash != asked.hash.to_string() {
+                        report.faults.push(self.difference(trial, &asked, &run.answers));
+                    }
+                    report.records.push(record);
+                }
+            }
+        }
+        Ok(asked.hash)
+    }
+
+    /// The answers that all must give, by the CPU, and each method's counts.
+    fn asked<'s>(&self, kind: Kind, camera: &'s Camera, stream: &'s Stream, trials: &[Trial]) -> Result<Asked<'s>> {
+        let (packed, threads, ask) = (self.packed, self.plan.threads, kind.question());
+        let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
+        let (reference, _) = cpu::cast(packed, traversal, threads, stream, ask)?;
+        let mut by_method = HashMap::new();
+        for trial in trials {
+            let method = trial.traversal.method;
+            if let Entry::Vacant(entry) = by_method.entry(method) {
+                entry.insert(counts(packed, trial.traversal, threads, stream, ask)?);
+            }
+        }
+        let hash = Hash::of(packed, &reference);
+        Ok(Asked { kind, camera, stream, reference, hash, counts: by_method })
+    }
+
+    fn traced(&self, trial: &Trial, asked: &Asked<'_>, uploaded: Option<&Uploaded>) -> Result<Run> {
+        let ask: Question = asked.kind.question();
+        match (&self.gpu, uploaded, trial.processor) {
+            (Some(gpu), Some(uploaded), Processor::Gpu) => {
+                gpu.run(uploaded, trial.exact, trial.traversal, ask, self.plan.repeat)
+            }
+            _ => on_cpu(self.plan, self.packed, asked.stream, trial.traversal, ask),
+        }
+    }
+
+    fn record(&self, trial: &Trial, asked: &Asked<'_>, run: &Run) -> Record {
+        let (traversal, timing) = (trial.traversal, run.timing);
+        let (device, driver) = self.plan.device(trial.processor);
+        let counts = asked.counts[&traversal.method];
+        let rays = asked.stream.len();
+        Record {
+            scene: self.subject.name.clone(),
+            view: asked.camera.name.clone(),
+            kind: asked.kind,
+            method: name(traversal.method),
+            auto: trial.is_auto,
+            scheduling: (trial.processor == Processor::Gpu).then(|| name(traversal.scheduling)),
+            order: name(traversal.order),
+            triangles: name(traversal.layout),
+            processor: processor(trial.processor),
+            device,
+            driver,
+            precision: if trial.exact { "exact" } else { "fast" },
+            width: self.plan.size.0,
+            height: self.plan.size.1,
+            rays,
+            repeat: self.plan.repeat,
+            median_seconds: timing.median,
+            spread: timing.spread,
+            mrays_per_s: rays as f64 / timing.median / 1e6,
+            frames_per_s: 1.0 / timing.median,
+            visits: counts.visits,
+            boxes: counts.boxes,
+            triangle_tests: counts.triangles,
+            simd_efficiency: counts.simd_efficiency,
+            hash: Hash::of(self.packed, &run.answers).to_string(),
+            differing: answers::differing(self.packed, &asked.reference, &run.answers),
+        }
+    }
+
+    fn describe(&self, trial: &Trial, asked: &Asked<'_>) -> String {
+        let Traversal { method, scheduling, order, layout, .. } = trial.traversal;
+        let how = [name(method), name(scheduling), name(order), name(layout)].join(" ");
+        let precision = if trial.exact { "exact" } else { "fast" };
+        let (place, kind) = (format!("{} {}", self.subject.name, asked.camera.name), asked.kind.name());
+        format!("{place} {kind}: {how} in {precision} precision on {}", self.plan.device(trial.processor).0)
+    }
+
+    fn difference(&self, trial: &Trial, asked: &Asked<'_>, answers: &Answers) -> String {
+        let how = self.describe(trial, asked);
+        match answers::first_difference(self.packed, &asked.reference, answers) {
+            Some(ray) => format!("{how}: ray {ray} of {} differs first", asked.stream.len()),
+            None => format!("{how}: there are fewer answers than rays"),
+        }
+    }
+}
+
+/// A choice as the command line spells it.
+pub(super) fn name<T: ValueEnum>(value: T) -> String {
+    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
+}
+
+fn processor(processor: Processor) -> &'static str {
+    match processor {
+        Processor::Gpu => "gpu",
+        Processor::Cpu => "cpu",
+    }
+}

@@ -228,7 +228,7 @@ impl Bench {
             let (scene, warnings) = scene::load(path)?;
             super::warn(&warnings, quiet);
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
-            subjects.push(Subject { name: self.name(path), scene, cameras });
+            subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }
         Ok(subjects)
     }

@@ -10,6 +10,11 @@ use crate::{
 };
 
 /// A triangle, or a part of one.
+///
+/// Rays meet a part's box and leave it before they meet the triangle in another part. So the box says from
+/// where on a hit may count, which keeps culling exact, and not up to where: a distance clamped to its
+/// end would be too short (measured: 5 of 1000 rays in Conference). That is for the triangle's own box
+/// to say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// The triangle's index.

@@ -6,6 +6,7 @@ pub mod compare;
 pub mod cpu;
 pub mod error;
 pub mod film;
+pub mod generate;
 pub mod gpu;
 pub mod image;
 pub mod method;

@@ -122,6 +122,65 @@ impl NodePair {
     }
 }
 
+/// The boxes of two siblings as kernels test them: by centre and half their extent, which spares a minimum
+/// and a maximum an axis, each as dear on a GPU as two sums.
+///
+/// Such a test rounds otherwise than that of a triangle's own box, so these boxes are wider than what
+/// they hold by [`CentredPair::MARGIN`]; see `traverse::step`.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct CentredPair {
+    /// Centre of the left box, and the left [`NodeRef`].
+    pub left_centre: UVec4,
+    /// Half the left box's extent; the integer is 0.
+    pub left_half: UVec4,
+    /// Centre of the right box, and the right [`NodeRef`].
+    pub right_centre: UVec4,
+    /// Half the right box's extent; the integer is 0.
+    pub right_half: UVec4,
+}
+
+impl CentredPair {
+    /// How much wider than what it holds a box is at least, on every side.
+    pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
+
+    /// The left child's reference.
+    #[inline(always)]
+    pub fn left(&self) -> NodeRef {
+        NodeRef(self.left_centre.w)
+    }
+
+    /// The right child's reference.
+    #[inline(always)]
+    pub fn right(&self) -> NodeRef {
+        NodeRef(self.right_centre.w)
+    }
+}
+
+#[cfg(not(target_arch = "spirv"))]
+impl From<&NodePair> for CentredPair {
+    fn from(pair: &NodePair) -> Self {
+        let (left_centre, left_half) = centred(pair.left_min, pair.left_max);
+        let (right_centre, right_half) = centred(pair.right_min, pair.right_max);
+        CentredPair { left_centre, left_half, right_centre, right_half }
+    }
+}
+
+/// Centre and half the extent of a box, the latter rounded up, and wider by the margin.
+#[cfg(not(target_arch = "spirv"))]
+fn centred(least: UVec4, greatest: UVec4) -> (UVec4, UVec4) {
+    let (low, high) = (numbers(least), numbers(greatest));
+    let centre = (low + high) * 0.5;
+    let half = |low: f32, high: f32, centre: f32| {
+        let centre = f64::from(centre);
+        let reach = (f64::from(high) - centre).max(centre - f64::from(low)) + f64::from(CentredPair::MARGIN);
+        // A roundoff more than the conversion takes off.
+        (reach as f32) * (1.0 + f32::EPSILON)
+    };
+    let half = Vec3::new(half(low.x, high.x, centre.x), half(low.y, high.y, centre.y), half(low.z, high.z, centre.z));
+    (pack(centre, least.w), pack(half, 0))
+}
+
 /// Eight siblings in 80 bytes, their boxes quantised to a grid (Ylitie, Karras and Laine 2017: CWBVH).
 ///
 /// A box of child `i` lies between `origin + low[i] * 2^e` and `origin + high[i] * 2^e` on each axis.

@@ -9,6 +9,8 @@ pub struct Ray<R: Real> {
     pub origin: V3<R>,
     /// One over the direction; a component below 2^-60 counts as 2^-60, so that no infinity arises.
     pub inverse: V3<R>,
+    /// The origin times the inverse.
+    pub offset: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
     /// The primitive that it leaves, which it can't meet again; [`Hit::NOTHING`] for none.
@@ -51,7 +53,7 @@ impl<R: Real> Ray<R> {
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
-        Ray { origin, inverse, shear, leaves }
+        Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
     }
 }
 

@@ -1,7 +1,9 @@
 //! What a launch sees of the scene in device memory.
 
 use crate::buffer::read;
-use crate::data::{Bounds, Features, Frame, Light, Material, NodePair, Normals, Triangle, Tuning, WideNode, numbers};
+use crate::data::{
+    Bounds, CentredPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
+};
 use glam::{UVec4, Vec3};
 
 /// The launch and what its rays meet.
@@ -14,7 +16,7 @@ pub struct Geometry<'a> {
     /// When hybrid methods part; a constant of the compiled kernel on the GPU.
     pub tuning: Tuning,
     /// Child pairs; the root is pair 0.
-    pub nodes: &'a [NodePair],
+    pub nodes: &'a [CentredPair],
     /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
     pub wide: &'a [WideNode],
     /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
@@ -52,16 +54,11 @@ impl Geometry<'_> {
         }
     }
 
-    /// The box that a hit at a slot must lie in (least, greatest corner): the triangle's own, or that of
-    /// the part that the slot stands for.
+    /// The box (least, greatest corner) of the part of a split triangle that a slot stands for.
     #[inline(always)]
-    pub fn bounds(&self, slot: u32, triangle: &Triangle) -> (Vec3, Vec3) {
-        if self.features.has(Features::SPLIT) {
-            let bounds = read(self.bounds, slot);
-            (numbers(bounds.least), numbers(bounds.greatest))
-        } else {
-            triangle.bounds()
-        }
+    pub fn bounds(&self, slot: u32) -> (Vec3, Vec3) {
+        let bounds = read(self.bounds, slot);
+        (numbers(bounds.least), numbers(bounds.greatest))
     }
 }
 

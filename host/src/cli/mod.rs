@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod diff;
+mod generate;
 mod info;
 mod options;
 mod render;
@@ -51,6 +52,9 @@ enum Command {
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
+    /// Make a scene of any number of triangles to measure with
+    #[command(after_help = generate::EXAMPLES)]
+    Generate(generate::Generate),
 }
 
 /// Runs the command line of this process.
@@ -63,6 +67,7 @@ pub fn run() -> ExitCode {
         Command::Bench(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
+        Command::Generate(command) => command.run(cli.quiet),
     };
     outcome.unwrap_or_else(|error| {
         eprintln!("error: {error}");

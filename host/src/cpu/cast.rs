@@ -5,21 +5,19 @@ use std::time::{Duration, Instant};
 use bytemuck::Zeroable;
 use eyerays_shader::data::{Features, Frame};
 use eyerays_shader::scene::Geometry;
-use eyerays_shader::stage::{self, Asking};
-use eyerays_shader::traverse::{
-    self, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, WhileWhile, WideNodes,
-};
-use eyerays_shader::warp::Alone;
+use eyerays_shader::stage::Asking;
 use glam::UVec4;
 use rayon::prelude::*;
 
-use super::pool;
+use super::follow::{Job, follow};
+use super::level::Level;
+use super::pool::pool;
 use crate::error::Result;
-use crate::method::{Method, Traversal};
+use crate::method::Traversal;
 use crate::pack::{Packed, TriangleWords};
 use crate::stream::{Answers, Question, Stream};
 
-/// Neighbouring rays that a task follows.
+/// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
 const TASK: usize = 1024;
 
 /// Follows the rays of a stream with `threads` threads (0: one a core) in exact precision, and returns what
@@ -28,6 +26,21 @@ const TASK: usize = 1024;
 /// # Errors
 /// If the threads can't be had.
 pub fn cast(
+    packed: &Packed,
+    traversal: Traversal,
+    threads: usize,
+    stream: &Stream,
+    question: Question,
+) -> Result<(Answers, Duration)> {
+    cast_by(Level::best(), packed, traversal, threads, stream, question)
+}
+
+/// [`cast`] with the instructions of a level.
+///
+/// # Errors
+/// As [`cast`].
+pub fn cast_by(
+    level: Level,
     packed: &Packed,
     traversal: Traversal,
     threads: usize,
@@ -46,45 +59,28 @@ pub fn cast(
         triangles: &words.0,
         bounds: &packed.bounds,
     };
-    let follow = match traversal.method {
-        Method::Auto | Method::IfIf => follow::<IfIf>,
-        Method::WhileWhile => follow::<WhileWhile>,
-        Method::Wide => follow::<WideNodes>,
-        Method::Speculative => follow::<Speculative<Alone>>,
-        Method::Packet => follow::<Packet<Alone>>,
-        Method::SequentialStack => follow::<Hybrid<Alone, StackMax, Sequential>>,
-        Method::SequentialCut => follow::<Hybrid<Alone, Cut, Sequential>>,
-        Method::InterleavedStack => follow::<Hybrid<Alone, StackMax, Interleaved>>,
-        Method::InterleavedCut => follow::<Hybrid<Alone, Cut, Interleaved>>,
-    };
-    pool(threads)?.install(|| Ok(follow(&geometry, stream, question)))
-}
-
-fn follow<M: traverse::Method<f32>>(
-    geometry: &Geometry<'_>,
-    stream: &Stream,
-    question: Question,
-) -> (Answers, Duration) {
     let mut answers = match question {
         Question::Closest => Answers::Closest(vec![UVec4::ZERO; stream.len()]),
         Question::Occlusion => Answers::Occlusion(vec![0; stream.len()]),
     };
-    let start = Instant::now();
-    match &mut answers {
-        Answers::Closest(hits) => each(hits, |i| stage::trace::<f32, M>(geometry, i, stream.words())),
-        Answers::Occlusion(shadows) => {
-            let asking = Asking { lights: &[], paths: stream.words(), hits: &[] };
-            each(shadows, |i| stage::shadow::<f32, M>(geometry, asking, i, 0));
+    let slots: Vec<u32> = (0..stream.len() as u32).collect();
+    let asking = Asking { lights: &[], paths: stream.words(), hits: &[] };
+    let run = |slots: &[u32], job: Job<'_, f32>| follow(level, traversal.method, &geometry, slots, job);
+    let time = pool(threads)?.install(|| {
+        let start = Instant::now();
+        match &mut answers {
+            Answers::Closest(hits) => tasks(&slots, hits, |slots, hits| run(slots, Job::Trace(stream.words(), hits))),
+            Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
+                run(slots, Job::Shadow(asking, 0, shadows));
+            }),
         }
-    }
-    (answers, start.elapsed())
+        start.elapsed()
+    });
+    Ok((answers, time))
 }
 
-/// Fills in every answer, a task of neighbours at a time.
-fn each<T: Send>(answers: &mut [T], answer: impl Fn(u32) -> T + Sync) {
-    answers.par_chunks_mut(TASK).with_max_len(1).enumerate().for_each(|(task, answers)| {
-        for (i, place) in answers.iter_mut().enumerate() {
-            *place = answer((task * TASK + i) as u32);
-        }
-    });
+/// Neighbours a task, so that no thread waits long for the last.
+fn tasks<T: Send>(slots: &[u32], answers: &mut [T], task: impl Fn(&[u32], &mut [T]) + Sync) {
+    let tasks = slots.par_chunks(TASK).zip(answers.par_chunks_mut(TASK));
+    tasks.with_max_len(1).for_each(|(slots, answers)| task(slots, answers));
 }

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{Quality, Statistics};
 use eyerays_shader::camera;
 use eyerays_shader::data::{
-    Bounds, Features, Frame, Light as LightRecord, Material as MaterialRecord, NodePair, Normals, Triangle, WideNode,
-    pack,
+    Bounds, CentredPair, Features, Frame, Light as LightRecord, Material as MaterialRecord, Normals, Triangle,
+    WideNode, pack,
 };
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
@@ -19,12 +19,12 @@ use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
 
 /// References added by splitting triangles, as a share of the triangles.
-const SPLIT_BUDGET: f32 = 0.0;
+const SPLIT_BUDGET: f32 = 0.3;
 
 /// A scene as the kernels read it, owned, for one camera and one set of settings.
 pub struct Packed {
     /// Child pairs of the hierarchy.
-    pub nodes: Vec<NodePair>,
+    pub nodes: Vec<CentredPair>,
     /// The same hierarchy with nodes of eight children.
     pub wide: Vec<WideNode>,
     /// Triangles by slot, in the normalised scene; a split one has several slots.
@@ -72,11 +72,14 @@ impl Packed {
     /// for the scene's numbers.
     pub fn new(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Result<Packed> {
         let scale = normalisation(scene, camera);
-        let features = features(scene, &settings);
+        let mut features = features(scene, &settings);
         let triangles = triangles(scene, scale, features);
         let start = Instant::now();
         let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
         let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
+        if references.list.len() > triangles.len() {
+            features.0 |= Features::SPLIT;
+        }
         let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let statistics = Statistics::of(&bvh, &triangles);
@@ -84,9 +87,9 @@ impl Packed {
         Ok(Packed {
             triangles: bvh.gather(&triangles),
             normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
-            nodes: bvh.nodes,
+            nodes: bvh.nodes.iter().map(CentredPair::from).collect(),
             wide: bvh.wide,
-            bounds: if SPLIT_BUDGET > 0.0 { bvh.bounds } else { Vec::new() },
+            bounds: if features.has(Features::SPLIT) { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
             frame: frame(scene, camera, &settings, lights.len(), scale)?,
             lights,

@@ -8,7 +8,7 @@ use crate::real::{Real, V3};
 pub struct Span<R: Real> {
     /// Where it enters, at least 0. Zeros may have either sign.
     pub near: R,
-    /// Where it leaves, widened by the rounding of both bounds.
+    /// Where it leaves.
     pub far: R,
 }
 
@@ -18,19 +18,21 @@ pub struct Span<R: Real> {
 /// Ize, Robust BVH Ray Traversal (2013): with a correctly rounded reciprocal each bound errs by less
 /// than gamma(3), so a far bound widened by 1 + 2 gamma(3) loses no box; 8 roundoffs cover it.
 /// Every step is monotone in the box: a larger box never gives a later near or an earlier far.
+/// The far bound that is returned is the wider one.
 #[inline(always)]
 pub fn slab<R: Real>(least: V3<R>, greatest: V3<R>, ray: &Ray<R>) -> Span<R> {
     let a = (least - ray.origin).times(ray.inverse);
     let b = (greatest - ray.origin).times(ray.inverse);
-    span(a.lesser(b), a.greater(b))
+    let widen = R::splat(1.0) + R::splat(8.0) * R::ROUNDOFF;
+    let Span { near, far } = span(a.lesser(b), a.greater(b));
+    Span { near, far: far * widen }
 }
 
 /// Where a ray is between three pairs of planes, given where it enters and leaves each pair.
 #[inline(always)]
 pub fn span<R: Real>(enter: V3<R>, leave: V3<R>) -> Span<R> {
-    let widen = R::splat(1.0) + R::splat(8.0) * R::ROUNDOFF;
     let near = enter.x.greater(enter.y).greater(enter.z.greater(R::splat(0.0)));
-    Span { near, far: leave.x.lesser(leave.y).lesser(leave.z) * widen }
+    Span { near, far: leave.x.lesser(leave.y).lesser(leave.z) }
 }
 
 #[cfg(test)]

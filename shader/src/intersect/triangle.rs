@@ -52,7 +52,11 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
     let area = wa + wb + wc;
     let zero = R::splat(0.0);
     let around = (zero.le(wa) & zero.le(wb) & zero.le(wc)) | (wa.le(zero) & wb.le(zero) & wc.le(zero));
-    let term = |w: R, z: R| (w * z).flush(FAINT);
+    // Most triangles that a ray comes to are beside it.
+    if !around.any() {
+        return Crossing { inside: around, front: around, depth: zero, u: wb, v: wc, area };
+    }
+    let term = |w: R, z: R| (w * z).settle(FAINT);
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
     let front = zero.lt(area * along);
@@ -62,7 +66,7 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
 /// A vertex in the plane across the ray. What is below 2^-40 is zero, so that no product underflows.
 #[inline(always)]
 fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
-    ((p.x - shear.x * p.z).flush(SMALL), (p.y - shear.y * p.z).flush(SMALL))
+    ((p.x - shear.x * p.z).settle(SMALL), (p.y - shear.y * p.z).settle(SMALL))
 }
 
 impl<R: Real> Crossing<R> {

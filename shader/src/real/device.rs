@@ -2,25 +2,22 @@
 
 use core::arch::asm;
 
-/// The number of FMin in GLSL.std.450, and of FMax.
-macro_rules! extreme {
-    ($name:ident, $number:literal, $what:literal) => {
+/// An instruction of GLSL.std.450 by its number.
+macro_rules! instruction {
+    ($name:ident, $number:literal, $what:literal, $($operand:ident)*) => {
         #[doc = $what]
-        /// Of two zeros it may be either; NaN gives any number.
         #[inline(always)]
-        pub fn $name(a: f32, b: f32) -> f32 {
+        pub fn $name($($operand: f32),*) -> f32 {
             let mut result = 0.0;
-            // SAFETY: pure arithmetic on two values.
+            // SAFETY: pure arithmetic on values.
             unsafe {
                 asm!(
                     "%glsl = OpExtInstImport \"GLSL.std.450\"",
                     "%float = OpTypeFloat 32",
-                    "%a = OpLoad _ {a}",
-                    "%b = OpLoad _ {b}",
-                    concat!("%result = OpExtInst %float %glsl ", $number, " %a %b"),
+                    $(concat!("%", stringify!($operand), " = OpLoad _ {", stringify!($operand), "}"),)*
+                    concat!("%result = OpExtInst %float %glsl ", $number, $(" %", stringify!($operand)),*),
                     "OpStore {result} %result",
-                    a = in(reg) &a,
-                    b = in(reg) &b,
+                    $($operand = in(reg) &$operand,)*
                     result = in(reg) &mut result,
                 );
             }
@@ -29,5 +26,6 @@ macro_rules! extreme {
     };
 }
 
-extreme!(lesser, "37", "The lesser of two numbers (FMin).");
-extreme!(greater, "40", "The greater of two numbers (FMax).");
+instruction!(lesser, "37", "FMin: of two zeros it may be either; NaN gives any number.", a b);
+instruction!(greater, "40", "FMax, with the same licence.", a b);
+instruction!(fused, "50", "Fma: `a * b + c`, rounded once or twice.", a b c);

@@ -58,6 +58,7 @@ pub struct Record(f64, f64, f64, u32);
 
 impl Scalar for f64 {
     type Eight = f64;
+    type Packet<const N: usize> = f64;
     type Record = Record;
 
     fn store(v: V3<f64>, word: u32) -> Record {

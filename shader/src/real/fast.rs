@@ -55,6 +55,11 @@ impl Real for Fast {
     }
 
     #[inline(always)]
+    fn settle(self, _least: f32) -> Fast {
+        self
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> Fast {
         Fast(Float::sqrt(self.0))
     }
@@ -65,6 +70,8 @@ impl Scalar for Fast {
     type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet<const N: usize> = Self;
 
     records!(Fast, inner);
 

@@ -108,6 +108,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         Self::select(other.lt(self), self, other)
     }
 
+    /// `self * a + b`, rounded once or twice, as suits the device: for tests that leave room for either, so that
+    /// only what they lead to has the same bits everywhere.
+    #[inline(always)]
+    fn fused(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+
     /// As [`Real::min`], but of two zeros the device may take either: for what is only compared.
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {
@@ -120,6 +127,13 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         self.max(other)
     }
 
+    /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
+    /// device likes.
+    #[inline(always)]
+    fn settle(self, least: f32) -> Self {
+        self.flush(least)
+    }
+
     /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
     /// become one is made zero at a named point, on every device alike.
     #[inline(always)]
@@ -128,24 +142,43 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     }
 }
 
-/// Numbers that the eight boxes of a wide node are tested with: all at once on a CPU with vectors, one by
-/// one on a GPU, where other rays fill the lanes.
-pub trait Octet<S: Scalar>: Real {
-    /// How many boxes at once; a divisor of 8.
-    const LANES: u32;
+/// Lanes over the numbers of `S`: several on a CPU with vectors, `S` itself on a GPU, where other rays fill
+/// the lanes.
+pub trait Lanes<S: Scalar>: Real {
+    /// How many; [`Wide`] has a power of two.
+    const COUNT: u32;
 
-    /// A ray's number in every lane.
+    /// A number in every lane.
     fn all(x: S) -> Self;
-    /// The numbers of [`Octet::LANES`] bytes from byte `first` on of two words, the lowest byte first.
-    fn bytes(words: [u32; 2], first: u32) -> Self;
+    /// A number for each lane, from the first on.
+    fn of(number: impl Fn(usize) -> S) -> Self;
+    /// An integer for each lane, from the first on.
+    fn indices(index: impl Fn(usize) -> u32) -> Self::Index;
+    /// Lane `i`.
+    fn lane(&self, i: usize) -> S;
+    /// The integer of lane `i`.
+    fn index_of(index: Self::Index, i: usize) -> u32;
     /// A bit a lane, the first in the lowest.
     fn bits(mask: Self::Mask) -> u32;
+}
+
+/// Numbers that the eight boxes of a wide node are tested with.
+pub trait Octet<S: Scalar>: Lanes<S> {
+    /// The numbers of [`Lanes::COUNT`] bytes (a divisor of 8) from byte `first` on of two words, the lowest
+    /// byte first.
+    fn bytes(words: [u32; 2], first: u32) -> Self;
 }
 
 /// A single lane, as shading takes it.
 pub trait Scalar: Real<Mask = bool, Index = u32> {
     /// What tests the boxes of a wide node.
     type Eight: Octet<Self>;
+    /// What follows `N` rays together: as many lanes, or one.
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet<const N: usize>: Lanes<Self>;
+    /// Is it worth compiling for every vector length? Only for what is fast on a CPU.
+    #[cfg(not(target_arch = "spirv"))]
+    const VECTORISES: bool = false;
     /// Three numbers and an integer in device memory.
     type Record: Copy + Default;
 
@@ -163,24 +196,52 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     fn is_finite(self) -> bool;
 }
 
-/// One box at a time.
-macro_rules! octet_of_one {
+/// A single number is a lane.
+macro_rules! one_lane {
     ($type:ty) => {
-        impl Octet<$type> for $type {
-            const LANES: u32 = 1;
+        impl Lanes<$type> for $type {
+            const COUNT: u32 = 1;
 
             #[inline(always)]
             fn all(x: $type) -> Self {
                 x
             }
             #[inline(always)]
-            fn bytes(words: [u32; 2], first: u32) -> Self {
-                let word = if first < 4 { words[0] } else { words[1] };
-                Self::splat(((word >> (8 * (first & 3))) & 255) as f32)
+            fn of(number: impl Fn(usize) -> $type) -> Self {
+                number(0)
+            }
+            #[inline(always)]
+            fn indices(index: impl Fn(usize) -> u32) -> u32 {
+                index(0)
+            }
+            #[inline(always)]
+            fn lane(&self, _: usize) -> $type {
+                *self
+            }
+            #[inline(always)]
+            fn index_of(index: u32, _: usize) -> u32 {
+                index
             }
             #[inline(always)]
             fn bits(mask: bool) -> u32 {
                 mask as u32
+            }
+        }
+    };
+}
+one_lane!(f32);
+one_lane!(Fast);
+#[cfg(not(target_arch = "spirv"))]
+one_lane!(f64);
+
+/// One box at a time.
+macro_rules! octet_of_one {
+    ($type:ty) => {
+        impl Octet<$type> for $type {
+            #[inline(always)]
+            fn bytes(words: [u32; 2], first: u32) -> Self {
+                let word = if first < 4 { words[0] } else { words[1] };
+                Self::splat(((word >> (8 * (first & 3))) & 255) as f32)
             }
         }
     };

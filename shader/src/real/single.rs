@@ -50,6 +50,11 @@ macro_rules! comparisons {
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
+        fn fused(self, a: Self, b: Self) -> Self {
+            $wrap(super::device::fused($inner(self), $inner(a), $inner(b)))
+        }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
         fn lesser(self, other: Self) -> Self {
             $wrap(super::device::lesser($inner(self), $inner(other)))
         }
@@ -142,6 +147,10 @@ impl Scalar for f32 {
     type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet<const N: usize> = super::Wide<N>;
+    #[cfg(not(target_arch = "spirv"))]
+    const VECTORISES: bool = true;
 
     records!(id, id);
 

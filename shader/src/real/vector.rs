@@ -80,6 +80,12 @@ impl<R: Real> V3<R> {
         V3::new(self.x.max(other.x), self.y.max(other.y), self.z.max(other.z))
     }
 
+    /// Component by component `self * a + b`, by [`Real::fused`].
+    #[inline(always)]
+    pub fn fused(self, a: Self, b: Self) -> Self {
+        V3::new(self.x.fused(a.x, b.x), self.y.fused(a.y, b.y), self.z.fused(a.z, b.z))
+    }
+
     /// Lesser components, by [`Real::lesser`].
     #[inline(always)]
     pub fn lesser(self, other: Self) -> Self {

@@ -3,7 +3,7 @@
 use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
-use super::{Fast, Mask, Octet, Real, V3};
+use super::{Fast, Lanes, Mask, Octet, Real, V3};
 use crate::ray::{Hit, Ray};
 
 /// `N` numbers, one a lane.
@@ -126,6 +126,7 @@ impl<const N: usize> Real for Wide<N> {
         WideIndex(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
     }
 
+    #[inline(always)]
     fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: WideMask<N>, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
         for i in 0..N {
             if mask.0[i] != 0 {
@@ -137,29 +138,48 @@ impl<const N: usize> Real for Wide<N> {
     }
 }
 
-macro_rules! octet {
-    ($scalar:ty, $inner:expr) => {
-        impl Octet<$scalar> for Wide<8> {
-            const LANES: u32 = 8;
+macro_rules! lanes {
+    ($scalar:ty, $wrap:expr, $inner:expr) => {
+        impl<const N: usize> Lanes<$scalar> for Wide<N> {
+            const COUNT: u32 = N as u32;
 
             #[inline(always)]
             fn all(x: $scalar) -> Self {
-                Wide([$inner(x); 8])
+                Wide([$inner(x); N])
             }
+            #[inline(always)]
+            fn of(number: impl Fn(usize) -> $scalar) -> Self {
+                Wide(from_fn(|i| $inner(number(i))))
+            }
+            #[inline(always)]
+            fn indices(index: impl Fn(usize) -> u32) -> WideIndex<N> {
+                WideIndex(from_fn(index))
+            }
+            #[inline(always)]
+            fn lane(&self, i: usize) -> $scalar {
+                $wrap(self.0[i])
+            }
+            #[inline(always)]
+            fn index_of(index: WideIndex<N>, i: usize) -> u32 {
+                index.0[i]
+            }
+            #[inline(always)]
+            fn bits(mask: WideMask<N>) -> u32 {
+                (0..N).map(|i| (mask.0[i] & 1) << i).sum()
+            }
+        }
+
+        impl Octet<$scalar> for Wide<8> {
             #[inline(always)]
             fn bytes(words: [u32; 2], _first: u32) -> Self {
                 let bytes = (u64::from(words[1]) << 32 | u64::from(words[0])).to_le_bytes();
                 Wide(bytes.map(f32::from))
             }
-            #[inline(always)]
-            fn bits(mask: WideMask<8>) -> u32 {
-                (0..8).map(|i| (mask.0[i] & 1) << i).sum()
-            }
         }
     };
 }
-octet!(f32, core::convert::identity);
-octet!(Fast, |x: Fast| x.0);
+lanes!(f32, core::convert::identity, core::convert::identity);
+lanes!(Fast, Fast, |x: Fast| x.0);
 
 impl<const N: usize> V3<Wide<N>> {
     /// Vectors of `N` lanes.
@@ -168,6 +188,7 @@ impl<const N: usize> V3<Wide<N>> {
         V3::new(Wide(from_fn(|i| lane(i).x)), Wide(from_fn(|i| lane(i).y)), Wide(from_fn(|i| lane(i).z)))
     }
 
+    #[inline(always)]
     fn lane(&self, i: usize) -> V3<f32> {
         V3::new(self.x.0[i], self.y.0[i], self.z.0[i])
     }
@@ -175,10 +196,12 @@ impl<const N: usize> V3<Wide<N>> {
 
 impl<const N: usize> Ray<Wide<N>> {
     /// One lane's ray.
+    #[inline(always)]
     fn lane(&self, i: usize) -> Ray<f32> {
         Ray {
             origin: self.origin.lane(i),
             inverse: self.inverse.lane(i),
+            offset: self.offset.lane(i),
             shear: self.shear.lane(i),
             leaves: self.leaves.0[i],
         }
@@ -199,6 +222,7 @@ impl<const N: usize> Hit<Wide<N>> {
         }
     }
 
+    #[inline(always)]
     fn set_lane(&mut self, i: usize, hit: &Hit<f32>) {
         self.t.0[i] = hit.t;
         self.u.0[i] = hit.u;

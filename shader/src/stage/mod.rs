@@ -10,6 +10,8 @@ mod persistent;
 mod segment;
 mod shade;
 mod shadow;
+#[cfg(not(target_arch = "spirv"))]
+mod together;
 mod trace;
 
 pub use path::{Path, RECORDS};
@@ -17,6 +19,8 @@ pub use persistent::persistent;
 pub use segment::Segment;
 pub use shade::{Wave, shade};
 pub use shadow::{Asking, FACES_AWAY, REACHED, SHADOWED, answered, asked, shadow};
+#[cfg(not(target_arch = "spirv"))]
+pub use together::{most, shadow_together, trace_together};
 pub use trace::{found, trace, traced};
 
 /// In a film record's integer: some contribution to the pixel was no finite number and was left out.

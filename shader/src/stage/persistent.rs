@@ -33,7 +33,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     let mut hit = Hit::none(R::splat(0.0));
     let mut cursor = M::Cursor::finished();
     let mut stack = M::EMPTY;
-    let mut least = (lanes * BUSY).div_ceil(100);
+    let mut least = (lanes * geometry.tuning.stack_max()).div_ceil(100);
     loop {
         if number != IDLE && cursor.is_done() {
             store(number, traced, &hit);

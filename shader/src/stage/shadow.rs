@@ -61,5 +61,10 @@ pub fn shadow<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, asking: Asking<'
 /// The answer of a ray that was traced.
 #[inline(always)]
 pub fn answered<R: Scalar>(hit: &Hit<R>) -> u32 {
-    if step::occluded(hit) { SHADOWED } else { REACHED }
+    answer(step::occluded(hit))
+}
+
+#[inline(always)]
+pub(super) fn answer(occluded: bool) -> u32 {
+    if occluded { SHADOWED } else { REACHED }
 }

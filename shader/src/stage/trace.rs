@@ -21,7 +21,13 @@ pub fn traced<R: Scalar>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]
 #[inline(always)]
 pub fn found<R: Scalar>(hit: &Hit<R>) -> R::Record {
     let (u, v) = hit.weights();
-    R::store(V3::new(hit.t, u, v), hit.slot)
+    record(V3::new(hit.t, u, v), hit.slot)
+}
+
+/// (t, u, v) and the slot of the triangle, as they lie in memory.
+#[inline(always)]
+pub(super) fn record<R: Scalar>(place: V3<R>, slot: u32) -> R::Record {
+    R::store(place, slot)
 }
 
 /// Traces a slot's ray; returns what [`found`] does.

@@ -1,7 +1,7 @@
 //! Where a traversal stands, and its stack.
 
 use super::resumable::Progress;
-use crate::data::{NodePair, NodeRef, STACK};
+use crate::data::{CentredPair, NodeRef, STACK};
 
 /// Nodes that wait. It is kept beside its [`Cursor`], since rust-gpu lets no pointer live in a struct
 /// that crosses a loop. A packet's is replicated in every lane, which makes its hits right even where
@@ -39,7 +39,7 @@ impl Cursor {
 
     /// Goes on to the nearer wanted child and lets the other wait, or pops if none is wanted.
     #[inline(always)]
-    pub fn descend(&mut self, pair: &NodePair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
+    pub fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
         if left && right {
             let (near, far) = if right_first { (pair.right(), pair.left()) } else { (pair.left(), pair.right()) };
             // The mask holds for every valid tree; it spares a check that could return from the kernel.

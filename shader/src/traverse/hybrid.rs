@@ -114,6 +114,16 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
     }
 }
 
+#[cfg(not(target_arch = "spirv"))]
+impl<W: Warp, S: Switch, T: Turn> super::Together for Hybrid<W, S, T> {
+    #[inline(always)]
+    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            Self::traverse::<Q>(geometry, ray, hit);
+        }
+    }
+}
+
 /// All rays of the packet.
 #[inline(always)]
 fn everyone<R: Real>() -> R::Mask {

@@ -62,5 +62,12 @@ pub trait Method<R: Real> {
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
+/// A method that follows rays over any numbers: on a CPU, several lanes of several values at once.
+#[cfg(not(target_arch = "spirv"))]
+pub trait Together {
+    /// Follows all rays from the root; as [`Method::traverse`] for each.
+    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
+}
+
 #[cfg(test)]
 mod tests;

@@ -36,6 +36,16 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
     }
 }
 
+#[cfg(not(target_arch = "spirv"))]
+impl<W: Warp> super::Together for Packet<W> {
+    #[inline(always)]
+    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+        for (ray, hit) in rays.iter().zip(hits) {
+            Self::traverse::<Q>(geometry, ray, hit);
+        }
+    }
+}
+
 /// Does the packet go to a child that these rays want?
 #[inline(always)]
 pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {

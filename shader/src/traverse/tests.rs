@@ -3,15 +3,15 @@
 use super::step::{self, occluded};
 use super::{
     Closest, Cut, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative, StackMax,
-    WhileWhile,
+    WhileWhile, WideNodes,
 };
-use crate::data::{Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning};
+use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Real, Scalar, V3, Wide};
 use crate::scene::Geometry;
 use crate::warp::Alone;
 use bytemuck::Zeroable;
-use glam::Vec3;
+use glam::{UVec4, Vec3};
 use proptest::prelude::*;
 
 /// A hierarchy by halves of the list: bad trees find the same hits.
@@ -41,22 +41,58 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
     nodes
 }
 
+/// A wide hierarchy by eighths of the list, its nodes in the order in which they are found: every box the
+/// whole grid, so that all that is to be seen is whether nodes and triangles are followed.
+fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
+    let mut open = vec![0..triangles.len() as u32];
+    let mut nodes = Vec::new();
+    while nodes.len() < open.len() {
+        let range = open[nodes.len()].clone();
+        let step = range.len().div_ceil(WideNode::ARITY).max(3) as u32;
+        let (first_child, mut inner, mut bytes) = (open.len() as u32, 0, [0u8; 8]);
+        for (slot, first) in range.clone().step_by(step as usize).enumerate() {
+            let part = first..(first + step).min(range.end);
+            if part.len() as u32 <= WideNode::MAX_LEAF {
+                bytes[slot] = (((1u32 << part.len()) - 1) << 5 | (first - range.start)) as u8;
+            } else {
+                (inner, bytes[slot]) = (inner | 1 << slot, (WideNode::INNER + 24) as u8 + slot as u8);
+                open.push(part);
+            }
+        }
+        let word = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().expect("four bytes"));
+        let exponent = 127 - 6;
+        nodes.push(WideNode {
+            grid: crate::data::pack(Vec3::splat(-2.0), inner << 24 | exponent << 16 | exponent << 8 | exponent),
+            children: UVec4::new(first_child, range.start, word(&bytes[..4]), word(&bytes[4..])),
+            low_x_low_y: UVec4::ZERO,
+            low_z_high_x: UVec4::new(0, 0, u32::MAX, u32::MAX),
+            high_y_high_z: UVec4::MAX,
+        });
+    }
+    nodes
+}
+
 struct World {
     triangles: Vec<Triangle>,
-    nodes: Vec<NodePair>,
+    nodes: Vec<CentredPair>,
+    wide: Vec<WideNode>,
+    words: Vec<UVec4>,
     frame: Frame,
     features: Features,
 }
 
 impl World {
     fn new(triangles: Vec<Triangle>, features: u32) -> Self {
-        let nodes = build(&triangles);
-        World { triangles, nodes, frame: Frame::zeroed(), features: Features(features) }
+        let nodes = build(&triangles).iter().map(CentredPair::from).collect();
+        let words = bytemuck::cast_slice(&triangles).to_vec();
+        let wide = build_wide(&triangles);
+        World { triangles, nodes, wide, words, frame: Frame::zeroed(), features: Features(features) }
     }
 
     fn geometry(&self) -> Geometry<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
-        Geometry { frame, features: self.features, tuning, nodes: &self.nodes, triangles: &self.triangles }
+        let (nodes, wide, triangles) = (&self.nodes, &self.wide, &self.words);
+        Geometry { frame, features: self.features, tuning, nodes, wide, triangles, bounds: &[] }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
@@ -108,6 +144,7 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
 fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile, R>(world, origin, direction);
+    check::<WideNodes, R>(world, origin, direction);
     check::<Speculative<Alone>, R>(world, origin, direction);
     check::<Packet<Alone>, R>(world, origin, direction);
     check::<Hybrid<Alone, StackMax, Sequential>, R>(world, origin, direction);

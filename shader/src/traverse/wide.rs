@@ -14,7 +14,7 @@ use crate::buffer::read;
 use crate::data::{NodeRef, STACK, WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Octet, Real, Scalar, V3};
+use crate::real::{Lanes, Octet, Real, Scalar, V3};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
@@ -122,7 +122,9 @@ impl<R: Scalar> Resumable<R> for WideNodes {
             Q::on_boxes(WideNode::ARITY as u32);
             (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
         }
-        if cursor.triangles.waiting != 0 {
+        let mut first = true;
+        while cursor.triangles.waiting != 0 && (first || geometry.tuning.cut() == 26) {
+            first = false;
             let place = 31 - cursor.triangles.waiting.leading_zeros();
             cursor.triangles.waiting &= !(1 << place);
             triangle::<Q, R>(geometry, NodeRef::leaf(cursor.triangles.first + place, 1), ray, hit);
@@ -152,24 +154,30 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
 fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
-    let grid = Grid::new(node, ray);
-    let (mut met, mut first) = (0, 0);
-    while first < WideNode::ARITY as u32 {
-        met |= grid.meets(first, hit.t) << first;
-        first += R::Eight::LANES;
-    }
-    let (inverted, mut waiting, mut i) = (inverted(ray), 0, 0);
-    while i < WideNode::ARITY as u32 {
-        let word = if i < 4 { node.children.z } else { node.children.w };
-        let child = (word >> (8 * (i & 3))) & 255;
-        let is_inner = (node.grid.w >> (24 + i)) & 1 == 1;
-        let place = if is_inner { 24 + (i ^ inverted) } else { child & 31 };
-        let bits = (child >> 5) << place;
-        waiting |= if (met >> i) & 1 == 1 { bits } else { 0 };
-        i += 1;
-    }
+    let met = Grid::new(node, ray).met(hit.t);
+    let inverted = inverted(ray) * 0x0101_0101;
+    let waiting = waiting(node.children.z, inverted, met) | waiting(node.children.w, inverted, met >> 4);
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
     (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
+}
+
+/// The bits of four children that are met, given their bytes: of all four at once as far as possible
+/// (Ylitie et al. 2017, appendix).
+#[inline(always)]
+fn waiting(children: u32, inverted: u32, met: u32) -> u32 {
+    // Places from 24 on, whose bits 3 and 4 are set, are those of inner nodes.
+    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
+    let places = (children ^ (inverted & is_inner)) & 0x1f1f_1f1f;
+    let bits = (children >> 5) & 0x0707_0707;
+    child(bits, places, met, 0)
+        | child(bits, places, met, 1)
+        | child(bits, places, met, 2)
+        | child(bits, places, met, 3)
+}
+
+#[inline(always)]
+fn child(bits: u32, places: u32, met: u32, i: u32) -> u32 {
+    if (met >> i) & 1 == 1 { ((bits >> (8 * i)) & 7) << ((places >> (8 * i)) & 31) } else { 0 }
 }
 
 /// A node's grid in a ray's terms.
@@ -205,7 +213,26 @@ impl<R: Scalar> Grid<R> {
         }
     }
 
-    /// A bit for each of [`Octet::LANES`] boxes from `first` on that the ray meets before `limit`.
+    /// A bit for each of the eight boxes that the ray meets before `limit`. (A loop is not always unrolled.)
+    #[inline(always)]
+    fn met(&self, limit: R) -> u32 {
+        self.turn(0, limit)
+            | self.turn(1, limit)
+            | self.turn(2, limit)
+            | self.turn(3, limit)
+            | self.turn(4, limit)
+            | self.turn(5, limit)
+            | self.turn(6, limit)
+            | self.turn(7, limit)
+    }
+
+    /// The bits of a box and those that are tested with it, if it is the first of them.
+    #[inline(always)]
+    fn turn(&self, first: u32, limit: R) -> u32 {
+        if first.is_multiple_of(R::Eight::COUNT) { self.meets(first, limit) << first } else { 0 }
+    }
+
+    /// A bit for each of [`Lanes::COUNT`] boxes from `first` on that the ray meets before `limit`.
     #[inline(always)]
     fn meets(&self, first: u32, limit: R) -> u32 {
         let all = |v: V3<R>| V3::new(R::Eight::all(v.x), R::Eight::all(v.y), R::Eight::all(v.z));
@@ -213,7 +240,7 @@ impl<R: Scalar> Grid<R> {
             V3::new(R::Eight::bytes(b[0], first), R::Eight::bytes(b[1], first), R::Eight::bytes(b[2], first))
         };
         let (start, step) = (all(self.start), all(self.step));
-        let at = |q: V3<R::Eight>| q.times(step) + start;
+        let at = |q: V3<R::Eight>| q.fused(step, start);
         let met = span(at(planes(&self.near)), at(planes(&self.far)));
         R::Eight::bits(met.near.le(met.far) & met.near.le(R::Eight::all(limit)))
     }

@@ -76,14 +76,16 @@ impl Rules {
 }
 
 /// Does the specification fix every bit of the result? Not of a sign of floats, which may treat zeros and
-/// NaN either way. A minimum or maximum may return either of two zeros too: `Real::lesser` and `greater`,
-/// where the kernels' own come from, are for what is only compared.
+/// NaN either way. A minimum or maximum may return either of two zeros too, and a fused product may be
+/// rounded twice: `Real::lesser`, `greater` and `fused`, where the kernels' own come from, are for tests
+/// that leave room for both.
 fn is_exact(op: GlslStd450Op) -> bool {
     matches!(
         op,
         GlslStd450Op::FAbs
             | GlslStd450Op::FMin
             | GlslStd450Op::FMax
+            | GlslStd450Op::Fma
             | GlslStd450Op::Floor
             | GlslStd450Op::Ceil
             | GlslStd450Op::Trunc

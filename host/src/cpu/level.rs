@@ -1,0 +1,90 @@
+//! The instructions of a processor that the kernels are compiled for.
+
+use std::sync::LazyLock;
+
+use eyerays_shader::real::Scalar;
+
+/// A set of instructions. The kernels are compiled once for each; all give the same bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Level {
+    /// What every processor of the target has.
+    Baseline,
+    /// Vectors of eight numbers and counting of bits.
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    /// Vectors of sixteen numbers.
+    #[cfg(target_arch = "x86_64")]
+    Avx512,
+}
+
+/// What is to be compiled for every level.
+pub trait Task {
+    /// Runs with packets of `N` rays. Must be `inline(always)`, as all that it calls in loops: only what is
+    /// inlined is compiled for the level.
+    fn run<const N: usize>(self);
+}
+
+impl Level {
+    /// The levels that this processor has, the best last.
+    pub fn here() -> Vec<Level> {
+        #[allow(unused_mut)]
+        let mut levels = vec![Level::Baseline];
+        #[cfg(target_arch = "x86_64")]
+        {
+            use std::arch::is_x86_feature_detected as has;
+            if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
+                levels.push(Level::Avx2);
+                if has!("avx512f") && has!("avx512vl") && has!("avx512bw") && has!("avx512dq") {
+                    levels.push(Level::Avx512);
+                }
+            }
+        }
+        levels
+    }
+
+    /// The best that this processor has.
+    pub fn best() -> Level {
+        static BEST: LazyLock<Level> = LazyLock::new(|| *Level::here().last().expect("every processor has one"));
+        *BEST
+    }
+
+    /// Runs a task over the numbers `R` with the instructions of this level, where they have any use for them.
+    ///
+    /// # Panics
+    /// If the processor has not got them.
+    #[inline]
+    pub fn run<R: Scalar>(self, task: impl Task) {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            level if R::VECTORISES && level != Level::Baseline => {
+                assert!(level.is_here(), "this processor has no {level:?}");
+                // SAFETY: the processor has the instructions.
+                unsafe {
+                    match level {
+                        Level::Avx512 => avx512(task),
+                        _ => avx2(task),
+                    }
+                }
+            }
+            _ => task.run::<8>(),
+        }
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn is_here(self) -> bool {
+        // The levels are in order, and a better processor has all below.
+        self == Level::best() || Level::here().contains(&self)
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn avx2(task: impl Task) {
+    task.run::<8>();
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi1,bmi2,lzcnt,popcnt")]
+fn avx512(task: impl Task) {
+    task.run::<16>();
+}

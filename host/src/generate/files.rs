@@ -1,0 +1,97 @@
+//! The three files of a generated scene.
+
+use std::ffi::OsStr;
+use std::fs::File;
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+
+use super::{MARK, fault};
+use crate::error::{Error, Result};
+use crate::output::{self, Destination};
+
+/// Where a generated scene goes: a mesh, and beside it its materials and a scene of the same name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Files {
+    mesh: PathBuf,
+    materials: PathBuf,
+    scene: PathBuf,
+    names: [String; 2],
+}
+
+type Fill<'f> = &'f dyn Fn(&mut dyn Write) -> io::Result<()>;
+
+impl Files {
+    /// The files of a mesh at `mesh`.
+    ///
+    /// # Errors
+    /// A name that is no `.obj`, or that the other files could not hold.
+    pub fn beside(mesh: &Path) -> Result<Self> {
+        if mesh == Path::new("-") {
+            return Err(Error::new("-o - can't be: a scene is three files; name an .obj file"));
+        }
+        if !mesh.extension().is_some_and(|e| e.eq_ignore_ascii_case("obj")) {
+            return Err(Error::file(mesh, "the mesh is a Wavefront file: give -o a name that ends in .obj"));
+        }
+        let (materials, scene) = (mesh.with_extension("mtl"), mesh.with_extension("toml"));
+        let name =
+            |path: &Path| path.file_name().and_then(OsStr::to_str).filter(|name| is_plain(name)).map(str::to_owned);
+        let (Some(mesh_name), Some(materials_name)) = (name(mesh), name(&materials)) else {
+            let fault = "the scene file could not hold this name: give -o one of plain characters";
+            return Err(Error::file(mesh, fault));
+        };
+        Ok(Files { mesh: mesh.to_owned(), materials, scene, names: [mesh_name, materials_name] })
+    }
+
+    /// The mesh, its materials, and the scene.
+    pub fn paths(&self) -> [&Path; 3] {
+        [&self.mesh, &self.materials, &self.scene]
+    }
+
+    pub(super) fn mesh_name(&self) -> &str {
+        &self.names[0]
+    }
+
+    pub(super) fn materials_name(&self) -> &str {
+        &self.names[1]
+    }
+
+    /// Fails where [`Files::write`] would, without changing a file. Materials and scenes that a person made are not
+    /// replaced, since nobody named them.
+    pub(super) fn check_writable(&self) -> Result<()> {
+        for path in self.paths() {
+            output::check_writable(&Destination::File(path.to_owned()))?;
+        }
+        for path in [&self.materials, &self.scene] {
+            if path.is_file() && !is_generated(path) {
+                return Err(Error::file(path, "was not generated and would be lost; move it, or give -o another name"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all three under temporary names and renames them once the mesh, by far the largest, is whole.
+    pub(super) fn write(&self, mesh: Fill, materials: Fill, scene: Fill) -> Result<()> {
+        output::write_atomically(&self.scene, |out| {
+            filled(scene, out)?;
+            output::write_atomically(&self.materials, |out| {
+                filled(materials, out)?;
+                output::write_atomically(&self.mesh, |out| filled(mesh, out))
+            })
+        })
+    }
+}
+
+/// Flushes too, so that a full disk is met before any file is renamed.
+fn filled(fill: Fill, out: &mut dyn Write) -> Result<()> {
+    fill(out).and_then(|()| out.flush()).map_err(fault)
+}
+
+/// Whether both a Wavefront and a TOML file hold this name as it is.
+fn is_plain(name: &str) -> bool {
+    !name.starts_with(char::is_whitespace) && !name.contains(|c: char| c.is_control() || matches!(c, '\\' | ':'))
+}
+
+fn is_generated(path: &Path) -> bool {
+    let mut start = [0; MARK.len()];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *MARK.as_bytes()
+}

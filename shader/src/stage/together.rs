@@ -1,0 +1,76 @@
+//! Rays that lie beside each other, in the lanes of values: what a CPU with vectors follows at once.
+
+use core::array::from_fn;
+
+use super::{Segment, shadow, trace};
+use crate::ray::{Hit, Ray};
+use crate::real::{Lanes, Scalar, V3};
+use crate::scene::Geometry;
+use crate::traverse::{Closest, Occlusion, Query, Together, step};
+
+/// Values of lanes that are followed at once.
+const VALUES: usize = 4;
+
+/// A limit that no box lies before: a lane without a ray.
+const NOTHING: f32 = -1.0;
+
+/// As many rays as are followed at once.
+pub const fn most<S: Scalar, P: Lanes<S>>() -> usize {
+    VALUES * P::COUNT as usize
+}
+
+/// The closest hits of at most [`most`] rays; `keep` is told the record of each.
+#[inline(always)]
+pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
+    geometry: &Geometry<'_>,
+    segments: &[Segment<S>],
+    mut keep: impl FnMut(usize, S::Record),
+) {
+    let hits = follow::<S, P, M, Closest>(geometry, segments);
+    let lanes = P::COUNT as usize;
+    for (value, hit) in hits.iter().enumerate() {
+        let (u, v) = hit.weights();
+        let mut i = 0;
+        while i < lanes && value * lanes + i < segments.len() {
+            let place = V3::new(hit.t.lane(i), u.lane(i), v.lane(i));
+            keep(value * lanes + i, trace::record(place, P::index_of(hit.slot, i)));
+            i += 1;
+        }
+    }
+}
+
+/// Whether something opaque is before the limit of at most [`most`] rays; `keep` is told each answer.
+#[inline(always)]
+pub fn shadow_together<S: Scalar, P: Lanes<S>, M: Together>(
+    geometry: &Geometry<'_>,
+    segments: &[Segment<S>],
+    mut keep: impl FnMut(usize, u32),
+) {
+    let hits = follow::<S, P, M, Occlusion>(geometry, segments);
+    let lanes = P::COUNT as usize;
+    for i in 0..segments.len() {
+        let occluded = P::bits(step::occluded(&hits[i / lanes]));
+        keep(i, shadow::answer((occluded >> (i % lanes)) & 1 == 1));
+    }
+}
+
+#[inline(always)]
+fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
+    geometry: &Geometry<'_>,
+    segments: &[Segment<S>],
+) -> [Hit<P>; VALUES] {
+    let lanes = P::COUNT as usize;
+    let at = |i: usize| &segments[if i < segments.len() { i } else { 0 }];
+    let rays: [Ray<P>; VALUES] = from_fn(|value| {
+        let first = value * lanes;
+        let vector = |of: fn(&Segment<S>) -> V3<S>| {
+            V3::new(P::of(|i| of(at(first + i)).x), P::of(|i| of(at(first + i)).y), P::of(|i| of(at(first + i)).z))
+        };
+        Ray::leaving(P::indices(|i| at(first + i).leaves), vector(|s| s.origin), vector(|s| s.direction))
+    });
+    let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOTHING) };
+    let mut hits: [Hit<P>; VALUES] = from_fn(|value| Hit::none(P::of(|i| limit(value * lanes + i))));
+    let values = segments.len().div_ceil(lanes);
+    M::together::<P, Q>(geometry, &rays[..values], &mut hits[..values]);
+    hits
+}

@@ -1,0 +1,153 @@
+//! Rays a second of Eyerays, Embree and obvhs: the same rays in the same run, one contestant after the other
+//! in every repeat. Prints Markdown.
+
+mod contest;
+mod embree;
+mod hierarchies;
+mod own;
+mod rays;
+
+use std::error::Error;
+use std::path::PathBuf;
+
+use clap::Parser;
+use contest::{Contestant, Found};
+use embree3::BuildQuality;
+use eyerays::method::{Method, Traversal};
+use eyerays::pack::Packed;
+use eyerays::scene::{self, Light, Settings};
+use eyerays_bvh::Quality;
+use own::Own;
+
+#[derive(Parser)]
+struct Options {
+    /// Scenes, each with its views and a point light
+    #[arg(required = true)]
+    scenes: Vec<PathBuf>,
+    /// How far ambient occlusion looks, in percent of the diagonal
+    #[arg(long, default_value_t = 20.0)]
+    reach: f32,
+    /// How far ambient occlusion looks, in world units
+    #[arg(long)]
+    reach_units: Option<f32>,
+    /// Threads
+    #[arg(long, default_value_t = 1)]
+    threads: usize,
+    /// Pixels along an edge
+    #[arg(long, default_value_t = 512)]
+    size: u32,
+    /// Repeats of each measurement
+    #[arg(long, default_value_t = 5)]
+    repeat: usize,
+    /// Effort of every hierarchy
+    #[arg(long, default_value = "medium")]
+    quality: String,
+    /// Views to follow rays from, from the first on
+    #[arg(long, default_value_t = 5)]
+    views: usize,
+    /// Contestants whose names contain this
+    #[arg(long, default_value = "")]
+    only: String,
+    /// Kinds of rays whose names contain this
+    #[arg(long, default_value = "")]
+    kind: String,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let options = Options::parse();
+    println!("| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits |");
+    println!("|---|---|---|---|---|---|---|---|---|");
+    for path in &options.scenes {
+        contest(&options, path)?;
+    }
+    Ok(())
+}
+
+/// Rays a second of a contestant by kind and view.
+type Score = Vec<Vec<(f64, Found)>>;
+
+fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Error>> {
+    let (scene, _) = scene::load(path)?;
+    let settings = Settings { size: (options.size, options.size), samples: 1, ..scene.settings };
+    let (quality, embree_quality) = match options.quality.as_str() {
+        "fast" => (Quality::Fast, BuildQuality::LOW),
+        "medium" => (Quality::Medium, BuildQuality::MEDIUM),
+        _ => (Quality::High, BuildQuality::HIGH),
+    };
+    let mut packed = Packed::new(&scene, &scene.cameras[0], settings, quality)?;
+    let scale = packed.scale as f32;
+    let Some(Light::Point { position, .. }) = scene.lights.first() else { return Err("no point light".into()) };
+    let reach = options.reach_units.map_or(rays::diagonal(&packed) * options.reach / 100.0, |units| units * scale);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+    let embree = embree::Embree::new(&packed, embree_quality)?;
+    let binary = hierarchies::Binary::new(&packed, quality);
+    let compressed = hierarchies::Compressed::new(&packed, quality);
+    let mut names: Vec<(&'static str, bool)> = Vec::new();
+    let mut kinds: Vec<(&'static str, bool)> = Vec::new();
+    let mut scores: Vec<Score> = Vec::new();
+    for camera in scene.cameras.iter().take(options.views) {
+        packed.look(&scene, camera)?;
+        let own = |name, method, packet| Own { name, packed: &packed, traversal: Traversal::from(method), packet };
+        let methods = [
+            own("Eyerays if-if", Method::IfIf, false),
+            own("Eyerays while-while", Method::WhileWhile, false),
+            own("Eyerays wide", Method::Wide, false),
+            own("Eyerays packet", Method::Packet, true),
+        ];
+        let (single, packet) = (embree::Single(&embree), embree::Packet(&embree));
+        let mut all: Vec<&dyn Contestant> = vec![&single, &packet, &binary, &compressed];
+        all.extend(methods.iter().filter(|m| m.traversal.method != Method::Wide || !packed.wide.is_empty()).map(|m| m as &dyn Contestant));
+        all.retain(|c| c.name().contains(&options.only));
+        names = all.iter().map(|c| (c.name(), c.is_packet())).collect();
+        scores.resize(all.len(), Score::new());
+        let streams = rays::kinds(&packed, *position * scale, reach);
+        kinds = streams.iter().map(|k| (k.name, k.coherent)).collect();
+        for (k, kind) in streams.iter().enumerate().filter(|(_, k)| k.name.contains(&options.kind)) {
+            let mut times = vec![Vec::new(); all.len()];
+            let mut found = vec![Found::default(); all.len()];
+            for repeat in 0..=options.repeat {
+                for (c, contestant) in all.iter().enumerate() {
+                    let (seconds, what) = contestant.cast(&pool, &kind.stream, kind.question);
+                    // The first warms caches.
+                    if repeat > 0 {
+                        times[c].push(seconds);
+                    }
+                    found[c] = what;
+                }
+            }
+            for (c, mut times) in times.into_iter().enumerate() {
+                scores[c].resize(kinds.len(), Vec::new());
+                scores[c][k].push((kind.stream.len() as f64 / median(&mut times) / 1e6, found[c]));
+            }
+        }
+    }
+    let scene = path.file_stem().unwrap_or_default().to_string_lossy();
+    for (k, &(kind, _)) in kinds.iter().enumerate() {
+        let rates: Vec<Vec<f64>> =
+            scores.iter().map(|s| s.get(k).map_or(Vec::new(), |views| views.iter().map(|v| v.0).collect())).collect();
+        let of = |name: &str| names.iter().position(|n| n.0 == name).map(|c| &rates[c]);
+        for (c, &(name, is_packet)) in names.iter().enumerate().filter(|(c, _)| !rates[*c].is_empty()) {
+            let peer = of(if is_packet { "Embree rtcIntersect16" } else { "Embree rtcIntersect1" });
+            let (embree, obvhs) = (ratio(&rates[c], peer), ratio(&rates[c], of("obvhs CWBVH")));
+            let least = rates[c].iter().copied().fold(f64::MAX, f64::min);
+            let most = rates[c].iter().copied().fold(0.0, f64::max);
+            let middle = median(&mut rates[c].clone());
+            let hits: u64 = scores[c][k].iter().map(|v| v.1.hits).sum();
+            println!("| {scene} | {kind} | {name} | {middle:.2} | {least:.2} | {most:.2} | {embree} | {obvhs} | {hits} |");
+        }
+    }
+    Ok(())
+}
+
+/// The median over views of how much faster one is.
+fn ratio(rates: &[f64], peer: Option<&Vec<f64>>) -> String {
+    peer.map_or("".to_owned(), |peer| {
+        let mut ratios: Vec<f64> = rates.iter().zip(peer).map(|(a, b)| a / b).collect();
+        format!("{:.2}", median(&mut ratios))
+    })
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    values[values.len() / 2]
+}

@@ -80,3 +80,35 @@ pub fn differing(packed: &Packed, a: &Answers, b: &Answers) -> f64 {
         _ => 1.0,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::tests::cornell;
+
+    fn hit(t: f32, slot: u32) -> UVec4 {
+        UVec4::new(t.to_bits(), 0, 0, slot)
+    }
+
+    #[test]
+    fn a_bit_or_a_primitive_makes_a_difference_and_a_slot_none() {
+        let mut packed = cornell((8, 8));
+        packed.triangles[1] = packed.triangles[0];
+        let of = |hits: &[UVec4]| Answers::Closest(hits.to_vec());
+        let first = of(&[hit(1.0, 0), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);
+        let same = of(&[hit(1.0, 1), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);
+        let nearer = of(&[hit(1.0, 0), hit(2.0, StreamRay::NOWHERE), hit(3.0f32.next_down(), 2)]);
+        let other = of(&[hit(1.0, 0), hit(2.0, 3), hit(3.0, u32::MAX - 1)]);
+        assert_eq!(Hash::of(&packed, &first), Hash::of(&packed, &same));
+        for (answers, ray, share) in [(&same, None, 0.0), (&nearer, Some(2), 0.0), (&other, Some(1), 2.0 / 3.0)] {
+            assert_eq!(first_difference(&packed, &first, answers), ray);
+            assert_eq!(differing(&packed, &first, answers), share);
+            assert_eq!(Hash::of(&packed, &first) == Hash::of(&packed, answers), ray.is_none());
+        }
+        let shadows = [vec![0, 1, 1, 0], vec![0, 1, 0, 0]].map(Answers::Occlusion);
+        assert_eq!(first_difference(&packed, &shadows[0], &shadows[1]), Some(2));
+        assert_eq!(differing(&packed, &shadows[0], &shadows[1]), 0.25);
+        assert_ne!(Hash::of(&packed, &shadows[0]), Hash::of(&packed, &shadows[1]));
+        assert_eq!(first_difference(&packed, &shadows[0], &first), Some(0));
+    }
+}

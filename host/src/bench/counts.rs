@@ -230,7 +230,7 @@ fn traverse<R: Real, M: traverse::Method<R>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_shader::data::{NodePair, NodeRef, Triangle, Tuning};
+    use eyerays_shader::data::{CentredPair, NodePair, NodeRef, Triangle, Tuning};
     use glam::{Vec3, vec3};
 
     use crate::bench::tests::cornell;
@@ -254,7 +254,9 @@ mod tests {
             NodePair::new(leaf(0, 1), leaf(1, 1)),
         ];
         let mut packed = cornell((8, 8));
-        (packed.nodes, packed.triangles) = (nodes, triangles);
+        packed.nodes = nodes.iter().map(CentredPair::from).collect();
+        packed.triangles = triangles;
+        packed.features.0 &= !Features::SPLIT;
         packed
     }
 

@@ -1,5 +1,7 @@
 //! What is measured.
 
+use std::path::PathBuf;
+
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 
@@ -47,6 +49,8 @@ pub struct Plan {
 pub struct Subject {
     /// As tables call it.
     pub name: String,
+    /// Where it came from, for errors.
+    pub file: PathBuf,
     /// The scene.
     pub scene: Scene,
     /// Those of its cameras that are measured.

@@ -149,12 +149,12 @@ impl<'a> Sight<'a> {
         let parts = match kind {
             Kind::Primary => return Ok(Cow::Borrowed(&self.primary)),
             Kind::Shadow => self.shadows()?,
-            Kind::Reflection => self.from_hits(|place, rays| rays.push(place.reflected()))?,
-            Kind::Refraction => self.from_hits(|place, rays| rays.extend(place.refracted()))?,
-            Kind::Ao => self.from_hits(|place, rays| {
+            Kind::Reflection => self.spawned(|place, rays| rays.push(place.reflected()))?,
+            Kind::Refraction => self.spawned(|place, rays| rays.extend(place.refracted()))?,
+            Kind::Ao => self.spawned(|place, rays| {
                 rays.extend((0..AO_RAYS).map(|sample| place.sampled(sample, kind, ao_length)));
             })?,
-            Kind::Diffuse => self.from_hits(|place, rays| rays.push(place.sampled(0, kind, f32::MAX)))?,
+            Kind::Diffuse => self.spawned(|place, rays| rays.push(place.sampled(0, kind, f32::MAX)))?,
         };
         Ok(Cow::Owned(Stream::of_parts(&parts)))
     }
@@ -162,7 +162,7 @@ impl<'a> Sight<'a> {
     fn shadows(&self) -> Result<Vec<Vec<StreamRay>>> {
         let mut parts = Vec::new();
         for light in &self.packed.lights[..self.lights()] {
-            parts.extend(self.from_hits(|place, rays| {
+            parts.extend(self.spawned(|place, rays| {
                 let (origin, direction, limit) = shadow_ray(self.packed.features, light, &place.contact);
                 if place.contact.faces(direction) {
                     rays.push(place.ray(origin, direction, limit));
@@ -173,7 +173,7 @@ impl<'a> Sight<'a> {
     }
 
     /// What `make` adds for each hit, in order.
-    fn from_hits(&self, make: impl Fn(&Place, &mut Vec<StreamRay>) + Sync) -> Result<Vec<Vec<StreamRay>>> {
+    fn spawned(&self, make: impl Fn(&Place, &mut Vec<StreamRay>) + Sync) -> Result<Vec<Vec<StreamRay>>> {
         let tasks = self.hits.par_chunks(TASK).enumerate().map(|(task, hits)| {
             let mut rays = Vec::new();
             for (i, hit) in hits.iter().enumerate().filter(|(_, hit)| hit.w != StreamRay::NOWHERE) {

@@ -12,7 +12,7 @@ use super::plan::Trial;
 use super::rays::{AO_SHARE, Sight, View, diagonal};
 use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
 use crate::cpu;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::method::{Coherence, Method, Order, Processor, Traversal};
 use crate::pack::Packed;
 use crate::scene::{Camera, Settings};
@@ -21,26 +21,32 @@ use crate::stream::{Answers, Question, Stream};
 /// Measures all that is planned. `begins` hears of every stream before it is traced.
 ///
 /// # Errors
-/// A scene that can't be packed, or a GPU that can't hold it where the CPU is not measured.
+/// A scene that can't be packed or that no device holds, unless another one was measured before: what was
+/// measured is worth more, and the fault is in the report.
 pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<Report> {
     let mut report = Report { setup: plan.setup(), ..Report::default() };
     for subject in subjects {
-        let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-        let named = |e: Error| Error::new(format!("{}: {e}", subject.name));
-        let mut packed = Packed::new(&subject.scene, &subject.cameras[0], settings, plan.quality).map_err(named)?;
-        let mut views = Vec::new();
-        for &order in &plan.orders {
-            for camera in &subject.cameras {
-                packed.look(&subject.scene, camera).map_err(named)?;
-                views.push((camera, order, View::of(&packed, order)));
-            }
-        }
-        let bench = Bench::new(plan, subject, &packed, &mut report).map_err(named)?;
-        for (camera, order, view) in views {
-            bench.view(camera, order, &view, &mut report, begins).map_err(named)?;
+        match scene(plan, subject, &mut report, begins) {
+            Err(error) if report.records.is_empty() => return Err(error.of(&subject.file)),
+            Err(error) => report.faults.push(error.of(&subject.file).to_string()),
+            Ok(()) => {}
         }
     }
     Ok(report)
+}
+
+fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
+    let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
+    let mut packed = Packed::new(&subject.scene, &subject.cameras[0], settings, plan.quality)?;
+    let mut views = Vec::new();
+    for &order in &plan.orders {
+        for camera in &subject.cameras {
+            packed.look(&subject.scene, camera)?;
+            views.push((camera, order, View::of(&packed, order)));
+        }
+    }
+    let bench = Bench::new(plan, subject, &packed, report)?;
+    views.into_iter().try_for_each(|(camera, order, view)| bench.view(camera, order, &view, report, begins))
 }
 
 /// How many streams [`run`] tells of.

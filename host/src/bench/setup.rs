@@ -5,20 +5,22 @@ use super::{Kind, Plan};
 use crate::method::Processor;
 
 impl Plan {
-    /// A device's name, and its driver or threads.
+    /// A device's name, and its driver or number of threads.
     pub(super) fn device(&self, processor: Processor) -> (String, String) {
         match (&self.gpu, processor) {
             (Some(gpu), Processor::Gpu) => {
                 let report = &gpu.report;
                 (report.name.clone(), format!("{} {}", report.backend, report.driver))
             }
-            _ => (cpu_model(), format!("{} threads", self.threads())),
+            _ => (cpu_model(), self.threads()),
         }
     }
 
-    /// CPU threads that run.
-    fn threads(&self) -> usize {
-        if self.threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { self.threads }
+    /// How many CPU threads run.
+    fn threads(&self) -> String {
+        let every_core = || std::thread::available_parallelism().map_or(1, usize::from);
+        let threads = if self.threads == 0 { every_core() } else { self.threads };
+        format!("{threads} thread{}", if threads == 1 { "" } else { "s" })
     }
 
     /// Names and values of all that figures depend on.
@@ -39,7 +41,7 @@ impl Plan {
             lines.push(("precision of the GPU", precisions.join(", ")));
         }
         if self.cpu {
-            lines.push(("CPU", format!("{} threads, exact precision; wall-clock time of tracing", self.threads())));
+            lines.push(("CPU", format!("{}, exact precision; wall-clock time of tracing", self.threads())));
         }
         let (width, height) = self.size;
         let kinds: Vec<_> = self.kinds.iter().copied().map(Kind::name).collect();

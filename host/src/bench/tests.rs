@@ -149,7 +149,7 @@ fn plan() -> Plan {
 fn subject() -> Subject {
     let scene = scene();
     let cameras = scene.cameras[..2].to_vec();
-    Subject { name: "box".to_owned(), scene, cameras }
+    Subject { name: "box".to_owned(), file: "box.toml".into(), scene, cameras }
 }
 
 #[test]
@@ -188,6 +188,19 @@ fn kinds_without_rays_are_left_out_with_a_note() {
     assert_eq!(blind.notes.len(), 5);
     assert_eq!(kinds(&blind), [Kind::Primary].into());
     assert_eq!(blind.views[0].hit_share, 0.0);
+}
+
+#[test]
+fn a_scene_that_can_not_be_measured_is_an_error_or_a_fault_beside_others() {
+    let plan = Plan { methods: vec![Method::IfIf], kinds: vec![Kind::Primary], ..plan() };
+    let mut far = subject();
+    far.file = "far.toml".into();
+    far.scene.lights = vec![scene::Light::Point { position: Vec3::splat(1e30), colour: Vec3::ONE }];
+    let error = run(&plan, std::slice::from_ref(&far), &|_| ()).unwrap_err();
+    assert!(error.to_string().starts_with("far.toml: light 1 is too far away"), "{error}");
+    let report = run(&plan, &[subject(), far], &|_| ()).unwrap();
+    assert_eq!(report.faults, [error.to_string()]);
+    assert_eq!(report.records.len(), 2 * 2 * 2);
 }
 
 /// Two views of a scene, on a GPU with two methods.

@@ -20,8 +20,8 @@ use crate::scene::{self, Camera, Scene};
 pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays bench scenes/cornell.toml --quick
-  eyerays bench conference.toml sibenik.toml --precision exact,fast -o tables.md
-  eyerays bench conference.toml --kinds primary,ao --methods packet,if-if --device gpu -o conference.csv
+  eyerays bench hall.toml forest.toml cathedral.toml --precision exact,fast -o tables.md
+  eyerays bench hall.toml --kinds primary,ao --methods packet,if-if --device gpu -o hall.csv
 Exit code 1 tells that a method failed or gave other answers in exact precision.";
 
 /// Exit code of answers that differ.
@@ -228,7 +228,7 @@ impl Bench {
             let (scene, warnings) = scene::load(path)?;
             super::warn(&warnings, quiet);
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
-            subjects.push(Subject { name: self.name(path), scene, cameras });
+            subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }
         Ok(subjects)
     }

@@ -196,7 +196,7 @@ impl Real for Eight {
             t: hit.t.wide(),
             u: hit.u.wide(),
             v: hit.v.wide(),
-            area: hit.area.wide(),
+            scale: hit.scale.wide(),
             slot: hit.slot.wide(),
             primitive: hit.primitive.wide(),
         };
@@ -207,7 +207,7 @@ impl Real for Eight {
             t: number(lanes.t),
             u: number(lanes.u),
             v: number(lanes.v),
-            area: number(lanes.area),
+            scale: number(lanes.scale),
             slot: index(lanes.slot),
             primitive: index(lanes.primitive),
         };

@@ -72,6 +72,11 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn splat(x: f32) -> Self;
     /// The quotient; zero where it would be subnormal.
     fn div(self, divisor: Self) -> Self;
+    /// One over a number, both normal.
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self::splat(1.0).div(self)
+    }
     /// The square root; zero for a subnormal.
     fn sqrt(self) -> Self;
     /// `self < other`; false for NaN.

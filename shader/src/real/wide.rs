@@ -87,6 +87,10 @@ impl<const N: usize> Real for Wide<N> {
         Wide(from_fn(|i| Real::div(self.0[i], divisor.0[i])))
     }
     #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Wide(self.0.map(Real::reciprocal))
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Wide(self.0.map(Real::sqrt))
     }
@@ -239,7 +243,7 @@ impl<const N: usize> Hit<Wide<N>> {
             t: self.t.0[i],
             u: self.u.0[i],
             v: self.v.0[i],
-            area: self.area.0[i],
+            scale: self.scale.0[i],
             slot: self.slot.0[i],
             primitive: self.primitive.0[i],
         }
@@ -250,7 +254,7 @@ impl<const N: usize> Hit<Wide<N>> {
         self.t.0[i] = hit.t;
         self.u.0[i] = hit.u;
         self.v.0[i] = hit.v;
-        self.area.0[i] = hit.area;
+        self.scale.0[i] = hit.scale;
         self.slot.0[i] = hit.slot;
         self.primitive.0[i] = hit.primitive;
     }

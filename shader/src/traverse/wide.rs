@@ -130,9 +130,7 @@ impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
             Q::on_boxes(WideNode::ARITY as u32);
             (cursor.nodes, cursor.triangles) = open::<R, V>(&node, ray, hit);
         }
-        let mut first = true;
-        while cursor.triangles.waiting != 0 && (first || geometry.tuning.cut() == 26) {
-            first = false;
+        if cursor.triangles.waiting != 0 {
             cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();

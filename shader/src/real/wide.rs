@@ -196,11 +196,26 @@ macro_rules! lanes {
             fn bytes(words: [u32; 2], _first: u32) -> Self {
                 Wide(bytes(words).map(f32::from))
             }
+            type Kept = [f32; 8];
             #[inline(always)]
-            fn gather(mask: WideMask<8>, bits: [u32; 2], places: [u32; 2], _first: u32) -> u32 {
-                let (bits, places) = (bytes(bits), bytes(places));
-                let all: [u32; 8] = from_fn(|i| mask.0[i] & (u32::from(bits[i]) << places[i]));
-                all.iter().fold(0, |all, bits| all | bits)
+            fn keep(self) -> [f32; 8] {
+                self.0
+            }
+            #[inline(always)]
+            fn kept(kept: &[f32; 8], i: u32) -> $scalar {
+                $wrap(kept[i as usize & 7])
+            }
+            type Children = [u32; 8];
+            #[inline(always)]
+            fn children(words: [u32; 2], inverted: u32) -> [u32; 8] {
+                bytes(words).map(|child| {
+                    let turned = if child & 24 == 24 { inverted } else { 0 };
+                    u32::from(child >> 5) << ((u32::from(child) & 31) ^ turned)
+                })
+            }
+            #[inline(always)]
+            fn waiting(met: WideMask<8>, children: &[u32; 8], _first: u32) -> u32 {
+                (0..8).fold(0, |all, i| all | met.0[i] & children[i])
             }
         }
     };

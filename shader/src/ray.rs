@@ -1,5 +1,7 @@
 //! A ray, ready for boxes and triangles, and what it has hit.
 
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::{Lanes, Scalar};
 use crate::real::{Real, TINY, V3};
 
 /// A ray (or one a lane) with what its box and triangle tests share.
@@ -103,8 +105,28 @@ impl<R: Real> Hit<R> {
 }
 
 #[cfg(not(target_arch = "spirv"))]
+impl<R: Scalar> Shear<R> {
+    /// The same shear in every lane.
+    #[inline(always)]
+    pub(crate) fn spread<P: Lanes<R>>(&self) -> Shear<P> {
+        let (x_major, y_major) = (P::every(self.x_major), P::every(self.y_major));
+        Shear { x: P::all(self.x), y: P::all(self.y), x_major, y_major }
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<R: Real> Shear<R> {
+    /// The same shear of other numbers.
+    #[inline(always)]
+    pub(crate) fn each<T: Real>(&self, f: fn(R) -> T, mask: fn(R::Mask) -> T::Mask) -> Shear<T> {
+        Shear { x: f(self.x), y: f(self.y), x_major: mask(self.x_major), y_major: mask(self.y_major) }
+    }
+}
+
+#[cfg(not(target_arch = "spirv"))]
 impl<const N: usize> Shear<crate::real::Wide<N>> {
     /// One lane's shear.
+    #[inline(always)]
     pub(crate) fn lane(&self, i: usize) -> Shear<f32> {
         let (x_major, y_major) = (self.x_major.0[i] != 0, self.y_major.0[i] != 0);
         Shear { x: self.x.0[i], y: self.y.0[i], x_major, y_major }

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::real::Scalar;
+use eyerays_shader::real::{Scalar, Vectors};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
@@ -25,7 +25,7 @@ pub enum Job<'a, R: Scalar> {
 pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
     let follow = match method {
         Method::Auto | Method::IfIf => alone::<R, IfIf>,
-        Method::Wide => alone::<R, WideNodes>,
+        Method::Wide => nodes::<R>,
         Method::WhileWhile => alone::<R, WhileWhile>,
         Method::Speculative => alone::<R, Speculative<Alone>>,
         Method::Packet => together::<R, Packet<Alone>>,
@@ -37,61 +37,83 @@ pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, 
     follow(level, geometry, slots, job);
 }
 
-/// Every ray by itself.
-struct EachAlone<'a, R: Scalar, M> {
+/// The slots of a task.
+struct Slots<'a, R: Scalar, M> {
     geometry: Geometry<'a>,
     slots: &'a [u32],
     job: Job<'a, R>,
     method: PhantomData<M>,
 }
 
-fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
-    level.run::<R>(EachAlone::<R, M> { geometry: *geometry, slots, job, method: PhantomData });
+impl<'a, R: Scalar, M> Slots<'a, R, M> {
+    fn new(geometry: &Geometry<'a>, slots: &'a [u32], job: Job<'a, R>) -> Self {
+        Slots { geometry: *geometry, slots, job, method: PhantomData }
+    }
 }
 
-impl<R: Scalar, M: traverse::Method<R>> Task for EachAlone<'_, R, M> {
+/// Every ray by itself.
+struct EachAlone<'a, R: Scalar, M>(Slots<'a, R, M>);
+
+fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+    level.run::<R>(EachAlone::<R, M>(Slots::new(geometry, slots, job)));
+}
+
+impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
     #[inline(always)]
-    fn run<const N: usize>(self) {
-        let Self { geometry, slots, job, .. } = self;
-        match job {
-            Job::Trace(paths, hits) => {
-                for (&slot, hit) in slots.iter().zip(hits) {
-                    *hit = stage::trace::<R, M>(&geometry, slot, paths);
-                }
+    fn run<V: Vectors<R>>(self) {
+        one_by_one::<R, M>(&self.0.geometry, self.0.slots, self.0.job);
+    }
+}
+
+/// Every ray by itself through wide nodes, whose boxes and triangles take all lanes.
+struct Nodes<'a, R: Scalar>(Slots<'a, R, ()>);
+
+fn nodes<R: Scalar>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+    level.run::<R>(Nodes::<R>(Slots::new(geometry, slots, job)));
+}
+
+impl<R: Scalar> Task<R> for Nodes<'_, R> {
+    #[inline(always)]
+    fn run<V: Vectors<R>>(self) {
+        one_by_one::<R, WideNodes<V>>(&self.0.geometry, self.0.slots, self.0.job);
+    }
+}
+
+#[inline(always)]
+fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+    match job {
+        Job::Trace(paths, hits) => {
+            for (&slot, hit) in slots.iter().zip(hits) {
+                *hit = stage::trace::<R, M>(geometry, slot, paths);
             }
-            Job::Shadow(asking, light, answers) => {
-                for (&slot, answer) in slots.iter().zip(answers) {
-                    *answer = stage::shadow::<R, M>(&geometry, asking, slot, light);
-                }
+        }
+        Job::Shadow(asking, light, answers) => {
+            for (&slot, answer) in slots.iter().zip(answers) {
+                *answer = stage::shadow::<R, M>(geometry, asking, slot, light);
             }
         }
     }
 }
 
 /// Neighbours together.
-struct Neighbours<'a, R: Scalar, M> {
-    geometry: Geometry<'a>,
-    slots: &'a [u32],
-    job: Job<'a, R>,
-    method: PhantomData<M>,
-}
+struct Neighbours<'a, R: Scalar, M>(Slots<'a, R, M>);
 
 fn together<R: Scalar, M: Together>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
-    level.run::<R>(Neighbours::<R, M> { geometry: *geometry, slots, job, method: PhantomData });
+    level.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
 }
 
-impl<R: Scalar, M: Together> Task for Neighbours<'_, R, M> {
+impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
     #[inline(always)]
-    fn run<const N: usize>(self) {
-        let Self { geometry, slots, job, .. } = self;
-        let most = stage::most::<R, R::Packet<N>>();
+    fn run<V: Vectors<R>>(self) {
+        let Slots { geometry, slots, job, .. } = self.0;
+        let most = stage::most::<R, V::Packet>();
         let mut segments: Vec<Segment<R>> = Vec::with_capacity(most);
         match job {
             Job::Trace(paths, hits) => {
                 for (slots, hits) in slots.chunks(most).zip(hits.chunks_mut(most)) {
                     segments.clear();
                     segments.extend(slots.iter().map(|&slot| stage::traced::<R>(&geometry, slot, paths)));
-                    stage::trace_together::<R, R::Packet<N>, M>(&geometry, &segments, |i, record| hits[i] = record);
+                    stage::trace_together::<R, V::Packet, M>(&geometry, &segments, |i, record| hits[i] = record);
                 }
             }
             Job::Shadow(asking, light, answers) => {
@@ -113,7 +135,7 @@ impl<R: Scalar, M: Together> Task for Neighbours<'_, R, M> {
                     }
                     if !segments.is_empty() {
                         let keep = |i: usize, answer| *places[i] = answer;
-                        stage::shadow_together::<R, R::Packet<N>, M>(&geometry, &segments, keep);
+                        stage::shadow_together::<R, V::Packet, M>(&geometry, &segments, keep);
                     }
                 }
             }

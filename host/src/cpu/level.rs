@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use eyerays_shader::real::Scalar;
+use eyerays_shader::real::{Native, Scalar, Vectors};
 
 /// A set of instructions. The kernels are compiled once for each; all give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -18,10 +18,10 @@ pub enum Level {
 }
 
 /// What is to be compiled for every level.
-pub trait Task {
-    /// Runs with packets of `N` rays. Must be `inline(always)`, as all that it calls in loops: only what is
+pub trait Task<R: Scalar> {
+    /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
     /// inlined is compiled for the level.
-    fn run<const N: usize>(self);
+    fn run<V: Vectors<R>>(self);
 }
 
 impl Level {
@@ -32,7 +32,7 @@ impl Level {
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::is_x86_feature_detected as has;
-            if has!("avx2") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
+            if has!("avx2") && has!("fma") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
                 levels.push(Level::Avx2);
                 if has!("avx512f") && has!("avx512vl") && has!("avx512bw") && has!("avx512dq") {
                     levels.push(Level::Avx512);
@@ -53,7 +53,7 @@ impl Level {
     /// # Panics
     /// If the processor has not got them.
     #[inline]
-    pub fn run<R: Scalar>(self, task: impl Task) {
+    pub fn run<R: Scalar>(self, task: impl Task<R>) {
         match self {
             #[cfg(target_arch = "x86_64")]
             level if R::VECTORISES && level != Level::Baseline => {
@@ -66,7 +66,7 @@ impl Level {
                     }
                 }
             }
-            _ => task.run::<8>(),
+            _ => task.run::<Native>(),
         }
     }
 
@@ -78,13 +78,13 @@ impl Level {
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn avx2(task: impl Task) {
-    task.run::<8>();
+#[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx2<R: Scalar>(task: impl Task<R>) {
+    task.run::<R::Avx2>();
 }
 
 #[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq,avx2,bmi1,bmi2,lzcnt,popcnt")]
-fn avx512(task: impl Task) {
-    task.run::<16>();
+#[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
+fn avx512<R: Scalar>(task: impl Task<R>) {
+    task.run::<R::Avx512>();
 }

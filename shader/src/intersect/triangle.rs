@@ -18,6 +18,8 @@
 
 use crate::ray::Shear;
 use crate::real::{FAINT, Mask, Real, SMALL, V3};
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::{Lanes, Scalar};
 
 /// Where a ray crosses a triangle's plane, before its division.
 #[derive(Clone, Copy)]
@@ -67,6 +69,20 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
 #[inline(always)]
 fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
     ((p.x - shear.x * p.z).settle(SMALL), (p.y - shear.y * p.z).settle(SMALL))
+}
+
+#[cfg(not(target_arch = "spirv"))]
+impl<R: Real> Crossing<R> {
+    /// One of the lanes that are inside.
+    #[inline(always)]
+    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Crossing<S>
+    where
+        R: Lanes<S>,
+    {
+        let front = (R::bits(self.front) >> i) & 1 == 1;
+        let (depth, area) = (self.depth.lane(i), self.area.lane(i));
+        Crossing { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
+    }
 }
 
 impl<R: Real> Crossing<R> {

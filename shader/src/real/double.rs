@@ -58,7 +58,12 @@ pub struct Record(f64, f64, f64, u32);
 
 impl Scalar for f64 {
     type Eight = f64;
-    type Packet<const N: usize> = f64;
+    type Four = f64;
+    type Packet = Self;
+    #[cfg(target_arch = "x86_64")]
+    type Avx2 = super::Native;
+    #[cfg(target_arch = "x86_64")]
+    type Avx512 = super::Native;
     type Record = Record;
 
     fn store(v: V3<f64>, word: u32) -> Record {

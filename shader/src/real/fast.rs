@@ -71,7 +71,13 @@ impl Scalar for Fast {
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
     #[cfg(not(target_arch = "spirv"))]
-    type Packet<const N: usize> = Self;
+    type Four = super::Wide<4>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet = Self;
+    #[cfg(target_arch = "x86_64")]
+    type Avx2 = super::Native;
+    #[cfg(target_arch = "x86_64")]
+    type Avx512 = super::Native;
 
     records!(Fast, inner);
 

@@ -7,6 +7,8 @@
 //! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
+#[cfg(target_arch = "x86_64")]
+mod avx2;
 #[cfg(target_arch = "spirv")]
 mod device;
 #[cfg(not(target_arch = "spirv"))]
@@ -19,13 +21,17 @@ mod vector;
 #[cfg(not(target_arch = "spirv"))]
 mod wide;
 
+#[cfg(target_arch = "x86_64")]
+pub use avx2::Avx2;
 pub use fast::Fast;
 pub use vector::V3;
 #[cfg(not(target_arch = "spirv"))]
 pub use wide::{Wide, WideIndex, WideMask};
 
+use crate::data::numbers;
 use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
+use glam::UVec4;
 
 /// One truth value a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -158,8 +164,12 @@ pub trait Lanes<S: Scalar>: Real {
     fn lane(&self, i: usize) -> S;
     /// The integer of lane `i`.
     fn index_of(index: Self::Index, i: usize) -> u32;
+    /// The numbers of a record for each lane, from the first on.
+    fn vectors(records: &[UVec4]) -> V3<Self>;
     /// A bit a lane, the first in the lowest.
     fn bits(mask: Self::Mask) -> u32;
+    /// The same truth in every lane.
+    fn every(holds: bool) -> Self::Mask;
 }
 
 /// Numbers that the eight boxes of a wide node are tested with.
@@ -167,16 +177,67 @@ pub trait Octet<S: Scalar>: Lanes<S> {
     /// The numbers of [`Lanes::COUNT`] bytes (a divisor of 8) from byte `first` on of two words, the lowest
     /// byte first.
     fn bytes(words: [u32; 2], first: u32) -> Self;
+    /// [`Octet::bytes`] of `low` and `high`, or of `high` and `low` if `swapped`.
+    #[inline(always)]
+    fn sides(swapped: bool, low: [u32; 2], high: [u32; 2], first: u32) -> (Self, Self) {
+        let (near, far) = if swapped { (high, low) } else { (low, high) };
+        (Self::bytes(near, first), Self::bytes(far, first))
+    }
+    /// The bytes of `bits` at the lanes of a mask, each shifted to its place in a word.
+    fn gather(mask: Self::Mask, bits: [u32; 2], places: [u32; 2], first: u32) -> u32;
+}
+
+/// The vectors that a processor has for the numbers of `S`.
+pub trait Vectors<S: Scalar> {
+    /// What tests the boxes of a wide node.
+    type Eight: Octet<S>;
+    /// What tests the triangles of a wide node.
+    #[cfg(not(target_arch = "spirv"))]
+    type Four: Lanes<S>;
+    /// What follows rays together.
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet: Lanes<S>;
+}
+
+/// What every processor of the target has.
+pub struct Native;
+
+impl<S: Scalar> Vectors<S> for Native {
+    type Eight = S::Eight;
+    #[cfg(not(target_arch = "spirv"))]
+    type Four = S::Four;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet = S::Packet;
+}
+
+/// A processor with AVX-512.
+#[cfg(target_arch = "x86_64")]
+pub struct Avx512;
+
+#[cfg(target_arch = "x86_64")]
+impl Vectors<f32> for Avx512 {
+    type Eight = <Avx2 as Vectors<f32>>::Eight;
+    type Four = Wide<4>;
+    type Packet = Wide<16>;
 }
 
 /// A single lane, as shading takes it.
 pub trait Scalar: Real<Mask = bool, Index = u32> {
     /// What tests the boxes of a wide node.
     type Eight: Octet<Self>;
-    /// What follows `N` rays together: as many lanes, or one.
+    /// What tests the triangles of a wide node.
     #[cfg(not(target_arch = "spirv"))]
-    type Packet<const N: usize>: Lanes<Self>;
-    /// Is it worth compiling for every vector length? Only for what is fast on a CPU.
+    type Four: Lanes<Self>;
+    /// What follows rays together.
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet: Lanes<Self>;
+    /// The vectors of a processor with AVX2, if these numbers have any use for them.
+    #[cfg(target_arch = "x86_64")]
+    type Avx2: Vectors<Self>;
+    /// The vectors of a processor with AVX-512.
+    #[cfg(target_arch = "x86_64")]
+    type Avx512: Vectors<Self>;
+    /// Are there other vectors than [`Native`] ones?
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = false;
     /// Three numbers and an integer in device memory.
@@ -223,8 +284,16 @@ macro_rules! one_lane {
                 index
             }
             #[inline(always)]
+            fn vectors(records: &[UVec4]) -> V3<$type> {
+                V3::splat(numbers(records[0]))
+            }
+            #[inline(always)]
             fn bits(mask: bool) -> u32 {
                 mask as u32
+            }
+            #[inline(always)]
+            fn every(holds: bool) -> bool {
+                holds
             }
         }
     };
@@ -234,14 +303,24 @@ one_lane!(Fast);
 #[cfg(not(target_arch = "spirv"))]
 one_lane!(f64);
 
+/// Byte `i` of two words.
+#[inline(always)]
+fn byte(words: [u32; 2], i: u32) -> u32 {
+    let word = if i < 4 { words[0] } else { words[1] };
+    (word >> (8 * (i & 3))) & 255
+}
+
 /// One box at a time.
 macro_rules! octet_of_one {
     ($type:ty) => {
         impl Octet<$type> for $type {
             #[inline(always)]
             fn bytes(words: [u32; 2], first: u32) -> Self {
-                let word = if first < 4 { words[0] } else { words[1] };
-                Self::splat(((word >> (8 * (first & 3))) & 255) as f32)
+                Self::splat(byte(words, first) as f32)
+            }
+            #[inline(always)]
+            fn gather(mask: bool, bits: [u32; 2], places: [u32; 2], first: u32) -> u32 {
+                if mask { byte(bits, first) << byte(places, first) } else { 0 }
             }
         }
     };

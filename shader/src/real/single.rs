@@ -148,7 +148,13 @@ impl Scalar for f32 {
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
     #[cfg(not(target_arch = "spirv"))]
-    type Packet<const N: usize> = super::Wide<N>;
+    type Four = super::Wide<4>;
+    #[cfg(not(target_arch = "spirv"))]
+    type Packet = super::Wide<8>;
+    #[cfg(target_arch = "x86_64")]
+    type Avx2 = super::Avx2;
+    #[cfg(target_arch = "x86_64")]
+    type Avx512 = super::Avx512;
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = true;
 

@@ -5,6 +5,7 @@ use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
 use super::{Fast, Lanes, Mask, Octet, Real, V3};
 use crate::ray::{Hit, Ray};
+use glam::UVec4;
 
 /// `N` numbers, one a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,6 +139,12 @@ impl<const N: usize> Real for Wide<N> {
     }
 }
 
+/// The bytes of two words, the lowest first.
+#[inline(always)]
+fn bytes(words: [u32; 2]) -> [u8; 8] {
+    (u64::from(words[1]) << 32 | u64::from(words[0])).to_le_bytes()
+}
+
 macro_rules! lanes {
     ($scalar:ty, $wrap:expr, $inner:expr) => {
         impl<const N: usize> Lanes<$scalar> for Wide<N> {
@@ -164,16 +171,32 @@ macro_rules! lanes {
                 index.0[i]
             }
             #[inline(always)]
+            fn vectors(records: &[UVec4]) -> V3<Self> {
+                let records = &records[..N];
+                let x = Wide(from_fn(|i| f32::from_bits(records[i].x)));
+                let y = Wide(from_fn(|i| f32::from_bits(records[i].y)));
+                V3::new(x, y, Wide(from_fn(|i| f32::from_bits(records[i].z))))
+            }
+            #[inline(always)]
             fn bits(mask: WideMask<N>) -> u32 {
                 (0..N).map(|i| (mask.0[i] & 1) << i).sum()
+            }
+            #[inline(always)]
+            fn every(holds: bool) -> WideMask<N> {
+                WideMask([bits(holds); N])
             }
         }
 
         impl Octet<$scalar> for Wide<8> {
             #[inline(always)]
             fn bytes(words: [u32; 2], _first: u32) -> Self {
-                let bytes = (u64::from(words[1]) << 32 | u64::from(words[0])).to_le_bytes();
-                Wide(bytes.map(f32::from))
+                Wide(bytes(words).map(f32::from))
+            }
+            #[inline(always)]
+            fn gather(mask: WideMask<8>, bits: [u32; 2], places: [u32; 2], _first: u32) -> u32 {
+                let (bits, places) = (bytes(bits), bytes(places));
+                let all: [u32; 8] = from_fn(|i| mask.0[i] & (u32::from(bits[i]) << places[i]));
+                all.iter().fold(0, |all, bits| all | bits)
             }
         }
     };

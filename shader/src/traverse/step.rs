@@ -6,6 +6,8 @@ use crate::buffer::read;
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 use crate::intersect::{Crossing, Span, cross, slab, span};
 use crate::ray::{Hit, Ray};
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
 use glam::UVec4;
@@ -92,6 +94,49 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     if crossing.any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
+}
+
+/// Tests as many of a run's triangles as there are lanes, from the last on: those of the set bits of `waiting`,
+/// counted from slot `first`. Returns the bits that still wait.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
+    geometry: &Geometry<'_>,
+    first: u32,
+    waiting: u32,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) -> u32 {
+    let (mut rest, mut place) = (waiting, 0);
+    let mut slots = [0; 4];
+    for slot in slots.iter_mut().take(F::COUNT as usize) {
+        // Lanes beyond the last triangle test it again.
+        if rest != 0 {
+            Q::on_triangle();
+            place = 31 - rest.leading_zeros();
+            rest &= !(1 << place);
+        }
+        *slot = first + place;
+    }
+    let (mut a, mut b, mut c) = ([UVec4::ZERO; 4], [UVec4::ZERO; 4], [UVec4::ZERO; 4]);
+    for i in 0..F::COUNT as usize {
+        let triangle = geometry.triangle(slots[i]);
+        (a[i], b[i], c[i]) = (triangle.a, triangle.b, triangle.c);
+    }
+    let (a, b, c) = (F::vectors(&a), F::vectors(&b), F::vectors(&c));
+    let origin = V3::<F>::new(F::all(ray.origin.x), F::all(ray.origin.y), F::all(ray.origin.z));
+    let along = F::all(ray.shear.cycle(ray.inverse).z);
+    let crossing = cross(a - origin, b - origin, c - origin, ray.shear.spread(), along);
+    let mut inside = F::bits(crossing.inside);
+    while inside != 0 {
+        let lane = inside.trailing_zeros() as usize;
+        inside &= inside - 1;
+        let triangle = geometry.triangle(slots[lane]);
+        if counts::<Q>(geometry.features, &triangle) {
+            keep::<Q, R>(geometry, &triangle, slots[lane], &crossing.lane(lane), ray, hit);
+        }
+    }
+    rest
 }
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.

@@ -7,19 +7,27 @@
 //! triangle's own box by 2^-22 times it; the quantised boxes' margin of 2^-19 covers both, so a node is
 //! entered no later than any triangle's own box below it, and no order of visits can cull a hit.
 
+use core::marker::PhantomData;
+
 use super::resumable::{Progress, Resumable, follow};
-use super::step::{occluded, triangle};
+use super::step::occluded;
+#[cfg(not(target_arch = "spirv"))]
+use super::step::several;
+#[cfg(target_arch = "spirv")]
+use super::step::triangle;
 use super::{Method, Query};
 use crate::buffer::read;
-use crate::data::{NodeRef, STACK, WideNode, numbers};
+#[cfg(target_arch = "spirv")]
+use crate::data::NodeRef;
+use crate::data::{STACK, WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Lanes, Octet, Real, Scalar, V3};
+use crate::real::{Native, Octet, Real, Scalar, V3, Vectors};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
-/// See the module.
-pub struct WideNodes;
+/// See the module. `V` are the vectors that test boxes and triangles.
+pub struct WideNodes<V = Native>(PhantomData<V>);
 
 /// Children that wait: inner nodes of one parent, or its triangles.
 #[derive(Clone, Copy)]
@@ -104,7 +112,7 @@ impl Groups {
     }
 }
 
-impl<R: Scalar> Resumable<R> for WideNodes {
+impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
     type Cursor = Groups;
     type Stack = Waiting;
     const EMPTY: Waiting = [0; 2 * STACK];
@@ -120,14 +128,12 @@ impl<R: Scalar> Resumable<R> for WideNodes {
         if cursor.triangles.waiting == 0 {
             let node = read(geometry.wide, cursor.take(inverted(ray), stack));
             Q::on_boxes(WideNode::ARITY as u32);
-            (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
+            (cursor.nodes, cursor.triangles) = open::<R, V>(&node, ray, hit);
         }
         let mut first = true;
         while cursor.triangles.waiting != 0 && (first || geometry.tuning.cut() == 26) {
             first = false;
-            let place = 31 - cursor.triangles.waiting.leading_zeros();
-            cursor.triangles.waiting &= !(1 << place);
-            triangle::<Q, R>(geometry, NodeRef::leaf(cursor.triangles.first + place, 1), ray, hit);
+            cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -135,7 +141,7 @@ impl<R: Scalar> Resumable<R> for WideNodes {
     }
 }
 
-impl<R: Scalar> Method<R> for WideNodes {
+impl<R: Scalar, V: Vectors<R>> Method<R> for WideNodes<V> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
@@ -153,95 +159,115 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
-    let met = Grid::new(node, ray).met(hit.t);
-    let inverted = inverted(ray) * 0x0101_0101;
-    let waiting = waiting(node.children.z, inverted, met) | waiting(node.children.w, inverted, met >> 4);
+fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
+    let opening = Opening::new(node, ray, hit.t);
+    // A loop is not always unrolled.
+    let waiting = opening.turn::<V::Eight>(0)
+        | opening.turn::<V::Eight>(1)
+        | opening.turn::<V::Eight>(2)
+        | opening.turn::<V::Eight>(3)
+        | opening.turn::<V::Eight>(4)
+        | opening.turn::<V::Eight>(5)
+        | opening.turn::<V::Eight>(6)
+        | opening.turn::<V::Eight>(7);
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
     (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
 }
 
-/// The bits of four children that are met, given their bytes: of all four at once as far as possible
-/// (Ylitie et al. 2017, appendix).
+/// Tests the triangle with the highest bit of a group and returns the others' bits.
+#[cfg(target_arch = "spirv")]
 #[inline(always)]
-fn waiting(children: u32, inverted: u32, met: u32) -> u32 {
+fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
+    geometry: &Geometry<'_>,
+    group: Group,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) -> u32 {
+    let place = 31 - group.waiting.leading_zeros();
+    triangle::<Q, R>(geometry, NodeRef::leaf(group.first + place, 1), ray, hit);
+    group.waiting & !(1 << place)
+}
+
+/// Tests the triangles with the highest bits of a group and returns the others' bits.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
+    geometry: &Geometry<'_>,
+    group: Group,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) -> u32 {
+    several::<Q, R, V::Four>(geometry, group.first, group.waiting, ray, hit)
+}
+
+/// The places of four children given their bytes, of all at once (Ylitie et al. 2017, appendix).
+#[inline(always)]
+fn places(children: u32, inverted: u32) -> u32 {
     // Places from 24 on, whose bits 3 and 4 are set, are those of inner nodes.
     let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
-    let places = (children ^ (inverted & is_inner)) & 0x1f1f_1f1f;
-    let bits = (children >> 5) & 0x0707_0707;
-    child(bits, places, met, 0)
-        | child(bits, places, met, 1)
-        | child(bits, places, met, 2)
-        | child(bits, places, met, 3)
+    (children ^ (inverted & is_inner)) & 0x1f1f_1f1f
 }
 
-#[inline(always)]
-fn child(bits: u32, places: u32, met: u32, i: u32) -> u32 {
-    if (met >> i) & 1 == 1 { ((bits >> (8 * i)) & 7) << ((places >> (8 * i)) & 31) } else { 0 }
-}
-
-/// A node's grid in a ray's terms.
-struct Grid<R: Real> {
+/// A node in a ray's terms.
+struct Opening<R: Real> {
     /// Where the ray meets the grid's origin.
     start: V3<R>,
     /// How far it is to the next plane.
     step: V3<R>,
-    /// Bytes of the planes that the ray enters by, an axis after the other.
-    near: [[u32; 2]; 3],
-    /// Bytes of the planes that it leaves by.
-    far: [[u32; 2]; 3],
+    /// Where the ray ends.
+    limit: R,
+    /// Bytes of the lesser planes, an axis after the other.
+    low: [[u32; 2]; 3],
+    /// Bytes of the greater planes.
+    high: [[u32; 2]; 3],
+    /// Does the ray enter by the greater ones?
+    down: [bool; 3],
+    /// A byte a child of what waits if it is met.
+    bits: [u32; 2],
+    /// A byte a child of where those bits lie.
+    places: [u32; 2],
 }
 
-impl<R: Scalar> Grid<R> {
+impl<R: Scalar> Opening<R> {
     #[inline(always)]
-    fn new(node: &WideNode, ray: &Ray<R>) -> Self {
+    fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
         let scale = V3::<R>::splat(Vec3::new(power(0), power(8), power(16)));
-        let low = |q: UVec4| [q.x, q.y];
-        let high = |q: UVec4| [q.z, q.w];
-        let sides = |inverse: R, low: [u32; 2], high: [u32; 2]| {
-            if inverse.lt(R::splat(0.0)) { (high, low) } else { (low, high) }
-        };
-        let x = sides(ray.inverse.x, low(node.low_x_low_y), high(node.low_z_high_x));
-        let y = sides(ray.inverse.y, high(node.low_x_low_y), low(node.high_y_high_z));
-        let z = sides(ray.inverse.z, low(node.low_z_high_x), high(node.high_y_high_z));
-        Grid {
+        let first = |q: UVec4| [q.x, q.y];
+        let last = |q: UVec4| [q.z, q.w];
+        let zero = R::splat(0.0);
+        let (inverted, children) = (inverted(ray) * 0x0101_0101, last(node.children));
+        Opening {
             start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
             step: scale.times(ray.inverse),
-            near: [x.0, y.0, z.0],
-            far: [x.1, y.1, z.1],
+            limit,
+            low: [first(node.low_x_low_y), last(node.low_x_low_y), first(node.low_z_high_x)],
+            high: [last(node.low_z_high_x), first(node.high_y_high_z), last(node.high_y_high_z)],
+            down: [ray.inverse.x.lt(zero), ray.inverse.y.lt(zero), ray.inverse.z.lt(zero)],
+            bits: [(children[0] >> 5) & 0x0707_0707, (children[1] >> 5) & 0x0707_0707],
+            places: [places(children[0], inverted), places(children[1], inverted)],
         }
     }
 
-    /// A bit for each of the eight boxes that the ray meets before `limit`. (A loop is not always unrolled.)
+    /// What waits of a box and those that are tested with it, if it is the first of them.
     #[inline(always)]
-    fn met(&self, limit: R) -> u32 {
-        self.turn(0, limit)
-            | self.turn(1, limit)
-            | self.turn(2, limit)
-            | self.turn(3, limit)
-            | self.turn(4, limit)
-            | self.turn(5, limit)
-            | self.turn(6, limit)
-            | self.turn(7, limit)
+    fn turn<E: Octet<R>>(&self, first: u32) -> u32 {
+        if first.is_multiple_of(E::COUNT) {
+            E::gather(self.meets::<E>(first), self.bits, self.places, first)
+        } else {
+            0
+        }
     }
 
-    /// The bits of a box and those that are tested with it, if it is the first of them.
+    /// Which of [`Lanes::COUNT`] boxes from `first` on the ray meets before its limit.
     #[inline(always)]
-    fn turn(&self, first: u32, limit: R) -> u32 {
-        if first.is_multiple_of(R::Eight::COUNT) { self.meets(first, limit) << first } else { 0 }
-    }
-
-    /// A bit for each of [`Lanes::COUNT`] boxes from `first` on that the ray meets before `limit`.
-    #[inline(always)]
-    fn meets(&self, first: u32, limit: R) -> u32 {
-        let all = |v: V3<R>| V3::new(R::Eight::all(v.x), R::Eight::all(v.y), R::Eight::all(v.z));
-        let planes = |b: &[[u32; 2]; 3]| {
-            V3::new(R::Eight::bytes(b[0], first), R::Eight::bytes(b[1], first), R::Eight::bytes(b[2], first))
-        };
+    fn meets<E: Octet<R>>(&self, first: u32) -> E::Mask {
+        let all = |v: V3<R>| V3::new(E::all(v.x), E::all(v.y), E::all(v.z));
         let (start, step) = (all(self.start), all(self.step));
-        let at = |q: V3<R::Eight>| q.fused(step, start);
-        let met = span(at(planes(&self.near)), at(planes(&self.far)));
-        R::Eight::bits(met.near.le(met.far) & met.near.le(R::Eight::all(limit)))
+        let x = E::sides(self.down[0], self.low[0], self.high[0], first);
+        let y = E::sides(self.down[1], self.low[1], self.high[1], first);
+        let z = E::sides(self.down[2], self.low[2], self.high[2], first);
+        let met = span(V3::new(x.0, y.0, z.0).fused(step, start), V3::new(x.1, y.1, z.1).fused(step, start));
+        met.near.le(met.far) & met.near.le(E::all(self.limit))
     }
 }

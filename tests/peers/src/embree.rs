@@ -1,7 +1,7 @@
 //! Embree 3.13 in its robust mode.
 
 use embree3::{
-    BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, IntersectContext, Ray, Ray16, RayHit, RayHit16,
+    Hit16, BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, IntersectContext, Ray, Ray16, RayHit, RayHit16,
     Scene, SceneFlags, ValidMask, ValidMaskN,
 };
 use eyerays::pack::Packed;
@@ -28,8 +28,8 @@ impl Embree {
         let corners: Vec<[f32; 3]> = corners.collect();
         let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
-        mesh.set_new_buffer::<[f32; 3]>(BufferUsage::VERTEX, 0, Format::FLOAT3, corners.len())?.copy_from_slice(&corners);
-        mesh.set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, indices.len())?.copy_from_slice(&indices);
+        mesh.set_new_buffer::<[f32; 3]>(BufferUsage::VERTEX, 0, Format::FLOAT3, 12, corners.len())?.copy_from_slice(&corners);
+        mesh.set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, 12, indices.len())?.copy_from_slice(&indices);
         let mut scene = device.create_scene()?;
         scene.set_flags(SceneFlags::ROBUST);
         scene.set_build_quality(quality);
@@ -109,7 +109,7 @@ impl Contestant for Packet<'_> {
                 let (mut rays, valid) = packet(stream, first + chunk * PACKET, answers.len());
                 match question {
                     Question::Closest => {
-                        let mut hits = RayHit16::new(rays);
+                        let mut hits = RayHit16 { ray: rays, hit: Hit16::new() };
                         scene.intersect16(&mut context, &mut hits, &valid);
                         for (lane, answer) in answers.iter_mut().enumerate() {
                             let missed = hits.hit.geomID[lane] == embree3::INVALID_ID;

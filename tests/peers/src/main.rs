@@ -79,7 +79,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
     let Some(Light::Point { position, .. }) = scene.lights.first() else { return Err("no point light".into()) };
     let reach = options.reach_units.map_or(rays::diagonal(&packed) * options.reach / 100.0, |units| units * scale);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
-    let embree = embree::Embree::new(&packed, embree_quality)?;
+    let embree = embree::Embree::new(&packed, embree_quality).map_err(|e| format!("Embree: {e:?}"))?;
     let binary = hierarchies::Binary::new(&packed, quality);
     let compressed = hierarchies::Compressed::new(&packed, quality);
     let mut names: Vec<(&'static str, bool)> = Vec::new();

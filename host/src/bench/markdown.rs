@@ -1,6 +1,7 @@
 //! The thesis' tables of chapter 7, in Markdown.
 
-use super::{Kind, Record, Report};
+use super::text::{Text, distinct, escaped, grouped, short};
+use super::{Kind, Record, Report, SceneRow, ViewRow};
 
 /// All tables of a report.
 pub fn markdown(report: &Report) -> String {
@@ -8,6 +9,7 @@ pub fn markdown(report: &Report) -> String {
     setup(&mut text, report);
     scenes(&mut text, report);
     views(&mut text, report);
+    summary(&mut text, report);
     let (primary, others): (Vec<_>, Vec<_>) = report.records.iter().partition(|r| r.kind == Kind::Primary);
     if !primary.is_empty() {
         text.heading("Primary rays (thesis table 7.2)", SPEEDS);
@@ -24,6 +26,9 @@ pub fn markdown(report: &Report) -> String {
     text.0
 }
 
+const SUMMARY: &str =
+    "Mrays/s, mean of the views. The best of each kind is bold; `*` marks what `auto` takes for the device and kind.";
+
 const SPEEDS: &str =
     "Frames a second (if these rays were all) / Mrays/s, each from the median time; `*` marks what `auto` takes.";
 
@@ -31,40 +36,6 @@ const COUNTS: &str = "\
 What the kernels' own hooks count on the CPU over a sample of each stream, a ray, mean of the views. A visit is one of a pair
 of boxes, or of a wide node's eight. What a packet of 32 does is charged to each of its rays. SIMD efficiency is the share of
 a packet's rays that want the child it goes to.";
-
-/// Markdown in the making.
-#[derive(Default)]
-struct Text(String);
-
-impl Text {
-    fn heading(&mut self, title: &str, caption: &str) {
-        self.0 += if self.0.is_empty() { "" } else { "\n" };
-        self.0 += &format!("## {title}\n");
-        self.paragraph(caption);
-    }
-
-    fn paragraph(&mut self, text: &str) {
-        if !text.is_empty() {
-            self.0 += &format!("\n{text}\n");
-        }
-    }
-
-    fn table(&mut self, head: &[&str], rows: &[Vec<String>]) {
-        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
-        self.0 += "\n";
-        self.0 += &line(head.iter().map(|cell| escaped(cell)).collect());
-        self.0 += &format!("|{}\n", "---|".repeat(head.len()));
-        for row in rows {
-            self.0 += &line(row.iter().map(|cell| escaped(cell)).collect());
-        }
-    }
-}
-
-/// A cell's text; names come from files.
-fn escaped(cell: &str) -> String {
-    let line: String = cell.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-    line.replace('|', "\\|")
-}
 
 fn setup(text: &mut Text, report: &Report) {
     text.heading("Setup", "");
@@ -74,7 +45,7 @@ fn setup(text: &mut Text, report: &Report) {
 
 fn scenes(text: &mut Text, report: &Report) {
     text.heading("Scenes (thesis table 7.1)", "");
-    let row = |s: &super::SceneRow| {
+    let row = |s: &SceneRow| {
         let counts = [s.triangles, s.split_triangles, s.nodes, s.leaves, s.depth as usize, s.wide_nodes];
         let mut row = vec![s.scene.clone()];
         row.extend(counts.map(grouped));
@@ -102,7 +73,7 @@ fn views(text: &mut Text, report: &Report) {
     let caption =
         "The hash is over the answers of all rays, and the same for every method and device in exact precision.";
     text.heading("Views", caption);
-    let row = |v: &super::ViewRow| {
+    let row = |v: &ViewRow| {
         let hits = format!("{:.2} %", 100.0 * v.hit_share);
         vec![v.scene.clone(), v.view.clone(), v.order.clone(), hits, grouped(v.rays), format!("`{}`", v.hash)]
     };
@@ -110,12 +81,54 @@ fn views(text: &mut Text, report: &Report) {
     text.table(&["scene", "view", "order", "primary rays that hit", "rays", "hash"], &rows);
 }
 
+/// What was measured of one scene on one device in one precision.
+fn group(record: &Record) -> (&str, &str, &str, &str) {
+    (&record.scene, record.processor, &record.device, record.precision)
+}
+
+/// A table a scene, device and precision: methods down, kinds across.
+fn summary(text: &mut Text, report: &Report) {
+    if report.records.is_empty() {
+        return;
+    }
+    text.heading("All kinds of rays", SUMMARY);
+    for (scene, processor, device, precision) in distinct(report.records.iter().map(group)) {
+        let wanted = (scene, processor, device, precision);
+        let of: Vec<&Record> = report.records.iter().filter(|r| group(r) == wanted).collect();
+        let kinds = distinct(of.iter().map(|r| r.kind));
+        let ways = distinct(of.iter().map(|r| label(r)));
+        let columns: Vec<Vec<String>> = kinds.iter().map(|&kind| column(kind, &ways, &of)).collect();
+        let row = |(i, way): (usize, &String)| {
+            std::iter::once(way.clone()).chain(columns.iter().map(|column| column[i].clone())).collect()
+        };
+        let rows: Vec<_> = ways.iter().enumerate().map(row).collect();
+        let head: Vec<_> = std::iter::once("method").chain(kinds.iter().map(|kind| kind.name())).collect();
+        text.paragraph(&format!("**{}**, {} in {precision} precision", escaped(scene), escaped(device)));
+        text.table(&head, &rows);
+    }
+}
+
+/// A kind's cell for each way.
+fn column(kind: Kind, ways: &[String], records: &[&Record]) -> Vec<String> {
+    let cell = |way: &String| {
+        let of: Vec<&&Record> = records.iter().filter(|r| r.kind == kind && label(r) == *way).collect();
+        let mean = of.iter().map(|r| r.mrays_per_s).sum::<f64>() / of.len() as f64;
+        (!of.is_empty()).then(|| (mean, of.iter().any(|r| r.auto)))
+    };
+    let cells: Vec<_> = ways.iter().map(cell).collect();
+    let best = cells.iter().flatten().map(|cell| cell.0).fold(0.0, f64::max);
+    let written = |(mean, auto): (f64, bool)| {
+        let star = if auto { " *" } else { "" };
+        if mean == best { format!("**{}**{star}", short(mean)) } else { format!("{}{star}", short(mean)) }
+    };
+    cells.into_iter().map(|cell| cell.map_or_else(|| "-".to_owned(), written)).collect()
+}
+
 /// A table a scene, kind, device and precision: methods down, views across.
 fn speeds(text: &mut Text, records: &[&Record]) {
-    let title = |r: &Record| (r.scene.clone(), r.kind, r.processor, r.precision, r.device.clone());
-    for (scene, kind, processor, precision, device) in distinct(records.iter().map(|r| title(r))) {
-        let key = (scene.clone(), kind, processor, precision, device.clone());
-        let of: Vec<&Record> = records.iter().copied().filter(|r| title(r) == key).collect();
+    for (kind, (scene, processor, device, precision)) in distinct(records.iter().map(|r| (r.kind, group(r)))) {
+        let wanted = (kind, (scene, processor, device, precision));
+        let of: Vec<&Record> = records.iter().copied().filter(|r| (r.kind, group(r)) == wanted).collect();
         let views = distinct(of.iter().map(|r| r.view.clone()));
         let mut head = vec!["method"];
         head.extend(views.iter().map(String::as_str));
@@ -125,9 +138,9 @@ fn speeds(text: &mut Text, records: &[&Record]) {
         let spread = of.iter().map(|r| r.spread).fold(0.0, f64::max);
         text.paragraph(&format!(
             "**{}**, {} rays, {} in {precision} precision; spread at most {:.1} %",
-            escaped(&scene),
+            escaped(scene),
             kind.name(),
-            escaped(&device),
+            escaped(device),
             100.0 * spread
         ));
         text.table(&head, &rows);
@@ -217,40 +230,4 @@ fn label(record: &Record) -> String {
     label.extend([record.order.as_str()].iter().filter(|o| **o != "tiled"));
     label.extend([record.triangles.as_str()].iter().filter(|t| **t != "gathered"));
     label.join(", ")
-}
-
-/// What there is, each once, in the order of first appearance.
-fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
-    let mut once = Vec::new();
-    for one in all {
-        if !once.contains(&one) {
-            once.push(one);
-        }
-    }
-    once
-}
-
-/// Three digits, or all before the point.
-fn short(x: f64) -> String {
-    let decimals = if x >= 99.95 {
-        0
-    } else if x >= 9.995 {
-        1
-    } else {
-        2
-    };
-    format!("{x:.decimals$}")
-}
-
-/// 1234567 as 1,234,567.
-fn grouped(n: usize) -> String {
-    let digits = n.to_string();
-    let mut text = String::new();
-    for (i, digit) in digits.chars().enumerate() {
-        if i > 0 && (digits.len() - i).is_multiple_of(3) {
-            text.push(',');
-        }
-        text.push(digit);
-    }
-    text
 }

@@ -12,6 +12,7 @@ mod record;
 mod run;
 mod sample;
 mod setup;
+mod text;
 mod timing;
 
 #[cfg(test)]

@@ -246,6 +246,7 @@ fn tables_have_a_method_a_row_and_a_view_a_column() {
     let text = markdown(&report());
     for part in [
         "| program | eyerays |\n",
+        "\n| method | primary |\n|---|---|\n| packet, indexed | **1000** * |\n| if-if, indexed | 8.25 |\n",
         "\n## Primary rays (thesis table 7.2)\n",
         "\n**a\\|b**, primary rays, A, \"GPU\" in fast precision; spread at most 1.5 %\n",
         "\n| method | one | two | mean |\n|---|---|---|---|\n\

@@ -5,6 +5,7 @@
 //! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
 //! a power of two so that every coordinate, cameras included, lies in [-1, 1].
 
+use crate::real::Real;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
@@ -294,17 +295,15 @@ impl Triangle {
     }
 }
 
-/// Compare-select, since a device's own minimum may treat zeros and NaN its own way.
+/// A zero's sign is lost in the padding.
 #[inline(always)]
 fn least(a: f32, b: f32, c: f32) -> f32 {
-    let ab = if a < b { a } else { b };
-    if ab < c { ab } else { c }
+    a.lesser(b).lesser(c)
 }
 
 #[inline(always)]
 fn greatest(a: f32, b: f32, c: f32) -> f32 {
-    let ab = if a > b { a } else { b };
-    if ab > c { ab } else { c }
+    a.greater(b).greater(c)
 }
 
 /// The vertex normals of a triangle in leaf order, bound only where a mesh is smooth.
@@ -386,14 +385,29 @@ pub struct Frame {
     pub limits: UVec4,
 }
 
-/// Thresholds of the hybrid methods (thesis 6.2.3).
+/// Thresholds of the hybrid methods (thesis 6.2.3) and of persistent subgroups.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
 pub struct Tuning(pub u32);
 
 impl Tuning {
     /// Parts a full stack of `stack_max` nodes, or a child that less than `cut` percent of a packet want.
     pub const fn new(stack_max: u32, cut: u32) -> Self {
-        Tuning(stack_max | (cut << 8))
+        Tuning(stack_max | (cut << 8)).with_busy(Self::BUSY)
+    }
+
+    /// The default of [`Tuning::busy`], measured.
+    const BUSY: u32 = 40;
+
+    /// Lets the lanes of persistent subgroups take new rays when less than `busy` percent are at work.
+    pub const fn with_busy(self, busy: u32) -> Self {
+        Tuning((self.0 & 0xffff) | (busy << 16))
+    }
+
+    /// Percent of a persistent subgroup below which idle lanes take new rays. (Each time all wait for the
+    /// rays' preparation.)
+    #[inline(always)]
+    pub fn busy(self) -> u32 {
+        self.0 >> 16
     }
 
     /// Nodes that wait when a packet parts.
@@ -405,7 +419,7 @@ impl Tuning {
     /// Percent of a packet below which rays part.
     #[inline(always)]
     pub fn cut(self) -> u32 {
-        self.0 >> 8
+        (self.0 >> 8) & 0xff
     }
 }
 

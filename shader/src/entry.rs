@@ -13,7 +13,7 @@ use crate::traverse::{
     Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
     WideNodes,
 };
-use crate::warp::{Subgroup, take};
+use crate::warp::{Alone, Subgroup, take};
 use glam::{UVec3, UVec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
@@ -283,7 +283,7 @@ macro_rules! persistent {
 
 grid! {
     IfIf: exact_trace_if_if exact_shadow_if_if fast_trace_if_if fast_shadow_if_if;
-    WhileWhile: exact_trace_while_while exact_shadow_while_while fast_trace_while_while fast_shadow_while_while;
+    WhileWhile<Alone>: exact_trace_while_while exact_shadow_while_while fast_trace_while_while fast_shadow_while_while;
     WideNodes: exact_trace_wide exact_shadow_wide fast_trace_wide fast_shadow_wide;
     Packet<Subgroup>:
         subgroup_exact_trace_packet subgroup_exact_shadow_packet
@@ -309,7 +309,7 @@ persistent! {
     IfIf:
         subgroup_exact_trace_if_if_persistent subgroup_exact_shadow_if_if_persistent
         subgroup_fast_trace_if_if_persistent subgroup_fast_shadow_if_if_persistent;
-    WhileWhile:
+    WhileWhile<Subgroup>:
         subgroup_exact_trace_while_while_persistent subgroup_exact_shadow_while_while_persistent
         subgroup_fast_trace_while_while_persistent subgroup_fast_shadow_while_while_persistent;
     WideNodes:

@@ -49,7 +49,7 @@ impl<R: Real> Ray<R> {
         let y_major = !x_major & size.z.le(size.y);
         let inverse = d.map(|c| {
             let least = R::select(c.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
-            R::splat(1.0).div(R::select(c.same(R::splat(0.0)), least, c))
+            R::select(c.same(R::splat(0.0)), least, c).reciprocal()
         });
         let mut shear = Shear { x: d.x, y: d.y, x_major, y_major };
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
@@ -73,12 +73,12 @@ impl<R: Real> Shear<R> {
 pub struct Hit<R: Real> {
     /// Distance in lengths of the ray's direction. Nothing beyond counts.
     pub t: R,
-    /// Weight of the triangle's second vertex, times `area`.
+    /// Weight of the triangle's second vertex, but for its scale.
     pub u: R,
-    /// Weight of the third, times `area`.
+    /// Weight of the third, likewise.
     pub v: R,
-    /// What the weights are still to be divided by, see [`Hit::weights`].
-    pub area: R,
+    /// What the weights are still to be multiplied by, see [`Hit::weights`].
+    pub scale: R,
     /// Where the triangle lies in leaf order; [`Hit::NOTHING`] if there is none.
     pub slot: R::Index,
     /// The triangle's number in the scene, which decides ties.
@@ -93,14 +93,13 @@ impl<R: Real> Hit<R> {
     #[inline(always)]
     pub fn none(limit: R) -> Self {
         let nothing = R::index(Self::NOTHING);
-        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), area: R::splat(1.0), slot: nothing, primitive: nothing }
+        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), scale: R::splat(1.0), slot: nothing, primitive: nothing }
     }
 
-    /// Weights of the triangle's second and third vertex. They are divided once a ray, not once a triangle
-    /// that was the best for a while.
+    /// Weights of the triangle's second and third vertex.
     #[inline(always)]
     pub fn weights(&self) -> (R, R) {
-        (self.u.div(self.area), self.v.div(self.area))
+        (self.u * self.scale, self.v * self.scale)
     }
 }
 

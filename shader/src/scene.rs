@@ -54,11 +54,16 @@ impl Geometry<'_> {
         }
     }
 
-    /// The box (least, greatest corner) of the part of a split triangle that a slot stands for.
+    /// The box (least, greatest corner) that a ray must meet for a hit at a slot to count: the triangle's own,
+    /// or that of the part that the slot stands for.
     #[inline(always)]
-    pub fn bounds(&self, slot: u32) -> (Vec3, Vec3) {
-        let bounds = read(self.bounds, slot);
-        (numbers(bounds.least), numbers(bounds.greatest))
+    pub fn bounds(&self, slot: u32, triangle: &Triangle) -> (Vec3, Vec3) {
+        if self.features.has(Features::SPLIT) {
+            let bounds = read(self.bounds, slot);
+            (numbers(bounds.least), numbers(bounds.greatest))
+        } else {
+            triangle.bounds()
+        }
     }
 }
 

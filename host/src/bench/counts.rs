@@ -125,7 +125,7 @@ type Follow = fn(&Geometry<'_>, &Stream, Range<usize>, Question) -> Calls;
 fn follower(method: Method) -> Follow {
     match method {
         Method::Auto | Method::IfIf => single::<IfIf>,
-        Method::WhileWhile => single::<WhileWhile>,
+        Method::WhileWhile => single::<WhileWhile<Alone>>,
         // Alone it never speculates: its counts are those of while-while.
         Method::Speculative => single::<Speculative<Alone>>,
         Method::Wide => single::<WideNodes>,

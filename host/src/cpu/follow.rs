@@ -26,7 +26,7 @@ pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, 
     let follow = match method {
         Method::Auto | Method::IfIf => alone::<R, IfIf>,
         Method::Wide => nodes::<R>,
-        Method::WhileWhile => alone::<R, WhileWhile>,
+        Method::WhileWhile => alone::<R, WhileWhile<Alone>>,
         Method::Speculative => alone::<R, Speculative<Alone>>,
         Method::Packet => together::<R, Packet<Alone>>,
         Method::SequentialStack => together::<R, Hybrid<Alone, StackMax, Sequential>>,

@@ -85,11 +85,14 @@ impl<R: Real> Crossing<R> {
     }
 }
 
+/// What a product and a quotient may be off by, generously.
+const ABOUT: f32 = 1.0 + 1.0 / (1 << 20) as f32;
+
 impl<R: Real> Crossing<R> {
-    /// Is there a hit in any lane?
+    /// Where the crossing is inside and may lie before `limit`: a cheap test, so that the division is for few.
     #[inline(always)]
-    pub fn any(&self) -> bool {
-        self.inside.any()
+    pub fn nearer(&self, limit: R) -> R::Mask {
+        self.inside & self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT))
     }
 }
 

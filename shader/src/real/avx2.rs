@@ -196,7 +196,7 @@ impl Real for Eight {
             t: hit.t.wide(),
             u: hit.u.wide(),
             v: hit.v.wide(),
-            area: hit.area.wide(),
+            scale: hit.scale.wide(),
             slot: hit.slot.wide(),
             primitive: hit.primitive.wide(),
         };
@@ -207,7 +207,7 @@ impl Real for Eight {
             t: number(lanes.t),
             u: number(lanes.u),
             v: number(lanes.v),
-            area: number(lanes.area),
+            scale: number(lanes.scale),
             slot: index(lanes.slot),
             primitive: index(lanes.primitive),
         };
@@ -263,11 +263,33 @@ impl Octet<f32> for Eight {
         (Self::select(swapped, high, low), Self::select(swapped, low, high))
     }
 
+    type Kept = [f32; 8];
+
     #[inline(always)]
-    fn gather(mask: EightMask, bits: [u32; 2], places: [u32; 2], _first: u32) -> u32 {
-        // SAFETY: as in `instruction`.
-        let all = unsafe { _mm256_sllv_epi32(integers(bits).0, integers(places).0) };
-        let (mask, all) = (mask.wide().0, EightIndex(all).wide().0);
-        (0..8).fold(0, |sum, i| sum | mask[i] & all[i])
+    fn keep(self) -> [f32; 8] {
+        self.wide().0
+    }
+
+    #[inline(always)]
+    fn kept(kept: &[f32; 8], i: u32) -> f32 {
+        kept[i as usize & 7]
+    }
+
+    type Children = EightIndex;
+
+    instruction! {
+        fn children(words: [u32; 2], inverted: u32) -> EightIndex {{
+            let (child, inner) = (integers(words).0, _mm256_set1_epi32(24));
+            let is_inner = _mm256_cmpeq_epi32(_mm256_and_si256(child, inner), inner);
+            let turned = _mm256_and_si256(is_inner, _mm256_set1_epi32(inverted as i32));
+            let place = _mm256_and_si256(child, _mm256_set1_epi32(31));
+            EightIndex(_mm256_sllv_epi32(_mm256_srli_epi32::<5>(child), _mm256_xor_si256(place, turned)))
+        }}
+    }
+
+    #[inline(always)]
+    fn waiting(met: EightMask, children: &EightIndex, _first: u32) -> u32 {
+        let (met, children) = (met.wide().0, children.wide().0);
+        (0..8).fold(0, |all, i| all | met[i] & children[i])
     }
 }

@@ -72,6 +72,11 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn splat(x: f32) -> Self;
     /// The quotient; zero where it would be subnormal.
     fn div(self, divisor: Self) -> Self;
+    /// One over a number, both normal.
+    #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Self::splat(1.0).div(self)
+    }
     /// The square root; zero for a subnormal.
     fn sqrt(self) -> Self;
     /// `self < other`; false for NaN.
@@ -183,8 +188,19 @@ pub trait Octet<S: Scalar>: Lanes<S> {
         let (near, far) = if swapped { (high, low) } else { (low, high) };
         (Self::bytes(near, first), Self::bytes(far, first))
     }
-    /// The bytes of `bits` at the lanes of a mask, each shifted to its place in a word.
-    fn gather(mask: Self::Mask, bits: [u32; 2], places: [u32; 2], first: u32) -> u32;
+    /// Numbers that are kept to be asked for one of them; nothing where there is no room for them.
+    type Kept: Copy;
+    /// Keeps the lanes' numbers.
+    fn keep(self) -> Self::Kept;
+    /// Number `i` of those kept, or one less than any of them.
+    fn kept(kept: &Self::Kept, i: u32) -> S;
+    /// What waits at each child if it is met.
+    type Children: Copy;
+    /// From a byte a child: how many bits wait (3 to 0) in its upper three bits, where they lie in the lower
+    /// five. Places from 24 on are turned by `inverted`.
+    fn children(words: [u32; 2], inverted: u32) -> Self::Children;
+    /// All that waits of the [`Lanes::COUNT`] children from `first` on that are met.
+    fn waiting(met: Self::Mask, children: &Self::Children, first: u32) -> u32;
 }
 
 /// The vectors that a processor has for the numbers of `S`.
@@ -310,6 +326,14 @@ fn byte(words: [u32; 2], i: u32) -> u32 {
     (word >> (8 * (i & 3))) & 255
 }
 
+/// The places of four children, of all at once (Ylitie et al. 2017, appendix).
+#[inline(always)]
+fn places(children: u32, inverted: u32) -> u32 {
+    // Bits 3 and 4 are set from 24 on.
+    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
+    (children ^ ((inverted * 0x0101_0101) & is_inner)) & 0x1f1f_1f1f
+}
+
 /// One box at a time.
 macro_rules! octet_of_one {
     ($type:ty) => {
@@ -318,9 +342,22 @@ macro_rules! octet_of_one {
             fn bytes(words: [u32; 2], first: u32) -> Self {
                 Self::splat(byte(words, first) as f32)
             }
+            type Kept = ();
             #[inline(always)]
-            fn gather(mask: bool, bits: [u32; 2], places: [u32; 2], first: u32) -> u32 {
-                if mask { byte(bits, first) << byte(places, first) } else { 0 }
+            fn keep(self) {}
+            #[inline(always)]
+            fn kept(_: &(), _: u32) -> $type {
+                Self::splat(f32::MIN)
+            }
+            type Children = ([u32; 2], [u32; 2]);
+            #[inline(always)]
+            fn children(words: [u32; 2], inverted: u32) -> Self::Children {
+                let bits = [(words[0] >> 5) & 0x0707_0707, (words[1] >> 5) & 0x0707_0707];
+                (bits, [places(words[0], inverted), places(words[1], inverted)])
+            }
+            #[inline(always)]
+            fn waiting(met: bool, (bits, places): &Self::Children, first: u32) -> u32 {
+                if met { byte(*bits, first) << byte(*places, first) } else { 0 }
             }
         }
     };

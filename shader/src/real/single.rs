@@ -134,6 +134,14 @@ impl Real for f32 {
     }
 
     #[inline(always)]
+    fn reciprocal(self) -> f32 {
+        #[cfg(target_arch = "spirv")]
+        return soft::reciprocal(self);
+        #[cfg(not(target_arch = "spirv"))]
+        return 1.0 / self;
+    }
+
+    #[inline(always)]
     fn sqrt(self) -> f32 {
         #[cfg(target_arch = "spirv")]
         return soft::sqrt(self);

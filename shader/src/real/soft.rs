@@ -11,6 +11,8 @@ const INFINITY: u32 = 0x7f80_0000;
 const NAN: u32 = 0x7fc0_0000;
 const ONE: u32 = 0x3f80_0000;
 const BELOW_TWO: u32 = 0x3fff_ffff;
+const HALF: u32 = 0x3f00_0000;
+const BELOW_ONE: u32 = 0x3f7f_ffff;
 const FRACTION: u32 = 0x007f_ffff;
 const HIDDEN: u32 = 0x0080_0000;
 
@@ -97,6 +99,32 @@ pub fn div(a: f32, b: f32) -> f32 {
     f32::from_bits(bits)
 }
 
+/// One over a number, rounded to nearest: [`div`] where neither the number nor the result is zero, subnormal,
+/// infinite or NaN, at half its price.
+#[inline(never)]
+pub fn reciprocal(b: f32) -> f32 {
+    let bits = b.to_bits();
+    let m = (bits & FRACTION) | HIDDEN;
+    // 2^47 / m, or 2^24 - 1 for a power of two, whose reciprocal is put right below.
+    let estimate = (1.0 / f32::from_bits(ONE | (bits & FRACTION))).to_bits();
+    let estimate = if estimate < HALF { HALF } else { estimate };
+    let estimate = if estimate > BELOW_ONE { BELOW_ONE } else { estimate };
+    let mut q = (estimate & FRACTION) | HIDDEN;
+    // Twice what is left, its low 32 bits; no quotient lies halfway.
+    let mut rest = 0u32.wrapping_sub(q.wrapping_mul(m)).wrapping_mul(2) as i32;
+    while rest > m as i32 {
+        q += 1;
+        rest -= 2 * m as i32;
+    }
+    while rest < -(m as i32) {
+        q -= 1;
+        rest += 2 * m as i32;
+    }
+    let power = m == HIDDEN;
+    let exponent = (if power { 254 } else { 253u32 }).wrapping_sub(exponent(bits)) << 23;
+    f32::from_bits((bits & SIGN) | exponent | if power { 0 } else { q & FRACTION })
+}
+
 /// The square root, rounded to nearest even; NaN for a negative number, -0 for -0.
 #[inline(never)]
 pub fn sqrt(a: f32) -> f32 {
@@ -153,7 +181,7 @@ pub mod native {
 
 #[cfg(test)]
 mod tests {
-    use super::{div, native, sqrt};
+    use super::{div, native, reciprocal, sqrt};
     use proptest::prelude::*;
 
     /// Operands whose quotients lie on ties, at the range's ends, and every special.
@@ -194,6 +222,22 @@ mod tests {
             for b in CORNERS.iter().flat_map(|&b| [b, b | super::SIGN]) {
                 let (x, y) = (f32::from_bits(a), f32::from_bits(b));
                 assert!(agree(div(x, y), native::div(x, y)), "{a:08x} / {b:08x}: {:?}", div(x, y));
+            }
+        }
+    }
+
+    /// Every mantissa, and every exponent that has a normal reciprocal.
+    #[test]
+    fn reciprocals_are_the_processors() {
+        for bits in 0x3f80_0000..=0x4000_0000u32 {
+            let x = f32::from_bits(bits);
+            assert_eq!(reciprocal(x).to_bits(), (1.0 / x).to_bits(), "{bits:08x}");
+            assert_eq!(reciprocal(-x).to_bits(), (-1.0 / x).to_bits(), "-{bits:08x}");
+        }
+        for exponent in 1..253u32 {
+            for fraction in [0, 1, 0x12_3456, 0x40_0000, 0x7f_ffff] {
+                let x = f32::from_bits(exponent << 23 | fraction);
+                assert_eq!(reciprocal(x).to_bits(), (1.0 / x).to_bits(), "{x:e}");
             }
         }
     }

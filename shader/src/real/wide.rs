@@ -87,6 +87,10 @@ impl<const N: usize> Real for Wide<N> {
         Wide(from_fn(|i| Real::div(self.0[i], divisor.0[i])))
     }
     #[inline(always)]
+    fn reciprocal(self) -> Self {
+        Wide(self.0.map(Real::reciprocal))
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         Wide(self.0.map(Real::sqrt))
     }
@@ -192,11 +196,26 @@ macro_rules! lanes {
             fn bytes(words: [u32; 2], _first: u32) -> Self {
                 Wide(bytes(words).map(f32::from))
             }
+            type Kept = [f32; 8];
             #[inline(always)]
-            fn gather(mask: WideMask<8>, bits: [u32; 2], places: [u32; 2], _first: u32) -> u32 {
-                let (bits, places) = (bytes(bits), bytes(places));
-                let all: [u32; 8] = from_fn(|i| mask.0[i] & (u32::from(bits[i]) << places[i]));
-                all.iter().fold(0, |all, bits| all | bits)
+            fn keep(self) -> [f32; 8] {
+                self.0
+            }
+            #[inline(always)]
+            fn kept(kept: &[f32; 8], i: u32) -> $scalar {
+                $wrap(kept[i as usize & 7])
+            }
+            type Children = [u32; 8];
+            #[inline(always)]
+            fn children(words: [u32; 2], inverted: u32) -> [u32; 8] {
+                bytes(words).map(|child| {
+                    let turned = if child & 24 == 24 { inverted } else { 0 };
+                    u32::from(child >> 5) << ((u32::from(child) & 31) ^ turned)
+                })
+            }
+            #[inline(always)]
+            fn waiting(met: WideMask<8>, children: &[u32; 8], _first: u32) -> u32 {
+                (0..8).fold(0, |all, i| all | met.0[i] & children[i])
             }
         }
     };
@@ -239,7 +258,7 @@ impl<const N: usize> Hit<Wide<N>> {
             t: self.t.0[i],
             u: self.u.0[i],
             v: self.v.0[i],
-            area: self.area.0[i],
+            scale: self.scale.0[i],
             slot: self.slot.0[i],
             primitive: self.primitive.0[i],
         }
@@ -250,7 +269,7 @@ impl<const N: usize> Hit<Wide<N>> {
         self.t.0[i] = hit.t;
         self.u.0[i] = hit.u;
         self.v.0[i] = hit.v;
-        self.area.0[i] = hit.area;
+        self.scale.0[i] = hit.scale;
         self.slot.0[i] = hit.slot;
         self.primitive.0[i] = hit.primitive;
     }

@@ -11,9 +11,6 @@ use crate::warp::Warp;
 
 /// A lane without a ray.
 const IDLE: u32 = u32::MAX;
-/// Percent of a subgroup that must be at work, or its idle lanes take new rays. (Each refill makes all wait
-/// for a ray's preparation.)
-const BUSY: u32 = 75;
 
 /// Follows rays until none is left. `take` gives each lane that wants a ray the number of one, `count` or
 /// more if there is none; `load` reads it, with whether it is to be traced at all; `store` is told the
@@ -33,7 +30,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     let mut hit = Hit::none(R::splat(0.0));
     let mut cursor = M::Cursor::finished();
     let mut stack = M::EMPTY;
-    let mut least = (lanes * geometry.tuning.stack_max()).div_ceil(100);
+    let mut least = (lanes * geometry.tuning.busy()).div_ceil(100);
     loop {
         if number != IDLE && cursor.is_done() {
             store(number, traced, &hit);

@@ -11,6 +11,7 @@ mod packet;
 pub mod resumable;
 mod speculative;
 pub mod step;
+mod waiting;
 mod while_while;
 mod wide;
 

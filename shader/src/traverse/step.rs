@@ -91,7 +91,7 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     let [a, b, c] = triangle.vertices();
     let from = |p| V3::splat(p) - ray.origin;
     let crossing = cross(from(a), from(b), from(c), ray.shear, ray.shear.cycle(ray.inverse).z);
-    if crossing.any() && counts::<Q>(geometry.features, &triangle) {
+    if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
 }
@@ -145,7 +145,10 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
     !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
 }
 
-/// Divides, clamps into the triangle's own box, and takes the lesser (t, primitive).
+/// Divides, moves the hit behind the entry to the slot's box, and takes the lesser (t, primitive).
+///
+/// The box lies in every box that leads here, so nothing that is kept can have been culled. A part of a split
+/// triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
     geometry: &Geometry<'_>,
@@ -161,21 +164,13 @@ fn keep<Q: Query, R: Real>(
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
-    let (least, greatest) = triangle.bounds();
+    let (least, greatest) = geometry.bounds(slot, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
-    let area = R::select(inside, crossing.area, R::splat(1.0));
-    let mut inside = inside & own.near.le(own.far);
+    let scale = R::select(inside, crossing.area, R::splat(1.0)).reciprocal();
+    let inside = inside & own.near.le(own.far);
     // A bound of zero may have either sign; of zeros `max` takes the second.
-    let mut t = crossing.depth.div(area).max(own.near.max(zero)).min(own.far.max(zero));
-    if features.has(Features::SPLIT) {
-        // A hit in another part of the triangle is moved behind the entry to this one, so that nothing that
-        // leads here can be culled; the part that holds it has it where it is.
-        let (least, greatest) = geometry.bounds(slot);
-        let part = slab(V3::splat(least), V3::splat(greatest), ray);
-        inside = inside & part.near.le(part.far);
-        t = t.max(part.near.max(zero));
-    }
+    let t = (crossing.depth * scale).max(own.near.max(zero));
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;
@@ -186,7 +181,7 @@ fn keep<Q: Query, R: Real>(
         hit.t = R::select(better, t, hit.t);
         hit.u = R::select(better, crossing.u, hit.u);
         hit.v = R::select(better, crossing.v, hit.v);
-        hit.area = R::select(better, area, hit.area);
+        hit.scale = R::select(better, scale, hit.scale);
         hit.slot = R::select_index(better, R::index(slot), hit.slot);
         hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
     }

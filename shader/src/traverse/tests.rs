@@ -143,7 +143,7 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
 
 fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     check::<IfIf, R>(world, origin, direction);
-    check::<WhileWhile, R>(world, origin, direction);
+    check::<WhileWhile<Alone>, R>(world, origin, direction);
     check::<WideNodes, R>(world, origin, direction);
     check::<Speculative<Alone>, R>(world, origin, direction);
     check::<Packet<Alone>, R>(world, origin, direction);

@@ -1,5 +1,10 @@
 //! While-while traversal (Aila and Laine 2009): every ray by itself, pairs until it is at a leaf, then
 //! all of the leaf's triangles.
+//!
+//! A ray that shares its instructions with others waits at its leaf for those on their way to theirs. With
+//! a vote it waits no longer than half of them take.
+
+use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
 use super::resumable::{Resumable, follow};
@@ -9,11 +14,12 @@ use crate::data::STACK;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::Geometry;
+use crate::warp::Warp;
 
-/// See the module.
-pub struct WhileWhile;
+/// See the module. `W` is who waits for each other; [`Alone`](crate::warp::Alone) never breaks off.
+pub struct WhileWhile<W>(PhantomData<W>);
 
-impl<R: Scalar> Resumable<R> for WhileWhile {
+impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     type Cursor = Cursor;
     type Stack = Stack;
     const EMPTY: Stack = [0; STACK];
@@ -21,10 +27,14 @@ impl<R: Scalar> Resumable<R> for WhileWhile {
     /// The two inner whiles.
     #[inline(always)]
     fn step<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+        let all = W::count(true);
         while !cursor.done && !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
+            if 100 * W::count(!cursor.done && !cursor.node.is_leaf()) < geometry.tuning.cut() * all {
+                break;
+            }
         }
-        if !cursor.done {
+        if !cursor.done && cursor.node.is_leaf() {
             let found = leaf::<Q, R>(geometry, cursor.node, ray, hit);
             cursor.pop(stack);
             cursor.done = cursor.done || found;
@@ -32,7 +42,7 @@ impl<R: Scalar> Resumable<R> for WhileWhile {
     }
 }
 
-impl<R: Scalar> Method<R> for WhileWhile {
+impl<R: Scalar, W: Warp> Method<R> for WhileWhile<W> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);

@@ -15,11 +15,12 @@ use super::step::occluded;
 use super::step::several;
 #[cfg(target_arch = "spirv")]
 use super::step::triangle;
+use super::waiting::Waiting;
 use super::{Method, Query};
 use crate::buffer::read;
 #[cfg(target_arch = "spirv")]
 use crate::data::NodeRef;
-use crate::data::{STACK, WideNode, numbers};
+use crate::data::{WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
 use crate::real::{Native, Octet, Real, Scalar, V3, Vectors};
@@ -40,6 +41,7 @@ struct Group {
 }
 
 const NODES: u32 = 0xff00_0000;
+const SIBLINGS: u32 = 0xff;
 
 impl Group {
     const NOTHING: Group = Group { first: 0, waiting: 0 };
@@ -77,45 +79,40 @@ impl Progress for Groups {
     }
 }
 
-/// Two words a group.
-type Waiting = [u32; 2 * STACK];
-
 impl Groups {
-    #[inline(always)]
-    fn push(&mut self, group: Group, stack: &mut Waiting) {
-        let at = 2 * self.depth as usize & (2 * STACK - 1);
-        stack[at] = group.first;
-        stack[at + 1] = group.waiting;
-        self.depth += 1;
-    }
-
-    #[inline(always)]
-    fn pop(&mut self, stack: &Waiting) -> Group {
-        self.depth -= 1;
-        let at = 2 * self.depth as usize & (2 * STACK - 1);
-        Group { first: stack[at], waiting: stack[at + 1] }
-    }
-
     /// Takes the nearest node that waits in hand; the rest of its group waits on. `inverted` is what the
-    /// ray's order turns slots by.
+    /// ray's order turns slots by. [`NOTHING`] if that node is known to lie beyond `limit`.
     #[inline(always)]
-    fn take(&mut self, inverted: u32, stack: &mut Waiting) -> u32 {
-        let mut group = if self.nodes.has_nodes() { self.nodes } else { self.pop(stack) };
+    fn take<R: Scalar, E: Octet<R>>(&mut self, inverted: u32, limit: R, stack: &mut Waiting<R, E>) -> u32 {
+        let mut group = self.nodes;
+        if !group.has_nodes() {
+            self.depth -= 1;
+            (group.first, group.waiting) = stack.get(self.depth);
+        }
         let place = 31 - group.waiting.leading_zeros();
         group.waiting &= !(1 << place);
-        if group.has_nodes() {
-            self.push(group, stack);
-        }
         let slot = (place - 24) ^ inverted;
+        // The root alone is none of its group's inner nodes.
+        if group.waiting & SIBLINGS != 0 && stack.is_beyond(self.depth, slot, limit) {
+            self.nodes = group;
+            return NOTHING;
+        }
+        if group.has_nodes() {
+            stack.put(self.depth, group.first, group.waiting);
+            self.depth += 1;
+        }
         // The siblings before it.
         group.first + (group.waiting & ((1 << slot) - 1)).count_ones()
     }
 }
 
+/// No node.
+const NOTHING: u32 = u32::MAX;
+
 impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
     type Cursor = Groups;
-    type Stack = Waiting;
-    const EMPTY: Waiting = [0; 2 * STACK];
+    type Stack = Waiting<R, V::Eight>;
+    const EMPTY: Self::Stack = Waiting::NONE;
 
     #[inline(always)]
     fn step<Q: Query>(
@@ -123,16 +120,20 @@ impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Groups,
-        stack: &mut Waiting,
+        stack: &mut Self::Stack,
     ) {
         if cursor.triangles.waiting == 0 {
-            let node = read(geometry.wide, cursor.take(inverted(ray), stack));
+            let node = cursor.take::<R, V::Eight>(inverted(ray), hit.t, stack);
+            if node == NOTHING {
+                return;
+            }
+            let node = read(geometry.wide, node);
             Q::on_boxes(WideNode::ARITY as u32);
-            (cursor.nodes, cursor.triangles) = open::<R, V>(&node, ray, hit);
+            let near;
+            (cursor.nodes, cursor.triangles, near) = open::<R, V>(&node, ray, hit);
+            stack.enter(cursor.depth, near);
         }
-        let mut first = true;
-        while cursor.triangles.waiting != 0 && (first || geometry.tuning.cut() == 26) {
-            first = false;
+        if cursor.triangles.waiting != 0 {
             cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
@@ -159,19 +160,20 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
-    let opening = Opening::new(node, ray, hit.t);
+fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group, V::Eight) {
+    let opening = Opening::<R, V::Eight>::new(node, ray, hit.t);
     // A loop is not always unrolled.
-    let waiting = opening.turn::<V::Eight>(0)
-        | opening.turn::<V::Eight>(1)
-        | opening.turn::<V::Eight>(2)
-        | opening.turn::<V::Eight>(3)
-        | opening.turn::<V::Eight>(4)
-        | opening.turn::<V::Eight>(5)
-        | opening.turn::<V::Eight>(6)
-        | opening.turn::<V::Eight>(7);
+    let (first, near) = opening.turn(0);
+    let waiting = first
+        | opening.turn(1).0
+        | opening.turn(2).0
+        | opening.turn(3).0
+        | opening.turn(4).0
+        | opening.turn(5).0
+        | opening.turn(6).0
+        | opening.turn(7).0;
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
-    (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
+    (nodes, Group { first: node.children.y, waiting: waiting & !NODES }, near)
 }
 
 /// Tests the triangle with the highest bit of a group and returns the others' bits.
@@ -200,16 +202,8 @@ fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
     several::<Q, R, V::Four>(geometry, group.first, group.waiting, ray, hit)
 }
 
-/// The places of four children given their bytes, of all at once (Ylitie et al. 2017, appendix).
-#[inline(always)]
-fn places(children: u32, inverted: u32) -> u32 {
-    // Places from 24 on, whose bits 3 and 4 are set, are those of inner nodes.
-    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
-    (children ^ (inverted & is_inner)) & 0x1f1f_1f1f
-}
-
 /// A node in a ray's terms.
-struct Opening<R: Real> {
+struct Opening<R: Scalar, E: Octet<R>> {
     /// Where the ray meets the grid's origin.
     start: V3<R>,
     /// How far it is to the next plane.
@@ -222,13 +216,11 @@ struct Opening<R: Real> {
     high: [[u32; 2]; 3],
     /// Does the ray enter by the greater ones?
     down: [bool; 3],
-    /// A byte a child of what waits if it is met.
-    bits: [u32; 2],
-    /// A byte a child of where those bits lie.
-    places: [u32; 2],
+    /// What waits at each child if it is met.
+    children: E::Children,
 }
 
-impl<R: Scalar> Opening<R> {
+impl<R: Scalar, E: Octet<R>> Opening<R, E> {
     #[inline(always)]
     fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
@@ -236,7 +228,6 @@ impl<R: Scalar> Opening<R> {
         let first = |q: UVec4| [q.x, q.y];
         let last = |q: UVec4| [q.z, q.w];
         let zero = R::splat(0.0);
-        let (inverted, children) = (inverted(ray) * 0x0101_0101, last(node.children));
         Opening {
             start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
             step: scale.times(ray.inverse),
@@ -244,30 +235,23 @@ impl<R: Scalar> Opening<R> {
             low: [first(node.low_x_low_y), last(node.low_x_low_y), first(node.low_z_high_x)],
             high: [last(node.low_z_high_x), first(node.high_y_high_z), last(node.high_y_high_z)],
             down: [ray.inverse.x.lt(zero), ray.inverse.y.lt(zero), ray.inverse.z.lt(zero)],
-            bits: [(children[0] >> 5) & 0x0707_0707, (children[1] >> 5) & 0x0707_0707],
-            places: [places(children[0], inverted), places(children[1], inverted)],
+            children: E::children(last(node.children), inverted(ray)),
         }
     }
 
-    /// What waits of a box and those that are tested with it, if it is the first of them.
+    /// What waits of a box and those that are tested with it, if it is the first of them; and where the ray
+    /// enters these boxes.
     #[inline(always)]
-    fn turn<E: Octet<R>>(&self, first: u32) -> u32 {
-        if first.is_multiple_of(E::COUNT) {
-            E::gather(self.meets::<E>(first), self.bits, self.places, first)
-        } else {
-            0
+    fn turn(&self, first: u32) -> (u32, E) {
+        if !first.is_multiple_of(E::COUNT) {
+            return (0, E::splat(0.0));
         }
-    }
-
-    /// Which of [`Lanes::COUNT`] boxes from `first` on the ray meets before its limit.
-    #[inline(always)]
-    fn meets<E: Octet<R>>(&self, first: u32) -> E::Mask {
         let all = |v: V3<R>| V3::new(E::all(v.x), E::all(v.y), E::all(v.z));
         let (start, step) = (all(self.start), all(self.step));
         let x = E::sides(self.down[0], self.low[0], self.high[0], first);
         let y = E::sides(self.down[1], self.low[1], self.high[1], first);
         let z = E::sides(self.down[2], self.low[2], self.high[2], first);
         let met = span(V3::new(x.0, y.0, z.0).fused(step, start), V3::new(x.1, y.1, z.1).fused(step, start));
-        met.near.le(met.far) & met.near.le(E::all(self.limit))
+        (E::waiting(met.near.le(met.far) & met.near.le(E::all(self.limit)), &self.children, first), met.near)
     }
 }

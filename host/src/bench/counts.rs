@@ -250,7 +250,7 @@ mod tests {
         let leaf = |first: usize, count: usize| {
             around(&triangles[first..first + count], NodeRef::leaf(first as u32, count as u32))
         };
-        let nodes = vec![
+        let nodes = [
             NodePair::new(around(&triangles[..2], NodeRef::inner(1)), leaf(2, 2)),
             NodePair::new(leaf(0, 1), leaf(1, 1)),
         ];

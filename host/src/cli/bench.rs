@@ -40,7 +40,7 @@ pub(super) struct Bench {
     /// How results are written [default: by the file's extension, else markdown]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// A run of about a minute: 256x256, 3 repetitions, the first view of each scene; other options go first
+    /// A run of about a minute: 256x256, 3 repetitions, the first view of each scene; other options override it
     #[arg(long)]
     quick: bool,
     /// How often each stream is traced after a warm-up [default: 10]

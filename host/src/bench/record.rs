@@ -23,6 +23,12 @@ pub struct Record {
     pub order: String,
     /// The layout of triangles.
     pub triangles: String,
+    /// The quality of the hierarchy.
+    pub bvh: String,
+    /// Nodes that wait when a packet of the stack methods parts.
+    pub stack_max: u32,
+    /// Percent of a packet below which rays of the cut methods part.
+    pub cut: u32,
     /// `gpu` or `cpu`.
     pub processor: &'static str,
     /// The device's name.

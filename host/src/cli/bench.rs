@@ -85,9 +85,9 @@ struct Ways {
     /// Which pixels' rays lie beside each other
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Order::Tiled])]
     order: Vec<Order>,
-    /// How triangles lie in memory
+    /// How the hierarchy and its triangles lie in memory
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Layout::Gathered])]
-    triangles: Vec<Layout>,
+    layout: Vec<Layout>,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
     stack_max: u32,
@@ -207,7 +207,7 @@ impl Bench {
             methods: ways.methods.clone(),
             schedulings: ways.scheduling.clone(),
             orders: unique(&ways.order),
-            layouts: unique(&ways.triangles),
+            layouts: unique(&ways.layout),
             tuning: options::tuning(ways.stack_max, ways.cut)?,
             exact: on.precision.contains(&Precision::Exact),
             fast: on.precision.contains(&Precision::Fast),

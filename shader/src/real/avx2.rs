@@ -16,7 +16,7 @@ pub struct Avx2;
 impl Vectors<f32> for Avx2 {
     type Eight = Eight;
     type Four = Wide<4>;
-    type Packet = Wide<8>;
+    type Packet = Wide<16>;
 }
 
 /// Eight numbers.

@@ -7,8 +7,9 @@ use super::{
 };
 use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
 use crate::ray::{Hit, Ray};
-use crate::real::{Fast, Real, Scalar, V3, Wide};
+use crate::real::{Fast, Lanes, Real, Scalar, V3, Wide};
 use crate::scene::Geometry;
+use crate::stage::{SHADOWED, Segment, shadow_together, trace_together};
 use crate::warp::Alone;
 use bytemuck::Zeroable;
 use glam::{UVec4, Vec3};
@@ -50,10 +51,13 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
         let range = open[nodes.len()].clone();
         let step = range.len().div_ceil(WideNode::ARITY).max(3) as u32;
         let (first_child, mut inner, mut bytes) = (open.len() as u32, 0, [0u8; 8]);
+        // Leaves lie behind inner nodes: the last part alone may be shorter than the others.
+        let last = range.start + (range.len() as u32 - 1) / step * step;
+        let leaves = if step <= WideNode::MAX_LEAF { range.start } else { last };
         for (slot, first) in range.clone().step_by(step as usize).enumerate() {
             let part = first..(first + step).min(range.end);
             if part.len() as u32 <= WideNode::MAX_LEAF {
-                bytes[slot] = (((1u32 << part.len()) - 1) << 5 | (first - range.start)) as u8;
+                bytes[slot] = (((1u32 << part.len()) - 1) << 5 | (first - leaves)) as u8;
             } else {
                 (inner, bytes[slot]) = (inner | 1 << slot, (WideNode::INNER + 24) as u8 + slot as u8);
                 open.push(part);
@@ -63,7 +67,7 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
         let exponent = 127 - 6;
         nodes.push(WideNode {
             grid: crate::data::pack(Vec3::splat(-2.0), inner << 24 | exponent << 16 | exponent << 8 | exponent),
-            children: UVec4::new(first_child, range.start, word(&bytes[..4]), word(&bytes[4..])),
+            children: UVec4::new(first_child, leaves, word(&bytes[..4]), word(&bytes[4..])),
             low_x_low_y: UVec4::ZERO,
             low_z_high_x: UVec4::new(0, 0, u32::MAX, u32::MAX),
             high_y_high_z: UVec4::MAX,
@@ -174,40 +178,102 @@ proptest! {
     }
 }
 
+type End = ([f32; 3], [f32; 3]);
+
 /// Every lane of a packet, however incoherent, against the same ray by itself.
-fn check_packet<M: Method<Wide<8>>>(world: &World, rays: &[([f32; 3], [f32; 3]); 8]) {
-    let origins = V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
-    let directions = V3::<Wide<8>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
+fn check_packet<M: Method<Wide<N>>, const N: usize>(world: &World, rays: &[End]) {
+    let origins = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
+    let directions = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
     let packet = Ray::new(origins, directions);
-    let closest = world.trace::<M, Closest, Wide<8>>(&packet, f32::MAX);
-    let shadows = world.trace::<M, Occlusion, Wide<8>>(&packet, 0.5);
-    for (i, (origin, direction)) in rays.iter().enumerate() {
+    let closest = world.trace::<M, Closest, Wide<N>>(&packet, f32::MAX);
+    let shadows = world.trace::<M, Occlusion, Wide<N>>(&packet, 0.5);
+    for (i, (origin, direction)) in rays[..N].iter().enumerate() {
         let alone = ray::<f32>(*origin, *direction);
         let (got, want) = (closest.lane(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
-        assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive), "lane {i}");
+        assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive), "lane {i} of {N}");
         let want = occluded(&world.brute_force::<Occlusion, f32>(&alone, 0.5));
-        assert_eq!(occluded(&shadows.lane(i)), want, "lane {i}");
+        assert_eq!(occluded(&shadows.lane(i)), want, "lane {i} of {N}");
     }
 }
 
+fn check_packets<const N: usize>(world: &World, rays: &[End]) {
+    check_packet::<Packet<Alone>, N>(world, rays);
+    check_packet::<Hybrid<Alone, StackMax, Sequential>, N>(world, rays);
+    check_packet::<Hybrid<Alone, StackMax, Interleaved>, N>(world, rays);
+    check_packet::<Hybrid<Alone, Cut, Sequential>, N>(world, rays);
+    check_packet::<Hybrid<Alone, Cut, Interleaved>, N>(world, rays);
+}
+
+/// The first `count` rays as a launch follows them together, whatever lanes that leaves without one.
+fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
+    let vector = |v: [f32; 3]| V3::splat(Vec3::from(v));
+    let segments: Vec<Segment<f32>> = rays[..count]
+        .iter()
+        .map(|&(o, d)| Segment { origin: vector(o), direction: vector(d), limit: 0.5, leaves: Hit::<f32>::NOTHING })
+        .collect();
+    let (mut hits, mut answers) = (vec![UVec4::ZERO; count], vec![u32::MAX; count]);
+    let geometry = world.geometry();
+    trace_together::<f32, P, Packet<Alone>>(&geometry, &segments, |i, hit| hits[i] = hit);
+    shadow_together::<f32, P, Packet<Alone>>(&geometry, &segments, |i, answer| answers[i] = answer);
+    for (i, (origin, direction)) in rays[..count].iter().enumerate() {
+        let alone = ray::<f32>(*origin, *direction);
+        let want = world.trace::<Packet<Alone>, Closest, f32>(&alone, 0.5);
+        let primitive = |slot: u32| world.triangles.get(slot as usize).map(Triangle::primitive);
+        let weights = want.weights();
+        let got = crate::data::numbers(hits[i]);
+        assert_eq!((got.x, got.y, got.z), (want.t, weights.0, weights.1), "ray {i} of {count}");
+        assert_eq!(primitive(hits[i].w), primitive(want.slot), "ray {i} of {count}");
+        let want = occluded(&world.trace::<Packet<Alone>, Occlusion, f32>(&alone, 0.5));
+        assert_eq!(answers[i] == SHADOWED, want, "ray {i} of {count}");
+    }
+}
+
+/// 32 rays of eight; their directions' components are zero now and then.
+fn rays_of(ends: [([f32; 3], [f32; 3]); 8], same_origin: bool) -> Vec<End> {
+    (0..32)
+        .map(|i| {
+            let origin = if same_origin { ends[0].0 } else { ends[i % 8].0 };
+            let to = ends[(i + i / 8) % 8].1;
+            let direction: [f32; 3] = std::array::from_fn(|k| to[k] - origin[k]);
+            (origin, if direction == [0.0; 3] { [1.0, 0.0, 0.0] } else { direction })
+        })
+        .collect()
+}
+
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(5_000))]
+    #![proptest_config(ProptestConfig::with_cases(2_000))]
 
     #[test]
     fn packets_find_what_their_rays_find(
-        triangles in soup(), ends in prop::array::uniform8((grid(), grid())), same_origin: bool,
+        triangles in soup(), ends in prop::array::uniform8((grid(), grid())), same_origin: bool, count in 1usize..=32,
     ) {
-        let rays = ends.map(|(from, to)| {
-            let origin = if same_origin { ends[0].0 } else { from };
-            let direction: [f32; 3] = std::array::from_fn(|k| to[k] - origin[k]);
-            (origin, if direction == [0.0; 3] { [1.0, 0.0, 0.0] } else { direction })
-        });
+        let rays = rays_of(ends, same_origin);
         let world = World::new(triangles, Features::REFRACTION);
-        check_packet::<Packet<Alone>>(&world, &rays);
-        check_packet::<Hybrid<Alone, StackMax, Sequential>>(&world, &rays);
-        check_packet::<Hybrid<Alone, StackMax, Interleaved>>(&world, &rays);
-        check_packet::<Hybrid<Alone, Cut, Sequential>>(&world, &rays);
-        check_packet::<Hybrid<Alone, Cut, Interleaved>>(&world, &rays);
+        check_packets::<4>(&world, &rays);
+        check_packets::<8>(&world, &rays);
+        check_packets::<16>(&world, &rays);
+        check_packets::<32>(&world, &rays);
+        check_together::<Wide<8>>(&world, &rays, count);
+        check_together::<Wide<16>>(&world, &rays, count);
+        check_together::<f32>(&world, &rays, count.min(4));
+    }
+
+    /// The registers of a processor's own vectors.
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn registers_find_what_brute_force_finds(
+        triangles in soup(), ends in prop::array::uniform8((grid(), grid())), count in 1usize..=32,
+    ) {
+        use crate::real::{Avx2, Vectors};
+        type Register = <Avx2 as Vectors<f32>>::Eight;
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
+            let rays = rays_of(ends, false);
+            let world = World::new(triangles, Features::REFRACTION);
+            for (origin, direction) in &rays {
+                check::<WideNodes<Avx2>, f32>(&world, *origin, *direction);
+            }
+            check_together::<Register>(&world, &rays, count);
+        }
     }
 }
 

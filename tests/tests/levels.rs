@@ -1,0 +1,93 @@
+//! The same answers whatever instructions the processor has, and however rays share its vectors.
+
+use eyerays::cpu::{self, Laid, Level};
+use eyerays::method::{Layout, Method, Traversal};
+use eyerays::pack::{Packed, Region};
+use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays_shader::real::Scalar;
+use eyerays_tests::{SHIPPED, pack, settings, shipped, traversals};
+use glam::Vec3;
+
+/// No multiple of any packet.
+const RAYS: usize = 2013;
+
+/// Rays from places in the scene every way, some along axes and planes; every seventh ends soon.
+fn stream() -> Stream {
+    let mut state = 1u32;
+    let mut random = || {
+        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        (state >> 8) as f32 / (1 << 23) as f32 - 1.0
+    };
+    let mut vector = || Vec3::new(random(), random(), random());
+    let rays: Vec<StreamRay> = (0..RAYS)
+        .map(|i| {
+            let (origin, mut direction) = (vector() * 0.5, vector());
+            if i % 3 == 0 {
+                direction[i % 2] = 0.0;
+            }
+            if i % 5 == 0 {
+                direction[2] = -0.0;
+            }
+            let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
+            let limit = if i % 7 == 0 { 0.25 } else { f32::MAX };
+            StreamRay { origin, direction, limit, leaves: StreamRay::NOWHERE }
+        })
+        .collect();
+    Stream::new(rays.into_iter())
+}
+
+/// What must not change: a split triangle may be met at any of its slots.
+fn settled(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
+    match answers {
+        Answers::Closest(hits) => {
+            let primitive = |slot: u32| packed.triangles.get(slot as usize).map_or(slot, |t| t.primitive());
+            hits.iter().map(|hit| [hit.x, hit.y, hit.z, primitive(hit.w)]).collect()
+        }
+        Answers::Occlusion(answers) => answers.iter().map(|&answer| [answer, 0, 0, 0]).collect(),
+    }
+}
+
+#[test]
+fn every_level_and_method_answers_alike() {
+    let stream = stream();
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[0], settings(&scene, (8, 8), 1));
+        for question in [Question::Closest, Question::Occlusion] {
+            let cast = |level, traversal, threads| {
+                let cast = cpu::cast_by(level, &packed, traversal, threads, &stream, question);
+                settled(&packed, cast.unwrap_or_else(|e| panic!("{e}")).0)
+            };
+            let wanted = cast(Level::Baseline, Traversal::from(Method::IfIf), 1);
+            for level in Level::here() {
+                for traversal in traversals() {
+                    for layout in [Layout::Gathered, Layout::Indexed] {
+                        let traversal = Traversal { layout, ..traversal };
+                        let what = format!("{name}, {question:?}, {level:?}, {traversal:?}");
+                        assert!(cast(level, traversal, 2) == wanted, "{what}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn every_level_renders_the_same_tile() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));
+        let region = Region { x: 3, y: 2, width: 33, height: 26 };
+        let tile = |level, method| {
+            let (film, secondary) =
+                cpu::render_tile_by::<f32>(level, &Laid::new(&packed, Traversal::from(method)), region, &());
+            (film.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)
+        };
+        let wanted = tile(Level::Baseline, Method::IfIf);
+        for level in Level::here() {
+            for method in Method::ALL {
+                assert!(tile(level, method) == wanted, "{name}, {level:?}, {method:?}");
+            }
+        }
+    }
+}

@@ -21,8 +21,8 @@ pub struct Record {
     pub scheduling: Option<String>,
     /// The order of pixels.
     pub order: String,
-    /// The layout of triangles.
-    pub triangles: String,
+    /// How the hierarchy and its triangles lay in memory.
+    pub layout: String,
     /// The quality of the hierarchy.
     pub bvh: String,
     /// Nodes that wait when a packet of the stack methods parts.

@@ -149,13 +149,15 @@ pub fn counts(
     stream: &Stream,
     question: Question,
 ) -> Result<Counts> {
-    let words = TriangleWords::of(packed, Layout::Gathered);
-    let nodes = NodeWords::of(packed, Layout::Gathered);
+    // Where triangles lie makes no difference to what is tested; what boxes are made of does.
+    let layout = if traversal.layout == Layout::Compact { Layout::Compact } else { Layout::Gathered };
+    let (words, nodes) = (TriangleWords::of(packed, layout), NodeWords::of(packed, layout));
+    let features = Traversal { layout, ..Traversal::default() }.features();
     let frame =
         Frame { limits: UVec4::new(0, 0, stream.len() as u32, packed.triangles.len() as u32), ..Frame::zeroed() };
     let geometry = Geometry {
         frame: &frame,
-        features: Features(packed.features.0 | Features::STREAM),
+        features: Features(packed.features.0 | features.0 | Features::STREAM),
         tuning: traversal.tuning,
         nodes: &nodes.0,
         wide: &packed.wide,

@@ -13,7 +13,7 @@ pub fn csv(report: &Report) -> String {
 }
 
 /// The fields of [`Record`].
-const NAMES: [&str; 26] = [
+const NAMES: [&str; 29] = [
     "scene",
     "view",
     "kind",
@@ -21,7 +21,10 @@ const NAMES: [&str; 26] = [
     "auto",
     "scheduling",
     "order",
-    "triangles",
+    "layout",
+    "bvh",
+    "stack_max",
+    "cut",
     "processor",
     "device",
     "driver",
@@ -42,7 +45,7 @@ const NAMES: [&str; 26] = [
     "differing",
 ];
 
-fn values(r: &Record) -> [String; 26] {
+fn values(r: &Record) -> [String; 29] {
     let number = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
     [
         r.scene.clone(),
@@ -52,7 +55,10 @@ fn values(r: &Record) -> [String; 26] {
         r.auto.to_string(),
         r.scheduling.clone().unwrap_or_default(),
         r.order.clone(),
-        r.triangles.clone(),
+        r.layout.clone(),
+        r.bvh.clone(),
+        r.stack_max.to_string(),
+        r.cut.to_string(),
         r.processor.to_owned(),
         r.device.clone(),
         r.driver.clone(),

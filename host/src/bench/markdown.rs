@@ -171,16 +171,16 @@ fn counts(text: &mut Text, report: &Report) {
         return;
     }
     text.heading("Counts", COUNTS);
-    let key = |r: &Record| (r.scene.clone(), r.kind, r.order.clone(), r.method.clone());
+    let key = |r: &Record| (r.scene.clone(), r.kind, counted(r));
     let mut rows = Vec::new();
-    for (scene, kind, order, method) in distinct(report.records.iter().map(key)) {
-        let (wanted, mut of) = ((scene.clone(), kind, order.clone(), method.clone()), Vec::new());
+    for (scene, kind, way) in distinct(report.records.iter().map(key)) {
+        let (wanted, mut of) = ((scene.clone(), kind, way.clone()), Vec::new());
         of.extend(report.records.iter().filter(|r| key(r) == wanted));
         let mean = |value: &dyn Fn(&Record) -> Option<f64>| {
             let all: Option<Vec<f64>> = of.iter().map(|r| value(r)).collect();
             all.map_or_else(|| "-".to_owned(), |all| format!("{:.2}", all.iter().sum::<f64>() / all.len() as f64))
         };
-        let mut row = vec![scene, kind.name().to_owned(), order, method];
+        let mut row = vec![scene, kind.name().to_owned(), way];
         row.extend([
             mean(&|r| Some(r.visits)),
             mean(&|r| Some(r.boxes)),
@@ -189,10 +189,7 @@ fn counts(text: &mut Text, report: &Report) {
         ]);
         rows.push(row);
     }
-    text.table(
-        &["scene", "kind", "order", "method", "visits", "box tests", "triangle tests", "SIMD efficiency"],
-        &rows,
-    );
+    text.table(&["scene", "kind", "method", "visits", "box tests", "triangle tests", "SIMD efficiency"], &rows);
 }
 
 /// What fast precision changes.
@@ -225,9 +222,14 @@ fn list(text: &mut Text, title: &str, lines: &[String]) {
 
 /// A method and those of its switches that are not as they are by default.
 fn label(record: &Record) -> String {
+    let scheduling = record.scheduling.as_deref().filter(|scheduling| *scheduling != "grid");
+    scheduling.map_or_else(|| counted(record), |scheduling| format!("{}, {scheduling}", counted(record)))
+}
+
+/// The same without the scheduling, which does not change what is counted.
+fn counted(record: &Record) -> String {
     let mut label = vec![record.method.as_str()];
-    label.extend(record.scheduling.as_deref().filter(|s| *s != "grid"));
-    label.extend([record.order.as_str()].iter().filter(|o| **o != "tiled"));
-    label.extend([record.triangles.as_str()].iter().filter(|t| **t != "gathered"));
+    label.extend([record.order.as_str()].iter().filter(|order| **order != "tiled"));
+    label.extend([record.layout.as_str()].iter().filter(|layout| **layout != "gathered"));
     label.join(", ")
 }

@@ -21,8 +21,14 @@ pub struct Record {
     pub scheduling: Option<String>,
     /// The order of pixels.
     pub order: String,
-    /// The layout of triangles.
-    pub triangles: String,
+    /// How the hierarchy and its triangles lay in memory.
+    pub layout: String,
+    /// The quality of the hierarchy.
+    pub bvh: String,
+    /// Nodes that wait when a packet of the stack methods parts.
+    pub stack_max: u32,
+    /// Percent of a packet below which rays of the cut methods part.
+    pub cut: u32,
     /// `gpu` or `cpu`.
     pub processor: &'static str,
     /// The device's name.

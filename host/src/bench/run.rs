@@ -13,7 +13,7 @@ use super::rays::{AO_SHARE, Sight, View, diagonal};
 use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
 use crate::cpu;
 use crate::error::Result;
-use crate::method::{Coherence, Method, Order, Processor, Traversal};
+use crate::method::{Coherence, Layout, Method, Order, Processor, Traversal};
 use crate::pack::Packed;
 use crate::scene::{Camera, Settings};
 use crate::stream::{Answers, Question, Stream};
@@ -72,7 +72,7 @@ struct Asked<'s> {
     stream: &'s Stream,
     reference: Answers,
     hash: Hash,
-    counts: HashMap<Method, Counts>,
+    counts: HashMap<(Method, Layout), Counts>,
 }
 
 impl<'a> Bench<'a> {
@@ -169,20 +169,19 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The answers that all must give, by the CPU, and each method's counts.
+    /// The answers that all must give, by the CPU, and what each way counts.
     fn asked<'s>(&self, kind: Kind, camera: &'s Camera, stream: &'s Stream, trials: &[Trial]) -> Result<Asked<'s>> {
         let (packed, threads, ask) = (self.packed, self.plan.threads, kind.question());
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
         let (reference, _) = cpu::cast(packed, traversal, threads, stream, ask)?;
-        let mut by_method = HashMap::new();
+        let mut by_way = HashMap::new();
         for trial in trials {
-            let method = trial.traversal.method;
-            if let Entry::Vacant(entry) = by_method.entry(method) {
+            if let Entry::Vacant(entry) = by_way.entry((trial.traversal.method, trial.traversal.layout)) {
                 entry.insert(counts(packed, trial.traversal, threads, stream, ask)?);
             }
         }
         let hash = Hash::of(packed, &reference);
-        Ok(Asked { kind, camera, stream, reference, hash, counts: by_method })
+        Ok(Asked { kind, camera, stream, reference, hash, counts: by_way })
     }
 
     fn traced(&self, trial: &Trial, asked: &Asked<'_>, uploaded: Option<&Uploaded>) -> Result<Run> {
@@ -198,7 +197,7 @@ impl<'a> Bench<'a> {
     fn record(&self, trial: &Trial, asked: &Asked<'_>, run: &Run) -> Record {
         let (traversal, timing) = (trial.traversal, run.timing);
         let (device, driver) = self.plan.device(trial.processor);
-        let counts = asked.counts[&traversal.method];
+        let counts = asked.counts[&(traversal.method, traversal.layout)];
         let rays = asked.stream.len();
         Record {
             scene: self.subject.name.clone(),
@@ -208,7 +207,10 @@ impl<'a> Bench<'a> {
             auto: trial.is_auto,
             scheduling: (trial.processor == Processor::Gpu).then(|| name(traversal.scheduling)),
             order: name(traversal.order),
-            triangles: name(traversal.layout),
+            layout: name(traversal.layout),
+            bvh: self.plan.bvh(),
+            stack_max: traversal.tuning.stack_max(),
+            cut: traversal.tuning.cut(),
             processor: processor(trial.processor),
             device,
             driver,

@@ -16,6 +16,11 @@ impl Plan {
         }
     }
 
+    /// The quality of the hierarchies, as the command line spells it.
+    pub(super) fn bvh(&self) -> String {
+        format!("{:?}", self.quality).to_lowercase()
+    }
+
     /// How many CPU threads run.
     fn threads(&self) -> String {
         let every_core = || std::thread::available_parallelism().map_or(1, usize::from);
@@ -50,7 +55,7 @@ impl Plan {
         lines.extend([
             ("size", format!("{width}x{height}, one ray a pixel, in {} order", orders.join(", "))),
             ("rays", kinds.join(", ")),
-            ("BVH", format!("{:?}", self.quality).to_lowercase()),
+            ("BVH", self.bvh()),
             ("hybrids", format!("stack methods part at {stack} waiting nodes, cut methods below {cut} % of 32 rays")),
             ("time", format!("median of {} after a warm-up", self.repeat)),
         ]);

@@ -23,7 +23,7 @@ use crate::data::NodeRef;
 use crate::data::{WideNode, numbers};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Native, Octet, Real, Scalar, V3, Vectors};
+use crate::real::{Native, Octet, Scalar, V3, Vectors};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 

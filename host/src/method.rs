@@ -93,14 +93,16 @@ pub enum Order {
     Morton,
 }
 
-/// How triangles lie in memory.
+/// How the hierarchy and its triangles lie in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
 pub enum Layout {
-    /// Each with its vertices, in the order of the hierarchy
+    /// Each triangle with its vertices, in the order of the hierarchy
     #[default]
     Gathered,
-    /// Three indices each, and the vertices once
+    /// Three indices a triangle, and the vertices once
     Indexed,
+    /// As gathered, and the boxes of pairs of nodes on a grid of 16 bits
+    Compact,
 }
 
 /// A method and its switches.
@@ -114,7 +116,7 @@ pub struct Traversal {
     pub scheduling: Scheduling,
     /// Which pixels' rays lie beside each other.
     pub order: Order,
-    /// How triangles lie in memory.
+    /// How the hierarchy and its triangles lie in memory.
     pub layout: Layout,
 }
 
@@ -152,7 +154,12 @@ impl Traversal {
             Order::Linear => Features::LINEAR,
             Order::Morton => Features::MORTON,
         };
-        Features(order | if self.layout == Layout::Indexed { Features::INDEXED } else { 0 })
+        let layout = match self.layout {
+            Layout::Gathered => 0,
+            Layout::Indexed => Features::INDEXED,
+            Layout::Compact => Features::COMPACT,
+        };
+        Features(order | layout)
     }
 
     /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for.

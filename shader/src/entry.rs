@@ -4,7 +4,7 @@
 //! its accesses to match.
 
 use crate::buffer::{read, write};
-use crate::data::{Bounds, CentredPair, Features, Frame, Light, Material, Normals, Tuning, WideNode};
+use crate::data::{Bounds, Features, Frame, Light, Material, Normals, Tuning, WideNode};
 use crate::launch::{ROW, WORKGROUP, counter};
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
@@ -89,7 +89,7 @@ macro_rules! shading_entries {
             #[spirv(global_invocation_id)] id: UVec3,
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[CentredPair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] normals: &[Normals],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] materials: &[Material],
@@ -138,7 +138,7 @@ macro_rules! tracing_entries {
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[CentredPair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
@@ -163,7 +163,7 @@ macro_rules! tracing_entries {
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[CentredPair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
@@ -197,7 +197,7 @@ macro_rules! persistent_entries {
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[CentredPair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
@@ -225,7 +225,7 @@ macro_rules! persistent_entries {
             #[spirv(spec_constant(id = 1, default = 0))] features: u32,
             #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
             #[spirv(uniform, descriptor_set = 0, binding = 0)] frame: &Frame,
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[CentredPair],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] nodes: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] triangles: &[UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 5)] lights: &[Light],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 6)] paths: &mut [UVec4],

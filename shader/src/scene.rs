@@ -2,7 +2,7 @@
 
 use crate::buffer::read;
 use crate::data::{
-    Bounds, CentredPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
+    Bounds, CentredPair, CompactPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
 };
 use glam::{UVec4, Vec3};
 
@@ -15,8 +15,8 @@ pub struct Geometry<'a> {
     pub features: Features,
     /// When hybrid methods part; a constant of the compiled kernel on the GPU.
     pub tuning: Tuning,
-    /// Child pairs; the root is pair 0.
-    pub nodes: &'a [CentredPair],
+    /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Features::COMPACT`]).
+    pub nodes: &'a [UVec4],
     /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
     pub wide: &'a [WideNode],
     /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
@@ -36,6 +36,19 @@ impl Geometry<'_> {
     #[inline(always)]
     pub fn slots(&self) -> u32 {
         self.frame.limits.z
+    }
+
+    /// The child pair of this number.
+    #[inline(always)]
+    pub fn pair(&self, number: u32) -> CentredPair {
+        let word = |i| read(self.nodes, i);
+        if self.features.has(Features::COMPACT) {
+            CompactPair { left: word(2 * number), right: word(2 * number + 1) }.into()
+        } else {
+            let [left_centre, left_half] = [word(4 * number), word(4 * number + 1)];
+            let [right_centre, right_half] = [word(4 * number + 2), word(4 * number + 3)];
+            CentredPair { left_centre, left_half, right_centre, right_half }
+        }
     }
 
     /// The triangle at a slot: a record of its own, gathered before; or a record of three vertices'

@@ -22,7 +22,7 @@ use rayon::prelude::*;
 use crate::cpu;
 use crate::error::Result;
 use crate::method::{Layout, Method, Traversal};
-use crate::pack::{Packed, TriangleWords};
+use crate::pack::{NodeWords, Packed, TriangleWords};
 use crate::stream::{Question, Stream, StreamRay};
 
 /// Rays of a packet: a subgroup of most GPUs.
@@ -150,13 +150,14 @@ pub fn counts(
     question: Question,
 ) -> Result<Counts> {
     let words = TriangleWords::of(packed, Layout::Gathered);
+    let nodes = NodeWords::of(packed, Layout::Gathered);
     let frame =
         Frame { limits: UVec4::new(0, 0, stream.len() as u32, packed.triangles.len() as u32), ..Frame::zeroed() };
     let geometry = Geometry {
         frame: &frame,
         features: Features(packed.features.0 | Features::STREAM),
         tuning: traversal.tuning,
-        nodes: &packed.nodes,
+        nodes: &nodes.0,
         wide: &packed.wide,
         triangles: &words.0,
         bounds: &packed.bounds,
@@ -249,7 +250,7 @@ mod tests {
         let leaf = |first: usize, count: usize| {
             around(&triangles[first..first + count], NodeRef::leaf(first as u32, count as u32))
         };
-        let nodes = vec![
+        let nodes = [
             NodePair::new(around(&triangles[..2], NodeRef::inner(1)), leaf(2, 2)),
             NodePair::new(leaf(0, 1), leaf(1, 1)),
         ];

@@ -150,18 +150,23 @@ impl<'a> Bench<'a> {
         };
         for trial in &trials {
             let outcome = self.traced(trial, &asked, uploaded.as_ref());
-            match outcome {
-                Err(error) => report.faults.push(format!("{}: {error}", self.describe(trial, &asked))),
-                Ok(run) => {
-                    let record = self.record(trial, &asked, &run);
-                    if trial.exact && record.hash != asked.hash.to_string() {
-                        report.faults.push(self.difference(trial, &asked, &run.answers));
-                    }
-                    report.records.push(record);
-                }
-            }
+            self.keep(trial, &asked, outcome, report);
         }
         Ok(asked.hash)
+    }
+
+    /// Keeps what was measured, and whether it failed or gave other answers than it must.
+    fn keep(&self, trial: &Trial, asked: &Asked<'_>, outcome: Result<Run>, report: &mut Report) {
+        match outcome {
+            Err(error) => report.faults.push(format!("{}: {error}", self.describe(trial, asked))),
+            Ok(run) => {
+                let record = self.record(trial, asked, &run);
+                if trial.exact && record.hash != asked.hash.to_string() {
+                    report.faults.push(self.difference(trial, asked, &run.answers));
+                }
+                report.records.push(record);
+            }
+        }
     }
 
     /// The answers that all must give, by the CPU, and each method's counts.
@@ -251,5 +256,37 @@ fn processor(processor: Processor) -> &'static str {
     match processor {
         Processor::Gpu => "gpu",
         Processor::Cpu => "cpu",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bench::tests::{plan, subject};
+    use crate::error::Error;
+
+    #[test]
+    fn another_answer_in_exact_precision_is_a_fault_that_names_the_ray() {
+        let (plan, subject, mut report) = (plan(), subject(), Report::default());
+        let packed = Packed::new(&subject.scene, &subject.cameras[0], subject.scene.settings, plan.quality).unwrap();
+        let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
+        let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
+        let stream = sight.rays(Kind::Ao, bench.ao_length).unwrap();
+        let trial = plan.trials(&packed, Kind::Ao, Order::Tiled, &mut |_| ())[4];
+        let asked = bench.asked(Kind::Ao, &subject.cameras[0], &stream, &[trial]).unwrap();
+        let traced = || bench.traced(&trial, &asked, None).unwrap();
+        bench.keep(&trial, &asked, Ok(traced()), &mut report);
+        assert_eq!((report.faults.len(), report.records.len()), (0, 1));
+        let mut wrong = traced();
+        let Answers::Occlusion(answers) = &mut wrong.answers else { panic!("these were asked for") };
+        answers[77] ^= 1;
+        bench.keep(&trial, &asked, Ok(wrong), &mut report);
+        bench.keep(&trial, &asked, Err(Error::new("the device was lost")), &mut report);
+        assert_eq!((report.faults.len(), report.records.len()), (2, 2));
+        let start = "box front ao: packet grid tiled gathered in exact precision on ";
+        assert!(report.faults.iter().all(|fault| fault.starts_with(start)), "{:?}", report.faults);
+        assert!(report.faults[0].ends_with(&format!(": ray 77 of {} differs first", stream.len())));
+        assert!(report.faults[1].ends_with(": the device was lost"));
+        assert!(report.records[1].differing > 0.0 && report.records[0].hash != report.records[1].hash);
     }
 }

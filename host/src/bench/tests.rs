@@ -126,7 +126,7 @@ fn the_diagonal_is_that_of_the_box() {
     assert!((diagonal(&packed) / packed.scale - 12f64.sqrt()).abs() < 1e-3);
 }
 
-fn plan() -> Plan {
+pub(super) fn plan() -> Plan {
     Plan {
         kinds: Kind::ALL.to_vec(),
         methods: Method::ALL.to_vec(),
@@ -146,7 +146,7 @@ fn plan() -> Plan {
     }
 }
 
-fn subject() -> Subject {
+pub(super) fn subject() -> Subject {
     let scene = scene();
     let cameras = scene.cameras[..2].to_vec();
     Subject { name: "box".to_owned(), file: "box.toml".into(), scene, cameras }

@@ -40,7 +40,7 @@ pub(super) struct Bench {
     /// How results are written [default: by the file's extension, else markdown]
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// A run of about a minute: 256x256, 3 repetitions, the first view of each scene; other options go first
+    /// A run of about a minute: 256x256, 3 repetitions, the first view of each scene; other options override it
     #[arg(long)]
     quick: bool,
     /// How often each stream is traced after a warm-up [default: 10]
@@ -85,9 +85,9 @@ struct Ways {
     /// Which pixels' rays lie beside each other
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Order::Tiled])]
     order: Vec<Order>,
-    /// How triangles lie in memory
+    /// How the hierarchy and its triangles lie in memory
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Layout::Gathered])]
-    triangles: Vec<Layout>,
+    layout: Vec<Layout>,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
     stack_max: u32,
@@ -207,7 +207,7 @@ impl Bench {
             methods: ways.methods.clone(),
             schedulings: ways.scheduling.clone(),
             orders: unique(&ways.order),
-            layouts: unique(&ways.triangles),
+            layouts: unique(&ways.layout),
             tuning: options::tuning(ways.stack_max, ways.cut)?,
             exact: on.precision.contains(&Precision::Exact),
             fast: on.precision.contains(&Precision::Fast),

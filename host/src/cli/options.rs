@@ -76,9 +76,9 @@ pub(super) struct On {
     /// Which pixels' rays lie beside each other
     #[arg(long, value_enum, default_value_t = Order::Tiled)]
     pub order: Order,
-    /// How triangles lie in memory
+    /// How the hierarchy and its triangles lie in memory
     #[arg(long, value_enum, default_value_t = Layout::Gathered)]
-    pub triangles: Layout,
+    pub layout: Layout,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -191,7 +191,7 @@ impl On {
             tuning: tuning(self.stack_max, self.cut)?,
             scheduling: self.scheduling,
             order: self.order,
-            layout: self.triangles,
+            layout: self.layout,
         };
         let (precision, adapter) = (self.precision, self.adapter.clone());
         Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })

@@ -14,7 +14,7 @@ use super::level::Level;
 use super::pool::pool;
 use crate::error::Result;
 use crate::method::Traversal;
-use crate::pack::{Packed, TriangleWords};
+use crate::pack::{NodeWords, Packed, TriangleWords};
 use crate::stream::{Answers, Question, Stream};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
@@ -48,13 +48,14 @@ pub fn cast_by(
     question: Question,
 ) -> Result<(Answers, Duration)> {
     let words = TriangleWords::of(packed, traversal.layout);
+    let nodes = NodeWords::of(packed, traversal.layout);
     let frame =
         Frame { limits: UVec4::new(0, 0, stream.len() as u32, packed.triangles.len() as u32), ..Frame::zeroed() };
     let geometry = Geometry {
         frame: &frame,
         features: Features(packed.features.0 | traversal.features().0 | Features::STREAM),
         tuning: traversal.tuning,
-        nodes: &packed.nodes,
+        nodes: &nodes.0,
         wide: &packed.wide,
         triangles: &words.0,
         bounds: &packed.bounds,

@@ -9,7 +9,7 @@ use eyerays_shader::stage::{self, Asking, RECORDS, Wave};
 use super::follow::{Job, follow};
 use super::level::Level;
 use crate::method::{Method, Traversal};
-use crate::pack::{Packed, Region, TriangleWords};
+use crate::pack::{NodeWords, Packed, Region, TriangleWords};
 
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
 pub trait Observer<R: Scalar>: Sync {
@@ -56,6 +56,7 @@ pub fn render_tile_by<R: Scalar>(
     let features = Features(packed.features.0 | traversal.features().0);
     let slots = packed.frame(region, 0, features).limits.z as usize;
     let words = TriangleWords::of(packed, traversal.layout);
+    let nodes = NodeWords::of(packed, traversal.layout);
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {
         paths: vec![black; slots * (packed.levels() * RECORDS) as usize],
@@ -71,7 +72,7 @@ pub fn render_tile_by<R: Scalar>(
             frame: &frame,
             features,
             tuning: traversal.tuning,
-            nodes: &packed.nodes,
+            nodes: &nodes.0,
             wide: &packed.wide,
             triangles: &words.0,
             bounds: &packed.bounds,

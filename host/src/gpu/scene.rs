@@ -8,7 +8,7 @@ use super::buffers::DUMMY;
 use super::device::Gpu;
 use crate::error::{Error, Result};
 use crate::method::Layout;
-use crate::pack::{Packed, TriangleWords};
+use crate::pack::{NodeWords, Packed, TriangleWords};
 
 /// What kernels read of a scene; a dummy for what they do not.
 pub(super) struct SceneBuffers {
@@ -22,15 +22,16 @@ pub(super) struct SceneBuffers {
 }
 
 impl SceneBuffers {
-    /// Uploads a scene, its triangles in one of their layouts. A hierarchy that no method walks may be left
+    /// Uploads a scene in one of its layouts. A hierarchy that no method walks may be left
     /// out.
     ///
     /// # Errors
     /// If a part is larger than a buffer, or what the GPU reports.
     pub fn new(gpu: &Gpu, packed: &Packed, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
+        let nodes = NodeWords::of(packed, layout);
         let smooth = packed.features.has(Features::SMOOTH);
         Ok(SceneBuffers {
-            nodes: upload(gpu, "hierarchy", if hierarchies.binary { &packed.nodes } else { &[] })?,
+            nodes: upload(gpu, "hierarchy", if hierarchies.binary { &nodes.0 } else { &[] })?,
             wide: upload(gpu, "wide hierarchy", if hierarchies.wide { &packed.wide } else { &[] })?,
             triangles: upload(gpu, "triangles", &TriangleWords::of(packed, layout).0)?,
             bounds: upload(gpu, "bounds", &packed.bounds)?,

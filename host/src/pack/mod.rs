@@ -13,7 +13,7 @@ use glam::{DVec3, Vec3};
 
 mod words;
 
-pub use words::TriangleWords;
+pub use words::{NodeWords, TriangleWords};
 
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};

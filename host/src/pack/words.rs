@@ -1,9 +1,9 @@
-//! Triangles as kernels load them.
+//! Triangles and nodes as kernels load them.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::{CompactPair, Triangle};
 use glam::UVec4;
 
 use super::Packed;
@@ -16,8 +16,24 @@ impl<'a> TriangleWords<'a> {
     /// The triangles of a scene.
     pub fn of(packed: &'a Packed, layout: Layout) -> Self {
         TriangleWords(match layout {
-            Layout::Gathered => Cow::Borrowed(bytemuck::cast_slice(&packed.triangles)),
+            Layout::Gathered | Layout::Compact => Cow::Borrowed(bytemuck::cast_slice(&packed.triangles)),
             Layout::Indexed => Cow::Owned(indexed(&packed.triangles)),
+        })
+    }
+}
+
+/// The words of all pairs of nodes, see [`eyerays_shader::scene::Geometry::pair`].
+pub struct NodeWords<'a>(pub Cow<'a, [UVec4]>);
+
+impl<'a> NodeWords<'a> {
+    /// The hierarchy of a scene.
+    pub fn of(packed: &'a Packed, layout: Layout) -> Self {
+        NodeWords(match layout {
+            Layout::Compact => {
+                let pairs: Vec<CompactPair> = packed.nodes.iter().map(CompactPair::from).collect();
+                Cow::Owned(bytemuck::cast_slice(&pairs).to_vec())
+            }
+            Layout::Gathered | Layout::Indexed => Cow::Borrowed(bytemuck::cast_slice(&packed.nodes)),
         })
     }
 }

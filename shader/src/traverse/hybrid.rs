@@ -8,7 +8,6 @@ use super::packet::{goes, visit_leaf};
 use super::resumable::finish;
 use super::step::children;
 use super::{IfIf, Method, Query};
-use crate::buffer::read;
 use crate::data::{NodeRef, STACK};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real};
@@ -97,7 +96,7 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
             } else if cursor.node.is_leaf() {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
-                let pair = read(geometry.nodes, cursor.node.index());
+                let pair = geometry.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let left = together::<Q, R, W, S, T>(geometry, pair.left(), wanted.left, ray, (hit, &mut later));

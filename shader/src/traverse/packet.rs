@@ -6,7 +6,6 @@ use core::marker::PhantomData;
 use super::cursor::{Cursor, Stack};
 use super::step::{children, leaf, occluded};
 use super::{Method, Query};
-use crate::buffer::read;
 use crate::data::STACK;
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
@@ -25,7 +24,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
             if cursor.node.is_leaf() {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
-                let pair = read(geometry.nodes, cursor.node.index());
+                let pair = geometry.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));

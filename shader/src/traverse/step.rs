@@ -2,7 +2,6 @@
 
 use super::Query;
 use super::cursor::{Cursor, Stack};
-use crate::buffer::read;
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 use crate::intersect::{Crossing, Span, cross, slab, span};
 use crate::ray::{Hit, Ray};
@@ -67,7 +66,7 @@ pub fn pair<Q: Query, R: Scalar>(
     cursor: &mut Cursor,
     stack: &mut Stack,
 ) {
-    let pair = read(geometry.nodes, cursor.node.index());
+    let pair = geometry.pair(cursor.node.index());
     Q::on_boxes(2);
     let wanted = children(&pair, ray, hit);
     cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);

@@ -70,7 +70,9 @@ pub fn traversals() -> Vec<Traversal> {
             Method::SequentialCut | Method::InterleavedCut => &[(63, 0), (63, 100)],
             _ => &[],
         };
-        all.extend(limits.iter().map(|&(stack, cut)| Traversal { method, tuning: Tuning::new(stack, cut) }));
+        all.extend(
+            limits.iter().map(|&(stack, cut)| Traversal { tuning: Tuning::new(stack, cut), ..Traversal::from(method) }),
+        );
     }
     all
 }

@@ -142,7 +142,9 @@ pub enum Coherence {
     Primary,
     /// From neighbouring places to one point: shadow rays of primary hits.
     Shadow,
-    /// Every other.
+    /// Mirrored or refracted, and the shadow rays of their hits.
+    Secondary,
+    /// Every way, as the light that surfaces scatter.
     Scattered,
 }
 
@@ -167,9 +169,9 @@ impl Traversal {
     pub fn resolved(self, processor: Processor, coherence: Coherence) -> Traversal {
         let method = match (self.method, processor, coherence) {
             (Method::Auto, Processor::Cpu, Coherence::Primary | Coherence::Shadow) => Method::Packet,
-            (Method::Auto, Processor::Cpu, Coherence::Scattered) => Method::Wide,
-            (Method::Auto, Processor::Gpu, Coherence::Primary | Coherence::Shadow) => Method::IfIf,
+            (Method::Auto, Processor::Cpu, _) => Method::Wide,
             (Method::Auto, Processor::Gpu, Coherence::Scattered) => Method::WhileWhile,
+            (Method::Auto, Processor::Gpu, _) => Method::IfIf,
             (chosen, ..) => chosen,
         };
         let scheduling = match (self.scheduling, processor, coherence) {

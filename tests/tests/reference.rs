@@ -41,7 +41,7 @@ impl<R: Scalar> Observer<R> for Log<'_> {
         let mut stories = self.stories.lock().unwrap();
         let corner = geometry.frame.region;
         for &slot in slots {
-            let pixel = camera::pixel(geometry.frame, slot);
+            let pixel = camera::pixel(geometry.frame, geometry.features, slot);
             let at = (corner.y + pixel.y) * self.packed.settings.size.0 + corner.x + pixel.x;
             self.tell(geometry, slot, records, &mut stories[at as usize]);
         }
@@ -59,7 +59,7 @@ impl Log<'_> {
         }
         let packed = self.packed;
         let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
-        let triangle = &geometry.triangles[place as usize];
+        let triangle = &geometry.triangle(place);
         let contact = Contact::new(triangle, hit.y, hit.z, path.direction);
         let surface = Surface::new(geometry.features, &looks, place, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.

@@ -41,7 +41,8 @@ impl Kind {
         match self {
             Kind::Primary => Coherence::Primary,
             Kind::Shadow => Coherence::Shadow,
-            Kind::Reflection | Kind::Refraction | Kind::Ao | Kind::Diffuse => Coherence::Scattered,
+            Kind::Reflection | Kind::Refraction => Coherence::Secondary,
+            Kind::Ao | Kind::Diffuse => Coherence::Scattered,
         }
     }
 

@@ -64,7 +64,7 @@ impl<'a> Laid<'a> {
     fn methods(&self, features: Features) -> (Method, Method) {
         let of = |coherence| self.traversal.resolved(Processor::Cpu, coherence).method;
         if features.has(Features::SECONDARY) {
-            (of(Coherence::Scattered), of(Coherence::Scattered))
+            (of(Coherence::Secondary), of(Coherence::Secondary))
         } else {
             (of(Coherence::Primary), of(Coherence::Shadow))
         }

@@ -46,7 +46,7 @@ impl Stages {
     /// The stages of the first wave, whose rays are alike, or of a further one.
     fn new(compiler: &Compiler<'_>, packed: &Packed, further: bool) -> Result<Stages> {
         let features = Features(packed.features.0 | if further { Features::SECONDARY } else { 0 });
-        let [traced, asked] = if further { [Coherence::Scattered; 2] } else { [Coherence::Primary, Coherence::Shadow] };
+        let [traced, asked] = if further { [Coherence::Secondary; 2] } else { [Coherence::Primary, Coherence::Shadow] };
         let lit = !packed.lights.is_empty();
         Ok(Stages {
             trace: compiler.tracing(features, "trace", traced)?,

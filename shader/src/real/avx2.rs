@@ -36,9 +36,9 @@ pub struct EightIndex(__m256i);
 
 /// An operation by one instruction or two.
 macro_rules! instruction {
-    ($(fn $name:ident($($arg:tt: $type:ty),*) -> $result:ty { $body:expr })*) => {$(
+    ($(fn $name:ident($($arg:tt $(: $type:ty)?),*) -> $result:ty { $body:expr })*) => {$(
         #[inline(always)]
-        fn $name($($arg: $type),*) -> $result {
+        fn $name($($arg $(: $type)?),*) -> $result {
             // SAFETY: plain arithmetic, on a processor that has the instruction: who names `Avx2` promises that.
             unsafe { $body }
         }
@@ -66,14 +66,14 @@ operator!(EightMask, BitOr, bitor, _mm256_or_ps);
 impl Neg for Eight {
     type Output = Self;
     instruction! {
-        fn neg(self: Self) -> Self { Eight(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))) }
+        fn neg(self) -> Self { Eight(_mm256_xor_ps(self.0, _mm256_set1_ps(-0.0))) }
     }
 }
 
 impl Not for EightMask {
     type Output = Self;
     instruction! {
-        fn not(self: Self) -> Self {
+        fn not(self) -> Self {
             EightMask(_mm256_xor_ps(self.0, _mm256_castsi256_ps(_mm256_set1_epi32(-1))))
         }
     }
@@ -122,7 +122,7 @@ impl Eight {
     }
 
     instruction! {
-        fn by_sign(self: Self) -> Self { Eight(_mm256_and_ps(self.0, _mm256_set1_ps(-0.0))) }
+        fn by_sign(self) -> Self { Eight(_mm256_and_ps(self.0, _mm256_set1_ps(-0.0))) }
         fn loaded(from: [f32; 8]) -> Self { Eight(_mm256_loadu_ps(from.as_ptr())) }
     }
 
@@ -142,15 +142,15 @@ impl Real for Eight {
 
     instruction! {
         fn splat(x: f32) -> Self { Eight(_mm256_set1_ps(x)) }
-        fn lt(self: Self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) }
-        fn le(self: Self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) }
-        fn same(self: Self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0)) }
+        fn lt(self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, other.0)) }
+        fn le(self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0)) }
+        fn same(self, other: Self) -> EightMask { EightMask(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, other.0)) }
         fn select(mask: EightMask, a: Self, b: Self) -> Self { Eight(_mm256_blendv_ps(b.0, a.0, mask.0)) }
-        fn abs(self: Self) -> Self { Eight(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)) }
+        fn abs(self) -> Self { Eight(_mm256_andnot_ps(_mm256_set1_ps(-0.0), self.0)) }
         // The instructions return the second operand for NaN and for two zeros, as compare and select do.
-        fn min(self: Self, other: Self) -> Self { Eight(_mm256_min_ps(self.0, other.0)) }
-        fn max(self: Self, other: Self) -> Self { Eight(_mm256_max_ps(self.0, other.0)) }
-        fn fused(self: Self, a: Self, b: Self) -> Self { Eight(_mm256_fmadd_ps(self.0, a.0, b.0)) }
+        fn min(self, other: Self) -> Self { Eight(_mm256_min_ps(self.0, other.0)) }
+        fn max(self, other: Self) -> Self { Eight(_mm256_max_ps(self.0, other.0)) }
+        fn fused(self, a: Self, b: Self) -> Self { Eight(_mm256_fmadd_ps(self.0, a.0, b.0)) }
         fn index(i: u32) -> EightIndex { EightIndex(_mm256_set1_epi32(i as i32)) }
         fn equals(i: u32, other: EightIndex) -> EightMask {
             EightMask(_mm256_castsi256_ps(_mm256_cmpeq_epi32(_mm256_set1_epi32(i as i32), other.0)))

@@ -95,7 +95,7 @@ impl World {
 
     fn geometry(&self) -> Geometry<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
-        let (nodes, wide, triangles) = (&self.nodes, &self.wide, &self.words);
+        let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
         Geometry { frame, features: self.features, tuning, nodes, wide, triangles, bounds: &[] }
     }
 

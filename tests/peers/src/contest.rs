@@ -34,11 +34,7 @@ pub trait Contestant: Sync {
 }
 
 /// Every task of a stream in parallel, with its answers: the distance, negative for none.
-pub fn tasks(
-    pool: &rayon::ThreadPool,
-    stream: &Stream,
-    task: impl Fn(usize, &mut [f32]) + Sync,
-) -> (f64, Found) {
+pub fn tasks(pool: &rayon::ThreadPool, stream: &Stream, task: impl Fn(usize, &mut [f32]) + Sync) -> (f64, Found) {
     let mut answers = vec![0f32; stream.len()];
     let seconds = pool.install(|| {
         let start = Instant::now();

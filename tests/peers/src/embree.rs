@@ -1,8 +1,8 @@
 //! Embree 3.13 in its robust mode.
 
 use embree3::{
-    Hit16, BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, IntersectContext, Ray, Ray16, RayHit, RayHit16,
-    Scene, SceneFlags, ValidMask, ValidMaskN,
+    BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, Hit16, IntersectContext, Ray, Ray16, RayHit,
+    RayHit16, Scene, SceneFlags, ValidMask, ValidMaskN,
 };
 use eyerays::pack::Packed;
 use eyerays::stream::{Question, Stream};
@@ -28,8 +28,10 @@ impl Embree {
         let corners: Vec<[f32; 3]> = corners.collect();
         let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
         let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
-        mesh.set_new_buffer::<[f32; 3]>(BufferUsage::VERTEX, 0, Format::FLOAT3, 12, corners.len())?.copy_from_slice(&corners);
-        mesh.set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, 12, indices.len())?.copy_from_slice(&indices);
+        mesh.set_new_buffer::<[f32; 3]>(BufferUsage::VERTEX, 0, Format::FLOAT3, 12, corners.len())?
+            .copy_from_slice(&corners);
+        mesh.set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, 12, indices.len())?
+            .copy_from_slice(&indices);
         let mut scene = device.create_scene()?;
         scene.set_flags(SceneFlags::ROBUST);
         scene.set_build_quality(quality);
@@ -68,7 +70,11 @@ impl Contestant for Single<'_> {
                         if hit.hit.is_valid() { hit.ray.tfar } else { -1.0 }
                     }
                     Question::Occlusion => {
-                        if scene.occluded(&mut context, &mut ray) { 0.0 } else { -1.0 }
+                        if scene.occluded(&mut context, &mut ray) {
+                            0.0
+                        } else {
+                            -1.0
+                        }
                     }
                 };
             }

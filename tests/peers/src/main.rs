@@ -5,7 +5,6 @@ mod contest;
 mod embree;
 mod hierarchies;
 mod own;
-mod rays;
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -13,23 +12,22 @@ use std::path::PathBuf;
 use clap::Parser;
 use contest::{Contestant, Found};
 use embree3::BuildQuality;
-use eyerays::method::{Method, Traversal};
+use eyerays::bench::Kind;
+use eyerays::bench::rays::{AO_SHARE, Sight, View, diagonal};
+use eyerays::method::{Method, Order, Traversal};
 use eyerays::pack::Packed;
-use eyerays::scene::{self, Light, Settings};
+use eyerays::scene::{self, Settings};
 use eyerays_bvh::Quality;
 use own::Own;
 
 #[derive(Parser)]
 struct Options {
-    /// Scenes, each with its views and a point light
+    /// Scenes with their views and lights
     #[arg(required = true)]
     scenes: Vec<PathBuf>,
-    /// How far ambient occlusion looks, in percent of the diagonal
-    #[arg(long, default_value_t = 20.0)]
-    reach: f32,
-    /// How far ambient occlusion looks, in world units
+    /// How far ambient occlusion looks, in world units [default: 20 % of the diagonal]
     #[arg(long)]
-    reach_units: Option<f32>,
+    ao_length: Option<f64>,
     /// Threads
     #[arg(long, default_value_t = 1)]
     threads: usize,
@@ -55,7 +53,9 @@ struct Options {
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
-    println!("| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits |");
+    println!(
+        "| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits |"
+    );
     println!("|---|---|---|---|---|---|---|---|---|");
     for path in &options.scenes {
         contest(&options, path)?;
@@ -75,15 +75,13 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         _ => (Quality::High, BuildQuality::HIGH),
     };
     let mut packed = Packed::new(&scene, &scene.cameras[0], settings, quality)?;
-    let scale = packed.scale as f32;
-    let Some(Light::Point { position, .. }) = scene.lights.first() else { return Err("no point light".into()) };
-    let reach = options.reach_units.map_or(rays::diagonal(&packed) * options.reach / 100.0, |units| units * scale);
+    let ao_length = options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let embree = embree::Embree::new(&packed, embree_quality).map_err(|e| format!("Embree: {e:?}"))?;
     let binary = hierarchies::Binary::new(&packed, quality);
     let compressed = hierarchies::Compressed::new(&packed, quality);
     let mut names: Vec<(&'static str, bool)> = Vec::new();
-    let mut kinds: Vec<(&'static str, bool)> = Vec::new();
+    let kinds = [Kind::Primary, Kind::Shadow, Kind::Ao, Kind::Diffuse];
     let mut scores: Vec<Score> = Vec::new();
     for camera in scene.cameras.iter().take(options.views) {
         packed.look(&scene, camera)?;
@@ -96,18 +94,18 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         ];
         let (single, packet) = (embree::Single(&embree), embree::Packet(&embree));
         let mut all: Vec<&dyn Contestant> = vec![&single, &packet, &binary, &compressed];
-        all.extend(methods.iter().filter(|m| m.traversal.method != Method::Wide || !packed.wide.is_empty()).map(|m| m as &dyn Contestant));
+        all.extend(methods.iter().map(|m| m as &dyn Contestant));
         all.retain(|c| c.name().contains(&options.only));
         names = all.iter().map(|c| (c.name(), c.is_packet())).collect();
         scores.resize(all.len(), Score::new());
-        let streams = rays::kinds(&packed, *position * scale, reach);
-        kinds = streams.iter().map(|k| (k.name, k.coherent)).collect();
-        for (k, kind) in streams.iter().enumerate().filter(|(_, k)| k.name.contains(&options.kind)) {
+        let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), options.threads)?;
+        for (k, kind) in kinds.iter().enumerate().filter(|(_, k)| k.name().contains(&options.kind)) {
+            let stream = sight.rays(*kind, ao_length)?;
             let mut times = vec![Vec::new(); all.len()];
             let mut found = vec![Found::default(); all.len()];
             for repeat in 0..=options.repeat {
                 for (c, contestant) in all.iter().enumerate() {
-                    let (seconds, what) = contestant.cast(&pool, &kind.stream, kind.question);
+                    let (seconds, what) = contestant.cast(&pool, &stream, kind.question());
                     // The first warms caches.
                     if repeat > 0 {
                         times[c].push(seconds);
@@ -117,12 +115,13 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
             }
             for (c, mut times) in times.into_iter().enumerate() {
                 scores[c].resize(kinds.len(), Vec::new());
-                scores[c][k].push((kind.stream.len() as f64 / median(&mut times) / 1e6, found[c]));
+                scores[c][k].push((stream.len() as f64 / median(&mut times) / 1e6, found[c]));
             }
         }
     }
     let scene = path.file_stem().unwrap_or_default().to_string_lossy();
-    for (k, &(kind, _)) in kinds.iter().enumerate() {
+    for (k, kind) in kinds.iter().enumerate() {
+        let kind = kind.name();
         let rates: Vec<Vec<f64>> =
             scores.iter().map(|s| s.get(k).map_or(Vec::new(), |views| views.iter().map(|v| v.0).collect())).collect();
         let of = |name: &str| names.iter().position(|n| n.0 == name).map(|c| &rates[c]);
@@ -133,7 +132,9 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
             let most = rates[c].iter().copied().fold(0.0, f64::max);
             let middle = median(&mut rates[c].clone());
             let hits: u64 = scores[c][k].iter().map(|v| v.1.hits).sum();
-            println!("| {scene} | {kind} | {name} | {middle:.2} | {least:.2} | {most:.2} | {embree} | {obvhs} | {hits} |");
+            println!(
+                "| {scene} | {kind} | {name} | {middle:.2} | {least:.2} | {most:.2} | {embree} | {obvhs} | {hits} |"
+            );
         }
     }
     Ok(())

@@ -71,7 +71,6 @@ pub fn traversals() -> Vec<Traversal> {
             Method::SequentialCut | Method::InterleavedCut => &[(63, 0), (63, 100)],
             _ => &[],
         };
-<<<<<<< HEAD
         let tuned = |&(stack, cut): &(u32, u32)| Traversal { tuning: Tuning::new(stack, cut), ..method.into() };
         all.extend(limits.iter().map(tuned));
         if method.is_resumable() {
@@ -84,11 +83,6 @@ pub fn traversals() -> Vec<Traversal> {
     }
     for layout in [Layout::Indexed, Layout::Compact] {
         all.push(Traversal { layout, ..Method::IfIf.into() });
-=======
-        all.extend(
-            limits.iter().map(|&(stack, cut)| Traversal { tuning: Tuning::new(stack, cut), ..Traversal::from(method) }),
-        );
->>>>>>> cpu
     }
     all
 }

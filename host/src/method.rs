@@ -162,16 +162,21 @@ impl Traversal {
         Features(order | layout)
     }
 
-    /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for.
+    /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for: the fastest of
+    /// docs/benchmarks.md.
     pub fn resolved(self, processor: Processor, coherence: Coherence) -> Traversal {
         let method = match (self.method, processor, coherence) {
-            (Method::Auto, ..) => Method::IfIf,
+            (Method::Auto, Processor::Cpu, Coherence::Primary | Coherence::Shadow) => Method::Packet,
+            (Method::Auto, Processor::Cpu, Coherence::Scattered) => Method::Wide,
+            (Method::Auto, Processor::Gpu, Coherence::Primary | Coherence::Shadow) => Method::IfIf,
+            (Method::Auto, Processor::Gpu, Coherence::Scattered) => Method::WhileWhile,
             (chosen, ..) => chosen,
         };
-        let scheduling = match self.scheduling {
-            Scheduling::Auto => Scheduling::Grid,
+        let scheduling = match (self.scheduling, processor, coherence) {
             _ if !method.is_resumable() => Scheduling::Grid,
-            chosen => chosen,
+            (Scheduling::Auto, Processor::Gpu, Coherence::Scattered) => Scheduling::Persistent,
+            (Scheduling::Auto, ..) => Scheduling::Grid,
+            (chosen, ..) => chosen,
         };
         Traversal { method, scheduling, ..self }
     }

@@ -8,7 +8,7 @@ use eyerays::compare::compare;
 use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::gpu::{Gpu, Want};
-use eyerays::method::{Method, Traversal};
+use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::pack::Packed;
 use eyerays::rays::Rays;
 use eyerays::scene::{self, Camera, Scene, Settings};
@@ -60,7 +60,8 @@ pub fn gpu(want: &Want) -> Option<Gpu> {
     }
 }
 
-/// Every method; the hybrids parting early, late, and as they do by default.
+/// Every method; the hybrids parting early, late, and as they do by default; single rays persistent too, and
+/// each of the other switches once.
 pub fn traversals() -> Vec<Traversal> {
     let mut all = Vec::new();
     for method in Method::ALL {
@@ -70,9 +71,18 @@ pub fn traversals() -> Vec<Traversal> {
             Method::SequentialCut | Method::InterleavedCut => &[(63, 0), (63, 100)],
             _ => &[],
         };
-        all.extend(
-            limits.iter().map(|&(stack, cut)| Traversal { tuning: Tuning::new(stack, cut), ..Traversal::from(method) }),
-        );
+        let tuned = |&(stack, cut): &(u32, u32)| Traversal { tuning: Tuning::new(stack, cut), ..method.into() };
+        all.extend(limits.iter().map(tuned));
+        if method.is_resumable() {
+            all.push(Traversal { scheduling: Scheduling::Persistent, ..method.into() });
+        }
+    }
+    all.push(Traversal::default());
+    for order in [Order::Linear, Order::Morton] {
+        all.push(Traversal { order, ..Method::IfIf.into() });
+    }
+    for layout in [Layout::Indexed, Layout::Compact] {
+        all.push(Traversal { layout, ..Method::IfIf.into() });
     }
     all
 }

@@ -1,6 +1,6 @@
 //! The same answers whatever instructions the processor has, and however rays share its vectors.
 
-use eyerays::cpu::{self, Level};
+use eyerays::cpu::{self, Laid, Level};
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::pack::{Packed, Region};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
@@ -79,7 +79,8 @@ fn every_level_renders_the_same_tile() {
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));
         let region = Region { x: 3, y: 2, width: 33, height: 26 };
         let tile = |level, method| {
-            let (film, secondary) = cpu::render_tile_by::<f32>(level, &packed, Traversal::from(method), region, &());
+            let (film, secondary) =
+                cpu::render_tile_by::<f32>(level, &Laid::new(&packed, Traversal::from(method)), region, &());
             (film.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)
         };
         let wanted = tile(Level::Baseline, Method::IfIf);

@@ -6,8 +6,9 @@ use eyerays_shader::real::Scalar;
 use eyerays_shader::stage::{NON_FINITE, RECORDS};
 use rayon::prelude::*;
 
+use super::level::Level;
 use super::pool::pool;
-use super::tile::{Observer, render_tile};
+use super::tile::{Laid, Observer, render_tile_by};
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
@@ -50,13 +51,13 @@ pub fn observe<R>(
 where
     R: Scalar<Record: Send + Sync>,
 {
-    let traversal = traversal.into();
+    let (level, laid) = (Level::best(), Laid::new(packed, traversal.into()));
     let (width, height) = packed.settings.size;
     let result = Mutex::new((Film::new(width, height)?, Rays::default()));
     pool(threads)?.install(|| {
         // A tile a task: coarser splitting leaves threads idle at the end.
         tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-            let (film, secondary) = render_tile(packed, traversal, region, observer);
+            let (film, secondary) = render_tile_by(level, &laid, region, observer);
             let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
             keep::<R>(region, &film, image, rays);
             rays.secondary += secondary;

@@ -8,7 +8,7 @@ use eyerays_shader::stage::{self, Asking, RECORDS, Wave};
 
 use super::follow::{Job, follow};
 use super::level::Level;
-use crate::method::{Method, Traversal};
+use crate::method::{Coherence, Method, Processor, Traversal};
 use crate::pack::{NodeWords, Packed, Region, TriangleWords};
 
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
@@ -42,21 +42,45 @@ pub fn render_tile<R: Scalar>(
     region: Region,
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
-    render_tile_by(Level::best(), packed, traversal.into(), region, observer)
+    render_tile_by(Level::best(), &Laid::new(packed, traversal.into()), region, observer)
+}
+
+/// A scene laid out for a traversal, once for all tiles.
+pub struct Laid<'a> {
+    packed: &'a Packed,
+    traversal: Traversal,
+    nodes: NodeWords<'a>,
+    triangles: TriangleWords<'a>,
+}
+
+impl<'a> Laid<'a> {
+    /// Lays out what the traversal does not take as it is packed.
+    pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
+        let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
+        Laid { packed, traversal, nodes, triangles }
+    }
+
+    /// The method for the rays of a wave and for their shadow rays.
+    fn methods(&self, features: Features) -> (Method, Method) {
+        let of = |coherence| self.traversal.resolved(Processor::Cpu, coherence).method;
+        if features.has(Features::SECONDARY) {
+            (of(Coherence::Scattered), of(Coherence::Scattered))
+        } else {
+            (of(Coherence::Primary), of(Coherence::Shadow))
+        }
+    }
 }
 
 /// [`render_tile`] with the instructions of a level.
 pub fn render_tile_by<R: Scalar>(
     level: Level,
-    packed: &Packed,
-    traversal: Traversal,
+    laid: &Laid<'_>,
     region: Region,
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
+    let Laid { packed, traversal, nodes, triangles } = laid;
     let features = Features(packed.features.0 | traversal.features().0);
     let slots = packed.frame(region, 0, features).limits.z as usize;
-    let words = TriangleWords::of(packed, traversal.layout);
-    let nodes = NodeWords::of(packed, traversal.layout);
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {
         paths: vec![black; slots * (packed.levels() * RECORDS) as usize],
@@ -74,12 +98,12 @@ pub fn render_tile_by<R: Scalar>(
             tuning: traversal.tuning,
             nodes: &nodes.0,
             wide: &packed.wide,
-            triangles: &words.0,
+            triangles: &triangles.0,
             bounds: &packed.bounds,
         };
         let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, features, s).inside).collect();
         loop {
-            trace::<R>((level, traversal.method), &geometry, looks.lights, &queue, &mut records);
+            trace::<R>(level, laid.methods(geometry.features), &geometry, looks.lights, &queue, &mut records);
             observer.wave(&geometry, &queue, &records);
             shade(&geometry, &looks, &mut queue, &mut records);
             if queue.is_empty() {
@@ -94,21 +118,22 @@ pub fn render_tile_by<R: Scalar>(
 
 /// The stages of a wave that follow rays.
 fn trace<R: Scalar>(
-    (level, method): (Level, Method),
+    level: Level,
+    (traced, asked): (Method, Method),
     geometry: &Geometry<'_>,
     lights: &[Light],
     queue: &[u32],
     records: &mut Records<R>,
 ) {
     let mut hits = vec![R::store(V3::zero(), 0); queue.len()];
-    follow::<R>(level, method, geometry, queue, Job::Trace(&records.paths, &mut hits));
+    follow::<R>(level, traced, geometry, queue, Job::Trace(&records.paths, &mut hits));
     for (&slot, hit) in queue.iter().zip(hits) {
         records.hits[slot as usize] = hit;
     }
     let mut answers = vec![0; queue.len()];
     for light in 0..geometry.light_count() {
         let asking = Asking { lights, paths: &records.paths, hits: &records.hits };
-        follow::<R>(level, method, geometry, queue, Job::Shadow(asking, light, &mut answers));
+        follow::<R>(level, asked, geometry, queue, Job::Shadow(asking, light, &mut answers));
         for (&slot, &answer) in queue.iter().zip(&answers) {
             records.shadows[(light * geometry.slots() + slot) as usize] = answer;
         }

@@ -1,0 +1,78 @@
+//! Every kind of ray by every method gets the same answers from GPU and CPU.
+
+use eyerays::bench::Kind;
+use eyerays::bench::rays::{Sight, View, diagonal};
+use eyerays::cpu;
+use eyerays::gpu::{Caster, Gpu, Want};
+use eyerays::method::{Layout, Method, Order, Traversal};
+use eyerays::pack::Packed;
+use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays_tests::{SHIPPED, gpu, pack, settings, shipped, traversals};
+
+/// Rays through the middle of this many pixels.
+const SIZE: (u32, u32) = (40, 30);
+
+/// Answers without slots, which a split triangle has several of.
+fn answered(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
+    let primitive = |slot: u32| packed.triangles.get(slot as usize).map_or(StreamRay::NOWHERE, |t| t.primitive());
+    match answers {
+        Answers::Closest(hits) => hits.iter().map(|h| [h.x, h.y, h.z, primitive(h.w)]).collect(),
+        Answers::Occlusion(shadows) => shadows.iter().map(|&s| [s, 0, 0, 0]).collect(),
+    }
+}
+
+fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Question) -> Vec<[u32; 4]> {
+    answered(packed, cpu::cast(packed, traversal, 0, stream, question).unwrap().0)
+}
+
+/// The GPU's answers by all traversals of a layout.
+fn assert_gpu(gpu: &Gpu, packed: &Packed, streams: &[(Kind, Stream)], layout: Layout, what: &str) {
+    let caster = Caster::new(gpu, packed, layout).unwrap();
+    for (kind, stream) in streams {
+        let want = on_cpu(packed, Method::IfIf.into(), stream, kind.question());
+        let cast = caster.upload(stream).unwrap();
+        for traversal in traversals().into_iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
+            caster.trace(&cast, true, traversal, kind.question()).unwrap();
+            let got = answered(packed, caster.answers(&cast, kind.question()).unwrap());
+            assert!(got == want, "{what}, {kind:?}, {traversal:?}");
+        }
+    }
+}
+
+fn streams(packed: &Packed) -> Vec<(Kind, Stream)> {
+    let sight = Sight::new(packed, &View::of(packed, Order::Tiled), 0).unwrap();
+    let length = 0.2 * diagonal(packed) as f32;
+    Kind::ALL
+        .into_iter()
+        .map(|kind| (kind, sight.rays(kind, length).unwrap().into_owned()))
+        .filter(|(_, stream)| !stream.is_empty())
+        .collect()
+}
+
+#[test]
+fn every_kind_by_every_method_on_the_cpu() {
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
+        for (kind, stream) in streams(&packed) {
+            let want = on_cpu(&packed, Method::IfIf.into(), &stream, kind.question());
+            for traversal in traversals() {
+                let got = on_cpu(&packed, traversal, &stream, kind.question());
+                assert!(got == want, "{name}, {kind:?}, {traversal:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn every_kind_by_every_method_on_the_gpu() {
+    let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) else { return };
+    for name in SHIPPED {
+        let scene = shipped(name);
+        let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
+        let streams = streams(&packed);
+        for layout in [Layout::Gathered, Layout::Indexed, Layout::Compact] {
+            assert_gpu(&gpu, &packed, &streams, layout, name);
+        }
+    }
+}

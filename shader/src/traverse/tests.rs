@@ -45,7 +45,8 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
 /// A wide hierarchy by eighths of the list, its nodes in the order in which they are found: every box the
 /// whole grid, so that all that is to be seen is whether nodes and triangles are followed.
 fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
-    let mut open = vec![0..triangles.len() as u32];
+    let all = 0..triangles.len() as u32;
+    let mut open = vec![all];
     let mut nodes = Vec::new();
     while nodes.len() < open.len() {
         let range = open[nodes.len()].clone();

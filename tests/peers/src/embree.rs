@@ -86,14 +86,14 @@ impl Contestant for Single<'_> {
 fn packet(stream: &Stream, first: usize, count: usize) -> (Ray16, ValidMaskN<PACKET>) {
     let mut packet = Ray16::empty();
     let mut valid = [ValidMask::Invalid; PACKET];
-    for lane in 0..count {
+    for (lane, valid) in valid.iter_mut().enumerate().take(count) {
         let r = stream.ray(first + lane);
         (packet.org_x[lane], packet.org_y[lane], packet.org_z[lane]) = r.origin.into();
         (packet.dir_x[lane], packet.dir_y[lane], packet.dir_z[lane]) = r.direction.into();
         packet.tnear[lane] = 0.0;
         packet.tfar[lane] = r.limit;
         packet.mask[lane] = u32::MAX;
-        valid[lane] = ValidMask::Valid;
+        *valid = ValidMask::Valid;
     }
     (packet, ValidMaskN::new(valid))
 }

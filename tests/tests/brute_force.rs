@@ -51,7 +51,11 @@ fn random(place: u32) -> f32 {
 /// From anywhere in the scene: to anywhere, along an axis, or at a vertex.
 fn rays(packed: &Packed) -> Stream {
     let count = std::env::var("EYERAYS_RAYS").map_or(RAYS, |n| n.parse().expect("a number of rays"));
-    let vertices: Vec<Vec3> = packed.triangles.iter().flat_map(|t| t.vertices()).collect();
+    // In the scene's order, which no hierarchy changes.
+    let mut triangles = packed.triangles.clone();
+    triangles.sort_by_key(|t| t.primitive());
+    triangles.dedup_by_key(|t| t.primitive());
+    let vertices: Vec<Vec3> = triangles.iter().flat_map(|t| t.vertices()).collect();
     let (least, greatest) =
         vertices.iter().fold((Vec3::ONE, -Vec3::ONE), |(least, greatest), v| (least.min(*v), greatest.max(*v)));
     let ray = |i: usize| {

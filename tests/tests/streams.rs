@@ -4,7 +4,7 @@ use eyerays::bench::Kind;
 use eyerays::bench::rays::{Sight, View, diagonal};
 use eyerays::cpu;
 use eyerays::gpu::{Caster, Gpu, Want};
-use eyerays::method::{Layout, Method, Order, Traversal};
+use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::pack::Packed;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_tests::{SHIPPED, gpu, pack, settings, shipped, traversals};
@@ -25,13 +25,14 @@ fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Ques
     answered(packed, cpu::cast(packed, traversal, 0, stream, question).unwrap().0)
 }
 
-/// The GPU's answers by all traversals of a layout.
-fn assert_gpu(gpu: &Gpu, packed: &Packed, streams: &[(Kind, Stream)], layout: Layout, what: &str) {
+/// The GPU's answers by those of these traversals that take a layout.
+fn assert_gpu(gpu: &Gpu, packed: &Packed, how: &[Traversal], layout: Layout, what: &str) {
     let caster = Caster::new(gpu, packed, layout).unwrap();
-    for (kind, stream) in streams {
+    let streams = streams(packed);
+    for (kind, stream) in &streams {
         let want = on_cpu(packed, Method::IfIf.into(), stream, kind.question());
         let cast = caster.upload(stream).unwrap();
-        for traversal in traversals().into_iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
+        for &traversal in how.iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
             caster.trace(&cast, true, traversal, kind.question()).unwrap();
             let got = answered(packed, caster.answers(&cast, kind.question()).unwrap());
             assert!(got == want, "{what}, {kind:?}, {traversal:?}");
@@ -70,9 +71,17 @@ fn every_kind_by_every_method_on_the_gpu() {
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
-        let streams = streams(&packed);
-        for layout in [Layout::Gathered, Layout::Indexed, Layout::Compact] {
-            assert_gpu(&gpu, &packed, &streams, layout, name);
-        }
+        let few = [
+            Method::Packet.into(),
+            Traversal { scheduling: Scheduling::Persistent, ..Method::WhileWhile.into() },
+            Traversal { scheduling: Scheduling::Persistent, ..Method::Wide.into() },
+        ];
+        assert_gpu(&gpu, &packed, &few, Layout::Gathered, name);
+    }
+    // Each kernel is compiled for its scene, which a software device takes its time for.
+    let scene = shipped("whitted");
+    let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
+    for layout in [Layout::Gathered, Layout::Indexed, Layout::Compact] {
+        assert_gpu(&gpu, &packed, &traversals(), layout, "whitted");
     }
 }

@@ -23,20 +23,20 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     load: impl Fn(u32) -> (Segment<R>, bool),
     mut store: impl FnMut(u32, bool, &Hit<R>),
 ) {
-    let lanes = W::count(true);
+    let enough = (W::count(true) * geometry.tuning.busy()).div_ceil(100);
     let mut number = IDLE;
     let mut traced = false;
     let mut ray = Ray::new(V3::zero(), V3::splat(glam::Vec3::ONE));
     let mut hit = Hit::none(R::splat(0.0));
     let mut cursor = M::Cursor::finished();
     let mut stack = M::EMPTY;
-    let mut least = (lanes * geometry.tuning.busy()).div_ceil(100);
+    let mut more = true;
     loop {
         if number != IDLE && cursor.is_done() {
             store(number, traced, &hit);
             number = IDLE;
         }
-        if least > 1 {
+        if more {
             let next = take(number == IDLE);
             if number == IDLE && next < count {
                 number = next;
@@ -47,13 +47,12 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
                 cursor = if wanted { M::Cursor::start() } else { M::Cursor::finished() };
             }
             // Once a lane has found none left, all see their rays to the end.
-            if W::any(number == IDLE) {
-                least = 1;
-            }
+            more = !W::any(number == IDLE);
         }
         if !W::any(number != IDLE) {
             return;
         }
+        let least = if more && enough > 1 { enough } else { 1 };
         while W::count(!cursor.is_done()) >= least {
             if !cursor.is_done() {
                 M::step::<Q>(geometry, &ray, &mut hit, &mut cursor, &mut stack);

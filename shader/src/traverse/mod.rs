@@ -1,8 +1,8 @@
 //! Ways through the hierarchy. A method is one small file over the shared steps of [`step`].
 //!
-//! Every method finds the same hit: the least (t, primitive) among the triangles whose own box the
-//! ray meets, with t clamped into that box. An ancestor's box is entered no later than a triangle's
-//! own (the box test is monotone), so no order of visits can cull the winner.
+//! Every method finds the same hit: the least (t, primitive) among the slots whose own box the ray
+//! meets, with t no less than the entry to that box. A node's box is wider than what it holds by more
+//! than the tests of both may err, so it is entered no later, and no order of visits can cull the winner.
 
 pub mod cursor;
 mod hybrid;

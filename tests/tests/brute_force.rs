@@ -7,14 +7,13 @@ use std::path::Path;
 use eyerays::cpu;
 use eyerays::generate::{Files, Kind, Recipe};
 use eyerays::method::Traversal;
-use eyerays::pack::{NodeWords, Packed, TriangleWords};
+use eyerays::pack::{Laid, Packed};
 use eyerays::scene;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Frame, NodeRef};
+use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Real, V3, Wide, WideIndex};
-use eyerays_shader::scene::Geometry;
 use eyerays_shader::traverse::{Closest, step};
 use eyerays_tests::traversals;
 use glam::Vec3;
@@ -74,18 +73,8 @@ fn rays(packed: &Packed) -> Stream {
 }
 
 fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
-    let traversal = Traversal::default();
-    let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
-    let frame: Frame = bytemuck::Zeroable::zeroed();
-    let geometry = Geometry {
-        frame: &frame,
-        features: packed.features,
-        tuning: traversal.tuning,
-        nodes: &nodes.0,
-        wide: &packed.wide,
-        triangles: &triangles.0,
-        bounds: &packed.bounds,
-    };
+    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
     let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
     let found = starts.par_iter().flat_map_iter(|&start| {
         let ray = |i: usize| stream.ray((start + i).min(stream.len() - 1));

@@ -1,8 +1,8 @@
 //! The same answers whatever instructions the processor has, and however rays share its vectors.
 
-use eyerays::cpu::{self, Laid, Level};
+use eyerays::cpu::{self, Level};
 use eyerays::method::{Layout, Method, Traversal};
-use eyerays::pack::{Packed, Region};
+use eyerays::pack::{Laid, Packed, Region};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::real::Scalar;
 use eyerays_tests::{SHIPPED, pack, settings, shipped, traversals};

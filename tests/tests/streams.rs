@@ -1,28 +1,20 @@
 //! Every kind of ray by every method gets the same answers from GPU and CPU.
 
 use eyerays::bench::Kind;
+use eyerays::bench::answers::first_difference;
 use eyerays::bench::rays::{Sight, View, diagonal};
 use eyerays::cpu;
 use eyerays::gpu::{Caster, Gpu, Want};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::pack::Packed;
-use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays::stream::{Answers, Question, Stream};
 use eyerays_tests::{SHIPPED, gpu, pack, settings, shipped, traversals};
 
 /// Rays through the middle of this many pixels.
 const SIZE: (u32, u32) = (40, 30);
 
-/// Answers without slots, which a split triangle has several of.
-fn answered(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
-    let primitive = |slot: u32| packed.triangles.get(slot as usize).map_or(StreamRay::NOWHERE, |t| t.primitive());
-    match answers {
-        Answers::Closest(hits) => hits.iter().map(|h| [h.x, h.y, h.z, primitive(h.w)]).collect(),
-        Answers::Occlusion(shadows) => shadows.iter().map(|&s| [s, 0, 0, 0]).collect(),
-    }
-}
-
-fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Question) -> Vec<[u32; 4]> {
-    answered(packed, cpu::cast(packed, traversal, 0, stream, question).unwrap().0)
+fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Question) -> Answers {
+    cpu::cast(packed, traversal, 0, stream, question).unwrap().0
 }
 
 /// The GPU's answers by those of these traversals that take a layout.
@@ -34,8 +26,8 @@ fn assert_gpu(gpu: &Gpu, packed: &Packed, how: &[Traversal], layout: Layout, wha
         let cast = caster.upload(stream).unwrap();
         for &traversal in how.iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
             caster.trace(&cast, true, traversal, kind.question()).unwrap();
-            let got = answered(packed, caster.answers(&cast, kind.question()).unwrap());
-            assert!(got == want, "{what}, {kind:?}, {traversal:?}");
+            let got = caster.answers(&cast, kind.question()).unwrap();
+            assert_eq!(first_difference(packed, &got, &want), None, "{what}, {kind:?}, {traversal:?}");
         }
     }
 }
@@ -59,7 +51,7 @@ fn every_kind_by_every_method_on_the_cpu() {
             let want = on_cpu(&packed, Method::IfIf.into(), &stream, kind.question());
             for traversal in traversals() {
                 let got = on_cpu(&packed, traversal, &stream, kind.question());
-                assert!(got == want, "{name}, {kind:?}, {traversal:?}");
+                assert_eq!(first_difference(&packed, &got, &want), None, "{name}, {kind:?}, {traversal:?}");
             }
         }
     }

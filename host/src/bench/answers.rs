@@ -55,13 +55,17 @@ fn primitive(packed: &Packed, slot: u32) -> u32 {
     }
 }
 
-/// The first ray with another answer.
+/// The first ray with another answer, or with none.
 pub fn first_difference(packed: &Packed, a: &Answers, b: &Answers) -> Option<usize> {
+    let shorter = |a: usize, b: usize| (a != b).then(|| a.min(b));
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
-            a.iter().zip(b).position(|(&a, &b)| comparable(packed, a) != comparable(packed, b))
+            let differs = |(&a, &b): (&UVec4, &UVec4)| comparable(packed, a) != comparable(packed, b);
+            a.iter().zip(b).position(differs).or_else(|| shorter(a.len(), b.len()))
         }
-        (Answers::Occlusion(a), Answers::Occlusion(b)) => a.iter().zip(b).position(|(a, b)| a != b),
+        (Answers::Occlusion(a), Answers::Occlusion(b)) => {
+            a.iter().zip(b).position(|(a, b)| a != b).or_else(|| shorter(a.len(), b.len()))
+        }
         _ => Some(0),
     }
 }

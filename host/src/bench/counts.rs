@@ -5,8 +5,6 @@ use std::iter::Sum;
 use std::marker::PhantomData;
 use std::ops::{Add, Range};
 
-use bytemuck::Zeroable;
-use eyerays_shader::data::{Features, Frame};
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Real, V3, Wide, WideIndex};
 use eyerays_shader::scene::Geometry;
@@ -16,13 +14,12 @@ use eyerays_shader::traverse::{
     WhileWhile, WideNodes,
 };
 use eyerays_shader::warp::Alone;
-use glam::UVec4;
 use rayon::prelude::*;
 
 use crate::cpu;
 use crate::error::Result;
 use crate::method::{Layout, Method, Traversal};
-use crate::pack::{NodeWords, Packed, TriangleWords};
+use crate::pack::{Laid, Packed};
 use crate::stream::{Question, Stream, StreamRay};
 
 /// Rays of a packet: a subgroup of most GPUs.
@@ -151,19 +148,9 @@ pub fn counts(
 ) -> Result<Counts> {
     // Where triangles lie makes no difference to what is tested; what boxes are made of does.
     let layout = if traversal.layout == Layout::Compact { Layout::Compact } else { Layout::Gathered };
-    let (words, nodes) = (TriangleWords::of(packed, layout), NodeWords::of(packed, layout));
-    let features = Traversal { layout, ..Traversal::default() }.features();
-    let frame =
-        Frame { limits: UVec4::new(0, 0, stream.len() as u32, packed.triangles.len() as u32), ..Frame::zeroed() };
-    let geometry = Geometry {
-        frame: &frame,
-        features: Features(packed.features.0 | features.0 | Features::STREAM),
-        tuning: traversal.tuning,
-        nodes: &nodes.0,
-        wide: &packed.wide,
-        triangles: &words.0,
-        bounds: &packed.bounds,
-    };
+    let laid = Laid::new(packed, Traversal { layout, ..traversal });
+    let frame = packed.stream_frame(stream.len());
+    let geometry = laid.stream(&frame);
     let groups = groups(stream.len());
     let rays: usize = groups.iter().map(Range::len).sum();
     let follow = follower(traversal.method);
@@ -233,7 +220,7 @@ fn traverse<R: Real, M: traverse::Method<R>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_shader::data::{CentredPair, NodePair, NodeRef, Triangle, Tuning};
+    use eyerays_shader::data::{CentredPair, Features, NodePair, NodeRef, Triangle, Tuning};
     use glam::{Vec3, vec3};
 
     use crate::bench::tests::cornell;

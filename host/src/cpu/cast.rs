@@ -2,9 +2,6 @@
 
 use std::time::{Duration, Instant};
 
-use bytemuck::Zeroable;
-use eyerays_shader::data::{Features, Frame};
-use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::Asking;
 use glam::UVec4;
 use rayon::prelude::*;
@@ -14,7 +11,7 @@ use super::level::Level;
 use super::pool::pool;
 use crate::error::Result;
 use crate::method::Traversal;
-use crate::pack::{NodeWords, Packed, TriangleWords};
+use crate::pack::{Laid, Packed};
 use crate::stream::{Answers, Question, Stream};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
@@ -47,19 +44,8 @@ pub fn cast_by(
     stream: &Stream,
     question: Question,
 ) -> Result<(Answers, Duration)> {
-    let words = TriangleWords::of(packed, traversal.layout);
-    let nodes = NodeWords::of(packed, traversal.layout);
-    let frame =
-        Frame { limits: UVec4::new(0, 0, stream.len() as u32, packed.triangles.len() as u32), ..Frame::zeroed() };
-    let geometry = Geometry {
-        frame: &frame,
-        features: Features(packed.features.0 | traversal.features().0 | Features::STREAM),
-        tuning: traversal.tuning,
-        nodes: &nodes.0,
-        wide: &packed.wide,
-        triangles: &words.0,
-        bounds: &packed.bounds,
-    };
+    let (laid, frame) = (Laid::new(packed, traversal), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
     let mut answers = match question {
         Question::Closest => Answers::Closest(vec![UVec4::ZERO; stream.len()]),
         Question::Occlusion => Answers::Occlusion(vec![0; stream.len()]),

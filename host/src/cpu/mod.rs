@@ -11,4 +11,4 @@ pub use cast::{cast, cast_by};
 pub use level::Level;
 pub(crate) use pool::pool;
 pub use render::{observe, render};
-pub use tile::{Laid, Observer, Records, render_tile, render_tile_by};
+pub use tile::{Observer, Records, render_tile, render_tile_by};

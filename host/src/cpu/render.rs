@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 use super::level::Level;
 use super::pool::pool;
-use super::tile::{Laid, Observer, render_tile_by};
+use super::tile::{Observer, render_tile_by};
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
-use crate::pack::{Packed, Region};
+use crate::pack::{Laid, Packed, Region};
 use crate::rays::Rays;
 
 /// Memory for the waiting rays of a tile, in bytes, that makes a tile smaller than [`TILE`].

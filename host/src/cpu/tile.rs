@@ -9,7 +9,7 @@ use eyerays_shader::stage::{self, Asking, RECORDS, Wave};
 use super::follow::{Job, follow};
 use super::level::Level;
 use crate::method::{Coherence, Method, Processor, Traversal};
-use crate::pack::{NodeWords, Packed, Region, TriangleWords};
+use crate::pack::{Laid, Packed, Region};
 
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
 pub trait Observer<R: Scalar>: Sync {
@@ -45,29 +45,13 @@ pub fn render_tile<R: Scalar>(
     render_tile_by(Level::best(), &Laid::new(packed, traversal.into()), region, observer)
 }
 
-/// A scene laid out for a traversal, once for all tiles.
-pub struct Laid<'a> {
-    packed: &'a Packed,
-    traversal: Traversal,
-    nodes: NodeWords<'a>,
-    triangles: TriangleWords<'a>,
-}
-
-impl<'a> Laid<'a> {
-    /// Lays out what the traversal does not take as it is packed.
-    pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
-        let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
-        Laid { packed, traversal, nodes, triangles }
-    }
-
-    /// The method for the rays of a wave and for their shadow rays.
-    fn methods(&self, features: Features) -> (Method, Method) {
-        let of = |coherence| self.traversal.resolved(Processor::Cpu, coherence).method;
-        if features.has(Features::SECONDARY) {
-            (of(Coherence::Secondary), of(Coherence::Secondary))
-        } else {
-            (of(Coherence::Primary), of(Coherence::Shadow))
-        }
+/// The method for the rays of a wave and for their shadow rays.
+fn methods(traversal: Traversal, features: Features) -> (Method, Method) {
+    let of = |coherence| traversal.resolved(Processor::Cpu, coherence).method;
+    if features.has(Features::SECONDARY) {
+        (of(Coherence::Secondary), of(Coherence::Secondary))
+    } else {
+        (of(Coherence::Primary), of(Coherence::Shadow))
     }
 }
 
@@ -78,8 +62,7 @@ pub fn render_tile_by<R: Scalar>(
     region: Region,
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
-    let Laid { packed, traversal, nodes, triangles } = laid;
-    let features = Features(packed.features.0 | traversal.features().0);
+    let (packed, features) = (laid.packed, laid.features());
     let slots = packed.frame(region, 0, features).limits.z as usize;
     let black = R::store(V3::zero(), 0);
     let mut records = Records::<R> {
@@ -92,18 +75,17 @@ pub fn render_tile_by<R: Scalar>(
     let mut secondary = 0;
     for sample in 0..packed.samples() {
         let frame = packed.frame(region, sample, features);
-        let mut geometry = Geometry {
-            frame: &frame,
-            features,
-            tuning: traversal.tuning,
-            nodes: &nodes.0,
-            wide: &packed.wide,
-            triangles: &triangles.0,
-            bounds: &packed.bounds,
-        };
+        let mut geometry = laid.geometry(&frame);
         let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, features, s).inside).collect();
         loop {
-            trace::<R>(level, laid.methods(geometry.features), &geometry, looks.lights, &queue, &mut records);
+            trace::<R>(
+                level,
+                methods(laid.traversal, geometry.features),
+                &geometry,
+                looks.lights,
+                &queue,
+                &mut records,
+            );
             observer.wave(&geometry, &queue, &records);
             shade(&geometry, &looks, &mut queue, &mut records);
             if queue.is_empty() {

@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::time::{Duration, Instant};
 
-use bytemuck::Zeroable;
-use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::data::Features;
 use eyerays_shader::launch::{ROW, WORKGROUP};
 use glam::UVec4;
 
@@ -75,8 +74,7 @@ impl<'a> Caster<'a> {
         }
         let room = Room { paths: size, hits: 16 * count, shadows: 4 * count, ..Room::default() };
         let buffers = Buffers::new(self.gpu, &self.bindings, &self.scene, &room)?;
-        let frame =
-            Frame { limits: UVec4::new(0, 0, count as u32, self.packed.triangles.len() as u32), ..Frame::zeroed() };
+        let frame = self.packed.stream_frame(stream.len());
         self.gpu.queue.write_buffer(&buffers.frame, 0, bytemuck::bytes_of(&frame));
         self.gpu.queue.write_buffer(&buffers.paths, 0, bytemuck::cast_slice(stream.words()));
         self.gpu.queue.submit([]);

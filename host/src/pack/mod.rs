@@ -11,8 +11,10 @@ use eyerays_shader::data::{
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
 
+mod laid;
 mod words;
 
+pub use laid::Laid;
 pub use words::{NodeWords, TriangleWords};
 
 use crate::error::{Error, Result};
@@ -134,6 +136,12 @@ impl Packed {
     pub fn look(&mut self, scene: &Scene, camera: &Camera) -> Result<()> {
         self.frame = frame(scene, camera, &self.settings, self.lights.len(), self.scale)?;
         Ok(())
+    }
+
+    /// The record of a launch that follows `count` rays of a stream.
+    pub fn stream_frame(&self, count: usize) -> Frame {
+        let limits = glam::UVec4::new(0, 0, count as u32, self.triangles.len() as u32);
+        Frame { limits, ..bytemuck::Zeroable::zeroed() }
     }
 
     /// The record of one launch, whose slots are in the order of `features`.

@@ -3,5 +3,5 @@
 mod slab;
 mod triangle;
 
-pub use slab::{Span, slab, span};
+pub use slab::{Span, slab};
 pub use triangle::{Crossing, cross};

@@ -24,15 +24,9 @@ pub fn slab<R: Real>(least: V3<R>, greatest: V3<R>, ray: &Ray<R>) -> Span<R> {
     let a = (least - ray.origin).times(ray.inverse);
     let b = (greatest - ray.origin).times(ray.inverse);
     let widen = R::splat(1.0) + R::splat(8.0) * R::ROUNDOFF;
-    let Span { near, far } = span(a.lesser(b), a.greater(b));
-    Span { near, far: far * widen }
-}
-
-/// Where a ray is between three pairs of planes, given where it enters and leaves each pair.
-#[inline(always)]
-pub fn span<R: Real>(enter: V3<R>, leave: V3<R>) -> Span<R> {
+    let (enter, leave) = (a.lesser(b), a.greater(b));
     let near = enter.x.greater(enter.y).greater(enter.z.greater(R::splat(0.0)));
-    Span { near, far: leave.x.lesser(leave.y).lesser(leave.z) }
+    Span { near, far: leave.x.lesser(leave.y).lesser(leave.z) * widen }
 }
 
 #[cfg(test)]

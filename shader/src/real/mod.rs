@@ -138,6 +138,20 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         self.max(other)
     }
 
+    /// The greatest component, or zero if none is positive: where a ray that enters a box's three pairs of planes
+    /// there is inside all of them.
+    #[inline(always)]
+    fn latest(enter: V3<Self>) -> Self {
+        enter.x.greater(enter.y).greater(enter.z.greater(Self::splat(0.0)))
+    }
+
+    /// The least component or the limit, whichever is less; if any is negative (-0 included), some negative number,
+    /// or zero.
+    #[inline(always)]
+    fn earliest(leave: V3<Self>, limit: Self) -> Self {
+        leave.x.lesser(leave.y).lesser(leave.z.lesser(limit))
+    }
+
     /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
     /// device likes.
     #[inline(always)]

@@ -55,6 +55,18 @@ macro_rules! comparisons {
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
+        fn latest(enter: V3<Self>) -> Self {
+            let [x, y, z] = [$inner(enter.x), $inner(enter.y), $inner(enter.z)];
+            $wrap(super::device::greatest(x, y, z, 0.0))
+        }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
+        fn earliest(leave: V3<Self>, limit: Self) -> Self {
+            let [x, y, z] = [$inner(leave.x), $inner(leave.y), $inner(leave.z)];
+            $wrap(super::device::least(x, y, z, $inner(limit)))
+        }
+        #[cfg(target_arch = "spirv")]
+        #[inline(always)]
         fn lesser(self, other: Self) -> Self {
             $wrap(super::device::lesser($inner(self), $inner(other)))
         }

@@ -3,7 +3,7 @@
 use super::Query;
 use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
-use crate::intersect::{Crossing, Span, cross, slab, span};
+use crate::intersect::{Crossing, Span, cross, slab};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -38,23 +38,19 @@ pub struct Wanted<R: Real> {
 /// [`CentredPair::MARGIN`] together, so that a box is met, and entered no later, wherever an own box in it is.
 #[inline(always)]
 pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
-    let left = inside(pair.left_centre, pair.left_half, ray);
-    let right = inside(pair.right_centre, pair.right_half, ray);
-    Wanted { left: meets(&left, hit), right: meets(&right, hit), right_first: right.near.lt(left.near) }
+    let left = share(pair.left_centre, pair.left_half, ray, hit.t);
+    let right = share(pair.right_centre, pair.right_half, ray, hit.t);
+    Wanted { left: left.near.le(left.far), right: right.near.le(right.far), right_first: right.near.lt(left.near) }
 }
 
-// Functions, since closures are not always inlined, and what is not inlined is not compiled for the
+/// Where a ray is inside a box before its limit. Its far end is right where it is not negative.
+// A function, since closures are not always inlined, and what is not inlined is not compiled for the
 // processor's vectors.
 #[inline(always)]
-fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>) -> Span<R> {
+fn share<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Span<R> {
     let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
     let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
-    span(half.fused(-reach, middle), half.fused(reach, middle))
-}
-
-#[inline(always)]
-fn meets<R: Real>(span: &Span<R>, hit: &Hit<R>) -> R::Mask {
-    span.near.le(span.far) & span.near.le(hit.t)
+    Span { near: R::latest(half.fused(-reach, middle)), far: R::earliest(half.fused(reach, middle), limit) }
 }
 
 /// A single ray's visit of the pair that its traversal stands at.

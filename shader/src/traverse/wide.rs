@@ -21,7 +21,6 @@ use crate::buffer::read;
 #[cfg(target_arch = "spirv")]
 use crate::data::NodeRef;
 use crate::data::{WideNode, numbers};
-use crate::intersect::span;
 use crate::ray::{Hit, Ray};
 use crate::real::{Native, Octet, Scalar, V3, Vectors};
 use crate::scene::Geometry;
@@ -251,7 +250,8 @@ impl<R: Scalar, E: Octet<R>> Opening<R, E> {
         let x = E::sides(self.down[0], self.low[0], self.high[0], first);
         let y = E::sides(self.down[1], self.low[1], self.high[1], first);
         let z = E::sides(self.down[2], self.low[2], self.high[2], first);
-        let met = span(V3::new(x.0, y.0, z.0).fused(step, start), V3::new(x.1, y.1, z.1).fused(step, start));
-        (E::waiting(met.near.le(met.far) & met.near.le(E::all(self.limit)), &self.children, first), met.near)
+        let near = E::latest(V3::new(x.0, y.0, z.0).fused(step, start));
+        let end = E::earliest(V3::new(x.1, y.1, z.1).fused(step, start), E::all(self.limit));
+        (E::waiting(near.le(end), &self.children, first), near)
     }
 }

@@ -29,6 +29,8 @@ pub use vector::V3;
 pub use wide::{Wide, WideIndex, WideMask};
 
 use crate::data::numbers;
+#[cfg(doc)]
+use crate::data::Features;
 use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 use glam::UVec4;
@@ -67,6 +69,9 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
 
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
+
+    /// May a launch choose how triangles are met ([`Features::MOLLER`])? Other numbers know the watertight test alone.
+    const CHOOSES: bool = false;
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;

@@ -3,8 +3,8 @@
 use super::Query;
 use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
-use crate::intersect::{Crossing, Span, cross, slab, span};
-use crate::ray::{Hit, Ray};
+use crate::intersect::{Crossing, Span, cross, moller, slab, span};
+use crate::ray::{Hit, Ray, Shear};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
@@ -89,7 +89,8 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     let triangle = geometry.triangle(leaf.index());
     let [a, b, c] = triangle.vertices();
     let from = |p| V3::splat(p) - ray.origin;
-    let crossing = cross(from(a), from(b), from(c), ray.shear, ray.shear.cycle(ray.inverse).z);
+    let along = ray.shear.cycle(ray.inverse).z;
+    let crossing = crossed::<R, R>(geometry.features, from(a), from(b), from(c), ray.shear, along);
     if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
@@ -125,7 +126,8 @@ pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
     let (a, b, c) = (F::vectors(&a), F::vectors(&b), F::vectors(&c));
     let origin = V3::<F>::new(F::all(ray.origin.x), F::all(ray.origin.y), F::all(ray.origin.z));
     let along = F::all(ray.shear.cycle(ray.inverse).z);
-    let crossing = cross(a - origin, b - origin, c - origin, ray.shear.spread(), along);
+    let (a, b, c) = (a - origin, b - origin, c - origin);
+    let crossing = crossed::<R, F>(geometry.features, a, b, c, ray.shear.spread(), along);
     let mut inside = F::bits(crossing.inside);
     while inside != 0 {
         let lane = inside.trailing_zeros() as usize;
@@ -136,6 +138,23 @@ pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
         }
     }
     rest
+}
+
+/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice.
+#[inline(always)]
+fn crossed<R: Real, F: Real>(
+    features: Features,
+    a: V3<F>,
+    b: V3<F>,
+    c: V3<F>,
+    shear: Shear<F>,
+    along: F,
+) -> Crossing<F> {
+    if R::CHOOSES && features.has(Features::MOLLER) {
+        moller(a, b, c, shear, along)
+    } else {
+        cross(a, b, c, shear, along)
+    }
 }
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.

@@ -14,7 +14,7 @@ mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
 mod fast;
-mod power;
+pub mod power;
 mod single;
 pub mod soft;
 mod vector;

@@ -6,4 +6,4 @@ mod triangle;
 
 pub use moller::moller;
 pub use slab::{Span, slab, span};
-pub use triangle::{Crossing, cross};
+pub use triangle::{Crossing, cross, sheared};

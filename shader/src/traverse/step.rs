@@ -45,8 +45,9 @@ pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Want
 
 // Functions, since closures are not always inlined, and what is not inlined is not compiled for the
 // processor's vectors.
+/// Where a ray is inside a box given by centre and half its extent, see [`children`].
 #[inline(always)]
-fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>) -> Span<R> {
+pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>) -> Span<R> {
     let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
     let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
     span(half.fused(-reach, middle), half.fused(reach, middle))

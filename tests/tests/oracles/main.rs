@@ -1,0 +1,6 @@
+//! What the kernels compute against what they should: exact arithmetic, intervals, other devices.
+//!
+//! `EYERAYS_BATTERY=full` takes all samples; `--nocapture` prints the counts of docs/numerics.md.
+
+mod corpus;
+mod hits;

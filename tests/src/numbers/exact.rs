@@ -1,5 +1,7 @@
 //! A ray against a triangle without any rounding.
 
+use std::cmp::Ordering;
+
 use eyerays_shader::real::Real;
 use glam::{DVec3, Vec3};
 use num_bigint::BigInt;
@@ -71,6 +73,13 @@ pub fn crossing(triangle: [Vec3; 3], origin: Vec3, direction: Vec3) -> Option<Cr
     Some(Crossing { t, weights: [u, v], meets })
 }
 
+/// On which side of a triangle's plane a point lies: greater where the corners run counter-clockwise.
+pub fn side(triangle: [Vec3; 3], point: Vec3) -> Ordering {
+    let [a, b, c] = triangle.map(vector);
+    let normal = cross(&minus(&b, &a), &minus(&c, &a));
+    dot(&normal, &minus(&vector(point), &a)).cmp(&BigInt::zero())
+}
+
 /// A rational, rounded to the nearest double.
 pub fn nearest(x: &BigRational) -> f64 {
     x.to_f64().expect("a rational has a nearest double")
@@ -119,7 +128,7 @@ impl Sheared {
             return 0.0;
         }
         let [a, b, c] = self.vertices.map(DVec3::truncate);
-        let edge = |p: glam::DVec2, q: glam::DVec2| -(q - p).perp_dot(p) * -area.signum() / (q - p).length();
+        let edge = |p: glam::DVec2, q: glam::DVec2| -(q - p).perp_dot(p) * area.signum() / (q - p).length();
         edge(a, b).min(edge(b, c)).min(edge(c, a))
     }
 

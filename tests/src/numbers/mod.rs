@@ -2,9 +2,11 @@
 
 pub mod exact;
 mod interval;
+mod picture;
 mod watched;
 
 pub use interval::Interval;
+pub use picture::picture;
 pub use watched::{Counting, Flushing, Watch, Watched, subnormals};
 
 /// How many samples a test takes: `sampled`, or `full` if `EYERAYS_BATTERY` is `full`.

@@ -2,5 +2,10 @@
 //!
 //! `EYERAYS_BATTERY=full` takes all samples; `--nocapture` prints the counts of docs/numerics.md.
 
+mod bounds;
 mod corpus;
+mod extremes;
+mod functions;
 mod hits;
+mod moller;
+mod subnormals;

@@ -105,6 +105,16 @@ pub enum Layout {
     Compact,
 }
 
+/// How a ray is tested against a triangle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
+pub enum TriangleTest {
+    /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
+    #[default]
+    Watertight,
+    /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
+    Moller,
+}
+
 /// A method and its switches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 pub struct Traversal {
@@ -118,6 +128,8 @@ pub struct Traversal {
     pub order: Order,
     /// How the hierarchy and its triangles lie in memory.
     pub layout: Layout,
+    /// How a ray is tested against a triangle; in exact and reference precision always the watertight way.
+    pub triangle: TriangleTest,
 }
 
 impl From<Method> for Traversal {
@@ -161,7 +173,11 @@ impl Traversal {
             Layout::Indexed => Features::INDEXED,
             Layout::Compact => Features::COMPACT,
         };
-        Features(order | layout)
+        let triangle = match self.triangle {
+            TriangleTest::Watertight => 0,
+            TriangleTest::Moller => Features::MOLLER,
+        };
+        Features(order | layout | triangle)
     }
 
     /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for: the fastest of

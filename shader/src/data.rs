@@ -526,6 +526,8 @@ impl Features {
     pub const MORTON: u32 = 1 << 14;
     /// Pairs of nodes are [`CompactPair`]s.
     pub const COMPACT: u32 = 1 << 15;
+    /// Triangles are met by the test of Moeller and Trumbore, where [`Real::CHOOSES`].
+    pub const MOLLER: u32 = 1 << 16;
 
     /// Is the effect asked for?
     #[inline(always)]

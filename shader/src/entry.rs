@@ -6,6 +6,7 @@
 use crate::buffer::{read, write};
 use crate::data::{Bounds, Features, Frame, Light, Material, Normals, Tuning, WideNode};
 use crate::launch::{ROW, WORKGROUP, counter};
+use crate::numerics;
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Asking, Wave};
@@ -256,6 +257,18 @@ macro_rules! persistent_entries {
             );
         }
     };
+}
+
+/// Evaluates functions of exact arithmetic for tests, one a thread.
+#[spirv(compute(threads(64)))]
+pub fn numerics_evaluate(
+    #[spirv(global_invocation_id)] id: UVec3,
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] operations: &[UVec4],
+    #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] values: &mut [u32],
+) {
+    if id.x < values.len() as u32 {
+        write(values, id.x, numerics::evaluate(read(operations, id.x)));
+    }
 }
 
 shading_entries!(f32, exact_shade, exact_advance);

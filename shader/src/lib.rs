@@ -10,6 +10,7 @@ pub mod intersect;
 pub mod launch;
 #[cfg(not(target_arch = "spirv"))]
 pub mod modules;
+pub mod numerics;
 pub mod ray;
 pub mod real;
 pub mod scene;

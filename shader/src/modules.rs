@@ -8,3 +8,5 @@ pub const FAST: &[u8] = include_bytes!("../spirv/fast.spv");
 pub const EXACT_SUBGROUP: &[u8] = include_bytes!("../spirv/exact_subgroup.spv");
 /// As [`FAST`], methods that vote across a subgroup, entries `subgroup_fast_*`.
 pub const FAST_SUBGROUP: &[u8] = include_bytes!("../spirv/fast_subgroup.spv");
+/// The entry `numerics_evaluate`: what exact arithmetic is built from, see [`crate::numerics`].
+pub const NUMERICS: &[u8] = include_bytes!("../spirv/numerics.spv");

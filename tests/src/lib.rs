@@ -1,6 +1,7 @@
 //! What the whole-program tests share: the shipped scenes, the GPU at hand, and films side by side.
 
 pub mod model;
+pub mod numbers;
 
 use std::path::PathBuf;
 

@@ -13,7 +13,7 @@ pub fn csv(report: &Report) -> String {
 }
 
 /// The fields of [`Record`].
-const NAMES: [&str; 29] = [
+const NAMES: [&str; 30] = [
     "scene",
     "view",
     "kind",
@@ -22,6 +22,7 @@ const NAMES: [&str; 29] = [
     "scheduling",
     "order",
     "layout",
+    "triangle",
     "bvh",
     "stack_max",
     "cut",
@@ -45,7 +46,7 @@ const NAMES: [&str; 29] = [
     "differing",
 ];
 
-fn values(r: &Record) -> [String; 29] {
+fn values(r: &Record) -> [String; 30] {
     let number = |x: Option<f64>| x.map_or_else(String::new, |x| x.to_string());
     [
         r.scene.clone(),
@@ -56,6 +57,7 @@ fn values(r: &Record) -> [String; 29] {
         r.scheduling.clone().unwrap_or_default(),
         r.order.clone(),
         r.layout.clone(),
+        r.triangle.clone(),
         r.bvh.clone(),
         r.stack_max.to_string(),
         r.cut.to_string(),

@@ -231,5 +231,6 @@ fn counted(record: &Record) -> String {
     let mut label = vec![record.method.as_str()];
     label.extend([record.order.as_str()].iter().filter(|order| **order != "tiled"));
     label.extend([record.layout.as_str()].iter().filter(|layout| **layout != "gathered"));
+    label.extend([record.triangle.as_str()].iter().filter(|test| **test != "watertight"));
     label.join(", ")
 }

@@ -7,7 +7,7 @@ use eyerays_shader::data::Tuning;
 
 use super::Kind;
 use crate::gpu::Gpu;
-use crate::method::{Coherence, Layout, Method, Order, Processor, Scheduling, Traversal};
+use crate::method::{Coherence, Layout, Method, Order, Processor, Scheduling, Traversal, TriangleTest};
 use crate::pack::Packed;
 use crate::scene::{Camera, Scene};
 
@@ -23,6 +23,8 @@ pub struct Plan {
     pub orders: Vec<Order>,
     /// Layouts of triangles.
     pub layouts: Vec<Layout>,
+    /// Triangle tests of fast precision; exact precision has one.
+    pub triangles: Vec<TriangleTest>,
     /// When a hybrid's packet parts.
     pub tuning: Tuning,
     /// Does a GPU trace in exact precision?
@@ -72,24 +74,32 @@ impl Plan {
     pub(super) fn trials(&self, packed: &Packed, kind: Kind, order: Order, note: &mut dyn FnMut(String)) -> Vec<Trial> {
         let mut trials: Vec<Trial> = Vec::new();
         for (processor, exact) in self.processors() {
-            for &layout in &self.layouts {
-                for &method in &self.methods {
-                    for &scheduling in &self.schedulings {
-                        let wanted = Traversal { method, tuning: self.tuning, scheduling, order, layout };
-                        match self.resolved(packed, processor, wanted, kind.coherence()) {
-                            Err(why) => note(why),
-                            Ok((traversal, is_auto)) => {
-                                let trial = Trial { processor, exact, traversal, is_auto };
-                                if !trials.contains(&trial) {
-                                    trials.push(trial);
-                                }
-                            }
+            for wanted in self.wishes(exact, order) {
+                match self.resolved(packed, processor, wanted, kind.coherence()) {
+                    Err(why) => note(why),
+                    Ok((traversal, is_auto)) => {
+                        let trial = Trial { processor, exact, traversal, is_auto };
+                        if !trials.contains(&trial) {
+                            trials.push(trial);
                         }
                     }
                 }
             }
         }
         trials
+    }
+
+    /// Every combination of switches, as they were asked for.
+    fn wishes(&self, exact: bool, order: Order) -> Vec<Traversal> {
+        let tests = if exact { &[TriangleTest::Watertight][..] } else { &self.triangles };
+        let mut wishes = Vec::new();
+        for (&triangle, &layout) in tests.iter().flat_map(|test| self.layouts.iter().map(move |l| (test, l))) {
+            for &method in &self.methods {
+                let wish = |&scheduling| Traversal { method, tuning: self.tuning, scheduling, order, layout, triangle };
+                wishes.extend(self.schedulings.iter().map(wish));
+            }
+        }
+        wishes
     }
 
     fn processors(&self) -> Vec<(Processor, bool)> {

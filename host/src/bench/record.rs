@@ -23,6 +23,8 @@ pub struct Record {
     pub order: String,
     /// How the hierarchy and its triangles lay in memory.
     pub layout: String,
+    /// How a ray was tested against a triangle.
+    pub triangle: String,
     /// The quality of the hierarchy.
     pub bvh: String,
     /// Nodes that wait when a packet of the stack methods parts.

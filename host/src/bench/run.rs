@@ -208,6 +208,7 @@ impl<'a> Bench<'a> {
             scheduling: (trial.processor == Processor::Gpu).then(|| name(traversal.scheduling)),
             order: name(traversal.order),
             layout: name(traversal.layout),
+            triangle: name(traversal.triangle),
             bvh: self.plan.bvh(),
             stack_max: traversal.tuning.stack_max(),
             cut: traversal.tuning.cut(),
@@ -233,8 +234,8 @@ impl<'a> Bench<'a> {
     }
 
     fn describe(&self, trial: &Trial, asked: &Asked<'_>) -> String {
-        let Traversal { method, scheduling, order, layout, .. } = trial.traversal;
-        let how = [name(method), name(scheduling), name(order), name(layout)].join(" ");
+        let Traversal { method, scheduling, order, layout, triangle, .. } = trial.traversal;
+        let how = [name(method), name(scheduling), name(order), name(layout), name(triangle)].join(" ");
         let precision = if trial.exact { "exact" } else { "fast" };
         let (place, kind) = (format!("{} {}", self.subject.name, asked.camera.name), asked.kind.name());
         format!("{place} {kind}: {how} in {precision} precision on {}", self.plan.device(trial.processor).0)
@@ -285,7 +286,7 @@ mod tests {
         bench.keep(&trial, &asked, Ok(wrong), &mut report);
         bench.keep(&trial, &asked, Err(Error::new("the device was lost")), &mut report);
         assert_eq!((report.faults.len(), report.records.len()), (2, 2));
-        let start = "box front ao: packet grid tiled gathered in exact precision on ";
+        let start = "box front ao: packet grid tiled gathered watertight in exact precision on ";
         assert!(report.faults.iter().all(|fault| fault.starts_with(start)), "{:?}", report.faults);
         assert!(report.faults[0].ends_with(&format!(": ray 77 of {} differs first", stream.len())));
         assert!(report.faults[1].ends_with(": the device was lost"));

@@ -10,7 +10,7 @@ use glam::Vec3;
 use super::answers::Hash;
 use super::rays::{AO_RAYS, Sight, View, diagonal};
 use super::*;
-use crate::method::{Layout, Method, Order, Scheduling};
+use crate::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use crate::pack::Packed;
 use crate::scene::{self, Scene, Settings};
 use crate::stream::{Stream, StreamRay};
@@ -133,6 +133,7 @@ pub(super) fn plan() -> Plan {
         schedulings: vec![Scheduling::Auto],
         orders: vec![Order::Tiled, Order::Morton],
         layouts: vec![Layout::Gathered, Layout::Indexed, Layout::Compact],
+        triangles: vec![TriangleTest::Watertight],
         tuning: Tuning::default(),
         exact: true,
         fast: false,
@@ -214,6 +215,7 @@ fn report() -> Report {
         scheduling: Some("grid".to_owned()),
         order: "tiled".to_owned(),
         layout: "indexed".to_owned(),
+        triangle: "watertight".to_owned(),
         bvh: "medium".to_owned(),
         stack_max: 8,
         cut: 25,
@@ -274,7 +276,7 @@ fn a_line_of_csv_has_the_fields_of_a_record() {
     let json = serde_json::to_value(&report.records[0]).unwrap();
     let fields: BTreeSet<&str> = json.as_object().unwrap().keys().map(String::as_str).collect();
     assert_eq!(lines[0].split(',').collect::<BTreeSet<_>>(), fields);
-    let start = "a|b,one,primary,packet,true,grid,tiled,indexed,medium,8,25,gpu,\"A, \"\"GPU\"\"\",1.0,fast,1000,1000,1000000,3,";
+    let start = "a|b,one,primary,packet,true,grid,tiled,indexed,watertight,medium,8,25,gpu,\"A, \"\"GPU\"\"\",1.0,fast,1000,1000,1000000,3,";
     assert!(lines[1].starts_with(start), "{text}");
     assert!(lines[3].ends_with(",12.5,25,3,,0123456789abcdef,0.000002"), "{text}");
 }

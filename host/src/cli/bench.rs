@@ -13,7 +13,7 @@ use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Want};
-use crate::method::{Layout, Method, Order, Scheduling};
+use crate::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use crate::output::{self, Destination, write_error};
 use crate::scene::{self, Camera, Scene};
 
@@ -88,6 +88,9 @@ struct Ways {
     /// How the hierarchy and its triangles lie in memory
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Layout::Gathered])]
     layout: Vec<Layout>,
+    /// How a ray is tested against a triangle; moller in fast precision only
+    #[arg(long, value_name = "TEST", value_enum, value_delimiter = ',', default_values_t = [TriangleTest::Watertight])]
+    triangle: Vec<TriangleTest>,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
     stack_max: u32,
@@ -199,6 +202,7 @@ impl Bench {
             return Err(Error::new("--ao-length is no finite number above 0"));
         }
         let (ways, on) = (&self.ways, &self.on);
+        options::check_tests(&ways.triangle, on.precision.contains(&Precision::Fast))?;
         let mut kinds = self.rays.kinds.clone();
         kinds.sort_unstable();
         kinds.dedup();
@@ -208,6 +212,7 @@ impl Bench {
             schedulings: ways.scheduling.clone(),
             orders: unique(&ways.order),
             layouts: unique(&ways.layout),
+            triangles: unique(&ways.triangle),
             tuning: options::tuning(ways.stack_max, ways.cut)?,
             exact: on.precision.contains(&Precision::Exact),
             fast: on.precision.contains(&Precision::Fast),

@@ -30,8 +30,9 @@ pub(super) struct Diff {
     first: PathBuf,
     /// The picture to compare with
     #[arg(conflicts_with_all = [
-        "precision", "method", "stack_max", "cut", "adapter", "threads", "no_passthrough", "size", "samples", "camera",
-        "eye", "target", "fov", "bounces", "min_contribution", "cull", "bvh",
+        "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
+        "no_passthrough", "size", "samples", "camera", "eye", "target", "fov", "bounces", "min_contribution", "cull",
+        "bvh",
     ])]
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)

@@ -10,7 +10,7 @@ use glam::Vec3;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::method::{Layout, Method, Order, Scheduling, Traversal};
+use crate::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use crate::pack::Packed;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
@@ -79,6 +79,9 @@ pub(super) struct On {
     /// How the hierarchy and its triangles lie in memory
     #[arg(long, value_enum, default_value_t = Layout::Gathered)]
     pub layout: Layout,
+    /// How a ray is tested against a triangle; moller in fast precision only
+    #[arg(long, value_name = "TEST", value_enum, default_value_t = TriangleTest::Watertight)]
+    pub triangle: TriangleTest,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -186,12 +189,14 @@ impl On {
         if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
+        check_tests(&[self.triangle], self.precision == Precision::Fast)?;
         let traversal = Traversal {
             method: self.method,
             tuning: tuning(self.stack_max, self.cut)?,
             scheduling: self.scheduling,
             order: self.order,
             layout: self.layout,
+            triangle: self.triangle,
         };
         let (precision, adapter) = (self.precision, self.adapter.clone());
         Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
@@ -205,6 +210,14 @@ pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
         Some(threads) if (1..=MOST_THREADS).contains(&threads) => Ok(threads),
         Some(threads) => Err(Error::new(format!("--threads {threads} is not within 1 to {MOST_THREADS}"))),
     }
+}
+
+/// `--triangle`.
+pub(super) fn check_tests(tests: &[TriangleTest], fast: bool) -> Result<()> {
+    if tests.contains(&TriangleTest::Moller) && !fast {
+        return Err(Error::new("--triangle moller is for fast precision: add --precision fast, or drop it"));
+    }
+    Ok(())
 }
 
 /// `--stack-max` and `--cut`.

@@ -6,6 +6,7 @@ mod cast;
 mod device;
 mod kernel;
 mod module;
+pub mod numerics;
 mod readback;
 mod render;
 mod scene;

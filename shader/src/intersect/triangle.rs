@@ -65,9 +65,10 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
     Crossing { inside: around & ahead, front, depth, u: wb, v: wc, area }
 }
 
-/// A vertex in the plane across the ray. What is below 2^-40 is zero, so that no product underflows.
+/// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray. What is below 2^-40 is
+/// zero, so that no product underflows.
 #[inline(always)]
-fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
+pub fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
     ((p.x - shear.x * p.z).settle(SMALL), (p.y - shear.y * p.z).settle(SMALL))
 }
 

@@ -1,6 +1,6 @@
 //! `f64`: the reference that errors are measured against, from the same kernels.
 
-use super::{Real, Scalar, V3};
+use super::{Real, Scalar, TINY, V3};
 use crate::ray::{Hit, Ray};
 
 impl Real for f64 {
@@ -44,6 +44,10 @@ impl Real for f64 {
     }
     fn select_index(mask: bool, a: u32, b: u32) -> u32 {
         if mask { a } else { b }
+    }
+    /// Products of numbers of 2^-60 are far from subnormal, so nothing above that has to be zero.
+    fn flush(self, least: f32) -> f64 {
+        if f64::abs(self) < f64::from(least.min(TINY)) { 0.0 } else { self }
     }
     fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
         if mask {

@@ -46,6 +46,7 @@ impl Real for Fast {
     type Index = u32;
     type Lane = Fast;
     const ROUNDOFF: Fast = Fast(<f32 as Real>::ROUNDOFF);
+    const CHOOSES: bool = true;
 
     comparisons!(Fast, inner);
 

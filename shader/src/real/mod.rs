@@ -14,7 +14,8 @@ mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
 mod fast;
-mod power;
+pub mod lane;
+pub mod power;
 mod single;
 pub mod soft;
 mod vector;
@@ -28,7 +29,8 @@ pub use vector::V3;
 #[cfg(not(target_arch = "spirv"))]
 pub use wide::{Wide, WideIndex, WideMask};
 
-use crate::data::numbers;
+#[cfg(doc)]
+use crate::data::Features;
 use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 use glam::UVec4;
@@ -67,6 +69,9 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
 
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
+
+    /// May a launch choose how triangles are met ([`Features::MOLLER`])? Other numbers know the watertight test alone.
+    const CHOOSES: bool = false;
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;
@@ -286,103 +291,6 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     /// Neither NaN nor infinite?
     fn is_finite(self) -> bool;
 }
-
-/// A single number is a lane.
-macro_rules! one_lane {
-    ($type:ty) => {
-        impl Lanes<$type> for $type {
-            const COUNT: u32 = 1;
-
-            #[inline(always)]
-            fn all(x: $type) -> Self {
-                x
-            }
-            #[inline(always)]
-            fn of(number: impl Fn(usize) -> $type) -> Self {
-                number(0)
-            }
-            #[inline(always)]
-            fn indices(index: impl Fn(usize) -> u32) -> u32 {
-                index(0)
-            }
-            #[inline(always)]
-            fn lane(&self, _: usize) -> $type {
-                *self
-            }
-            #[inline(always)]
-            fn index_of(index: u32, _: usize) -> u32 {
-                index
-            }
-            #[inline(always)]
-            fn vectors(records: &[UVec4]) -> V3<$type> {
-                V3::splat(numbers(records[0]))
-            }
-            #[inline(always)]
-            fn bits(mask: bool) -> u32 {
-                mask as u32
-            }
-            #[inline(always)]
-            fn every(holds: bool) -> bool {
-                holds
-            }
-        }
-    };
-}
-one_lane!(f32);
-one_lane!(Fast);
-#[cfg(not(target_arch = "spirv"))]
-one_lane!(f64);
-
-/// Byte `i` of two words.
-#[inline(always)]
-fn byte(words: [u32; 2], i: u32) -> u32 {
-    let word = if i < 4 { words[0] } else { words[1] };
-    (word >> (8 * (i & 3))) & 255
-}
-
-/// The places of four children, of all at once (Ylitie et al. 2017, appendix).
-#[inline(always)]
-fn places(children: u32, inverted: u32) -> u32 {
-    // Bits 3 and 4 are set from 24 on.
-    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
-    (children ^ ((inverted * 0x0101_0101) & is_inner)) & 0x1f1f_1f1f
-}
-
-/// One box at a time.
-macro_rules! octet_of_one {
-    ($type:ty) => {
-        impl Octet<$type> for $type {
-            #[inline(always)]
-            fn bytes(words: [u32; 2], first: u32) -> Self {
-                Self::splat(byte(words, first) as f32)
-            }
-            type Kept = ();
-            #[inline(always)]
-            fn keep(self) {}
-            #[inline(always)]
-            fn kept(_: &(), _: u32) -> $type {
-                Self::splat(f32::MIN)
-            }
-            type Children = ([u32; 2], [u32; 2]);
-            #[inline(always)]
-            fn children(words: [u32; 2], inverted: u32) -> Self::Children {
-                let bits = [(words[0] >> 5) & 0x0707_0707, (words[1] >> 5) & 0x0707_0707];
-                (bits, [places(words[0], inverted), places(words[1], inverted)])
-            }
-            #[inline(always)]
-            fn waiting(met: bool, (bits, places): &Self::Children, first: u32) -> u32 {
-                if met { byte(*bits, first) << byte(*places, first) } else { 0 }
-            }
-        }
-    };
-}
-
-#[cfg(target_arch = "spirv")]
-octet_of_one!(f32);
-#[cfg(target_arch = "spirv")]
-octet_of_one!(Fast);
-#[cfg(not(target_arch = "spirv"))]
-octet_of_one!(f64);
 
 /// Products of two numbers of at least this magnitude, and sums of such products, are normal.
 pub const SMALL: f32 = 1.0 / (1u64 << 40) as f32;

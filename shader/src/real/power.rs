@@ -24,7 +24,7 @@ const EXP: [f32; 7] =
 
 /// Base-2 logarithm of a positive normal number, within 4e-7 absolutely and, near 1, relatively.
 #[inline(always)]
-fn log2(x: f32) -> f32 {
+pub fn log2(x: f32) -> f32 {
     let bits = x.to_bits().wrapping_sub(SQRT_HALF);
     let exponent = (bits as i32) >> 23;
     let mantissa = f32::from_bits((bits & 0x007f_ffff).wrapping_add(SQRT_HALF));
@@ -40,7 +40,7 @@ fn log2(x: f32) -> f32 {
 
 /// 2 to the power of `x` in [-100, 100], within 2e-7 relatively.
 #[inline(always)]
-fn exp2(x: f32) -> f32 {
+pub fn exp2(x: f32) -> f32 {
     // Adding and taking away 1.5 * 2^23 rounds to a whole number.
     let whole = (x + 12_582_912.0) - 12_582_912.0;
     let f = x - whole;

@@ -3,8 +3,8 @@
 use super::Query;
 use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
-use crate::intersect::{Crossing, Span, cross, slab};
-use crate::ray::{Hit, Ray};
+use crate::intersect::{Crossing, Span, cross, moller, slab};
+use crate::ray::{Hit, Ray, Shear};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
@@ -38,16 +38,17 @@ pub struct Wanted<R: Real> {
 /// [`CentredPair::MARGIN`] together, so that a box is met, and entered no later, wherever an own box in it is.
 #[inline(always)]
 pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
-    let left = share(pair.left_centre, pair.left_half, ray, hit.t);
-    let right = share(pair.right_centre, pair.right_half, ray, hit.t);
+    let left = inside(pair.left_centre, pair.left_half, ray, hit.t);
+    let right = inside(pair.right_centre, pair.right_half, ray, hit.t);
     Wanted { left: left.near.le(left.far), right: right.near.le(right.far), right_first: right.near.lt(left.near) }
 }
 
-/// Where a ray is inside a box before its limit. Its far end is right where it is not negative.
+/// Where a ray is inside a box given by centre and half its extent, before its limit; see [`children`]. The far end is
+/// right where it is not negative.
 // A function, since closures are not always inlined, and what is not inlined is not compiled for the
 // processor's vectors.
 #[inline(always)]
-fn share<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Span<R> {
+pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Span<R> {
     let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
     let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
     Span { near: R::latest(half.fused(-reach, middle)), far: R::earliest(half.fused(reach, middle), limit) }
@@ -85,7 +86,8 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     let triangle = geometry.triangle(leaf.index());
     let [a, b, c] = triangle.vertices();
     let from = |p| V3::splat(p) - ray.origin;
-    let crossing = cross(from(a), from(b), from(c), ray.shear, ray.shear.cycle(ray.inverse).z);
+    let along = ray.shear.cycle(ray.inverse).z;
+    let crossing = crossed::<R, R>(geometry.features, from(a), from(b), from(c), ray.shear, along);
     if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
@@ -121,7 +123,8 @@ pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
     let (a, b, c) = (F::vectors(&a), F::vectors(&b), F::vectors(&c));
     let origin = V3::<F>::new(F::all(ray.origin.x), F::all(ray.origin.y), F::all(ray.origin.z));
     let along = F::all(ray.shear.cycle(ray.inverse).z);
-    let crossing = cross(a - origin, b - origin, c - origin, ray.shear.spread(), along);
+    let (a, b, c) = (a - origin, b - origin, c - origin);
+    let crossing = crossed::<R, F>(geometry.features, a, b, c, ray.shear.spread(), along);
     let mut inside = F::bits(crossing.inside);
     while inside != 0 {
         let lane = inside.trailing_zeros() as usize;
@@ -132,6 +135,23 @@ pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
         }
     }
     rest
+}
+
+/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice.
+#[inline(always)]
+fn crossed<R: Real, F: Real>(
+    features: Features,
+    a: V3<F>,
+    b: V3<F>,
+    c: V3<F>,
+    shear: Shear<F>,
+    along: F,
+) -> Crossing<F> {
+    if R::CHOOSES && features.has(Features::MOLLER) {
+        moller(a, b, c, shear, along)
+    } else {
+        cross(a, b, c, shear, along)
+    }
 }
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.

@@ -1,0 +1,57 @@
+//! No subnormal number is used but where it is flushed, so that a device which flushes all gives the same picture.
+
+use eyerays::method::Traversal;
+use eyerays::pack::{Laid, Packed};
+use eyerays::stream::Stream;
+use eyerays_shader::real::{Scalar, V3};
+use eyerays_shader::stage;
+use eyerays_shader::traverse::{self, IfIf, WideNodes};
+use eyerays_tests::numbers::{Counting, Flushing, picture, samples, subnormals};
+use eyerays_tests::{SHIPPED, pack, settings, shipped};
+use glam::UVec4;
+
+use super::corpus::{Case, cases};
+
+/// The bits of a picture.
+fn bits<R: Scalar>(packed: &Packed) -> Vec<[u32; 3]> {
+    let pixel = |p: V3<R>| [p.x, p.y, p.z].map(|channel| channel.to_f32().to_bits());
+    picture::<R>(packed).into_iter().map(pixel).collect()
+}
+
+/// The bits of (t, u, v) and the primitive of each ray.
+fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<UVec4> {
+    let stream = Stream::new(case.rays.iter().copied());
+    let (laid, frame) = (Laid::new(&case.packed, Traversal::default()), case.packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    // Parts of a split triangle are hit alike, so the slot is no part of the answer.
+    let primitive = |slot: u32| case.packed.triangles.get(slot as usize).map_or(slot, |t| t.primitive());
+    let hit = |slot| stage::trace::<R, M>(&geometry, slot, stream.words());
+    (0..stream.len() as u32).map(hit).map(|hit| UVec4 { w: primitive(hit.w), ..hit }).collect()
+}
+
+/// One test for pictures and streams, since the counts are of the whole process.
+#[test]
+fn none_is_used_over_scenes_and_rays() {
+    let edge = samples(64, 512) as u32;
+    let (mut pixels, mut rays) = (0, 0);
+    for name in SHIPPED {
+        let scene = shipped(name);
+        for camera in &scene.cameras {
+            let packed = pack(&scene, camera, settings(&scene, (edge, edge * 3 / 4), 1));
+            let alone = bits::<f32>(&packed);
+            assert!(bits::<Counting>(&packed) == alone, "{name}, camera {}", camera.name);
+            assert!(bits::<Flushing>(&packed) == alone, "{name}, camera {}, on a device that flushes", camera.name);
+            pixels += alone.len();
+        }
+    }
+    for case in cases(samples(10_000, 1_000_000)) {
+        let alone = hits::<f32, IfIf>(&case);
+        assert!(hits::<Counting, IfIf>(&case) == alone, "{}", case.name);
+        assert!(hits::<Counting, WideNodes>(&case) == alone, "{}", case.name);
+        assert!(hits::<Flushing, IfIf>(&case) == alone, "{}, on a device that flushes", case.name);
+        rays += alone.len();
+    }
+    let found = subnormals();
+    println!("{} subnormal operands in {pixels} pixels and {rays} rays", found.values().sum::<u64>());
+    assert!(found.is_empty(), "subnormal operands, by place in the kernels: {found:#?}");
+}

@@ -1,0 +1,41 @@
+//! Every record that lives in device memory, once, for the host and for the kernels.
+//!
+//! A record is made of 16-byte words of three numbers and an integer. Numbers travel as their bits,
+//! so that an index never passes through a float register (a small integer is a subnormal float,
+//! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
+//! a power of two so that every coordinate, cameras included, lies in [-1, 1].
+
+mod compact;
+mod launch;
+mod look;
+mod node;
+mod triangle;
+mod wide;
+
+pub use compact::CompactPair;
+pub use launch::{Features, Frame, Tuning};
+pub use look::{Light, Material, Normals};
+pub use node::{CentredPair, NodePair, NodeRef};
+pub use triangle::{Bounds, Triangle};
+pub use wide::WideNode;
+
+use glam::{UVec4, Vec3};
+
+/// Three numbers and an integer in the 16 bytes that a GPU loads at once.
+#[inline(always)]
+pub fn pack(v: Vec3, word: u32) -> UVec4 {
+    UVec4::new(v.x.to_bits(), v.y.to_bits(), v.z.to_bits(), word)
+}
+
+/// The three numbers of a packed word.
+#[inline(always)]
+pub fn numbers(q: UVec4) -> Vec3 {
+    Vec3::new(f32::from_bits(q.x), f32::from_bits(q.y), f32::from_bits(q.z))
+}
+
+/// The most triangles a leaf holds (thesis chapter 6: "less than six").
+pub const MAX_LEAF: u32 = 5;
+/// Entries of a traversal stack; `eyerays-bvh` builds no tree that needs more.
+pub const STACK: usize = 64;
+/// Half a box's padding in the normalised scene; see `intersect::triangle` for the bound it covers.
+pub const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;

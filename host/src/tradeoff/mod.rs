@@ -17,6 +17,9 @@ mod search;
 mod setting;
 mod table;
 
+#[cfg(test)]
+mod tests;
+
 pub use axes::{Axes, Axis};
 pub use csv::csv;
 pub use front::front;

@@ -91,7 +91,7 @@ fn drawn(report: &Report, wish: Option<Wish>, scales: &Scales, svg: &mut String)
     }
     chart
         .configure_series_labels()
-        .position(SeriesLabelPosition::UpperRight)
+        .position(free_corner(scales, &report.records))
         .background_style(WHITE.mix(0.85))
         .border_style(GREY)
         .label_font(("sans-serif", 15))
@@ -145,11 +145,30 @@ fn points(chart: &mut Chart<'_, '_>, scales: &Scales, records: &[Record]) -> Dra
     Ok(())
 }
 
+/// Where a legend hides the fewest records.
+fn free_corner(scales: &Scales, records: &[Record]) -> SeriesLabelPosition {
+    let places = || {
+        let finite = records.iter().filter(|record| record.rmse.is_finite());
+        finite
+            .map(|record| scales.place(record))
+            .map(|(time, error)| (scales.time.along(time), scales.error.along(error)))
+    };
+    let corners = [
+        (SeriesLabelPosition::UpperRight, (1.0, 1.0)),
+        (SeriesLabelPosition::LowerLeft, (0.0, 0.0)),
+        (SeriesLabelPosition::LowerRight, (1.0, 0.0)),
+        (SeriesLabelPosition::UpperLeft, (0.0, 1.0)),
+    ];
+    let hidden = |(x, y): (f64, f64)| places().filter(|p| (p.0 - x).abs() < 0.42 && (p.1 - y).abs() < 0.3).count();
+    let best = corners.into_iter().min_by_key(|(_, corner)| hidden(*corner));
+    best.map_or(SeriesLabelPosition::UpperRight, |(position, _)| position)
+}
+
 /// The members' numbers beside them.
 fn numbers(chart: &mut Chart<'_, '_>, scales: &Scales, members: &[&Record]) -> Drawn {
     let style = ("sans-serif", 14).into_font().color(&BLACK).pos(Pos::new(HPos::Right, VPos::Top));
     let number = |(i, record): (usize, &&Record)| {
-        EmptyElement::at(scales.place(record)) + Text::new((i + 1).to_string(), (-5, 4), style.clone())
+        EmptyElement::at(scales.place(record)) + Text::new((i + 1).to_string(), (-8, 6), style.clone())
     };
     chart.draw_series(members.iter().enumerate().map(number))?;
     Ok(())

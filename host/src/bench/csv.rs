@@ -83,7 +83,7 @@ fn values(r: &Record) -> [String; 30] {
 }
 
 /// In quotes if it must be.
-fn quoted(value: &str) -> String {
+pub(crate) fn quoted(value: &str) -> String {
     if value.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", value.replace('"', "\"\""))
     } else {

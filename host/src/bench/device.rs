@@ -20,13 +20,13 @@ pub(super) struct Run {
 }
 
 /// A scene on a GPU, in each layout that is measured.
-pub(super) struct OnGpu<'a> {
+pub(crate) struct OnGpu<'a> {
     gpu: &'a Gpu,
     casters: Vec<(Layout, Caster<'a>)>,
 }
 
 /// A stream on a GPU, in parts if its buffers are too small for all of it.
-pub(super) struct Uploaded(Vec<(Layout, Vec<Cast>)>);
+pub(crate) struct Uploaded(Vec<(Layout, Vec<Cast>)>);
 
 impl<'a> OnGpu<'a> {
     pub fn new(gpu: &'a Gpu, packed: &'a Packed, layouts: &[Layout]) -> Result<Self> {
@@ -49,17 +49,28 @@ impl<'a> OnGpu<'a> {
     }
 
     /// Traces a stream `repeat` times once the GPU is warm.
-    pub fn run(&self, on: &Uploaded, exact: bool, how: Traversal, ask: Question, repeat: u32) -> Result<Run> {
-        let of = |(layout, _): &&(Layout, _)| *layout == how.layout;
-        let (_, caster) = self.casters.iter().find(of).ok_or_else(|| Error::new("a layout is not on the GPU"))?;
-        let casts = &on.0.iter().find(|(layout, _)| *layout == how.layout).expect("uploaded in each layout").1;
+    pub(super) fn run(&self, on: &Uploaded, exact: bool, how: Traversal, ask: Question, repeat: u32) -> Result<Run> {
+        let (caster, casts) = self.laid(on, how.layout)?;
         let mut times = vec![Duration::ZERO; repeat as usize];
         for cast in casts {
             let of_part = self.times(caster, cast, (exact, how, ask), repeat)?;
             times.iter_mut().zip(of_part).for_each(|(sum, time)| *sum += time);
         }
-        let parts = casts.iter().map(|cast| caster.answers(cast, ask)).collect::<Result<Vec<_>>>()?;
-        Ok(Run { timing: Timing::of(&times), answers: joined(parts) })
+        Ok(Run { timing: Timing::of(&times), answers: answers(caster, casts, ask)? })
+    }
+
+    /// Traces a stream once, without taking the time.
+    pub fn once(&self, on: &Uploaded, exact: bool, how: Traversal, ask: Question) -> Result<Answers> {
+        let (caster, casts) = self.laid(on, how.layout)?;
+        casts.iter().try_for_each(|cast| caster.trace(cast, exact, how, ask).map(drop))?;
+        answers(caster, casts, ask)
+    }
+
+    /// What holds the scene and a stream in a layout.
+    fn laid<'b>(&'b self, on: &'b Uploaded, layout: Layout) -> Result<(&'b Caster<'a>, &'b [Cast])> {
+        let caster = self.casters.iter().find(|(of, _)| *of == layout).map(|(_, caster)| caster);
+        let casts = on.0.iter().find(|(of, _)| *of == layout).map(|(_, casts)| casts.as_slice());
+        caster.zip(casts).ok_or_else(|| Error::new("a layout is not on the GPU"))
     }
 
     /// Device times of dispatches; without a clock, wall-clock time around each.
@@ -83,6 +94,11 @@ impl<'a> OnGpu<'a> {
         };
         (0..repeat).map(time).collect()
     }
+}
+
+/// The last answers to all parts of a stream.
+fn answers(caster: &Caster<'_>, casts: &[Cast], ask: Question) -> Result<Answers> {
+    Ok(joined(casts.iter().map(|cast| caster.answers(cast, ask)).collect::<Result<Vec<_>>>()?))
 }
 
 /// The answers of all parts of a stream.

@@ -19,9 +19,13 @@ mod timing;
 mod tests;
 
 pub use csv::csv;
+pub(crate) use csv::quoted;
+pub(crate) use device::OnGpu;
 pub use kind::Kind;
 pub use markdown::markdown;
 pub use plan::{Plan, Subject};
 pub use record::{Record, Report, SceneRow, ViewRow};
 pub use run::{run, streams};
+pub(crate) use setup::cpu_model;
+pub(crate) use text::{escaped, short};
 pub use timing::Timing;

@@ -3,8 +3,6 @@
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
-use clap::ValueEnum;
-
 use super::answers::{self, Hash};
 use super::counts::{Counts, counts};
 use super::device::{OnGpu, Run, Uploaded, on_cpu};
@@ -15,6 +13,7 @@ use crate::cpu;
 use crate::error::Result;
 use crate::method::{Coherence, Layout, Method, Order, Processor, Traversal};
 use crate::pack::Packed;
+use crate::preset::name;
 use crate::scene::{Camera, Settings};
 use crate::stream::{Answers, Question, Stream};
 
@@ -248,11 +247,6 @@ impl<'a> Bench<'a> {
             None => format!("{how}: there are fewer answers than rays"),
         }
     }
-}
-
-/// A choice as the command line spells it.
-pub(super) fn name<T: ValueEnum>(value: T) -> String {
-    value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
 fn processor(processor: Processor) -> &'static str {

@@ -1,8 +1,8 @@
 //! Where and how all is measured, for people who read the figures later.
 
-use super::run::name;
 use super::{Kind, Plan};
 use crate::method::Processor;
+use crate::preset::name;
 
 impl Plan {
     /// A device's name, and its driver or number of threads.
@@ -64,7 +64,7 @@ impl Plan {
 }
 
 /// The processor's name where the system tells it.
-fn cpu_model() -> String {
+pub(crate) fn cpu_model() -> String {
     let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = information.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));
     model.map_or_else(|| "CPU".to_owned(), |(_, name)| name.trim().to_owned())

@@ -29,7 +29,7 @@ impl Text {
 }
 
 /// A cell's text; names come from files.
-pub(super) fn escaped(cell: &str) -> String {
+pub(crate) fn escaped(cell: &str) -> String {
     let line: String = cell.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     line.replace('|', "\\|")
 }
@@ -46,7 +46,7 @@ pub(super) fn distinct<T: PartialEq>(all: impl Iterator<Item = T>) -> Vec<T> {
 }
 
 /// Three digits, or all before the point.
-pub(super) fn short(x: f64) -> String {
+pub(crate) fn short(x: f64) -> String {
     let decimals = if x >= 99.95 {
         0
     } else if x >= 9.995 {

@@ -7,7 +7,7 @@ use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::options::{self, Bvh};
+use super::options;
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -15,6 +15,7 @@ use crate::film::Film;
 use crate::gpu::{Gpu, Want};
 use crate::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use crate::output::{self, Destination, write_error};
+use crate::quality::Bvh;
 use crate::scene::{self, Camera, Scene};
 
 pub(super) const EXAMPLES: &str = "\
@@ -305,11 +306,11 @@ fn text(report: &Report, format: Format) -> Result<String> {
     }
 }
 
-/// A bar over streams on standard error, if that is a terminal.
-fn bar(streams: usize, quiet: bool) -> ProgressBar {
+/// A bar over named steps on standard error, if that is a terminal.
+pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
     if quiet {
         return ProgressBar::hidden();
     }
     let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} (left {eta}) {wide_msg}");
-    ProgressBar::new(streams as u64).with_style(style.expect("the template is valid"))
+    ProgressBar::new(steps as u64).with_style(style.expect("the template is valid"))
 }

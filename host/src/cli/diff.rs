@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use serde_json::json;
 
-use super::options::{On, View};
+use super::options::{Effort, On, View};
 use super::summary::bar;
 use crate::compare::{Comparison, compare, heat_map};
 use crate::error::{Error, Result};
@@ -48,6 +48,8 @@ pub(super) struct Diff {
     on: On,
     #[command(flatten)]
     view: View,
+    #[command(flatten)]
+    effort: Effort,
 }
 
 fn has_extension(file: &Path, names: &[&str]) -> bool {
@@ -96,12 +98,12 @@ impl Diff {
         if has_extension(&self.first, &["png", "exr", "hdr"]) {
             return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
         }
-        if self.on.precision == Precision::Reference {
+        if self.on.precision() == Precision::Reference {
             return Err(Error::new("reference precision is the CPU's alone: there is no GPU to compare with"));
         }
         let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
         let cpu_choice = crate::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
-        let loaded = self.view.load(&self.first, quiet)?;
+        let loaded = self.view.load(&self.first, &self.effort, quiet)?;
         let (width, height) = loaded.packed.settings.size;
         let progress = bar(2 * u64::from(width) * u64::from(height), quiet || self.json);
         let render = |choice| -> Result<Rendering> {

@@ -8,6 +8,7 @@ mod info;
 mod options;
 mod render;
 mod summary;
+mod tradeoff;
 
 use std::process::ExitCode;
 
@@ -48,6 +49,9 @@ enum Command {
     /// Measure every method, kind of rays and device, as tables
     #[command(after_help = bench::EXAMPLES)]
     Bench(Box<bench::Bench>),
+    /// Measure what speed costs a scene's picture, and recommend a setting
+    #[command(after_help = tradeoff::EXAMPLES, allow_negative_numbers = true)]
+    Tradeoff(Box<tradeoff::Tradeoff>),
     /// List the GPUs of this machine, or tell a scene's figures
     Info(info::Info),
     /// Validate a scene and render nothing
@@ -65,6 +69,7 @@ pub fn run() -> ExitCode {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
         Command::Bench(command) => command.run(cli.quiet),
+        Command::Tradeoff(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
         Command::Generate(command) => command.run(cli.quiet),

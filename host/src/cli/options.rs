@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use glam::Vec3;
@@ -12,6 +12,8 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use crate::pack::Packed;
+use crate::preset::Preset;
+use crate::quality::Bvh;
 use crate::render::{Choice, DeviceWish, Precision};
 use crate::scene::{self, Camera, Scene, Settings};
 
@@ -25,9 +27,6 @@ pub(super) struct View {
     /// Image width and height in pixels, for example 1920x1080 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
-    /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
-    #[arg(long, value_name = "N")]
-    samples: Option<u32>,
     /// One of the scene's cameras, by name or number from 0 [default: the first]
     #[arg(long, value_name = "NAME|INDEX", conflicts_with = "eye")]
     camera: Option<String>,
@@ -40,30 +39,56 @@ pub(super) struct View {
     /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
+    /// Skip opaque triangles seen from behind [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    cull: Option<bool>,
+}
+
+/// How much work a picture is worth.
+#[derive(Args, Clone, Copy, Default)]
+#[command(next_help_heading = "View")]
+pub(super) struct Effort {
+    /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
     /// Least share of its pixel that a ray is followed for [default: the scene's]
     #[arg(long, value_name = "SHARE")]
     min_contribution: Option<f32>,
-    /// Skip opaque triangles seen from behind [default: the scene's]
-    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    cull: Option<bool>,
-    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace
-    #[arg(long, value_name = "QUALITY", value_enum, default_value_t = Bvh::Medium)]
-    bvh: Bvh,
+    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: medium]
+    #[arg(long, value_name = "QUALITY", value_enum)]
+    bvh: Option<Bvh>,
+}
+
+impl Effort {
+    /// With a settings file below the command line.
+    pub fn over(self, file: &Preset) -> Effort {
+        Effort {
+            samples: self.samples.or(file.samples),
+            bounces: self.bounces.or(file.bounces),
+            min_contribution: self.min_contribution.or(file.min_contribution),
+            bvh: self.bvh.or(file.bvh),
+        }
+    }
+
+    fn quality(&self) -> Quality {
+        self.bvh.unwrap_or_default().quality()
+    }
 }
 
 /// Which device, and its arithmetic.
-#[derive(Args)]
+#[derive(Args, Clone)]
 #[command(next_help_heading = "Device")]
 pub(super) struct On {
     /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
-    #[arg(long, value_enum, default_value_t = Precision::Exact)]
-    pub precision: Precision,
-    /// How rays are followed; every method gives the same picture
-    #[arg(long, value_enum, default_value_t = Method::Auto)]
-    pub method: Method,
+    /// [default: exact]
+    #[arg(long, value_enum)]
+    precision: Option<Precision>,
+    /// How rays are followed; every method gives the same picture [default: auto]
+    #[arg(long, value_enum)]
+    method: Option<Method>,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
     pub stack_max: u32,
@@ -76,12 +101,12 @@ pub(super) struct On {
     /// Which pixels' rays lie beside each other
     #[arg(long, value_enum, default_value_t = Order::Tiled)]
     pub order: Order,
-    /// How the hierarchy and its triangles lie in memory
-    #[arg(long, value_enum, default_value_t = Layout::Gathered)]
-    pub layout: Layout,
-    /// How a ray is tested against a triangle; moller in fast precision only
-    #[arg(long, value_name = "TEST", value_enum, default_value_t = TriangleTest::Watertight)]
-    pub triangle: TriangleTest,
+    /// How the hierarchy and its triangles lie in memory [default: gathered]
+    #[arg(long, value_enum)]
+    layout: Option<Layout>,
+    /// How a ray is tested against a triangle; moller in fast precision only [default: watertight]
+    #[arg(long, value_name = "TEST", value_enum)]
+    triangle: Option<TriangleTest>,
     /// A GPU by its number or a part of its name, as `eyerays info` lists them
     #[arg(long, value_name = "NAME|INDEX")]
     pub adapter: Option<String>,
@@ -93,23 +118,6 @@ pub(super) struct On {
     pub no_passthrough: bool,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-pub(super) enum Bvh {
-    Fast,
-    Medium,
-    High,
-}
-
-impl Bvh {
-    pub fn quality(self) -> Quality {
-        match self {
-            Bvh::Fast => Quality::Fast,
-            Bvh::Medium => Quality::Medium,
-            Bvh::High => Quality::High,
-        }
-    }
-}
-
 /// A scene, loaded and packed, and what that took.
 pub(super) struct Loaded {
     pub packed: Packed,
@@ -117,26 +125,31 @@ pub(super) struct Loaded {
 }
 
 impl View {
+    /// Was a size asked for?
+    pub fn has_size(&self) -> bool {
+        self.size.is_some()
+    }
+
     /// Loads a scene and packs it for these options.
-    pub fn load(&self, path: &Path, quiet: bool) -> Result<Loaded> {
+    pub fn load(&self, path: &Path, effort: &Effort, quiet: bool) -> Result<Loaded> {
         let start = Instant::now();
         let (scene, warnings) = scene::load(path)?;
         super::warn(&warnings, quiet);
         let load_time = start.elapsed();
-        let settings = self.settings(&scene)?;
+        let settings = self.settings(&scene, effort)?;
         let camera = self.camera(&scene)?;
-        let packed = Packed::new(&scene, &camera, settings, self.bvh.quality()).map_err(|e| e.of(path))?;
+        let packed = Packed::new(&scene, &camera, settings, effort.quality()).map_err(|e| e.of(path))?;
         Ok(Loaded { packed, load_time })
     }
 
     /// The scene's settings with the command line's over them.
-    fn settings(&self, scene: &Scene) -> Result<Settings> {
+    pub fn settings(&self, scene: &Scene, effort: &Effort) -> Result<Settings> {
         let own = scene.settings;
         let settings = Settings {
             size: self.size.unwrap_or(own.size),
-            samples: self.samples.unwrap_or(own.samples),
-            bounces: self.bounces.unwrap_or(own.bounces),
-            min_contribution: self.min_contribution.unwrap_or(own.min_contribution),
+            samples: effort.samples.unwrap_or(own.samples),
+            bounces: effort.bounces.unwrap_or(own.bounces),
+            min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
             culling: self.cull.unwrap_or(own.culling),
         };
         Film::check_size(settings.size.0, settings.size.1)?;
@@ -157,7 +170,8 @@ impl View {
         Ok(settings)
     }
 
-    fn camera(&self, scene: &Scene) -> Result<Camera> {
+    /// The camera that was asked for.
+    pub fn camera(&self, scene: &Scene) -> Result<Camera> {
         let mut camera = match (&self.camera, self.eye, self.target) {
             (_, Some(eye), Some(target)) => {
                 let up = if (target - eye).cross(Vec3::Y).length() == 0.0 { Vec3::Z } else { Vec3::Y };
@@ -180,25 +194,44 @@ impl View {
 }
 
 impl On {
+    /// With a settings file below the command line, whose precision also undoes the file's triangle test: exact
+    /// precision has only one.
+    pub fn over(&self, file: &Preset) -> On {
+        let triangle = file.triangle.filter(|_| self.precision.is_none_or(|own| Some(own) == file.precision));
+        On {
+            precision: self.precision.or(file.precision),
+            method: self.method.or(file.method),
+            layout: self.layout.or(file.layout),
+            triangle: self.triangle.or(triangle),
+            ..self.clone()
+        }
+    }
+
+    /// How numbers are computed.
+    pub fn precision(&self) -> Precision {
+        self.precision.unwrap_or_default()
+    }
+
     /// The choice of devices these options make.
     pub fn choice(&self, device: DeviceWish) -> Result<Choice> {
-        let threads = threads(self.threads)?;
-        if self.no_passthrough && self.precision != Precision::Fast {
+        let (threads, precision) = (threads(self.threads)?, self.precision());
+        let triangle = self.triangle.unwrap_or_default();
+        if self.no_passthrough && precision != Precision::Fast {
             return Err(Error::new("--no-passthrough can't keep exact arithmetic: add --precision fast"));
         }
         if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
-        check_tests(&[self.triangle], self.precision == Precision::Fast)?;
+        check_tests(&[triangle], precision == Precision::Fast)?;
         let traversal = Traversal {
-            method: self.method,
+            method: self.method.unwrap_or_default(),
             tuning: tuning(self.stack_max, self.cut)?,
             scheduling: self.scheduling,
             order: self.order,
-            layout: self.layout,
-            triangle: self.triangle,
+            layout: self.layout.unwrap_or_default(),
+            triangle,
         };
-        let (precision, adapter) = (self.precision, self.adapter.clone());
+        let adapter = self.adapter.clone();
         Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
     }
 }

@@ -5,18 +5,20 @@ use std::process::ExitCode;
 
 use clap::Args;
 
-use super::options::{On, View};
+use super::options::{Effort, On, View};
 use super::summary::{Summary, bar};
 use crate::error::Result;
 use crate::image::{self, BitDepth, Encoding};
 use crate::output::{self, Destination};
+use crate::preset::Preset;
 use crate::render::{Chosen, DeviceWish};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays render scenes/cornell.toml -o cornell.png
   eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
-  eyerays render scenes/whitted.toml -o - > whitted.png";
+  eyerays render scenes/whitted.toml -o - > whitted.png
+  eyerays render scenes/cornell.toml --settings fast.toml";
 
 #[derive(Args)]
 pub(super) struct Render {
@@ -25,9 +27,12 @@ pub(super) struct Render {
     /// The picture, .png, .exr or .hdr; - writes PNG to standard output [default: SCENE.png here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<std::ffi::OsString>,
-    /// Where to render
-    #[arg(long, value_enum, default_value_t = DeviceWish::Auto)]
-    device: DeviceWish,
+    /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// Where to render [default: auto]
+    #[arg(long, value_enum)]
+    device: Option<DeviceWish>,
     /// Brighten the picture by this many stops
     #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
     exposure: f32,
@@ -44,6 +49,8 @@ pub(super) struct Render {
     on: On,
     #[command(flatten)]
     view: View,
+    #[command(flatten)]
+    effort: Effort,
 }
 
 impl Render {
@@ -56,9 +63,10 @@ impl Render {
         let encoding = Encoding { exposure_ev: self.exposure, bits: BitDepth::from_bits(self.bits)? };
         encoding.scale()?;
         destination.format()?;
-        let choice = self.on.choice(self.device)?;
+        let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
+        let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_writable(&destination)?;
-        let loaded = self.view.load(&self.scene, quiet)?;
+        let loaded = self.view.load(&self.scene, &self.effort.over(&preset), quiet)?;
         let chosen = Chosen::new(&choice)?;
         let (width, height) = loaded.packed.settings.size;
         let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);

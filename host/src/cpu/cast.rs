@@ -2,6 +2,9 @@
 
 use std::time::{Duration, Instant};
 
+use eyerays_shader::data::numbers;
+use eyerays_shader::real::{Scalar, V3};
+use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::Asking;
 use glam::UVec4;
 use rayon::prelude::*;
@@ -10,7 +13,7 @@ use super::follow::{Job, follow};
 use super::level::Level;
 use super::pool::pool;
 use crate::error::Result;
-use crate::method::Traversal;
+use crate::method::{Method, Traversal};
 use crate::pack::{Laid, Packed};
 use crate::stream::{Answers, Question, Stream};
 
@@ -52,18 +55,48 @@ pub fn cast_by(
     };
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
     let asking = Asking { lights: &[], paths: stream.words(), hits: &[] };
-    let run = |slots: &[u32], job: Job<'_, f32>| follow(level, traversal.method, &geometry, slots, job);
     let time = pool(threads)?.install(|| {
         let start = Instant::now();
         match &mut answers {
-            Answers::Closest(hits) => tasks(&slots, hits, |slots, hits| run(slots, Job::Trace(stream.words(), hits))),
+            Answers::Closest(hits) => trace::<f32>(level, traversal.method, &geometry, &slots, stream.words(), hits),
             Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
-                run(slots, Job::Shadow(asking, 0, shadows));
+                follow::<f32>(level, traversal.method, &geometry, slots, Job::Shadow(asking, 0, shadows));
             }),
         }
         start.elapsed()
     });
     Ok((answers, time))
+}
+
+/// The closest hits of a stream's rays in the arithmetic `R`, as [`cast`] finds them in exact precision: (t, u,
+/// v) and the slot of the triangle.
+///
+/// # Errors
+/// As [`cast`].
+pub fn closest<R>(packed: &Packed, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
+where
+    R: Scalar<Record: Send + Sync>,
+{
+    let (laid, frame) = (Laid::new(packed, traversal), packed.stream_frame(stream.len()));
+    let slots: Vec<u32> = (0..stream.len() as u32).collect();
+    let rays: Vec<R::Record> = stream.words().iter().map(|&word| R::store(V3::splat(numbers(word)), word.w)).collect();
+    let mut hits = vec![R::Record::default(); stream.len()];
+    let (method, geometry) = (traversal.method, laid.stream(&frame));
+    pool(threads)?.install(|| trace::<R>(Level::best(), method, &geometry, &slots, &rays, &mut hits));
+    Ok(hits)
+}
+
+fn trace<R>(
+    level: Level,
+    method: Method,
+    geometry: &Geometry<'_>,
+    slots: &[u32],
+    rays: &[R::Record],
+    hits: &mut [R::Record],
+) where
+    R: Scalar<Record: Send + Sync>,
+{
+    tasks(slots, hits, |slots, hits| follow::<R>(level, method, geometry, slots, Job::Trace(rays, hits)));
 }
 
 /// Neighbours a task, so that no thread waits long for the last.

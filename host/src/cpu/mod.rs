@@ -7,7 +7,7 @@ mod pool;
 mod render;
 mod tile;
 
-pub use cast::{cast, cast_by};
+pub use cast::{cast, cast_by, closest};
 pub use level::Level;
 pub(crate) use pool::pool;
 pub use render::{observe, render};

@@ -138,6 +138,17 @@ impl Packed {
         Ok(())
     }
 
+    /// Takes other settings and keeps the hierarchy, which does not depend on them.
+    ///
+    /// # Errors
+    /// As [`Packed::look`].
+    pub fn set(&mut self, scene: &Scene, camera: &Camera, settings: Settings) -> Result<()> {
+        let split = self.features.0 & Features::SPLIT;
+        self.features = Features(features(scene, &settings).0 | split);
+        self.settings = settings;
+        self.look(scene, camera)
+    }
+
     /// The record of a launch that follows `count` rays of a stream.
     pub fn stream_frame(&self, count: usize) -> Frame {
         let limits = glam::UVec4::new(0, 0, count as u32, self.triangles.len() as u32);

@@ -71,14 +71,23 @@ fn load_toml(path: &Path) -> Result<(Scene, Vec<String>)> {
     parse(path, &bytes)
 }
 
-/// The scene of a TOML text, whose meshes are relative to the folder of `path`.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
-    let text = std::str::from_utf8(bytes).map_err(|error| {
+/// Makes something of the tables of a TOML file.
+pub(crate) fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
+    let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
+    make(Source::new(path, text(path, &bytes)?).parse()?)
+}
+
+fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
+    std::str::from_utf8(bytes).map_err(|error| {
         let good = &bytes[..error.valid_up_to()];
         let line = 1 + good.iter().filter(|&&byte| byte == b'\n').count();
         Error::line(path, line, "this is not UTF-8 text; save the file as UTF-8")
-    })?;
-    let mut table = Source::new(path, text).parse()?;
+    })
+}
+
+/// The scene of a TOML text, whose meshes are relative to the folder of `path`.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
+    let mut table = Source::new(path, text(path, bytes)?).parse()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
     let background = table.table("background")?.map(document::background);

@@ -31,6 +31,9 @@ mod transform;
 mod tests;
 
 pub use load::load;
+pub(crate) use load::read_table;
+pub(crate) use range::Range;
+pub(crate) use table::Table;
 pub use suggest::suggest;
 
 use eyerays_shader::data::NodeRef;

@@ -1,0 +1,26 @@
+//! Qualities of a hierarchy, by name.
+
+use eyerays_bvh::Quality;
+
+/// Quality of the hierarchy: a better one takes longer to build and is faster to trace.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
+pub enum Bvh {
+    /// Soon built
+    Fast,
+    /// Between the two
+    #[default]
+    Medium,
+    /// Soon traced
+    High,
+}
+
+impl Bvh {
+    /// What is built.
+    pub fn quality(self) -> Quality {
+        match self {
+            Bvh::Fast => Quality::Fast,
+            Bvh::Medium => Quality::Medium,
+            Bvh::High => Quality::High,
+        }
+    }
+}

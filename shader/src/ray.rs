@@ -105,6 +105,12 @@ impl<R: Real> Hit<R> {
 
 #[cfg(not(target_arch = "spirv"))]
 impl<R: Scalar> Shear<R> {
+    /// The axis of the direction's greatest component; that of [`Shear::cycle`]'s third.
+    #[inline(always)]
+    pub(crate) fn major(&self) -> usize {
+        if self.x_major { 0 } else { 2 - self.y_major as usize }
+    }
+
     /// The same shear in every lane.
     #[inline(always)]
     pub(crate) fn spread<P: Lanes<R>>(&self) -> Shear<P> {

@@ -44,10 +44,15 @@ pub struct Crossing<R: Real> {
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
 pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -> Crossing<R> {
-    let (a, b, c) = (shear.cycle(a), shear.cycle(b), shear.cycle(c));
-    let (ax, ay) = sheared(a, &shear);
-    let (bx, by) = sheared(b, &shear);
-    let (cx, cy) = sheared(c, &shear);
+    cross_cycled(shear.cycle(a), shear.cycle(b), shear.cycle(c), (shear.x, shear.y), along)
+}
+
+/// [`cross`] of vertices whose axes are cycled already, with how far the first two axes move along the ray.
+#[inline(always)]
+pub fn cross_cycled<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Crossing<R> {
+    let (ax, ay) = sheared(a, shear);
+    let (bx, by) = sheared(b, shear);
+    let (cx, cy) = sheared(c, shear);
     let wa = cx * by - cy * bx;
     let wb = ax * cy - ay * cx;
     let wc = bx * ay - by * ax;
@@ -67,8 +72,8 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
 
 /// A vertex in the plane across the ray. What is below 2^-40 is zero, so that no product underflows.
 #[inline(always)]
-fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
-    ((p.x - shear.x * p.z).settle(SMALL), (p.y - shear.y * p.z).settle(SMALL))
+fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
+    ((p.x - x * p.z).settle(SMALL), (p.y - y * p.z).settle(SMALL))
 }
 
 #[cfg(not(target_arch = "spirv"))]

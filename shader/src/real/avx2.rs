@@ -239,6 +239,18 @@ impl Lanes<f32> for Eight {
         index.wide().0[i]
     }
     #[inline(always)]
+    fn taken(numbers: &[f32]) -> Self {
+        let numbers = &numbers[..8];
+        // SAFETY: there are eight numbers.
+        Eight(unsafe { _mm256_loadu_ps(numbers.as_ptr()) })
+    }
+    #[inline(always)]
+    fn put(self, numbers: &mut [f32]) {
+        let numbers = &mut numbers[..8];
+        // SAFETY: there is room for eight numbers.
+        unsafe { _mm256_storeu_ps(numbers.as_mut_ptr(), self.0) }
+    }
+    #[inline(always)]
     fn vectors(records: &[UVec4]) -> V3<Self> {
         let number = |of: fn(&UVec4) -> u32| Self::of(|i| f32::from_bits(of(&records[i])));
         V3::new(number(|r| r.x), number(|r| r.y), number(|r| r.z))

@@ -169,6 +169,12 @@ pub trait Lanes<S: Scalar>: Real {
     fn lane(&self, i: usize) -> S;
     /// The integer of lane `i`.
     fn index_of(index: Self::Index, i: usize) -> u32;
+    /// The first numbers of a slice, as many as there are lanes.
+    #[cfg(not(target_arch = "spirv"))]
+    fn taken(numbers: &[f32]) -> Self;
+    /// Puts the lanes' numbers, in single precision, first into a slice.
+    #[cfg(not(target_arch = "spirv"))]
+    fn put(self, numbers: &mut [f32]);
     /// The numbers of a record for each lane, from the first on.
     fn vectors(records: &[UVec4]) -> V3<Self>;
     /// A bit a lane, the first in the lowest.
@@ -298,6 +304,16 @@ macro_rules! one_lane {
             #[inline(always)]
             fn index_of(index: u32, _: usize) -> u32 {
                 index
+            }
+            #[cfg(not(target_arch = "spirv"))]
+            #[inline(always)]
+            fn taken(numbers: &[f32]) -> Self {
+                Self::splat(numbers[0])
+            }
+            #[cfg(not(target_arch = "spirv"))]
+            #[inline(always)]
+            fn put(self, numbers: &mut [f32]) {
+                numbers[0] = self.to_f32();
             }
             #[inline(always)]
             fn vectors(records: &[UVec4]) -> V3<$type> {

@@ -175,6 +175,15 @@ macro_rules! lanes {
                 index.0[i]
             }
             #[inline(always)]
+            fn taken(numbers: &[f32]) -> Self {
+                let numbers = &numbers[..N];
+                Wide(from_fn(|i| numbers[i]))
+            }
+            #[inline(always)]
+            fn put(self, numbers: &mut [f32]) {
+                numbers[..N].copy_from_slice(&self.0);
+            }
+            #[inline(always)]
             fn vectors(records: &[UVec4]) -> V3<Self> {
                 let records = &records[..N];
                 let x = Wide(from_fn(|i| f32::from_bits(records[i].x)));

@@ -3,6 +3,10 @@
 use super::Query;
 use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
+#[cfg(not(target_arch = "spirv"))]
+use crate::full::Block;
+#[cfg(not(target_arch = "spirv"))]
+use crate::intersect::cross_cycled;
 use crate::intersect::{Crossing, Span, cross, slab, span};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
@@ -137,6 +141,56 @@ pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
     }
     rest
 }
+
+/// Tests the triangles of a block, as many at once as there are lanes.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(
+    geometry: &Geometry<'_>,
+    block: &Block,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let origin = ray.shear.cycle(ray.origin);
+    let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
+    let along = F::all(ray.shear.cycle(ray.inverse).z);
+    let mut first = 0;
+    while first < Block::TRIANGLES {
+        Q::on_triangle();
+        let a = vertex::<R, F>(block, 0, first, ray, origin);
+        let b = vertex::<R, F>(block, 1, first, ray, origin);
+        let c = vertex::<R, F>(block, 2, first, ray, origin);
+        let crossing = cross_cycled(a, b, c, shear, along);
+        let mut inside = F::bits(crossing.nearer(F::all(hit.t)));
+        while inside != 0 {
+            let lane = inside.trailing_zeros() as usize;
+            inside &= inside - 1;
+            let slot = block.slots[(first + lane) & 3];
+            let triangle = geometry.triangle(slot);
+            if counts::<Q>(geometry.features, &triangle) {
+                keep::<Q, R>(geometry, &triangle, slot, &crossing.lane(lane), ray, hit);
+            }
+        }
+        first += F::COUNT as usize;
+    }
+}
+
+/// A vertex of the block's triangles from `first` on, relative to the ray's origin, both with their axes cycled.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn vertex<R: Scalar, F: Lanes<R>>(block: &Block, vertex: usize, first: usize, ray: &Ray<R>, origin: V3<R>) -> V3<F> {
+    let numbers = &block.vertices[vertex];
+    let axis = AXES[ray.shear.major()];
+    V3::new(
+        F::taken(&numbers[axis[0]][first..]) - F::all(origin.x),
+        F::taken(&numbers[axis[1]][first..]) - F::all(origin.y),
+        F::taken(&numbers[axis[2]][first..]) - F::all(origin.z),
+    )
+}
+
+/// The axes in their order, given which is the third.
+#[cfg(not(target_arch = "spirv"))]
+const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
 #[inline(always)]

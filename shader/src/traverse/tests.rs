@@ -97,7 +97,8 @@ impl World {
     fn geometry(&self) -> Geometry<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
         let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
-        Geometry { frame, features: self.features, tuning, nodes, wide, triangles, bounds: &[] }
+        let full = Full::default();
+        Geometry { frame, features: self.features, tuning, nodes, wide, full, triangles, bounds: &[] }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {

@@ -1,6 +1,8 @@
 //! The wide hierarchy as a CPU's vectors load it: boxes in full precision and triangles, number by number, with
 //! nothing to decode or to turn. The same triangles lie at the same slots as in the other hierarchies.
 
+use crate::data::Triangle;
+
 /// Eight siblings. A box is wider than the own boxes below it by [`FullNode::MARGIN`] on every side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
@@ -69,6 +71,23 @@ impl Block {
     pub const TRIANGLES: usize = 4;
     /// No triangle.
     pub const EMPTY: Block = Block { vertices: [[[f32::NAN; 4]; 3]; 3], slots: [0; 4] };
+
+    /// Triangles, each with its slot.
+    ///
+    /// # Panics
+    /// If there are more than [`Block::TRIANGLES`].
+    pub fn of<'t>(triangles: impl Iterator<Item = (u32, &'t Triangle)>) -> Self {
+        let mut block = Block::EMPTY;
+        for (lane, (slot, triangle)) in triangles.enumerate() {
+            for (vertex, place) in triangle.vertices().iter().enumerate() {
+                for axis in 0..3 {
+                    block.vertices[vertex][axis][lane] = place[axis];
+                }
+            }
+            block.slots[lane] = slot;
+        }
+        block
+    }
 }
 
 /// A hierarchy. Empty unless the method asks for it.

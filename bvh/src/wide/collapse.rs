@@ -227,7 +227,8 @@ mod tests {
         for (count, step) in [(2, 2.0), (5, 0.1), (9, 3.0), (40, 0.5), (100, 1.5)] {
             for halve in [|n: usize| n / 2, |_: usize| 1, |n: usize| n.div_ceil(3)] {
                 let tree = tree(&cubes(count, step), halve);
-                let (got, want) = (cost(&tree, &Plan::of(&tree, Leaves::WIDE), 0), least_inner(&tree, 0, &mut Memory::new()));
+                let (got, want) =
+                    (cost(&tree, &Plan::of(&tree, Leaves::WIDE), 0), least_inner(&tree, 0, &mut Memory::new()));
                 assert!((got - want).abs() < 1e-3 * want, "{count} cubes {step} apart: {got} {want}");
             }
         }
@@ -238,12 +239,9 @@ mod tests {
         let mut children = Vec::new();
         plan.children(tree, number, &mut children);
         assert!(children.len() <= ARITY);
-        let below =
-            children.iter().map(
-                |&(child, is_leaf)| {
-                    if is_leaf { Leaves::WIDE.cost(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
-                },
-            );
+        let below = children.iter().map(|&(child, is_leaf)| {
+            if is_leaf { Leaves::WIDE.cost(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
+        });
         below.sum::<f32>() + tree.nodes[number as usize].bounds.half_area() * NODE
     }
 

@@ -51,7 +51,7 @@ impl FullBvh {
                 let binary = &tree.nodes[child as usize];
                 let reference = if is_leaf {
                     let slots = &order[binary.first as usize..(binary.first + binary.count) as usize];
-                    full.blocks.push(block(slots, triangles));
+                    full.blocks.push(Block::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
                     FullRef::leaf(full.blocks.len() as u32 - 1)
                 } else {
                     full.nodes.push(FullNode::EMPTY);
@@ -100,18 +100,4 @@ fn set(node: &mut FullNode, child: usize, bounds: Bounds, reference: FullRef) {
         node.planes[axis][1][child] = (f64::from(bounds.max[axis]) + margin) as f32;
     }
     node.children[child] = reference;
-}
-
-/// The triangles of a leaf.
-fn block(slots: &[u32], triangles: &[Triangle]) -> Block {
-    let mut block = Block::EMPTY;
-    for (lane, &slot) in slots.iter().enumerate() {
-        for (vertex, place) in triangles[slot as usize].vertices().iter().enumerate() {
-            for axis in 0..3 {
-                block.vertices[vertex][axis][lane] = place[axis];
-            }
-        }
-        block.slots[lane] = slot;
-    }
-    block
 }

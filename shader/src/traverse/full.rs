@@ -15,7 +15,7 @@ use super::{Method, Query};
 use crate::full::{FullNode, FullRef};
 use crate::intersect::span;
 use crate::ray::{Hit, Ray};
-use crate::real::{Native, Octet, Scalar, V3, Vectors};
+use crate::real::{Lanes, Native, Scalar, V3, Vectors};
 use crate::scene::Geometry;
 
 /// See the module. `V` are the vectors that test boxes and triangles.
@@ -50,7 +50,7 @@ impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
 }
 
 /// A ray as the boxes of nodes take it.
-struct Boxes<R: Scalar, E: Octet<R>> {
+struct Boxes<R: Scalar, E: Lanes<R>> {
     inverse: V3<E>,
     /// The negated offset.
     start: V3<E>,
@@ -59,7 +59,7 @@ struct Boxes<R: Scalar, E: Octet<R>> {
     scalar: PhantomData<R>,
 }
 
-impl<R: Scalar, E: Octet<R>> Boxes<R, E> {
+impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
     #[inline(always)]
     fn new(ray: &Ray<R>) -> Self {
         let (inverse, start) = (ray.inverse, -ray.offset);

@@ -13,7 +13,6 @@ mod packet;
 pub mod resumable;
 mod speculative;
 pub mod step;
-mod waiting;
 mod while_while;
 mod wide;
 

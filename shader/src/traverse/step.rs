@@ -99,58 +99,10 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     }
 }
 
-/// Tests as many of a run's triangles as there are lanes, from the last on: those of the set bits of `waiting`,
-/// counted from slot `first`. Returns the bits that still wait.
-#[cfg(not(target_arch = "spirv"))]
-#[inline(always)]
-pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
-    geometry: &Geometry<'_>,
-    first: u32,
-    waiting: u32,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) -> u32 {
-    let (mut rest, mut place) = (waiting, 0);
-    let mut slots = [0; 4];
-    for slot in slots.iter_mut().take(F::COUNT as usize) {
-        // Lanes beyond the last triangle test it again.
-        if rest != 0 {
-            Q::on_triangle();
-            place = 31 - rest.leading_zeros();
-            rest &= !(1 << place);
-        }
-        *slot = first + place;
-    }
-    let (mut a, mut b, mut c) = ([UVec4::ZERO; 4], [UVec4::ZERO; 4], [UVec4::ZERO; 4]);
-    for i in 0..F::COUNT as usize {
-        let triangle = geometry.triangle(slots[i]);
-        (a[i], b[i], c[i]) = (triangle.a, triangle.b, triangle.c);
-    }
-    let (a, b, c) = (F::vectors(&a), F::vectors(&b), F::vectors(&c));
-    let origin = V3::<F>::new(F::all(ray.origin.x), F::all(ray.origin.y), F::all(ray.origin.z));
-    let along = F::all(ray.shear.cycle(ray.inverse).z);
-    let crossing = cross(a - origin, b - origin, c - origin, ray.shear.spread(), along);
-    let mut inside = F::bits(crossing.inside);
-    while inside != 0 {
-        let lane = inside.trailing_zeros() as usize;
-        inside &= inside - 1;
-        let triangle = geometry.triangle(slots[lane]);
-        if counts::<Q>(geometry.features, &triangle) {
-            keep::<Q, R>(geometry, &triangle, slots[lane], &crossing.lane(lane), ray, hit);
-        }
-    }
-    rest
-}
-
 /// Tests the triangles of a block, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(
-    geometry: &Geometry<'_>,
-    block: &Block,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) {
+pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
     let origin = ray.shear.cycle(ray.origin);
     let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
     let along = F::all(ray.shear.cycle(ray.inverse).z);

@@ -9,7 +9,7 @@ use crate::data::Triangle;
 pub struct FullNode {
     /// By axis the lesser planes, then the greater ones, each a child's.
     pub planes: [[[f32; 8]; 2]; 3],
-    /// What the boxes hold.
+    /// What the boxes hold; the larger come first, see `traverse::full`.
     pub children: [FullRef; 8],
 }
 

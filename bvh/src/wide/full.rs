@@ -46,6 +46,8 @@ impl FullBvh {
         let (mut open, mut children) = (vec![(0, 0, 0)], Vec::new());
         while let Some((number, node, level)) = open.pop() {
             plan.children_at(&tree, node, level, &mut children);
+            let area = |child: &(u32, bool)| tree.nodes[child.0 as usize].bounds.half_area();
+            children.sort_by(|a, b| area(b).total_cmp(&area(a)));
             let first = open.len();
             for (i, &(child, is_leaf)) in children.iter().enumerate() {
                 let binary = &tree.nodes[child as usize];

@@ -32,7 +32,9 @@ impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
                 Q::on_boxes(8);
                 let node = &geometry.full.nodes[at.index()];
                 let (met, near) = boxes.meet(node, hit.t);
-                match nearest::<Q>(node, met, &near, &mut waiting).or_else(|| waiting.take(hit.t.to_f32())) {
+                let next =
+                    if Q::ANY { first(node, met, &mut waiting) } else { nearest(node, met, &near, &mut waiting) };
+                match next.or_else(|| waiting.take(hit.t.to_f32())) {
                     Some(next) => at = next,
                     None => return,
                 }
@@ -100,9 +102,25 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
     }
 }
 
-/// The nearest child that is met; the others wait, for a closest hit the nearer the later.
+/// The first child that is met; the others wait, the first of them the last. Children are in the order of their
+/// size: a ray that asks for any hit is done the sooner in the larger, whichever is nearer.
 #[inline(always)]
-fn nearest<Q: Query>(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<FullRef> {
+fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef> {
+    while met != 0 {
+        let last = 31 - met.leading_zeros();
+        met ^= 1 << last;
+        let child = node.children[last as usize & 7];
+        if met == 0 {
+            return Some(child);
+        }
+        waiting.put(entry(0.0, child));
+    }
+    None
+}
+
+/// The nearest child that is met; the others wait, the nearer the later.
+#[inline(always)]
+fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<FullRef> {
     if met == 0 {
         return None;
     }
@@ -137,7 +155,7 @@ fn nearest<Q: Query>(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut W
         (next, met) = child(met);
         let (less, more) = ordered(nearest, next);
         nearest = less;
-        if Q::ANY { waiting.put(more) } else { waiting.insert(from, more) }
+        waiting.insert(from, more);
     }
     Some(reference(nearest))
 }

@@ -5,7 +5,7 @@ use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Triangle};
 use eyerays_shader::full::{Block, Full, FullNode, FullRef};
 
 use super::{
-    binary::Binary,
+    binary::{Binary, Node},
     collapse::{Leaves, Plan},
 };
 use crate::bounds::Bounds;
@@ -30,17 +30,8 @@ impl FullBvh {
             [] => triangles.iter().map(Bounds::of).collect(),
             split => split.iter().map(Bounds::read).collect(),
         };
-        let (references, mut order) = depth_first(pairs, triangles.len());
-        let boxes = references.iter().map(|pair| {
-            pair.map(|reference| {
-                let first = reference.index() as usize;
-                let slots = order.get(first..first + reference.count() as usize).unwrap_or_default();
-                (Bounds::around(slots.iter().map(|&slot| bounds[slot as usize])), reference)
-            })
-        });
-        let boxes: Vec<_> = boxes.collect();
         let leaves = Leaves { most: Block::TRIANGLES as u32, fixed: BLOCK, triangle: 0.0 };
-        let tree = Binary::of(boxes.into_iter(), &mut order, &bounds, leaves.most);
+        let (tree, order) = binary(pairs, &bounds, leaves.most);
         let plan = Plan::of(&tree, leaves);
         let mut full = FullBvh { nodes: vec![FullNode::EMPTY], blocks: Vec::new() };
         let (mut open, mut children) = (vec![(0, 0, 0)], Vec::new());
@@ -50,28 +41,45 @@ impl FullBvh {
             children.sort_by(|a, b| area(b).total_cmp(&area(a)));
             let first = open.len();
             for (i, &(child, is_leaf)) in children.iter().enumerate() {
-                let binary = &tree.nodes[child as usize];
+                let Node { bounds, first, count, .. } = tree.nodes[child as usize];
                 let reference = if is_leaf {
-                    let slots = &order[binary.first as usize..(binary.first + binary.count) as usize];
-                    full.blocks.push(Block::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
-                    FullRef::leaf(full.blocks.len() as u32 - 1)
+                    full.leaf(&order[first as usize..(first + count) as usize], triangles)
                 } else {
                     full.nodes.push(FullNode::EMPTY);
-                    let number = full.nodes.len() as u32 - 1;
-                    open.push((number, child, level + 1));
-                    FullRef::inner(number)
+                    open.push((full.nodes.len() - 1, child, level + 1));
+                    FullRef::inner(full.nodes.len() as u32 - 1)
                 };
-                set(&mut full.nodes[number as usize], i, binary.bounds, reference);
+                set(&mut full.nodes[number], i, bounds, reference);
             }
             open[first..].reverse();
         }
         full
     }
 
+    /// Adds the block of a leaf's slots.
+    fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> FullRef {
+        self.blocks.push(Block::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
+        FullRef::leaf(self.blocks.len() as u32 - 1)
+    }
+
     /// What a launch borrows.
     pub fn borrow(&self) -> Full<'_> {
         Full { nodes: &self.nodes, blocks: &self.blocks }
     }
+}
+
+/// The binary tree with leaves of at most `most` triangles, and the slot at each of its places.
+fn binary(pairs: &[CentredPair], bounds: &[Bounds], most: u32) -> (Binary, Vec<u32>) {
+    let (references, mut order) = depth_first(pairs, bounds.len());
+    let boxed = |reference: NodeRef| {
+        let first = reference.index() as usize;
+        // Boxes of inner nodes follow from these.
+        let slots = order.get(first..first + reference.count() as usize).unwrap_or_default();
+        (Bounds::around(slots.iter().map(|&slot| bounds[slot as usize])), reference)
+    };
+    let boxes: Vec<_> = references.iter().map(|pair| pair.map(boxed)).collect();
+    let tree = Binary::of(boxes.into_iter(), &mut order, bounds, most);
+    (tree, order)
 }
 
 /// The references of every pair, with slots counted in depth-first order, and the slot at each of these places.

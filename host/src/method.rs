@@ -15,7 +15,7 @@ pub enum Method {
     WhileWhile,
     /// As while-while, but on past a leaf until every ray of a subgroup has one
     Speculative,
-    /// Every ray by itself, through nodes of eight quantised boxes (CWBVH)
+    /// Every ray by itself, through nodes of eight boxes: on a GPU quantised ones (CWBVH)
     Wide,
     /// The rays of a subgroup together, by votes
     Packet,

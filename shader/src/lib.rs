@@ -6,6 +6,8 @@ pub mod camera;
 pub mod data;
 #[cfg(target_arch = "spirv")]
 pub mod entry;
+#[cfg(not(target_arch = "spirv"))]
+pub mod full;
 pub mod intersect;
 pub mod launch;
 #[cfg(not(target_arch = "spirv"))]

@@ -1,7 +1,7 @@
 //! A ray, ready for boxes and triangles, and what it has hit.
 
 #[cfg(not(target_arch = "spirv"))]
-use crate::real::{Lanes, Scalar};
+use crate::real::Scalar;
 use crate::real::{Real, TINY, V3};
 
 /// A ray (or one a lane) with what its box and triangle tests share.
@@ -105,11 +105,10 @@ impl<R: Real> Hit<R> {
 
 #[cfg(not(target_arch = "spirv"))]
 impl<R: Scalar> Shear<R> {
-    /// The same shear in every lane.
+    /// The axis of the direction's greatest component; that of [`Shear::cycle`]'s third.
     #[inline(always)]
-    pub(crate) fn spread<P: Lanes<R>>(&self) -> Shear<P> {
-        let (x_major, y_major) = (P::every(self.x_major), P::every(self.y_major));
-        Shear { x: P::all(self.x), y: P::all(self.y), x_major, y_major }
+    pub(crate) fn major(&self) -> usize {
+        if self.x_major { 0 } else { 2 - self.y_major as usize }
     }
 }
 

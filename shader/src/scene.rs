@@ -4,6 +4,8 @@ use crate::buffer::read;
 use crate::data::{
     Bounds, CentredPair, CompactPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
 };
+#[cfg(not(target_arch = "spirv"))]
+use crate::full::Full;
 use glam::{UVec4, Vec3};
 
 /// The launch and what its rays meet.
@@ -19,6 +21,9 @@ pub struct Geometry<'a> {
     pub nodes: &'a [UVec4],
     /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
     pub wide: &'a [WideNode],
+    /// The same for a CPU. Empty unless the method is `wide`.
+    #[cfg(not(target_arch = "spirv"))]
+    pub full: Full<'a>,
     /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
     pub triangles: &'a [UVec4],
     /// Bounds by slot ([`Features::SPLIT`]).

@@ -1,15 +1,15 @@
 //! The binary tree as the collapse sees it: one kind of node, and leaves as small as wide ones.
 
-use eyerays_shader::data::{NodePair, NodeRef, WideNode};
+use eyerays_shader::data::NodeRef;
 
-use crate::{bounds::Bounds, validate::children};
+use crate::bounds::Bounds;
 
 /// What a node is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Left and right child, by their numbers.
     Inner(u32, u32),
-    /// At most [`WideNode::MAX_LEAF`] triangles.
+    /// Triangles, at most as many as the wide nodes' leaves hold.
     Leaf,
 }
 
@@ -30,21 +30,26 @@ pub(crate) struct Binary {
 }
 
 impl Binary {
-    /// The tree of `pairs`, whose slots are in depth-first order. A leaf of more triangles than a wide
-    /// child holds becomes an inner node of two, for which `order` is sorted within the leaf.
-    pub fn of(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Self {
+    /// The tree of `pairs`, whose slots are in depth-first order. A leaf of more triangles than `most`
+    /// becomes an inner node of two, for which `order` is sorted within the leaf.
+    pub fn of(
+        pairs: impl ExactSizeIterator<Item = [(Bounds, NodeRef); 2]>,
+        order: &mut [u32],
+        bounds: &[Bounds],
+        most: u32,
+    ) -> Self {
         if let [only] = order[..] {
             return Binary { nodes: vec![leaf(bounds[only as usize], 0, 1)] };
         }
         let mut nodes = vec![inner(Bounds::EMPTY, 0)];
         nodes.reserve(2 * pairs.len());
         for pair in pairs {
-            nodes.extend(children(pair).map(|(bounds, reference)| node(bounds, reference)));
+            nodes.extend(pair.map(|(bounds, reference)| node(bounds, reference)));
         }
         let mut tree = Binary { nodes };
         for i in 0..tree.nodes.len() {
-            if tree.nodes[i].kind == Kind::Leaf && tree.nodes[i].count > WideNode::MAX_LEAF {
-                tree.part(i, order, bounds);
+            if tree.nodes[i].kind == Kind::Leaf && tree.nodes[i].count > most {
+                tree.part(i, order, bounds, most);
             }
         }
         tree.sum();
@@ -52,10 +57,10 @@ impl Binary {
     }
 
     /// Parts a leaf where that costs least.
-    fn part(&mut self, number: usize, order: &mut [u32], bounds: &[Bounds]) {
+    fn part(&mut self, number: usize, order: &mut [u32], bounds: &[Bounds], most: u32) {
         let Node { first, count, .. } = self.nodes[number];
         let slots = &mut order[first as usize..(first + count) as usize];
-        let half = best_part(slots, bounds);
+        let half = best_part(slots, bounds, most);
         self.nodes[number].kind = Kind::Inner(self.nodes.len() as u32, self.nodes.len() as u32 + 1);
         let (left, right) = slots.split_at(half as usize);
         for (slots, first) in [(left, first), (right, first + half)] {
@@ -93,16 +98,16 @@ fn inner(bounds: Bounds, pair: u32) -> Node {
     Node { bounds, first: 0, count: 0, height: 0, kind: Kind::Inner(2 * pair + 1, 2 * pair + 2) }
 }
 
-/// Sorts a leaf of four or five triangles into two parts of at most [`WideNode::MAX_LEAF`] and of least
+/// Sorts a leaf of four or five triangles into two parts of at most `most` and of least
 /// cost by the surface area heuristic, and returns the first part's length.
-fn best_part(triangles: &mut [u32], bounds: &[Bounds]) -> u32 {
+fn best_part(triangles: &mut [u32], bounds: &[Bounds], most: u32) -> u32 {
     let all = (1u32 << triangles.len()) - 1;
     let members = |set: u32| (0..triangles.len()).filter(move |i| set >> i & 1 == 1);
     let cost = |set: u32| {
         let around = Bounds::around(members(set).map(|i| bounds[triangles[i] as usize]));
         set.count_ones() as f32 * around.half_area()
     };
-    let fits = |set: &u32| [*set, all & !set].iter().all(|s| s.count_ones() <= WideNode::MAX_LEAF);
+    let fits = |set: &u32| [*set, all & !set].iter().all(|s| s.count_ones() <= most);
     // The last triangle is always in the second part, so that no parting is met twice.
     let sets = (1..=all / 2).filter(fits).map(|set| (cost(set) + cost(all & !set), set));
     let (_, set) = sets.min_by(|a, b| a.0.total_cmp(&b.0)).expect("some parting fits");
@@ -123,10 +128,10 @@ mod tests {
     fn a_large_leaf_is_parted_where_the_gap_is() {
         let bounds: Vec<Bounds> = [0.0, 9.0, 1.0, 10.0, 2.0].map(cube).into();
         let mut triangles = [0, 1, 2, 3, 4];
-        assert_eq!(best_part(&mut triangles, &bounds), 2);
+        assert_eq!(best_part(&mut triangles, &bounds, 3), 2);
         assert_eq!(triangles, [1, 3, 0, 2, 4]);
         let mut four = [1, 0, 3, 2];
-        assert_eq!(best_part(&mut four, &bounds), 2);
+        assert_eq!(best_part(&mut four, &bounds, 3), 2);
         assert_eq!(four, [1, 3, 0, 2]);
     }
 }

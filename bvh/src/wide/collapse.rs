@@ -6,11 +6,34 @@
 use eyerays_shader::data::WideNode;
 
 use super::binary::{Binary, Kind, Node};
+use super::layout::MAX_WIDE_DEPTH;
 
 /// Cost of a step through a wide node, which tests eight boxes.
 pub(crate) const NODE: f32 = 1.0;
-/// Cost of a triangle test (the paper's).
-pub(crate) const TRIANGLE: f32 = 0.3;
+
+/// What leaves of wide nodes hold and cost.
+#[derive(Clone, Copy)]
+pub(crate) struct Leaves {
+    /// The most triangles.
+    pub most: u32,
+    /// Cost of a leaf, whatever it holds.
+    pub fixed: f32,
+    /// Cost of each of its triangles.
+    pub triangle: f32,
+}
+
+impl Leaves {
+    /// Those of [`WideNode`]; a triangle's cost is the paper's.
+    pub const WIDE: Leaves = Leaves { most: WideNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
+
+    /// The cost of a leaf of all triangles below a node.
+    fn cost(self, node: &Node) -> f32 {
+        if node.count > self.most {
+            return f32::INFINITY;
+        }
+        node.bounds.half_area() * (self.fixed + node.count as f32 * self.triangle)
+    }
+}
 
 /// Most children of a node, and most roots that a subtree can be shown as.
 const ARITY: usize = WideNode::ARITY;
@@ -40,13 +63,15 @@ type Costs = [f32; ARITY - 1];
 
 impl Plan {
     /// The best choices.
-    pub fn of(tree: &Binary) -> Self {
+    pub fn of(tree: &Binary, leaves: Leaves) -> Self {
         let mut costs: Vec<Costs> = vec![[0.0; ARITY - 1]; tree.nodes.len()];
         let mut choices = vec![Choices([Choices::LEAF; ARITY]); tree.nodes.len()];
         for (i, node) in tree.nodes.iter().enumerate().rev() {
             let (cost, choice) = match node.kind {
-                Kind::Leaf => ([as_leaf(node); ARITY - 1], Choices([Choices::LEAF; ARITY])),
-                Kind::Inner(left, right) => best(node, &costs[left as usize], &costs[right as usize]),
+                Kind::Leaf => ([leaves.cost(node); ARITY - 1], Choices([Choices::LEAF; ARITY])),
+                Kind::Inner(left, right) => {
+                    best(node, leaves.cost(node), &costs[left as usize], &costs[right as usize])
+                }
             };
             (costs[i], choices[i]) = (cost, choice);
         }
@@ -58,6 +83,18 @@ impl Plan {
     pub fn children(&self, tree: &Binary, number: u32, children: &mut Vec<(u32, bool)>) {
         children.clear();
         self.show(tree, number, ARITY, children);
+    }
+
+    /// The children of the wide node that binary node `number` becomes, `level` wide nodes above it: the
+    /// plan's, or if the tree became deeper than [`MAX_WIDE_DEPTH`] by them, [`three_levels`].
+    pub fn children_at(&self, tree: &Binary, number: u32, level: u32, children: &mut Vec<(u32, bool)>) {
+        // With the plan's children, what is left may be one level of pairs lower only.
+        let rest = tree.nodes[number as usize].height.saturating_sub(1).div_ceil(LEVELS);
+        if level + 1 + rest <= MAX_WIDE_DEPTH {
+            self.children(tree, number, children);
+        } else {
+            three_levels(tree, number, children);
+        }
     }
 
     /// Shows a subtree as at most `most` children; as all of them, not as itself.
@@ -94,16 +131,8 @@ pub(crate) fn three_levels(tree: &Binary, number: u32, children: &mut Vec<(u32, 
 /// Levels of the binary tree that fit into any wide node.
 pub(crate) const LEVELS: u32 = WideNode::ARITY.ilog2();
 
-/// The cost of a leaf of all triangles below a node.
-fn as_leaf(node: &Node) -> f32 {
-    if node.count > WideNode::MAX_LEAF {
-        return f32::INFINITY;
-    }
-    node.bounds.half_area() * node.count as f32 * TRIANGLE
-}
-
 /// The best choices for an inner node, given its children's costs.
-fn best(node: &Node, left: &Costs, right: &Costs) -> (Costs, Choices) {
+fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices) {
     let mut choices = [0; ARITY];
     let mut shared = [f32::INFINITY; ARITY];
     for place in 1..ARITY {
@@ -114,7 +143,7 @@ fn best(node: &Node, left: &Costs, right: &Costs) -> (Costs, Choices) {
             }
         }
     }
-    let (leaf, inner) = (as_leaf(node), shared[ARITY - 1] + node.bounds.half_area() * NODE);
+    let inner = shared[ARITY - 1] + node.bounds.half_area() * NODE;
     let mut costs = [leaf.min(inner); ARITY - 1];
     choices[0] = if leaf <= inner { Choices::LEAF } else { Choices::INNER };
     for place in 1..ARITY - 1 {
@@ -174,8 +203,8 @@ mod tests {
         }
         let node = &tree.nodes[number as usize];
         let cost = match (node.kind, most) {
-            (Kind::Leaf, _) => as_leaf(node),
-            (_, 1) => as_leaf(node).min(least_inner(tree, number, memory)),
+            (Kind::Leaf, _) => Leaves::WIDE.cost(node),
+            (_, 1) => Leaves::WIDE.cost(node).min(least_inner(tree, number, memory)),
             _ => least_shared(tree, number, most, memory).min(least(tree, number, most - 1, memory)),
         };
         memory.insert((number, most), cost);
@@ -198,7 +227,8 @@ mod tests {
         for (count, step) in [(2, 2.0), (5, 0.1), (9, 3.0), (40, 0.5), (100, 1.5)] {
             for halve in [|n: usize| n / 2, |_: usize| 1, |n: usize| n.div_ceil(3)] {
                 let tree = tree(&cubes(count, step), halve);
-                let (got, want) = (cost(&tree, &Plan::of(&tree), 0), least_inner(&tree, 0, &mut Memory::new()));
+                let (got, want) =
+                    (cost(&tree, &Plan::of(&tree, Leaves::WIDE), 0), least_inner(&tree, 0, &mut Memory::new()));
                 assert!((got - want).abs() < 1e-3 * want, "{count} cubes {step} apart: {got} {want}");
             }
         }
@@ -209,12 +239,9 @@ mod tests {
         let mut children = Vec::new();
         plan.children(tree, number, &mut children);
         assert!(children.len() <= ARITY);
-        let below =
-            children.iter().map(
-                |&(child, is_leaf)| {
-                    if is_leaf { as_leaf(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
-                },
-            );
+        let below = children.iter().map(|&(child, is_leaf)| {
+            if is_leaf { Leaves::WIDE.cost(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
+        });
         below.sum::<f32>() + tree.nodes[number as usize].bounds.half_area() * NODE
     }
 

@@ -4,12 +4,12 @@ use eyerays_shader::data::{NodePair, NodeRef, WideNode};
 
 use super::{
     binary::{Binary, Node},
-    collapse::{LEVELS, Plan, three_levels},
+    collapse::{LEVELS, Leaves, Plan},
     grid::Grid,
     octant,
     record::{Child, Record},
 };
-use crate::{MAX_DEPTH, bounds::Bounds};
+use crate::{MAX_DEPTH, bounds::Bounds, validate::children};
 
 /// The most wide nodes on a path from the root.
 ///
@@ -31,21 +31,15 @@ pub(crate) struct Wide {
 /// the inner children of a node in a row, and what is below one of them before the next. `order` is
 /// sorted within large leaves of the pairs; [`Wide::renumber`] does the rest.
 pub(crate) fn wide(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Wide {
-    let tree = Binary::of(pairs, order, bounds);
-    let plan = Plan::of(&tree);
+    let tree = Binary::of(pairs.iter().map(children), order, bounds, Leaves::WIDE.most);
+    let plan = Plan::of(&tree, Leaves::WIDE);
     let mut wide = Wide { nodes: vec![nothing()], slots: Vec::with_capacity(order.len()) };
-    let mut children = Vec::new();
+    let mut list = Vec::new();
     let mut open = vec![Open { number: 0, node: 0, level: 0 }];
     while let Some(Open { number, node, level }) = open.pop() {
-        // With the plan's children, what is left may be one level of pairs lower only.
-        let rest = tree.nodes[node as usize].height.saturating_sub(1).div_ceil(LEVELS);
-        if level + 1 + rest <= MAX_WIDE_DEPTH {
-            plan.children(&tree, node, &mut children);
-        } else {
-            three_levels(&tree, node, &mut children);
-        }
+        plan.children_at(&tree, node, level, &mut list);
         let first = open.len();
-        wide.add(number, &tree, &children, |number, node| open.push(Open { number, node, level: level + 1 }));
+        wide.add(number, &tree, &list, |number, node| open.push(Open { number, node, level: level + 1 }));
         open[first..].reverse();
     }
     wide

@@ -6,12 +6,14 @@
 
 mod binary;
 mod collapse;
+mod full;
 mod grid;
 mod layout;
 mod octant;
 mod record;
 mod validate;
 
+pub use full::FullBvh;
 pub use layout::MAX_WIDE_DEPTH;
 pub use validate::validate_wide;
 

@@ -2,6 +2,8 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
+mod full;
+
 use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, References, build, split};
 use eyerays_shader::data::{Bounds, MAX_LEAF, NodePair, NodeRef, Triangle, WideNode, numbers};
 use glam::{Vec3, vec3};
@@ -128,6 +130,7 @@ pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
     walk.node(0, 1);
     assert_eq!(walk.met as usize, bvh.wide.len(), "wide nodes");
     assert_eq!(walk.next as usize, references.list.len(), "slots of wide nodes");
+    full::check(&bvh);
     bvh
 }
 

@@ -6,7 +6,7 @@ use eyerays_shader::real::{Scalar, Vectors};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
-    self, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile, WideNodes,
+    self, Cut, FullNodes, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 
@@ -65,7 +65,7 @@ impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
     }
 }
 
-/// Every ray by itself through wide nodes, whose boxes and triangles take all lanes.
+/// Every ray by itself through nodes of eight children, whose boxes and triangles take all lanes.
 struct Nodes<'a, R: Scalar>(Slots<'a, R, ()>);
 
 fn nodes<R: Scalar>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
@@ -75,7 +75,7 @@ fn nodes<R: Scalar>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: J
 impl<R: Scalar> Task<R> for Nodes<'_, R> {
     #[inline(always)]
     fn run<V: Vectors<R>>(self) {
-        one_by_one::<R, WideNodes<V>>(&self.0.geometry, self.0.slots, self.0.job);
+        one_by_one::<R, FullNodes<V>>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
 

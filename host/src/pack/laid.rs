@@ -1,10 +1,11 @@
 //! A scene as the kernels of a processor see it.
 
 use eyerays_shader::data::{Features, Frame};
+use eyerays_shader::full::Full;
 use eyerays_shader::scene::Geometry;
 
 use super::{NodeWords, Packed, TriangleWords};
-use crate::method::Traversal;
+use crate::method::{Method, Traversal};
 
 /// A scene laid out for a traversal, once for all launches.
 pub struct Laid<'a> {
@@ -14,13 +15,18 @@ pub struct Laid<'a> {
     pub traversal: Traversal,
     nodes: NodeWords<'a>,
     triangles: TriangleWords<'a>,
+    full: Full<'a>,
 }
 
 impl<'a> Laid<'a> {
     /// Lays out what the traversal does not take as it is packed.
     pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
         let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
-        Laid { packed, traversal, nodes, triangles }
+        let full = match traversal.method {
+            Method::Auto | Method::Wide => packed.full().borrow(),
+            _ => Full::default(),
+        };
+        Laid { packed, traversal, nodes, triangles, full }
     }
 
     /// What the scene and the traversal ask of kernels.
@@ -36,6 +42,7 @@ impl<'a> Laid<'a> {
             tuning: self.traversal.tuning,
             nodes: &self.nodes.0,
             wide: &self.packed.wide,
+            full: self.full,
             triangles: &self.triangles.0,
             bounds: &self.packed.bounds,
         }

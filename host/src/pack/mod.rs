@@ -1,8 +1,9 @@
 //! From a scene in world units to the records that devices hold.
 
+use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{Quality, Statistics};
+use eyerays_bvh::{FullBvh, Quality, Statistics};
 use eyerays_shader::camera;
 use eyerays_shader::data::{
     Bounds, CentredPair, Features, Frame, Light as LightRecord, Material as MaterialRecord, Normals, Triangle,
@@ -51,6 +52,7 @@ pub struct Packed {
     pub build_time: Duration,
     /// Every launch's record but for its region and sample.
     frame: Frame,
+    full: OnceLock<FullBvh>,
 }
 
 /// A rectangle of the image in pixels.
@@ -100,7 +102,13 @@ impl Packed {
             scale,
             statistics,
             build_time,
+            full: OnceLock::new(),
         })
+    }
+
+    /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
+    pub fn full(&self) -> &FullBvh {
+        self.full.get_or_init(|| FullBvh::of(&self.nodes, &self.triangles, &self.bounds))
     }
 
     /// Can a primary ray's light come from further rays?

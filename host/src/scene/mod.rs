@@ -33,8 +33,8 @@ mod tests;
 pub use load::load;
 pub(crate) use load::read_table;
 pub(crate) use range::Range;
-pub(crate) use table::Table;
 pub use suggest::suggest;
+pub(crate) use table::Table;
 
 use eyerays_shader::data::NodeRef;
 use glam::Vec3;

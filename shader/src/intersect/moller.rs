@@ -5,17 +5,14 @@
 //! allowed: there is nothing that it could break.
 
 use super::Crossing;
-use crate::ray::Shear;
 use crate::real::{Real, V3};
 
-/// As [`cross`](super::cross), with the same scale of depth and weights: a triangle's vertices relative to the
-/// ray's origin, and `along`, the inverse of the direction's major component.
+/// As [`cross`](super::cross), with the same scale of depth and weights.
 ///
 /// The direction is taken from the shear, in units of its major component: (x, y, 1) with that axis last.
 #[inline(always)]
-pub fn moller<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -> Crossing<R> {
-    let (a, b, c) = (shear.cycle(a), shear.cycle(b), shear.cycle(c));
-    let (zero, direction) = (R::splat(0.0), V3::new(shear.x, shear.y, R::splat(1.0)));
+pub fn moller<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): (R, R), along: R) -> Crossing<R> {
+    let (zero, direction) = (R::splat(0.0), V3::new(x, y, R::splat(1.0)));
     let (second, third) = (b - a, c - a);
     let across = direction.cross(third);
     let area = second.dot(across);
@@ -37,13 +34,13 @@ mod tests {
     use glam::Vec3;
     use proptest::prelude::*;
 
-    type Test<R> = fn(V3<R>, V3<R>, V3<R>, Shear<R>, R) -> Crossing<R>;
+    type Test<R> = fn(V3<R>, V3<R>, V3<R>, (R, R), R) -> Crossing<R>;
 
     fn run<R: Real>(test: Test<R>, t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Crossing<R> {
         let v = |p: [f32; 3]| V3::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
-        let [a, b, c] = t.map(|p| v(p) - ray.origin);
-        test(a, b, c, ray.shear, ray.shear.cycle(ray.inverse).z)
+        let [a, b, c] = t.map(|p| ray.shear.cycle(v(p) - ray.origin));
+        test(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z)
     }
 
     proptest! {

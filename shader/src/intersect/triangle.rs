@@ -16,7 +16,6 @@
 //! [`BOX_PADDING`](crate::data::BOX_PADDING) = 2^-20 covers, so a triangle's own box does not reject
 //! what the test accepts.
 
-use crate::ray::Shear;
 use crate::real::{FAINT, Mask, Real, SMALL, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
@@ -38,16 +37,16 @@ pub struct Crossing<R: Real> {
     pub area: R,
 }
 
-/// Crosses a triangle, its vertices relative to the ray's origin, with a ray.
-/// `along` is the inverse of the direction's major component.
+/// Crosses a triangle, its vertices relative to the ray's origin, with a ray. Their axes are cycled
+/// ([`Shear::cycle`](crate::ray::Shear::cycle)); `shear` is how far the first two move along the third, and `along` the
+/// inverse of the direction's major component.
 // A function of its own on the GPU: the build forbids contraction inside such functions.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -> Crossing<R> {
-    let (a, b, c) = (shear.cycle(a), shear.cycle(b), shear.cycle(c));
-    let (ax, ay) = sheared(a, &shear);
-    let (bx, by) = sheared(b, &shear);
-    let (cx, cy) = sheared(c, &shear);
+pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Crossing<R> {
+    let (ax, ay) = sheared(a, shear);
+    let (bx, by) = sheared(b, shear);
+    let (cx, cy) = sheared(c, shear);
     let wa = cx * by - cy * bx;
     let wb = ax * cy - ay * cx;
     let wc = bx * ay - by * ax;
@@ -68,8 +67,8 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: Shear<R>, along: R) -
 /// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray. What is below 2^-40 is
 /// zero, so that no product underflows.
 #[inline(always)]
-pub fn sheared<R: Real>(p: V3<R>, shear: &Shear<R>) -> (R, R) {
-    ((p.x - shear.x * p.z).settle(SMALL), (p.y - shear.y * p.z).settle(SMALL))
+pub fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
+    ((p.x - x * p.z).settle(SMALL), (p.y - y * p.z).settle(SMALL))
 }
 
 #[cfg(not(target_arch = "spirv"))]
@@ -109,8 +108,8 @@ mod tests {
     fn hit(t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Option<(f32, f32, f32, bool)> {
         let v = |p: [f32; 3]| V::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
-        let [a, b, c] = t.map(|p| v(p) - ray.origin);
-        let x = cross(a, b, c, ray.shear, ray.shear.cycle(ray.inverse).z);
+        let [a, b, c] = t.map(|p| ray.shear.cycle(v(p) - ray.origin));
+        let x = cross(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
         x.inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
     }
 

@@ -67,8 +67,6 @@ impl Real for Fast {
 }
 
 impl Scalar for Fast {
-    #[cfg(target_arch = "spirv")]
-    type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
     #[cfg(not(target_arch = "spirv"))]

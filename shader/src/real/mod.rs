@@ -14,7 +14,8 @@ mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
 mod fast;
-pub mod lane;
+#[cfg(not(target_arch = "spirv"))]
+mod lanes;
 pub mod power;
 mod single;
 pub mod soft;
@@ -25,6 +26,10 @@ mod wide;
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
 pub use fast::Fast;
+#[cfg(target_arch = "x86_64")]
+pub use lanes::Avx512;
+#[cfg(not(target_arch = "spirv"))]
+pub use lanes::{Lanes, Native, Vectors};
 pub use vector::V3;
 #[cfg(not(target_arch = "spirv"))]
 pub use wide::{Wide, WideIndex, WideMask};
@@ -33,7 +38,6 @@ pub use wide::{Wide, WideIndex, WideMask};
 use crate::data::Features;
 use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
-use glam::UVec4;
 
 /// One truth value a lane.
 pub trait Mask: Copy + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
@@ -172,95 +176,12 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     }
 }
 
-/// Lanes over the numbers of `S`: several on a CPU with vectors, `S` itself on a GPU, where other rays fill
-/// the lanes.
-pub trait Lanes<S: Scalar>: Real {
-    /// How many; [`Wide`] has a power of two.
-    const COUNT: u32;
-
-    /// A number in every lane.
-    fn all(x: S) -> Self;
-    /// A number for each lane, from the first on.
-    fn of(number: impl Fn(usize) -> S) -> Self;
-    /// An integer for each lane, from the first on.
-    fn indices(index: impl Fn(usize) -> u32) -> Self::Index;
-    /// Lane `i`.
-    fn lane(&self, i: usize) -> S;
-    /// The integer of lane `i`.
-    fn index_of(index: Self::Index, i: usize) -> u32;
-    /// The numbers of a record for each lane, from the first on.
-    fn vectors(records: &[UVec4]) -> V3<Self>;
-    /// A bit a lane, the first in the lowest.
-    fn bits(mask: Self::Mask) -> u32;
-    /// The same truth in every lane.
-    fn every(holds: bool) -> Self::Mask;
-}
-
-/// Numbers that the eight boxes of a wide node are tested with.
-pub trait Octet<S: Scalar>: Lanes<S> {
-    /// The numbers of [`Lanes::COUNT`] bytes (a divisor of 8) from byte `first` on of two words, the lowest
-    /// byte first.
-    fn bytes(words: [u32; 2], first: u32) -> Self;
-    /// [`Octet::bytes`] of `low` and `high`, or of `high` and `low` if `swapped`.
-    #[inline(always)]
-    fn sides(swapped: bool, low: [u32; 2], high: [u32; 2], first: u32) -> (Self, Self) {
-        let (near, far) = if swapped { (high, low) } else { (low, high) };
-        (Self::bytes(near, first), Self::bytes(far, first))
-    }
-    /// Numbers that are kept to be asked for one of them; nothing where there is no room for them.
-    type Kept: Copy;
-    /// Keeps the lanes' numbers.
-    fn keep(self) -> Self::Kept;
-    /// Number `i` of those kept, or one less than any of them.
-    fn kept(kept: &Self::Kept, i: u32) -> S;
-    /// What waits at each child if it is met.
-    type Children: Copy;
-    /// From a byte a child: how many bits wait (3 to 0) in its upper three bits, where they lie in the lower
-    /// five. Places from 24 on are turned by `inverted`.
-    fn children(words: [u32; 2], inverted: u32) -> Self::Children;
-    /// All that waits of the [`Lanes::COUNT`] children from `first` on that are met.
-    fn waiting(met: Self::Mask, children: &Self::Children, first: u32) -> u32;
-}
-
-/// The vectors that a processor has for the numbers of `S`.
-pub trait Vectors<S: Scalar> {
-    /// What tests the boxes of a wide node.
-    type Eight: Octet<S>;
-    /// What tests the triangles of a wide node.
-    #[cfg(not(target_arch = "spirv"))]
-    type Four: Lanes<S>;
-    /// What follows rays together.
-    #[cfg(not(target_arch = "spirv"))]
-    type Packet: Lanes<S>;
-}
-
-/// What every processor of the target has.
-pub struct Native;
-
-impl<S: Scalar> Vectors<S> for Native {
-    type Eight = S::Eight;
-    #[cfg(not(target_arch = "spirv"))]
-    type Four = S::Four;
-    #[cfg(not(target_arch = "spirv"))]
-    type Packet = S::Packet;
-}
-
-/// A processor with AVX-512.
-#[cfg(target_arch = "x86_64")]
-pub struct Avx512;
-
-#[cfg(target_arch = "x86_64")]
-impl Vectors<f32> for Avx512 {
-    type Eight = <Avx2 as Vectors<f32>>::Eight;
-    type Four = Wide<4>;
-    type Packet = Wide<16>;
-}
-
 /// A single lane, as shading takes it.
 pub trait Scalar: Real<Mask = bool, Index = u32> {
-    /// What tests the boxes of a wide node.
-    type Eight: Octet<Self>;
-    /// What tests the triangles of a wide node.
+    /// What tests the boxes of a node of eight.
+    #[cfg(not(target_arch = "spirv"))]
+    type Eight: Lanes<Self>;
+    /// What tests the triangles of its leaves.
     #[cfg(not(target_arch = "spirv"))]
     type Four: Lanes<Self>;
     /// What follows rays together.

@@ -163,8 +163,6 @@ impl Real for f32 {
 }
 
 impl Scalar for f32 {
-    #[cfg(target_arch = "spirv")]
-    type Eight = Self;
     #[cfg(not(target_arch = "spirv"))]
     type Eight = super::Wide<8>;
     #[cfg(not(target_arch = "spirv"))]

@@ -3,9 +3,8 @@
 use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
-use super::{Fast, Lanes, Mask, Octet, Real, V3};
+use super::{Fast, Lanes, Mask, Real, V3};
 use crate::ray::{Hit, Ray};
-use glam::UVec4;
 
 /// `N` numbers, one a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -143,12 +142,6 @@ impl<const N: usize> Real for Wide<N> {
     }
 }
 
-/// The bytes of two words, the lowest first.
-#[inline(always)]
-fn bytes(words: [u32; 2]) -> [u8; 8] {
-    (u64::from(words[1]) << 32 | u64::from(words[0])).to_le_bytes()
-}
-
 macro_rules! lanes {
     ($scalar:ty, $wrap:expr, $inner:expr) => {
         impl<const N: usize> Lanes<$scalar> for Wide<N> {
@@ -175,47 +168,17 @@ macro_rules! lanes {
                 index.0[i]
             }
             #[inline(always)]
-            fn vectors(records: &[UVec4]) -> V3<Self> {
-                let records = &records[..N];
-                let x = Wide(from_fn(|i| f32::from_bits(records[i].x)));
-                let y = Wide(from_fn(|i| f32::from_bits(records[i].y)));
-                V3::new(x, y, Wide(from_fn(|i| f32::from_bits(records[i].z))))
+            fn taken(numbers: &[f32]) -> Self {
+                let numbers = &numbers[..N];
+                Wide(from_fn(|i| numbers[i]))
+            }
+            #[inline(always)]
+            fn put(self, numbers: &mut [f32]) {
+                numbers[..N].copy_from_slice(&self.0);
             }
             #[inline(always)]
             fn bits(mask: WideMask<N>) -> u32 {
                 (0..N).map(|i| (mask.0[i] & 1) << i).sum()
-            }
-            #[inline(always)]
-            fn every(holds: bool) -> WideMask<N> {
-                WideMask([bits(holds); N])
-            }
-        }
-
-        impl Octet<$scalar> for Wide<8> {
-            #[inline(always)]
-            fn bytes(words: [u32; 2], _first: u32) -> Self {
-                Wide(bytes(words).map(f32::from))
-            }
-            type Kept = [f32; 8];
-            #[inline(always)]
-            fn keep(self) -> [f32; 8] {
-                self.0
-            }
-            #[inline(always)]
-            fn kept(kept: &[f32; 8], i: u32) -> $scalar {
-                $wrap(kept[i as usize & 7])
-            }
-            type Children = [u32; 8];
-            #[inline(always)]
-            fn children(words: [u32; 2], inverted: u32) -> [u32; 8] {
-                bytes(words).map(|child| {
-                    let turned = if child & 24 == 24 { inverted } else { 0 };
-                    u32::from(child >> 5) << ((u32::from(child) & 31) ^ turned)
-                })
-            }
-            #[inline(always)]
-            fn waiting(met: WideMask<8>, children: &[u32; 8], _first: u32) -> u32 {
-                (0..8).fold(0, |all, i| all | met.0[i] & children[i])
             }
         }
     };

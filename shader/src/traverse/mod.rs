@@ -5,16 +5,19 @@
 //! than the tests of both may err, so it is entered no later, and no order of visits can cull the winner.
 
 pub mod cursor;
+#[cfg(not(target_arch = "spirv"))]
+mod full;
 mod hybrid;
 mod if_if;
 mod packet;
 pub mod resumable;
 mod speculative;
 pub mod step;
-mod waiting;
 mod while_while;
 mod wide;
 
+#[cfg(not(target_arch = "spirv"))]
+pub use full::FullNodes;
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;

@@ -3,8 +3,10 @@
 use super::Query;
 use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
+#[cfg(not(target_arch = "spirv"))]
+use crate::full::Block;
 use crate::intersect::{Crossing, Span, cross, moller, slab};
-use crate::ray::{Hit, Ray, Shear};
+use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
@@ -85,74 +87,68 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
     Q::on_triangle();
     let triangle = geometry.triangle(leaf.index());
     let [a, b, c] = triangle.vertices();
-    let from = |p| V3::splat(p) - ray.origin;
-    let along = ray.shear.cycle(ray.inverse).z;
-    let crossing = crossed::<R, R>(geometry.features, from(a), from(b), from(c), ray.shear, along);
+    let from = |p| ray.shear.cycle(V3::splat(p) - ray.origin);
+    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
+    let crossing = crossed::<R, R>(geometry.features, [from(a), from(b), from(c)], shear, along);
     if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
 }
 
-/// Tests as many of a run's triangles as there are lanes, from the last on: those of the set bits of `waiting`,
-/// counted from slot `first`. Returns the bits that still wait.
+/// Tests the triangles of a block, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-pub fn several<Q: Query, R: Scalar, F: Lanes<R>>(
-    geometry: &Geometry<'_>,
-    first: u32,
-    waiting: u32,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) -> u32 {
-    let (mut rest, mut place) = (waiting, 0);
-    let mut slots = [0; 4];
-    for slot in slots.iter_mut().take(F::COUNT as usize) {
-        // Lanes beyond the last triangle test it again.
-        if rest != 0 {
-            Q::on_triangle();
-            place = 31 - rest.leading_zeros();
-            rest &= !(1 << place);
-        }
-        *slot = first + place;
-    }
-    let (mut a, mut b, mut c) = ([UVec4::ZERO; 4], [UVec4::ZERO; 4], [UVec4::ZERO; 4]);
-    for i in 0..F::COUNT as usize {
-        let triangle = geometry.triangle(slots[i]);
-        (a[i], b[i], c[i]) = (triangle.a, triangle.b, triangle.c);
-    }
-    let (a, b, c) = (F::vectors(&a), F::vectors(&b), F::vectors(&c));
-    let origin = V3::<F>::new(F::all(ray.origin.x), F::all(ray.origin.y), F::all(ray.origin.z));
+pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
+    let origin = ray.shear.cycle(ray.origin);
+    let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
     let along = F::all(ray.shear.cycle(ray.inverse).z);
-    let (a, b, c) = (a - origin, b - origin, c - origin);
-    let crossing = crossed::<R, F>(geometry.features, a, b, c, ray.shear.spread(), along);
-    let mut inside = F::bits(crossing.inside);
-    while inside != 0 {
-        let lane = inside.trailing_zeros() as usize;
-        inside &= inside - 1;
-        let triangle = geometry.triangle(slots[lane]);
-        if counts::<Q>(geometry.features, &triangle) {
-            keep::<Q, R>(geometry, &triangle, slots[lane], &crossing.lane(lane), ray, hit);
+    let mut first = 0;
+    while first < Block::TRIANGLES {
+        Q::on_triangle();
+        let a = vertex::<R, F>(block, 0, first, ray, origin);
+        let b = vertex::<R, F>(block, 1, first, ray, origin);
+        let c = vertex::<R, F>(block, 2, first, ray, origin);
+        let crossing = crossed::<R, F>(geometry.features, [a, b, c], shear, along);
+        let mut inside = F::bits(crossing.nearer(F::all(hit.t)));
+        while inside != 0 {
+            let lane = inside.trailing_zeros() as usize;
+            inside &= inside - 1;
+            let slot = block.slots[(first + lane) & 3];
+            let triangle = geometry.triangle(slot);
+            if counts::<Q>(geometry.features, &triangle) {
+                keep::<Q, R>(geometry, &triangle, slot, &crossing.lane(lane), ray, hit);
+            }
         }
+        first += F::COUNT as usize;
     }
-    rest
 }
 
-/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice.
+/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see [`cross`].
 #[inline(always)]
-fn crossed<R: Real, F: Real>(
-    features: Features,
-    a: V3<F>,
-    b: V3<F>,
-    c: V3<F>,
-    shear: Shear<F>,
-    along: F,
-) -> Crossing<F> {
+fn crossed<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Crossing<F> {
     if R::CHOOSES && features.has(Features::MOLLER) {
         moller(a, b, c, shear, along)
     } else {
         cross(a, b, c, shear, along)
     }
 }
+
+/// A vertex of the block's triangles from `first` on, relative to the ray's origin, both with their axes cycled.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn vertex<R: Scalar, F: Lanes<R>>(block: &Block, vertex: usize, first: usize, ray: &Ray<R>, origin: V3<R>) -> V3<F> {
+    let numbers = &block.vertices[vertex];
+    let axis = AXES[ray.shear.major()];
+    V3::new(
+        F::taken(&numbers[axis[0]][first..]) - F::all(origin.x),
+        F::taken(&numbers[axis[1]][first..]) - F::all(origin.y),
+        F::taken(&numbers[axis[2]][first..]) - F::all(origin.z),
+    )
+}
+
+/// The axes in their order, given which is the third.
+#[cfg(not(target_arch = "spirv"))]
+const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
 #[inline(always)]

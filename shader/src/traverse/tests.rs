@@ -2,10 +2,11 @@
 
 use super::step::{self, occluded};
 use super::{
-    Closest, Cut, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative, StackMax,
-    WhileWhile, WideNodes,
+    Closest, Cut, FullNodes, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative,
+    StackMax, WhileWhile, WideNodes,
 };
 use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
+use crate::full::{Block, Full, FullNode, FullRef};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Lanes, Real, Scalar, V3, Wide};
 use crate::scene::Geometry;
@@ -77,10 +78,38 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
     nodes
 }
 
+/// The same in full precision, by eighths down to blocks, with the boxes that there must be.
+fn build_full(triangles: &[Triangle]) -> (Vec<FullNode>, Vec<Block>) {
+    let (mut nodes, mut blocks) = (vec![FullNode::EMPTY], Vec::new());
+    let mut open = vec![(0, 0..triangles.len())];
+    while let Some((node, range)) = open.pop() {
+        let step = range.len().div_ceil(8).max(Block::TRIANGLES);
+        for (child, first) in range.clone().step_by(step).enumerate() {
+            let part = first..(first + step).min(range.end);
+            let boxes = triangles[part.clone()].iter().map(Triangle::bounds);
+            let (least, greatest) = boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).expect("a part has triangles");
+            let planes = [least - FullNode::MARGIN, greatest + FullNode::MARGIN];
+            for (axis, side) in (0..6).map(|i| (i / 2, i % 2)) {
+                nodes[node].planes[axis][side][child] = planes[side][axis];
+            }
+            nodes[node].children[child] = if part.len() <= Block::TRIANGLES {
+                blocks.push(Block::of(part.map(|slot| (slot as u32, &triangles[slot]))));
+                FullRef::leaf(blocks.len() as u32 - 1)
+            } else {
+                nodes.push(FullNode::EMPTY);
+                open.push((nodes.len() - 1, part));
+                FullRef::inner(nodes.len() as u32 - 1)
+            };
+        }
+    }
+    (nodes, blocks)
+}
+
 struct World {
     triangles: Vec<Triangle>,
     nodes: Vec<CentredPair>,
     wide: Vec<WideNode>,
+    full: (Vec<FullNode>, Vec<Block>),
     words: Vec<UVec4>,
     frame: Frame,
     features: Features,
@@ -90,14 +119,15 @@ impl World {
     fn new(triangles: Vec<Triangle>, features: u32) -> Self {
         let nodes = build(&triangles).iter().map(CentredPair::from).collect();
         let words = bytemuck::cast_slice(&triangles).to_vec();
-        let wide = build_wide(&triangles);
-        World { triangles, nodes, wide, words, frame: Frame::zeroed(), features: Features(features) }
+        let (wide, full) = (build_wide(&triangles), build_full(&triangles));
+        World { triangles, nodes, wide, full, words, frame: Frame::zeroed(), features: Features(features) }
     }
 
     fn geometry(&self) -> Geometry<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
         let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
-        Geometry { frame, features: self.features, tuning, nodes, wide, triangles, bounds: &[] }
+        let full = Full { nodes: &self.full.0, blocks: &self.full.1 };
+        Geometry { frame, features: self.features, tuning, nodes, wide, full, triangles, bounds: &[] }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
@@ -150,6 +180,7 @@ fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin:
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile<Alone>, R>(world, origin, direction);
     check::<WideNodes, R>(world, origin, direction);
+    check::<FullNodes, R>(world, origin, direction);
     check::<Speculative<Alone>, R>(world, origin, direction);
     check::<Packet<Alone>, R>(world, origin, direction);
     check::<Hybrid<Alone, StackMax, Sequential>, R>(world, origin, direction);
@@ -271,7 +302,7 @@ proptest! {
             let rays = rays_of(ends, false);
             let world = World::new(triangles, Features::REFRACTION);
             for (origin, direction) in &rays {
-                check::<WideNodes<Avx2>, f32>(&world, *origin, *direction);
+                check::<FullNodes<Avx2>, f32>(&world, *origin, *direction);
             }
             check_together::<Register>(&world, &rays, count);
         }

@@ -7,27 +7,19 @@
 //! triangle's own box by 2^-22 times it; the quantised boxes' margin of 2^-19 covers both, so a node is
 //! entered no later than any triangle's own box below it, and no order of visits can cull a hit.
 
-use core::marker::PhantomData;
-
 use super::resumable::{Progress, Resumable, follow};
 use super::step::occluded;
-#[cfg(not(target_arch = "spirv"))]
-use super::step::several;
-#[cfg(target_arch = "spirv")]
 use super::step::triangle;
-use super::waiting::Waiting;
 use super::{Method, Query};
 use crate::buffer::read;
-#[cfg(target_arch = "spirv")]
-use crate::data::NodeRef;
-use crate::data::{WideNode, numbers};
+use crate::data::{NodeRef, STACK, WideNode, numbers};
 use crate::ray::{Hit, Ray};
-use crate::real::{Native, Octet, Scalar, V3, Vectors};
+use crate::real::{Scalar, V3};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
-/// See the module. `V` are the vectors that test boxes and triangles.
-pub struct WideNodes<V = Native>(PhantomData<V>);
+/// See the module.
+pub struct WideNodes;
 
 /// Children that wait: inner nodes of one parent, or its triangles.
 #[derive(Clone, Copy)]
@@ -40,7 +32,6 @@ struct Group {
 }
 
 const NODES: u32 = 0xff00_0000;
-const SIBLINGS: u32 = 0xff;
 
 impl Group {
     const NOTHING: Group = Group { first: 0, waiting: 0 };
@@ -80,24 +71,21 @@ impl Progress for Groups {
 
 impl Groups {
     /// Takes the nearest node that waits in hand; the rest of its group waits on. `inverted` is what the
-    /// ray's order turns slots by. [`NOTHING`] if that node is known to lie beyond `limit`.
+    /// ray's order turns slots by.
     #[inline(always)]
-    fn take<R: Scalar, E: Octet<R>>(&mut self, inverted: u32, limit: R, stack: &mut Waiting<R, E>) -> u32 {
+    fn take(&mut self, inverted: u32, stack: &mut Stack) -> u32 {
         let mut group = self.nodes;
         if !group.has_nodes() {
             self.depth -= 1;
-            (group.first, group.waiting) = stack.get(self.depth);
+            let at = 2 * self.depth as usize & (2 * STACK - 1);
+            (group.first, group.waiting) = (stack[at], stack[at + 1]);
         }
         let place = 31 - group.waiting.leading_zeros();
         group.waiting &= !(1 << place);
         let slot = (place - 24) ^ inverted;
-        // The root alone is none of its group's inner nodes.
-        if group.waiting & SIBLINGS != 0 && stack.is_beyond(self.depth, slot, limit) {
-            self.nodes = group;
-            return NOTHING;
-        }
         if group.has_nodes() {
-            stack.put(self.depth, group.first, group.waiting);
+            let at = 2 * self.depth as usize & (2 * STACK - 1);
+            (stack[at], stack[at + 1]) = (group.first, group.waiting);
             self.depth += 1;
         }
         // The siblings before it.
@@ -105,13 +93,13 @@ impl Groups {
     }
 }
 
-/// No node.
-const NOTHING: u32 = u32::MAX;
+/// Groups that wait, two words each.
+type Stack = [u32; 2 * STACK];
 
-impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
+impl<R: Scalar> Resumable<R> for WideNodes {
     type Cursor = Groups;
-    type Stack = Waiting<R, V::Eight>;
-    const EMPTY: Self::Stack = Waiting::NONE;
+    type Stack = Stack;
+    const EMPTY: Stack = [0; 2 * STACK];
 
     #[inline(always)]
     fn step<Q: Query>(
@@ -122,18 +110,15 @@ impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
         stack: &mut Self::Stack,
     ) {
         if cursor.triangles.waiting == 0 {
-            let node = cursor.take::<R, V::Eight>(inverted(ray), hit.t, stack);
-            if node == NOTHING {
-                return;
-            }
+            let node = cursor.take(inverted(ray), stack);
             let node = read(geometry.wide, node);
             Q::on_boxes(WideNode::ARITY as u32);
-            let near;
-            (cursor.nodes, cursor.triangles, near) = open::<R, V>(&node, ray, hit);
-            stack.enter(cursor.depth, near);
+            (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
         }
         if cursor.triangles.waiting != 0 {
-            cursor.triangles.waiting = triangles::<Q, R, V>(geometry, cursor.triangles, ray, hit);
+            let place = 31 - cursor.triangles.waiting.leading_zeros();
+            triangle::<Q, R>(geometry, NodeRef::leaf(cursor.triangles.first + place, 1), ray, hit);
+            cursor.triangles.waiting &= !(1 << place);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -141,7 +126,7 @@ impl<R: Scalar, V: Vectors<R>> Resumable<R> for WideNodes<V> {
     }
 }
 
-impl<R: Scalar, V: Vectors<R>> Method<R> for WideNodes<V> {
+impl<R: Scalar> Method<R> for WideNodes {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
@@ -159,67 +144,40 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar, V: Vectors<R>>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group, V::Eight) {
-    let opening = Opening::<R, V::Eight>::new(node, ray, hit.t);
+fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
+    let opening = Opening::<R>::new(node, ray, hit.t);
     // A loop is not always unrolled.
-    let (first, near) = opening.turn(0);
-    let waiting = first
-        | opening.turn(1).0
-        | opening.turn(2).0
-        | opening.turn(3).0
-        | opening.turn(4).0
-        | opening.turn(5).0
-        | opening.turn(6).0
-        | opening.turn(7).0;
+    let waiting = opening.waiting(0)
+        | opening.waiting(1)
+        | opening.waiting(2)
+        | opening.waiting(3)
+        | opening.waiting(4)
+        | opening.waiting(5)
+        | opening.waiting(6)
+        | opening.waiting(7);
     let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
-    (nodes, Group { first: node.children.y, waiting: waiting & !NODES }, near)
-}
-
-/// Tests the triangle with the highest bit of a group and returns the others' bits.
-#[cfg(target_arch = "spirv")]
-#[inline(always)]
-fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
-    geometry: &Geometry<'_>,
-    group: Group,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) -> u32 {
-    let place = 31 - group.waiting.leading_zeros();
-    triangle::<Q, R>(geometry, NodeRef::leaf(group.first + place, 1), ray, hit);
-    group.waiting & !(1 << place)
-}
-
-/// Tests the triangles with the highest bits of a group and returns the others' bits.
-#[cfg(not(target_arch = "spirv"))]
-#[inline(always)]
-fn triangles<Q: Query, R: Scalar, V: Vectors<R>>(
-    geometry: &Geometry<'_>,
-    group: Group,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) -> u32 {
-    several::<Q, R, V::Four>(geometry, group.first, group.waiting, ray, hit)
+    (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
 }
 
 /// A node in a ray's terms.
-struct Opening<R: Scalar, E: Octet<R>> {
+struct Opening<R: Scalar> {
     /// Where the ray meets the grid's origin.
     start: V3<R>,
     /// How far it is to the next plane.
     step: V3<R>,
     /// Where the ray ends.
     limit: R,
-    /// Bytes of the lesser planes, an axis after the other.
-    low: [[u32; 2]; 3],
-    /// Bytes of the greater planes.
-    high: [[u32; 2]; 3],
-    /// Does the ray enter by the greater ones?
-    down: [bool; 3],
-    /// What waits at each child if it is met.
-    children: E::Children,
+    /// Bytes of the planes that the ray enters by, an axis after the other.
+    near: [[u32; 2]; 3],
+    /// Bytes of the planes that it leaves by.
+    far: [[u32; 2]; 3],
+    /// Bytes of how many bits wait (3 to 0) at each child.
+    bits: [u32; 2],
+    /// Bytes of where they wait.
+    places: [u32; 2],
 }
 
-impl<R: Scalar, E: Octet<R>> Opening<R, E> {
+impl<R: Scalar> Opening<R> {
     #[inline(always)]
     fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
@@ -227,31 +185,58 @@ impl<R: Scalar, E: Octet<R>> Opening<R, E> {
         let first = |q: UVec4| [q.x, q.y];
         let last = |q: UVec4| [q.z, q.w];
         let zero = R::splat(0.0);
+        let x = sides(ray.inverse.x.lt(zero), first(node.low_x_low_y), last(node.low_z_high_x));
+        let y = sides(ray.inverse.y.lt(zero), last(node.low_x_low_y), first(node.high_y_high_z));
+        let z = sides(ray.inverse.z.lt(zero), first(node.low_z_high_x), last(node.high_y_high_z));
+        let (children, inverted) = (last(node.children), inverted(ray));
         Opening {
             start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
             step: scale.times(ray.inverse),
             limit,
-            low: [first(node.low_x_low_y), last(node.low_x_low_y), first(node.low_z_high_x)],
-            high: [last(node.low_z_high_x), first(node.high_y_high_z), last(node.high_y_high_z)],
-            down: [ray.inverse.x.lt(zero), ray.inverse.y.lt(zero), ray.inverse.z.lt(zero)],
-            children: E::children(last(node.children), inverted(ray)),
+            near: [x.0, y.0, z.0],
+            far: [x.1, y.1, z.1],
+            bits: [(children[0] >> 5) & 0x0707_0707, (children[1] >> 5) & 0x0707_0707],
+            places: [places(children[0], inverted), places(children[1], inverted)],
         }
     }
 
-    /// What waits of a box and those that are tested with it, if it is the first of them; and where the ray
-    /// enters these boxes.
+    /// What waits of a child if its box is met.
     #[inline(always)]
-    fn turn(&self, first: u32) -> (u32, E) {
-        if !first.is_multiple_of(E::COUNT) {
-            return (0, E::splat(0.0));
+    fn waiting(&self, child: u32) -> u32 {
+        let near = V3::new(plane(self.near[0], child), plane(self.near[1], child), plane(self.near[2], child));
+        let far = V3::new(plane(self.far[0], child), plane(self.far[1], child), plane(self.far[2], child));
+        let near = R::latest(near.fused(self.step, self.start));
+        if near.le(R::earliest(far.fused(self.step, self.start), self.limit)) {
+            byte(self.bits, child) << byte(self.places, child)
+        } else {
+            0
         }
-        let all = |v: V3<R>| V3::new(E::all(v.x), E::all(v.y), E::all(v.z));
-        let (start, step) = (all(self.start), all(self.step));
-        let x = E::sides(self.down[0], self.low[0], self.high[0], first);
-        let y = E::sides(self.down[1], self.low[1], self.high[1], first);
-        let z = E::sides(self.down[2], self.low[2], self.high[2], first);
-        let near = E::latest(V3::new(x.0, y.0, z.0).fused(step, start));
-        let end = E::earliest(V3::new(x.1, y.1, z.1).fused(step, start), E::all(self.limit));
-        (E::waiting(near.le(end), &self.children, first), near)
     }
+}
+
+/// The nearer and the farther planes of the lesser and the greater ones.
+#[inline(always)]
+fn sides(down: bool, low: [u32; 2], high: [u32; 2]) -> ([u32; 2], [u32; 2]) {
+    if down { (high, low) } else { (low, high) }
+}
+
+/// The number of byte `i`.
+#[inline(always)]
+fn plane<R: Scalar>(words: [u32; 2], i: u32) -> R {
+    R::splat(byte(words, i) as f32)
+}
+
+/// Byte `i` of two words.
+#[inline(always)]
+fn byte(words: [u32; 2], i: u32) -> u32 {
+    let word = if i < 4 { words[0] } else { words[1] };
+    (word >> (8 * (i & 3))) & 255
+}
+
+/// The places of four children, of all at once (Ylitie et al. 2017, appendix).
+#[inline(always)]
+fn places(children: u32, inverted: u32) -> u32 {
+    // Bits 3 and 4 are set from 24 on.
+    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
+    (children ^ ((inverted * 0x0101_0101) & is_inner)) & 0x1f1f_1f1f
 }

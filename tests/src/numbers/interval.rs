@@ -2,9 +2,9 @@
 
 use std::ops::{Add, Mul, Neg, Sub};
 
+use eyerays_shader::one_lane;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Native, Real, Scalar, V3};
-use eyerays_shader::{octet_of_one, one_lane};
 
 /// An `f32`, which branches follow, and bounds of what exact arithmetic gives on the way that they take. Where kernels
 /// flush, the bounds stay with the number that was flushed.
@@ -159,7 +159,6 @@ impl Real for Interval {
 pub struct Record([Interval; 3], u32);
 
 one_lane!(Interval);
-octet_of_one!(Interval);
 
 impl Scalar for Interval {
     type Eight = Self;

@@ -7,9 +7,9 @@ use std::ops::{Add, Mul, Neg, Sub};
 use std::panic::Location;
 use std::sync::Mutex;
 
+use eyerays_shader::one_lane;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Native, Real, Scalar, V3};
-use eyerays_shader::{octet_of_one, one_lane};
 use glam::UVec4;
 
 /// What is done with the numbers that operations take and give.
@@ -105,7 +105,6 @@ impl<W: Watch> Neg for Watched<W> {
 macro_rules! numbers {
     ($type:ty) => {
         one_lane!($type);
-        octet_of_one!($type);
 
         impl Real for $type {
             type Mask = bool;

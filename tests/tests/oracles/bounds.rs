@@ -34,7 +34,7 @@ fn sheared_vertices() {
     let (mut most, mut vertices) = (0f64, 0);
     pairs(|ray, triangle, _| {
         for p in triangle {
-            let (x, y) = sheared(ray.shear.cycle(V::splat(p) - ray.origin), &ray.shear);
+            let (x, y) = sheared(ray.shear.cycle(V::splat(p) - ray.origin), (ray.shear.x, ray.shear.y));
             most = most.max(x.error()).max(y.error());
             vertices += 1;
         }
@@ -61,7 +61,7 @@ fn boxes() {
         }
         let child = (least, greatest, NodeRef::leaf(0, 1));
         let pair = CentredPair::from(&NodePair::new(child, NodePair::EMPTY));
-        let node = step::inside(pair.left_centre, pair.left_half, ray, Real::splat(f32::MAX));
+        let node = step::inside(pair.left_centre, pair.left_half, ray, V::splat(glam::Vec3::MAX).x);
         // Entry and exit are those of some axis; the least inverse makes the most of the error.
         for bound in [node.near, node.far].into_iter().filter(|b| b.value != 0.0) {
             let axes = [ray.inverse.x, ray.inverse.y, ray.inverse.z].map(|i| f64::from(i.value.abs()));

@@ -1,0 +1,113 @@
+//! The wide hierarchy as a CPU loads it, see [`eyerays_shader::full`]: nodes collapsed from the pairs for leaves
+//! that are tested four triangles at once.
+
+use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Triangle};
+use eyerays_shader::full::{Block, Full, FullNode, FullRef};
+
+use super::{
+    binary::{Binary, Node},
+    collapse::{Leaves, Plan},
+};
+use crate::bounds::Bounds;
+
+/// The cost of a block beside that of a node, which tests eight boxes.
+const BLOCK: f32 = 0.6;
+
+/// Nodes and blocks, owned.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FullBvh {
+    /// Nodes, the root first, a parent before its children.
+    pub nodes: Vec<FullNode>,
+    /// The triangles of leaves, in the order of the nodes.
+    pub blocks: Vec<Block>,
+}
+
+impl FullBvh {
+    /// Makes them of a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
+    /// unless triangles are split.
+    pub fn of(pairs: &[CentredPair], triangles: &[Triangle], bounds: &[Record]) -> Self {
+        let bounds: Vec<Bounds> = match bounds {
+            [] => triangles.iter().map(Bounds::of).collect(),
+            split => split.iter().map(Bounds::read).collect(),
+        };
+        let leaves = Leaves { most: Block::TRIANGLES as u32, fixed: BLOCK, triangle: 0.0 };
+        let (tree, order) = binary(pairs, &bounds, leaves.most);
+        let plan = Plan::of(&tree, leaves);
+        let mut full = FullBvh { nodes: vec![FullNode::EMPTY], blocks: Vec::new() };
+        let (mut open, mut children) = (vec![(0, 0, 0)], Vec::new());
+        while let Some((number, node, level)) = open.pop() {
+            plan.children_at(&tree, node, level, &mut children);
+            let area = |child: &(u32, bool)| tree.nodes[child.0 as usize].bounds.half_area();
+            children.sort_by(|a, b| area(b).total_cmp(&area(a)));
+            let first = open.len();
+            for (i, &(child, is_leaf)) in children.iter().enumerate() {
+                let Node { bounds, first, count, .. } = tree.nodes[child as usize];
+                let reference = if is_leaf {
+                    full.leaf(&order[first as usize..(first + count) as usize], triangles)
+                } else {
+                    full.nodes.push(FullNode::EMPTY);
+                    open.push((full.nodes.len() - 1, child, level + 1));
+                    FullRef::inner(full.nodes.len() as u32 - 1)
+                };
+                set(&mut full.nodes[number], i, bounds, reference);
+            }
+            open[first..].reverse();
+        }
+        full
+    }
+
+    /// Adds the block of a leaf's slots.
+    fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> FullRef {
+        self.blocks.push(Block::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
+        FullRef::leaf(self.blocks.len() as u32 - 1)
+    }
+
+    /// What a launch borrows.
+    pub fn borrow(&self) -> Full<'_> {
+        Full { nodes: &self.nodes, blocks: &self.blocks }
+    }
+}
+
+/// The binary tree with leaves of at most `most` triangles, and the slot at each of its places.
+fn binary(pairs: &[CentredPair], bounds: &[Bounds], most: u32) -> (Binary, Vec<u32>) {
+    let (references, mut order) = depth_first(pairs, bounds.len());
+    let boxed = |reference: NodeRef| {
+        let first = reference.index() as usize;
+        // Boxes of inner nodes follow from these.
+        let slots = order.get(first..first + reference.count() as usize).unwrap_or_default();
+        (Bounds::around(slots.iter().map(|&slot| bounds[slot as usize])), reference)
+    };
+    let boxes: Vec<_> = references.iter().map(|pair| pair.map(boxed)).collect();
+    let tree = Binary::of(boxes.into_iter(), &mut order, bounds, most);
+    (tree, order)
+}
+
+/// The references of every pair, with slots counted in depth-first order, and the slot at each of these places.
+fn depth_first(pairs: &[CentredPair], slots: usize) -> (Vec<[NodeRef; 2]>, Vec<u32>) {
+    let mut references: Vec<[NodeRef; 2]> = pairs.iter().map(|p| [p.left(), p.right()]).collect();
+    let mut order = Vec::with_capacity(slots);
+    if slots == 1 {
+        return (references, vec![0]);
+    }
+    let mut open = vec![(0, 1), (0, 0)];
+    while let Some((pair, side)) = open.pop() {
+        let reference = references[pair][side];
+        if reference.is_leaf() {
+            references[pair][side] = NodeRef::leaf(order.len() as u32, reference.count());
+            order.extend(reference.index()..reference.index() + reference.count());
+        } else {
+            open.extend([(reference.index() as usize, 1), (reference.index() as usize, 0)]);
+        }
+    }
+    (references, order)
+}
+
+/// Puts a child into a node.
+fn set(node: &mut FullNode, child: usize, bounds: Bounds, reference: FullRef) {
+    let margin = f64::from(FullNode::MARGIN);
+    for axis in 0..3 {
+        node.planes[axis][0][child] = (f64::from(bounds.min[axis]) - margin) as f32;
+        node.planes[axis][1][child] = (f64::from(bounds.max[axis]) + margin) as f32;
+    }
+    node.children[child] = reference;
+}

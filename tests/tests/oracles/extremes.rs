@@ -51,7 +51,8 @@ fn the_critical_angle_a_unit_at_a_time() {
             assert!(exact.abs() < bound || at.total == (exact < 0.0), "{ior}, {ulps}: {exact:e}");
             seen[usize::from(at.total)] += 1;
         }
-        assert!(seen[0] > 0 && seen[1] > 0, "{ior}: {seen:?}");
+        // So near 1 the whole range is less than a roundoff of the sine's square.
+        assert!(ior < 1.1 || seen[0] > 0 && seen[1] > 0, "{ior}: {seen:?}");
     }
 }
 

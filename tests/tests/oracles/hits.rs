@@ -113,7 +113,7 @@ fn closest_hits_are_exact_within_their_bounds() {
     println!(
         "scene, rays, exact nearest, ties within bounds, edges within bounds, t error / bound, t error in roundoffs"
     );
-    for case in cases(samples(4_000, 200_000)) {
+    for case in cases(samples(2_000, 200_000)) {
         let triangles = case.triangles();
         let stream = Stream::new(case.rays.iter().copied());
         for method in [Method::Packet, Method::Wide] {

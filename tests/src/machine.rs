@@ -63,7 +63,7 @@ impl Machine {
             (true, true) => traversals(),
             (true, false) => vec![Method::IfIf.into()],
             _ if self.is_software() => {
-                vec![Traversal { scheduling: Scheduling::Persistent, ..Method::Wide.into() }, Method::Packet.into()]
+                [Method::Wide, Method::IfIf].map(|m| Traversal { scheduling: Scheduling::Grid, ..m.into() }).into()
             }
             _ => traversals().into_iter().filter(|t| t.layout == Layout::Gathered).collect(),
         }

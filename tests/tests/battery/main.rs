@@ -4,4 +4,11 @@
 //! `cargo test --release -p eyerays-tests --test battery -- --nocapture | grep -o 'battery: .*'` prints the counts of
 //! samples, `EYERAYS_BATTERY=full` before it those of all there is.
 
+mod against;
+mod garbage;
+mod hierarchy;
 mod leaks;
+mod places;
+mod rays;
+mod reintersection;
+mod triangles;

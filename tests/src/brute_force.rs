@@ -5,7 +5,7 @@ use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{V3, Wide, WideIndex};
+use eyerays_shader::real::{Scalar, V3, Wide, WideIndex};
 use eyerays_shader::traverse::{Closest, step};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -35,6 +35,23 @@ pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
             let (u, v) = hit.weights();
             [hit.t.to_bits(), u.to_bits(), v.to_bits(), hit.primitive]
         })
+    });
+    found.collect()
+}
+
+/// The same in any arithmetic, a ray at a time.
+pub fn brute_force_of<R: Scalar>(packed: &Packed, stream: &Stream) -> Vec<Found> {
+    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    let found = (0..stream.len()).into_par_iter().map(|i| {
+        let StreamRay { origin, direction, limit, leaves } = stream.ray(i);
+        let ray = Ray::<R>::leaving(R::index(leaves), V3::splat(origin), V3::splat(direction));
+        let mut hit = Hit::none(R::splat(limit));
+        for slot in 0..packed.triangles.len() as u32 {
+            step::triangle::<Closest, R>(&geometry, NodeRef::leaf(slot, 1), &ray, &mut hit);
+        }
+        let (u, v) = hit.weights();
+        [hit.t.to_f32().to_bits(), u.to_f32().to_bits(), v.to_f32().to_bits(), hit.primitive]
     });
     found.collect()
 }

@@ -66,6 +66,37 @@ fn special_quotient(a: u32, b: u32, sign: u32) -> u32 {
     }
 }
 
+/// The mantissa of a quotient, of one more bit, near `q`; and does anything lie below it?
+#[inline(always)]
+fn quotient(ma: u32, mb: u32, mut q: u32) -> (u32, bool) {
+    // Only the low 32 bits: the true remainder of so close a quotient fits them.
+    let mut rest = (ma << 24).wrapping_sub(q.wrapping_mul(mb)) as i32;
+    while rest < 0 {
+        q -= 1;
+        rest += mb as i32;
+    }
+    while rest >= mb as i32 {
+        q += 1;
+        rest -= mb as i32;
+    }
+    (q, rest != 0)
+}
+
+/// The mantissa of a root, of one more bit, near `s`, by the low 32 bits of its square; and does anything lie below it?
+#[inline(always)]
+fn root(square: u32, mut s: u32) -> (u32, bool) {
+    let mut rest = square.wrapping_sub(s.wrapping_mul(s)) as i32;
+    while rest < 0 {
+        rest += 2 * s as i32 - 1;
+        s -= 1;
+    }
+    while rest > 2 * s as i32 {
+        rest -= 2 * s as i32 + 1;
+        s += 1;
+    }
+    (s, rest != 0)
+}
+
 /// `a / b`, rounded to nearest even.
 #[inline(never)]
 pub fn div(a: f32, b: f32) -> f32 {
@@ -80,21 +111,11 @@ pub fn div(a: f32, b: f32) -> f32 {
         let less = ma < mb;
         let ma = if less { ma << 1 } else { ma };
         let biased = ea as i32 - eb as i32 + if less { 126 } else { 127 };
-        let mut q = mantissa_of_estimate(ma as f32 / mb as f32);
-        // Only the low 32 bits: the true remainder of so close a quotient fits them.
-        let mut rest = (ma << 24).wrapping_sub(q.wrapping_mul(mb)) as i32;
-        while rest < 0 {
-            q -= 1;
-            rest += mb as i32;
-        }
-        while rest >= mb as i32 {
-            q += 1;
-            rest -= mb as i32;
-        }
+        let (q, rest) = quotient(ma, mb, mantissa_of_estimate(ma as f32 / mb as f32));
         // The one tie between the greatest subnormal and the least normal number rounds up to even.
         let least = biased == 0 && q >= 0x01ff_fffe;
         let q = if least { 1 << 24 } else { q };
-        assemble(sign, if least { 1 } else { biased }, round(q, rest != 0))
+        assemble(sign, if least { 1 } else { biased }, round(q, rest))
     };
     f32::from_bits(bits)
 }
@@ -141,18 +162,9 @@ pub fn sqrt(a: f32) -> f32 {
         let odd = (ea & 1) ^ 1;
         let m = (ua & FRACTION) | HIDDEN;
         let v = f32::from_bits(((127 + odd) << 23) | (ua & FRACTION));
-        let mut s = mantissa_of_estimate(Float::sqrt(v));
-        let mut rest = (m << (25 + odd)).wrapping_sub(s.wrapping_mul(s)) as i32;
-        while rest < 0 {
-            rest += 2 * s as i32 - 1;
-            s -= 1;
-        }
-        while rest > 2 * s as i32 {
-            rest -= 2 * s as i32 + 1;
-            s += 1;
-        }
+        let (s, rest) = root(m << (25 + odd), mantissa_of_estimate(Float::sqrt(v)));
         let biased = ((ea as i32 - 127 - odd as i32) >> 1) + 127;
-        assemble(0, biased, round(s, rest != 0))
+        assemble(0, biased, round(s, rest))
     };
     f32::from_bits(bits)
 }
@@ -181,7 +193,7 @@ pub mod native {
 
 #[cfg(test)]
 mod tests {
-    use super::{div, native, reciprocal, sqrt};
+    use super::{div, native, quotient, reciprocal, root, sqrt};
     use proptest::prelude::*;
 
     /// Operands whose quotients lie on ties, at the range's ends, and every special.
@@ -247,6 +259,23 @@ mod tests {
         for a in CORNERS.iter().flat_map(|&a| [a, a | super::SIGN]) {
             let x = f32::from_bits(a);
             assert!(agree(sqrt(x), native::sqrt(x)), "sqrt {a:08x}: {:?}", sqrt(x));
+        }
+    }
+
+    /// A device's estimate may be off by units in the last place, which a CPU's never is.
+    #[test]
+    fn estimates_are_corrected() {
+        for m in (1u64 << 23..1 << 24).step_by(13) {
+            for (odd, off) in (0..2).flat_map(|odd| (-6..=6).map(move |off| (odd, off))) {
+                let square = m << (25 + odd);
+                let exact = square.isqrt();
+                let near = exact.saturating_add_signed(off).clamp(1 << 24, (1 << 25) - 1) as u32;
+                assert_eq!(root(square as u32, near), (exact as u32, exact * exact != square), "{m} {odd} {off}");
+                let dividend = m + (m ^ 0x5a_5a5a) % m;
+                let (exact, rest) = ((dividend << 24) / m, (dividend << 24) % m != 0);
+                let near = exact.saturating_add_signed(off) as u32;
+                assert_eq!(quotient(dividend as u32, m as u32, near), (exact as u32, rest), "{dividend} / {m} {off}");
+            }
         }
     }
 

@@ -85,7 +85,7 @@ fn ball(centre: DVec3, radius: f64) -> impl Fn(&mut Random) -> DVec3 {
 
 fn assert_sphere(name: &str, centre: DVec3) {
     let surface = Surface::sphere(centre, 2.0, 200);
-    Closed::new(name, &surface, (100_000, 10_000_000)).assert_no_leak(ball(centre, 2.0));
+    Closed::new(name, &surface, (60_000, 10_000_000)).assert_no_leak(ball(centre, 2.0));
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn sphere_far_away() {
 
 /// Rays at all but the outermost cells, which have nothing beside them.
 fn assert_plane(name: &str, centre: DVec3) {
-    let mut closed = Closed::new(name, &Surface::plane(centre, 12.0, 200), (100_000, 10_000_000));
+    let mut closed = Closed::new(name, &Surface::plane(centre, 12.0, 200), (60_000, 10_000_000));
     let (middle, half, scale) = (centre * closed.packed.scale, 5.9 * closed.packed.scale, closed.packed.scale);
     let within = |v: &Vec3| (v.as_dvec3() - middle).abs().max_element() < half;
     closed.targets.retain(|vertices| vertices.iter().all(within));
@@ -120,7 +120,7 @@ fn plane_far_away() {
 
 /// Hubs where 10,000 edges meet. A ray at one is tested against most of the triangles.
 fn assert_fan(name: &str, centre: DVec3) {
-    let mut closed = Closed::new(name, &Surface::bipyramid(centre, 2.0, 1.0, 10_000), (4_000, 100_000));
+    let mut closed = Closed::new(name, &Surface::bipyramid(centre, 2.0, 1.0, 10_000), (2_000, 100_000));
     closed.is_long = centre != DVec3::ZERO;
     closed.assert_no_leak(ball(centre, 0.25));
 }

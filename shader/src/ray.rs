@@ -9,7 +9,7 @@ use crate::real::{Real, TINY, V3};
 pub struct Ray<R: Real> {
     /// Where it starts, in the normalised scene.
     pub origin: V3<R>,
-    /// One over the direction; a component below 2^-60 counts as 2^-60, so that no infinity arises.
+    /// One over the direction; a component below 2^-60, or that is NaN, counts as 2^-60, so that no infinity arises.
     pub inverse: V3<R>,
     /// The origin times the inverse.
     pub offset: V3<R>,
@@ -43,7 +43,8 @@ impl<R: Real> Ray<R> {
     /// A ray that leaves a triangle.
     #[inline(always)]
     pub fn leaving(leaves: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
-        let d = direction.map(|c| c.flush(TINY));
+        // No number counts as zero too: its reciprocal is another on every device.
+        let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);
         let y_major = !x_major & size.z.le(size.y);

@@ -1,7 +1,12 @@
 //! What the whole-program tests share: the shipped scenes, the GPU at hand, and films side by side.
 
+pub mod brute_force;
+pub mod count;
+pub mod machine;
 pub mod model;
 pub mod numbers;
+pub mod random;
+pub mod surface;
 
 use std::path::PathBuf;
 

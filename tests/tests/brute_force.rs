@@ -6,28 +6,18 @@ use std::path::Path;
 
 use eyerays::cpu;
 use eyerays::generate::{Files, Kind, Recipe};
-use eyerays::method::Traversal;
-use eyerays::pack::{Laid, Packed};
+use eyerays::pack::Packed;
 use eyerays::scene;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
-use eyerays_shader::data::NodeRef;
-use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Real, V3, Wide, WideIndex};
-use eyerays_shader::traverse::{Closest, step};
+use eyerays_tests::brute_force::{brute_force, found};
 use eyerays_tests::traversals;
 use glam::Vec3;
-use rayon::prelude::*;
 
 /// Rays of a scene, unless `EYERAYS_RAYS` says otherwise.
 const RAYS: usize = 8_000;
 /// Triangles of a scene.
 const TRIANGLES: u64 = 20_000;
-/// Rays that are tested together.
-const LANES: usize = 8;
-
-/// What must be the same: the bits of (t, u, v), and the primitive.
-type Found = (u32, u32, u32, u32);
 
 fn generated(kind: Kind, folder: &Path) -> scene::Scene {
     let mesh = folder.join(kind.name()).with_extension("obj");
@@ -72,28 +62,6 @@ fn rays(packed: &Packed) -> Stream {
     Stream::new((0..count).map(ray))
 }
 
-fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
-    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
-    let geometry = laid.stream(&frame);
-    let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
-    let found = starts.par_iter().flat_map_iter(|&start| {
-        let ray = |i: usize| stream.ray((start + i).min(stream.len() - 1));
-        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<Wide<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
-        let leaves = WideIndex([StreamRay::NOWHERE; LANES]);
-        let packet = Ray::leaving(leaves, vector(&|r| r.origin), vector(&|r| r.direction));
-        let mut hit = Hit::none(Wide::splat(f32::MAX));
-        for slot in 0..packed.triangles.len() as u32 {
-            step::triangle::<Closest, Wide<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
-        }
-        (0..LANES.min(stream.len() - start)).map(move |i| {
-            let hit = hit.lane(i);
-            let (u, v) = hit.weights();
-            (hit.t.to_bits(), u.to_bits(), v.to_bits(), hit.primitive)
-        })
-    });
-    found.collect()
-}
-
 fn assert_every_method(kind: Kind) {
     let folder = tempfile::tempdir().unwrap();
     let scene = generated(kind, folder.path());
@@ -102,13 +70,12 @@ fn assert_every_method(kind: Kind) {
         let packed = pack(&scene, quality);
         let stream = rays(&packed);
         let want = oracle.get_or_insert_with(|| brute_force(&packed, &stream));
-        let hits = want.iter().filter(|found| found.3 != StreamRay::NOWHERE).count();
+        let hits = want.iter().filter(|found| found[3] != StreamRay::NOWHERE).count();
         assert!(2 * hits > want.len(), "{kind:?}: only {hits} rays of {} hit", want.len());
         for traversal in traversals() {
             let (answers, _) = cpu::cast(&packed, traversal, 0, &stream, Question::Closest).unwrap();
             let Answers::Closest(got) = answers else { unreachable!("this was asked for the closest hits") };
-            let primitive = |slot: u32| packed.triangles.get(slot as usize).map_or(slot, |t| t.primitive());
-            let got = got.iter().map(|hit| (hit.x, hit.y, hit.z, primitive(hit.w)));
+            let got = got.iter().map(|&hit| found(&packed, hit));
             let differing = got.zip(want.iter()).filter(|(got, want)| got != *want).count();
             assert_eq!(differing, 0, "{kind:?}, {quality:?}, {traversal:?}: differing hits of {}", want.len());
         }

@@ -89,7 +89,7 @@ mod tests {
 
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
-        let [a, b, c] = vertices.map(|p| V3::splat(p) - origin);
+        let [a, b, c] = vertices.map(|p| ray.shear.cycle(V3::splat(p) - origin));
         cross(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z).inside
     }
 

@@ -1,0 +1,63 @@
+//! A test of every triangle, with no hierarchy and no box but the triangles' own.
+
+use eyerays::method::Traversal;
+use eyerays::pack::{Laid, Packed};
+use eyerays::stream::{Stream, StreamRay};
+use eyerays_shader::data::NodeRef;
+use eyerays_shader::ray::{Hit, Ray};
+use eyerays_shader::real::{Scalar, V3, Wide, WideIndex};
+use eyerays_shader::traverse::{Closest, step};
+use glam::{UVec4, Vec3};
+use rayon::prelude::*;
+
+/// Rays that are tested together.
+const LANES: usize = 8;
+
+/// What must be the same: the bits of (t, u, v), and the primitive or [`StreamRay::NOWHERE`].
+pub type Found = [u32; 4];
+
+/// The closest hits of a stream.
+pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
+    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
+    let found = starts.par_iter().flat_map_iter(|&start| {
+        let ray = |i: usize| stream.ray((start + i).min(stream.len() - 1));
+        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<Wide<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
+        let leaves = WideIndex(std::array::from_fn(|i| ray(i).leaves));
+        let packet = Ray::leaving(leaves, vector(&|r| r.origin), vector(&|r| r.direction));
+        let mut hit = Hit::none(Wide(std::array::from_fn(|i| ray(i).limit)));
+        for slot in 0..packed.triangles.len() as u32 {
+            step::triangle::<Closest, Wide<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
+        }
+        (0..LANES.min(stream.len() - start)).map(move |i| {
+            let hit = hit.lane(i);
+            let (u, v) = hit.weights();
+            [hit.t.to_bits(), u.to_bits(), v.to_bits(), hit.primitive]
+        })
+    });
+    found.collect()
+}
+
+/// The same in any arithmetic, a ray at a time.
+pub fn brute_force_of<R: Scalar>(packed: &Packed, stream: &Stream) -> Vec<Found> {
+    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    let found = (0..stream.len()).into_par_iter().map(|i| {
+        let StreamRay { origin, direction, limit, leaves } = stream.ray(i);
+        let ray = Ray::<R>::leaving(R::index(leaves), V3::splat(origin), V3::splat(direction));
+        let mut hit = Hit::none(R::splat(limit));
+        for slot in 0..packed.triangles.len() as u32 {
+            step::triangle::<Closest, R>(&geometry, NodeRef::leaf(slot, 1), &ray, &mut hit);
+        }
+        let (u, v) = hit.weights();
+        [hit.t.to_f32().to_bits(), u.to_f32().to_bits(), v.to_f32().to_bits(), hit.primitive]
+    });
+    found.collect()
+}
+
+/// A hit as a traversal returns it: a split triangle may be met at any of its slots.
+pub fn found(packed: &Packed, hit: UVec4) -> Found {
+    let primitive = packed.triangles.get(hit.w as usize).map_or(hit.w, |triangle| triangle.primitive());
+    [hit.x, hit.y, hit.z, primitive]
+}

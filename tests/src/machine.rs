@@ -1,0 +1,137 @@
+//! Where rays are followed: on the CPU and on a GPU, in exact and in fast precision.
+
+use std::fmt;
+use std::sync::LazyLock;
+
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::gpu::{Caster, Gpu, Renderer, Want};
+use eyerays::method::{Layout, Method, Scheduling, Traversal};
+use eyerays::pack::{Laid, Packed};
+use eyerays::rays::Rays;
+use eyerays::stream::{Answers, Question, Stream};
+use eyerays_shader::real::{Fast, Scalar, V3};
+use eyerays_shader::stage;
+use eyerays_shader::traverse::IfIf;
+use glam::UVec4;
+use rayon::prelude::*;
+
+use crate::{gpu, traversals};
+
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| gpu(&Want { exact: true, ..Want::default() }));
+
+/// A device in a precision. Without a GPU there are those of the CPU alone.
+#[derive(Clone, Copy)]
+pub struct Machine {
+    gpu: Option<&'static Gpu>,
+    /// Is it exact precision?
+    pub exact: bool,
+}
+
+impl fmt::Display for Machine {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let device = if self.gpu.is_some() { "gpu" } else { "cpu" };
+        write!(out, "{device} {}", if self.exact { "exact" } else { "fast" })
+    }
+}
+
+impl Machine {
+    /// The CPU in exact precision.
+    pub const CPU: Machine = Machine { gpu: None, exact: true };
+
+    /// Every one.
+    pub fn all() -> Vec<Machine> {
+        let devices = [None, GPU.as_ref()];
+        let devices = if GPU.is_some() { &devices[..] } else { &devices[..1] };
+        devices.iter().flat_map(|&gpu| [true, false].map(|exact| Machine { gpu, exact })).collect()
+    }
+
+    /// Is it a GPU of software, which ends loops after 65,535 rounds (lavapipe), and compiles kernels slowly?
+    pub fn is_software(&self) -> bool {
+        self.gpu.is_some_and(|gpu| gpu.report.is_software())
+    }
+
+    /// Is it a CPU?
+    pub fn is_cpu(&self) -> bool {
+        self.gpu.is_none()
+    }
+
+    /// The ways through a hierarchy that a test takes on it: all on a CPU; a software GPU is given few, for each of
+    /// which it compiles a kernel. In fast precision a CPU has the one that [`Machine::tracer`] takes.
+    pub fn traversals(&self) -> Vec<Traversal> {
+        match (self.is_cpu(), self.exact) {
+            (true, true) => traversals(),
+            (true, false) => vec![Method::IfIf.into()],
+            _ if self.is_software() => {
+                [Method::Wide, Method::IfIf].map(|m| Traversal { scheduling: Scheduling::Grid, ..m.into() }).into()
+            }
+            _ => traversals().into_iter().filter(|t| t.layout == Layout::Gathered).collect(),
+        }
+    }
+
+    /// Gets a scene ready for streams of rays.
+    ///
+    /// # Panics
+    /// If the GPU can't hold it.
+    pub fn tracer<'a>(self, packed: &'a Packed) -> Tracer<'a> {
+        let caster = |gpu| Caster::new(gpu, packed, Layout::Gathered).unwrap_or_else(|e| panic!("{self}: {e}"));
+        Tracer { machine: self, packed, caster: self.gpu.map(caster) }
+    }
+
+    /// Renders by the default method.
+    ///
+    /// # Panics
+    /// If the device can't.
+    pub fn render(&self, packed: &Packed) -> (Film, Rays) {
+        let traversal = Traversal::default();
+        let rendered = match (self.gpu, self.exact) {
+            (None, true) => cpu::render::<f32>(packed, traversal, 0, &|_| ()),
+            (None, false) => cpu::render::<Fast>(packed, traversal, 0, &|_| ()),
+            (Some(gpu), exact) => Renderer::new(gpu, packed, exact, traversal)
+                .and_then(|renderer| renderer.render(&|_| ()))
+                .map(|rendering| (rendering.film, rendering.rays)),
+        };
+        rendered.unwrap_or_else(|e| panic!("{self}: {e}"))
+    }
+}
+
+/// A scene on a machine.
+pub struct Tracer<'a> {
+    machine: Machine,
+    packed: &'a Packed,
+    caster: Option<Caster<'a>>,
+}
+
+impl Tracer<'_> {
+    /// The closest hits of a stream: the bits of (t, u, v), and the slot of the triangle. In fast precision a CPU
+    /// takes if-if, whatever it is asked for.
+    ///
+    /// # Panics
+    /// If the device can't.
+    pub fn closest(&self, traversal: Traversal, stream: &Stream) -> Vec<UVec4> {
+        let question = Question::Closest;
+        let answers = match &self.caster {
+            Some(caster) => caster.upload(stream).and_then(|cast| {
+                caster.trace(&cast, self.machine.exact, traversal, question)?;
+                caster.answers(&cast, question)
+            }),
+            None if self.machine.exact => cpu::cast(self.packed, traversal, 0, stream, question).map(|(a, _)| a),
+            None => return one_by_one::<Fast>(self.packed, stream),
+        };
+        match answers {
+            Ok(Answers::Closest(hits)) => hits,
+            Ok(Answers::Occlusion(_)) => unreachable!("the closest hits were asked for"),
+            Err(e) => panic!("{}, {traversal:?}: {e}", self.machine),
+        }
+    }
+}
+
+/// The closest hits of a stream on the CPU in any arithmetic, by if-if: (t, u, v) and the slot of the triangle.
+pub fn one_by_one<R: Scalar<Record: Send + Sync>>(packed: &Packed, stream: &Stream) -> Vec<R::Record> {
+    let (laid, frame) = (Laid::new(packed, Method::IfIf.into()), packed.stream_frame(stream.len()));
+    let geometry = laid.stream(&frame);
+    let widened = |&word: &UVec4| R::store(V3::splat(eyerays_shader::data::numbers(word)), word.w);
+    let words: Vec<R::Record> = stream.words().iter().map(widened).collect();
+    let slots = (0..stream.len() as u32).into_par_iter();
+    slots.map(|slot| stage::trace::<R, IfIf>(&geometry, slot, &words)).collect()
+}

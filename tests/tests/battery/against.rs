@@ -1,0 +1,89 @@
+//! Hits against those of brute force.
+
+use eyerays::pack::Packed;
+use eyerays::stream::{Stream, StreamRay};
+use eyerays_shader::real::Fast;
+use eyerays_tests::brute_force::{Found, brute_force, brute_force_of, found};
+use eyerays_tests::count;
+use eyerays_tests::machine::Machine;
+use eyerays_tests::random::Random;
+use eyerays_tests::surface::triangles;
+use glam::{DVec3, Vec3};
+
+/// A ray that leaves nothing and goes as far as it gets.
+pub fn ray(origin: Vec3, direction: Vec3) -> StreamRay {
+    StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+}
+
+/// Rays from anywhere around the triangles of a packed scene, and from vertices: into triangles, at vertices, along
+/// axes and anywhere.
+pub fn rays(packed: &Packed, count: usize) -> Stream {
+    let triangles: Vec<[DVec3; 3]> = triangles(packed).iter().map(|t| t.vertices().map(|v| v.as_dvec3())).collect();
+    let corners = triangles.as_flattened();
+    let least = corners.iter().copied().fold(DVec3::ONE, DVec3::min);
+    let extent = corners.iter().copied().fold(DVec3::NEG_ONE, DVec3::max) - least;
+    let mut random = Random(2);
+    let rays = (0..count).map(|kind| {
+        let place = |random: &mut Random| least + extent * (0.5 + 0.6 * random.cube());
+        let [a, b, c] = triangles[random.index(triangles.len())];
+        let origin = if kind % 7 == 0 { corners[random.index(corners.len())] } else { place(&mut random) };
+        let origin = origin.clamp(DVec3::NEG_ONE, DVec3::ONE).as_vec3();
+        let target = match kind % 4 {
+            0 => b,
+            1 => place(&mut random),
+            _ => {
+                let [u, v, w] = random.weights();
+                a * u + b * v + c * w
+            }
+        };
+        let direction = (target - origin.as_dvec3()).as_vec3();
+        let axis = [Vec3::X, Vec3::NEG_Y, Vec3::Z][random.index(3)];
+        ray(origin, if kind % 9 == 0 || direction == Vec3::ZERO { axis } else { direction })
+    });
+    Stream::new(rays)
+}
+
+/// Is an answer a miss, or a place on a triangle?
+fn is_sound(hit: Found) -> bool {
+    let [t, u, v] = [hit[0], hit[1], hit[2]].map(f32::from_bits);
+    hit[3] == StreamRay::NOWHERE || (t >= 0.0 && t <= f32::MAX && u.is_finite() && v.is_finite())
+}
+
+/// In fast precision: is it the other answer but for its last bits?
+fn is_near(hit: Found, want: Found) -> bool {
+    let [t, other] = [hit[0], want[0]].map(f32::from_bits);
+    (hit[3] == StreamRay::NOWHERE) == (want[3] == StreamRay::NOWHERE) && (t - other).abs() <= 1e-3 * t.max(other)
+}
+
+/// Asserts that every traversal of every machine finds what brute force does in its precision: the same bits in exact
+/// precision and on the CPU; on a GPU in fast precision nothing but numbers, nearly the same for 99 % of the rays.
+///
+/// `rounds` are what a ray's traversal may take at most, for software that ends loops after 65,535 of them.
+pub fn assert_like_brute_force(what: &str, packed: &Packed, stream: &Stream, rounds: usize) {
+    let (exact, fast) = (brute_force(packed, stream), brute_force_of::<Fast>(packed, stream));
+    for machine in Machine::all() {
+        if machine.is_software() && rounds > 30_000 {
+            println!("battery: {what}, {machine}: left out, since software ends loops early");
+            continue;
+        }
+        let (want, is_same) = (if machine.exact { &exact } else { &fast }, machine.exact || machine.is_cpu());
+        let (tracer, traversals) = (machine.tracer(packed), machine.traversals());
+        let (mut differing, mut unsound) = (0, 0);
+        for &traversal in &traversals {
+            let hits = tracer.closest(traversal, stream);
+            let pairs = || hits.iter().map(|&hit| found(packed, hit)).zip(want);
+            unsound += pairs().filter(|&(hit, _)| !is_sound(hit)).count();
+            let same = |hit: Found, want: Found| if is_same { hit == want } else { is_near(hit, want) };
+            differing += pairs().filter(|&(hit, &want)| !same(hit, want)).count();
+        }
+        let total = traversals.len() * stream.len();
+        count::none(format_args!("{what}, no number"), machine, unsound, total);
+        let what = format!("{what}, other hits than brute force");
+        if is_same {
+            count::none(what, machine, differing, total);
+        } else {
+            count::line(&what, machine, differing, total);
+            assert!(differing * 100 <= total, "{what}, {machine}: {differing} of {total}");
+        }
+    }
+}

@@ -1,0 +1,136 @@
+//! Rays from inside closed surfaces, aimed at faces, edges and vertices, never get out.
+
+use eyerays::pack::Packed;
+use eyerays::stream::{Stream, StreamRay};
+use eyerays_tests::count;
+use eyerays_tests::machine::Machine;
+use eyerays_tests::random::Random;
+use eyerays_tests::surface::{Surface, triangles};
+use glam::{DVec3, Vec3};
+
+/// Far enough for a sphere of radius 2 to be 128 steps of single precision wide.
+const FAR: DVec3 = DVec3::new(148_376.0, 1234.0, -223_423.0);
+/// The most rays of a stream.
+const PART: usize = 1 << 20;
+
+/// A surface with no way out from where its rays start.
+struct Closed<'a> {
+    name: &'a str,
+    packed: Packed,
+    /// Triangles that rays are aimed at, in the normalised scene.
+    targets: Vec<[Vec3; 3]>,
+    /// Rays to cast, and how many there are when all are asked for.
+    rays: (usize, usize),
+    /// Does a ray meet so many triangles that software ends its loops before?
+    is_long: bool,
+}
+
+impl<'a> Closed<'a> {
+    fn new(name: &'a str, surface: &Surface, rays: (usize, usize)) -> Self {
+        let packed = surface.pack();
+        let targets = triangles(&packed).iter().map(|t| t.vertices()).collect();
+        Closed { name, packed, targets, rays, is_long: false }
+    }
+
+    /// A ray from a place in world units at a random face, edge or vertex, one as often as the other.
+    fn ray(&self, origin: DVec3, kind: usize, random: &mut Random) -> StreamRay {
+        let vertices = self.targets[random.index(self.targets.len())].map(|v| v.as_dvec3());
+        let [a, b, c] = match (kind % 3, random.index(3)) {
+            (0, _) => random.weights(),
+            (1, side) => {
+                let along = random.unit();
+                let mut weights = [0.0; 3];
+                (weights[side], weights[(side + 1) % 3]) = (along, 1.0 - along);
+                weights
+            }
+            (_, corner) => std::array::from_fn(|i| if i == corner { 1.0 } else { 0.0 }),
+        };
+        let target = vertices[0] * a + vertices[1] * b + vertices[2] * c;
+        let origin = (origin * self.packed.scale).as_vec3();
+        let direction = (target - origin.as_dvec3()).as_vec3();
+        StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+    }
+
+    /// Rays from places that `inside` makes, shared out among the traversals of each machine.
+    fn assert_no_leak(&self, inside: impl Fn(&mut Random) -> DVec3) {
+        let total = count::of(self.rays.0, self.rays.1);
+        for machine in Machine::all() {
+            if self.is_long && machine.is_software() {
+                println!("battery: leaks, {}, {machine}: left out, since software ends loops early", self.name);
+                continue;
+            }
+            let (tracer, traversals) = (machine.tracer(&self.packed), machine.traversals());
+            let part = total.div_ceil(traversals.len()).min(PART);
+            let (mut random, mut leaks, mut done) = (Random(1), 0, 0);
+            for &traversal in traversals.iter().cycle() {
+                let size = part.min(total - done);
+                let rays = (0..size).map(|kind| self.ray(inside(&mut random), kind, &mut random));
+                let hits = tracer.closest(traversal, &Stream::new(rays));
+                let is_met = |t: f32| t > 0.0 && t < f32::MAX;
+                leaks += hits.iter().filter(|h| h.w == StreamRay::NOWHERE || !is_met(f32::from_bits(h.x))).count();
+                done += size;
+                if done == total {
+                    break;
+                }
+            }
+            count::none(format_args!("leaks, {}", self.name), machine, leaks, total);
+        }
+    }
+}
+
+/// Places within three quarters of a ball's radius.
+fn ball(centre: DVec3, radius: f64) -> impl Fn(&mut Random) -> DVec3 {
+    move |random| centre + random.direction() * (0.75 * radius * random.unit())
+}
+
+fn assert_sphere(name: &str, centre: DVec3) {
+    let surface = Surface::sphere(centre, 2.0, 200);
+    Closed::new(name, &surface, (60_000, 10_000_000)).assert_no_leak(ball(centre, 2.0));
+}
+
+#[test]
+fn sphere() {
+    assert_sphere("sphere", DVec3::ZERO);
+}
+
+#[test]
+fn sphere_far_away() {
+    assert_sphere("sphere far away", FAR);
+}
+
+/// Rays at all but the outermost cells, which have nothing beside them.
+fn assert_plane(name: &str, centre: DVec3) {
+    let mut closed = Closed::new(name, &Surface::plane(centre, 12.0, 200), (60_000, 10_000_000));
+    let (middle, half, scale) = (centre * closed.packed.scale, 5.9 * closed.packed.scale, closed.packed.scale);
+    let within = |v: &Vec3| (v.as_dvec3() - middle).abs().max_element() < half;
+    closed.targets.retain(|vertices| vertices.iter().all(within));
+    assert!(closed.targets.len() > 70_000 && scale > 0.0);
+    closed.assert_no_leak(|random| centre + random.cube() * DVec3::new(6.0, 2.0, 6.0) + DVec3::Y * 2.5);
+}
+
+#[test]
+fn plane() {
+    assert_plane("plane", DVec3::ZERO);
+}
+
+#[test]
+fn plane_far_away() {
+    assert_plane("plane far away", FAR);
+}
+
+/// Hubs where 10,000 edges meet. A ray at one is tested against most of the triangles.
+fn assert_fan(name: &str, centre: DVec3) {
+    let mut closed = Closed::new(name, &Surface::bipyramid(centre, 2.0, 1.0, 10_000), (2_000, 100_000));
+    closed.is_long = centre != DVec3::ZERO;
+    closed.assert_no_leak(ball(centre, 0.25));
+}
+
+#[test]
+fn fan() {
+    assert_fan("fan of 10,000 spokes", DVec3::ZERO);
+}
+
+#[test]
+fn fan_far_away() {
+    assert_fan("fan of 10,000 spokes far away", FAR);
+}

@@ -48,7 +48,8 @@ fn rays(packed: &Packed, count: usize) -> Stream {
     let mut rng = Rng::with_seed(17);
     let ray = |i: usize| {
         let [a, b, _] = packed.triangles[rng.usize(0..packed.triangles.len())].vertices();
-        let origin = Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
+        // The packed ball has a radius of at least 1/2.
+        let origin = 0.5 * Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
         let target = if i % 4 == 0 { a } else { a + (b - a) * rng.f32() };
         StreamRay { origin, direction: target - origin, limit: f32::MAX, leaves: StreamRay::NOWHERE }
     };
@@ -111,5 +112,11 @@ fn moller_on_the_gpu() {
             TriangleTest::Watertight => assert_eq!(missed, 0),
             TriangleTest::Moller => assert!(missed * 4 < hits.len()),
         }
+        let near = |(i, hit): (usize, &UVec4)| {
+            let ray = stream.ray(i);
+            let place = ray.origin + ray.direction * f32::from_bits(hit.x);
+            hit.w == StreamRay::NOWHERE || (place - (ray.origin + ray.direction)).length() < 1e-2
+        };
+        assert!(hits.iter().enumerate().all(near), "{triangle:?}: rays end where they were aimed");
     }
 }

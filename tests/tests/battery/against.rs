@@ -1,7 +1,9 @@
 //! Hits against those of brute force.
 
+use eyerays::bench::rays::diagonal;
 use eyerays::pack::Packed;
 use eyerays::stream::{Stream, StreamRay};
+use eyerays_shader::data::BOX_PADDING;
 use eyerays_shader::real::Fast;
 use eyerays_tests::brute_force::{Found, brute_force, brute_force_of, found};
 use eyerays_tests::count;
@@ -41,6 +43,12 @@ pub fn rays(packed: &Packed, count: usize) -> Stream {
         ray(origin, if kind % 9 == 0 || direction == Vec3::ZERO { axis } else { direction })
     });
     Stream::new(rays)
+}
+
+/// Is the mesh so small beside its distance from zero that the padding of boxes makes them one? A ray then meets most
+/// triangles, and software, which ends loops after 65,535 rounds, can't follow it.
+pub fn is_crowded(packed: &Packed) -> bool {
+    diagonal(packed) < 1024.0 * f64::from(BOX_PADDING)
 }
 
 /// Is an answer a miss, or a place on a triangle?

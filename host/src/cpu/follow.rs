@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::real::{Scalar, Vectors};
+use eyerays_shader::real::{Native, Scalar, Vectors};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
@@ -29,10 +29,10 @@ pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, 
         Method::WhileWhile => alone::<R, WhileWhile<Alone>>,
         Method::Speculative => alone::<R, Speculative<Alone>>,
         Method::Packet => together::<R, Packet<Alone>>,
-        Method::SequentialStack => together::<R, Hybrid<Alone, StackMax, Sequential>>,
-        Method::SequentialCut => together::<R, Hybrid<Alone, Cut, Sequential>>,
-        Method::InterleavedStack => together::<R, Hybrid<Alone, StackMax, Interleaved>>,
-        Method::InterleavedCut => together::<R, Hybrid<Alone, Cut, Interleaved>>,
+        Method::SequentialStack => plainly::<R, Hybrid<Alone, StackMax, Sequential>>,
+        Method::SequentialCut => plainly::<R, Hybrid<Alone, Cut, Sequential>>,
+        Method::InterleavedStack => plainly::<R, Hybrid<Alone, StackMax, Interleaved>>,
+        Method::InterleavedCut => plainly::<R, Hybrid<Alone, Cut, Interleaved>>,
     };
     follow(level, geometry, slots, job);
 }
@@ -100,6 +100,12 @@ struct Neighbours<'a, R: Scalar, M>(Slots<'a, R, M>);
 
 fn together<R: Scalar, M: Together>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
     level.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
+}
+
+/// As [`together`], with the instructions that every processor has: the hybrids are there to be compared, and to
+/// compile them for every level would take as long as all else.
+fn plainly<R: Scalar, M: Together>(_: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+    Neighbours::<R, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }
 
 impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {

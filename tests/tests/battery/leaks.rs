@@ -8,7 +8,7 @@ use eyerays_tests::random::Random;
 use eyerays_tests::surface::{Surface, triangles};
 use glam::{DVec3, Vec3};
 
-use crate::against::is_crowded;
+use crate::against::{is_crowded, ray};
 
 /// Far enough for a sphere of radius 2 to be 128 steps of single precision wide.
 const FAR: DVec3 = DVec3::new(148_376.0, 1234.0, -223_423.0);
@@ -32,8 +32,8 @@ impl<'a> Closed<'a> {
         Closed { name, packed, targets, rays }
     }
 
-    /// A ray from a place in world units at a random face, edge or vertex, one as often as the other.
-    fn ray(&self, origin: DVec3, kind: usize, random: &mut Random) -> StreamRay {
+    /// A random place on a face, an edge or a vertex, one as often as the other, in the normalised scene.
+    fn target(&self, kind: usize, random: &mut Random) -> DVec3 {
         let vertices = self.targets[random.index(self.targets.len())].map(|v| v.as_dvec3());
         let [a, b, c] = match (kind % 3, random.index(3)) {
             (0, _) => random.weights(),
@@ -45,14 +45,16 @@ impl<'a> Closed<'a> {
             }
             (_, corner) => std::array::from_fn(|i| if i == corner { 1.0 } else { 0.0 }),
         };
-        let target = vertices[0] * a + vertices[1] * b + vertices[2] * c;
-        let origin = (origin * self.packed.scale).as_vec3();
-        let direction = (target - origin.as_dvec3()).as_vec3();
-        StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+        vertices[0] * a + vertices[1] * b + vertices[2] * c
     }
 
-    /// Rays from places that `inside` makes, shared out among the traversals of each machine.
+    /// Rays from places in world units that `inside` makes.
     fn assert_no_leak(&self, inside: impl Fn(&mut Random) -> DVec3) {
+        self.assert_no_ray_leaks(|kind, random| towards(inside(random) * self.packed.scale, self.target(kind, random)));
+    }
+
+    /// Rays that `ray` makes, shared out among the traversals of each machine.
+    fn assert_no_ray_leaks(&self, ray: impl Fn(usize, &mut Random) -> StreamRay) {
         let total = count::of(self.rays.0, self.rays.1);
         for machine in Machine::all() {
             if is_crowded(&self.packed) && machine.is_software() {
@@ -64,7 +66,7 @@ impl<'a> Closed<'a> {
             let (mut random, mut leaks, mut done) = (Random(1), 0, 0);
             for &traversal in traversals.iter().cycle() {
                 let size = part.min(total - done);
-                let rays = (0..size).map(|kind| self.ray(inside(&mut random), kind, &mut random));
+                let rays = (0..size).map(|kind| ray(kind, &mut random));
                 let hits = tracer.closest(traversal, &Stream::new(rays));
                 let is_met = |t: f32| t > 0.0 && t < f32::MAX;
                 leaks += hits.iter().filter(|h| h.w == StreamRay::NOWHERE || !is_met(f32::from_bits(h.x))).count();
@@ -76,6 +78,12 @@ impl<'a> Closed<'a> {
             count::none(format_args!("leaks, {}", self.name), machine, leaks, total);
         }
     }
+}
+
+/// A ray at a place.
+fn towards(origin: DVec3, target: DVec3) -> StreamRay {
+    let origin = origin.as_vec3();
+    ray(origin, (target - origin.as_dvec3()).as_vec3())
 }
 
 /// Places within three quarters of a ball's radius.
@@ -121,6 +129,22 @@ fn plane() {
 #[test]
 fn plane_far_away() {
     assert_plane("plane far away", FAR);
+}
+
+/// From so near, and along flat boxes, that a vertex's rounding is large beside the distance: what boxes are padded for.
+#[test]
+fn large_cells_from_near() {
+    let mut plane = Surface::plane(DVec3::ZERO, 12.0, 7);
+    plane.positions.iter_mut().for_each(|p| p.y = 1e-4 * p.x + 3e-6 * p.z);
+    let mut closed = Closed::new("large cells from near", &plane, counts(DVec3::ZERO));
+    let within = |v: &Vec3| v.as_dvec3().abs().max_element() < 5.5 * closed.packed.scale;
+    closed.targets.retain(|vertices| vertices.iter().all(within));
+    closed.assert_no_ray_leaks(|kind, random| {
+        let (target, away) = (closed.target(kind, random), random.direction());
+        let height = 10f64.powf(random.between(-7.0, -1.0));
+        let up = 2e-4 + 10f64.powf(random.between(-5.0, 0.0));
+        towards(target + DVec3::new(away.x, up, away.z) * height, target)
+    });
 }
 
 /// Hubs where 10,000 edges meet. A ray at one is tested against most of the triangles.

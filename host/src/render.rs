@@ -7,7 +7,7 @@ use eyerays_shader::real::Fast;
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::gpu::{Gpu, Renderer, Want};
+use crate::gpu::{Gpu, Renderer, Want, warm};
 use crate::method::{Processor, Traversal};
 use crate::pack::Packed;
 use crate::rays::Rays;
@@ -95,8 +95,8 @@ struct Runs {
     repeat: u32,
 }
 
-/// A GPU has raised its clocks after so much work.
-const WARMING: Duration = Duration::from_millis(100);
+/// Pictures, with pauses to read them, raise a GPU's clocks in so long.
+const LEAST_WARMING: Duration = Duration::from_millis(500);
 
 impl Chosen {
     /// Opens the device that fits the choice.
@@ -182,9 +182,12 @@ impl Chosen {
 
     fn on_gpu(&self, gpu: &Gpu, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
-        let start = Instant::now();
-        while runs.warm_up && start.elapsed() < WARMING {
-            renderer.render(&|_| ())?;
+        if runs.warm_up {
+            warm(LEAST_WARMING, || {
+                let start = Instant::now();
+                let rendering = renderer.render(&|_| ())?;
+                Ok(rendering.device_time.unwrap_or_else(|| start.elapsed()))
+            })?;
         }
         let (rendering, times) = repeated(runs.repeat, || renderer.render(done))?;
         let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();

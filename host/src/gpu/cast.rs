@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 use std::rc::Rc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use eyerays_shader::data::Features;
 use eyerays_shader::launch::{ROW, WORKGROUP};
@@ -15,6 +15,7 @@ use super::kernel::{Compiler, Kernel};
 use super::readback;
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
+use super::warm::warm;
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Layout, Traversal};
 use crate::pack::Packed;
@@ -25,11 +26,8 @@ type Key = (bool, Traversal, Question);
 
 /// Dispatches of a submission.
 const BATCH: u32 = 8;
-/// A GPU is warm once a batch takes more than this share of the best before ...
-const NOISE: f64 = 0.97;
-/// ... and it has worked for at least so long, or at most so long.
+/// Dispatches without a pause between them raise a GPU's clocks in so long.
 const LEAST_WARMING: Duration = Duration::from_millis(100);
-const MOST_WARMING: Duration = Duration::from_millis(1000);
 
 /// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
 pub struct Caster<'a> {
@@ -91,9 +89,7 @@ impl<'a> Caster<'a> {
         Ok(self.batch(cast, &kernel, 1)?[0])
     }
 
-    /// What each of `repeats` dispatches takes on the device, one right after the other, once the GPU is
-    /// warm: an idle one has slow clocks (an H200 a sixth of its own), and takes some tenths of a second of
-    /// work to raise them.
+    /// What each of `repeats` dispatches takes on the device, one right after the other, once the GPU is warm.
     ///
     /// # Errors
     /// As [`Caster::trace`].
@@ -106,16 +102,7 @@ impl<'a> Caster<'a> {
         repeats: u32,
     ) -> Result<Vec<Duration>> {
         let kernel = self.kernel(exact, traversal, question)?;
-        let start = Instant::now();
-        let mut best = Duration::MAX;
-        loop {
-            let took = self.batch(cast, &kernel, BATCH)?.into_iter().min().unwrap_or_default();
-            let settled = took.as_secs_f64() >= NOISE * best.as_secs_f64();
-            best = best.min(took);
-            if start.elapsed() >= MOST_WARMING || settled && start.elapsed() >= LEAST_WARMING {
-                break;
-            }
-        }
+        warm(LEAST_WARMING, || Ok(self.batch(cast, &kernel, BATCH)?.into_iter().min().unwrap_or_default()))?;
         let mut times = Vec::new();
         while times.len() < repeats as usize {
             let batch = (repeats - times.len() as u32).min(BATCH);

@@ -11,9 +11,11 @@ mod readback;
 mod render;
 mod scene;
 mod timer;
+mod warm;
 
 pub use adapter::{AdapterReport, adapters};
 pub use cast::{Cast, Caster};
 pub use device::{Gpu, Route, Want};
 pub use module::specialise;
 pub use render::{GpuRendering, Renderer};
+pub use warm::warm;

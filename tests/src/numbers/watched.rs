@@ -220,7 +220,10 @@ mod tests {
     #[test]
     fn subnormal_operands_are_counted_where_they_are_used_and_not_where_they_are_flushed() {
         let x = Counting::splat(TINY);
-        let at = |line: u32| subnormals().get(&format!("{}:{line}:17", file!())).copied();
+        let at = |line: u32| {
+            let place = format!("{}:{line}:", file!());
+            subnormals().iter().find(|(at, _)| at.starts_with(&place)).map(|(_, &count)| count)
+        };
         let _ = x.flush(1e-30) + Counting::splat(1.0);
         let _ = Counting::splat(f32::MIN_POSITIVE) * Counting::splat(0.25);
         assert_eq!((at(line!() - 2), at(line!() - 1)), (None, None));

@@ -184,7 +184,7 @@ impl Traversal {
     /// docs/benchmarks.md.
     pub fn resolved(self, processor: Processor, coherence: Coherence) -> Traversal {
         let method = match (self.method, processor, coherence) {
-            (Method::Auto, Processor::Cpu, Coherence::Primary | Coherence::Shadow) => Method::Packet,
+            (Method::Auto, Processor::Cpu, Coherence::Primary) => Method::Packet,
             (Method::Auto, Processor::Cpu, _) => Method::Wide,
             (Method::Auto, Processor::Gpu, Coherence::Scattered) => Method::WhileWhile,
             (Method::Auto, Processor::Gpu, _) => Method::IfIf,

@@ -139,9 +139,10 @@ macro_rules! registers {
             type Mask = $mask;
             type Index = $index;
             type Lane = f32;
-            // SAFETY: any bits are numbers.
-            const ROUNDOFF: Self =
-                $number(unsafe { transmute::<[f32; $count], $floats>([<f32 as Real>::ROUNDOFF; $count]) });
+            const ROUNDOFF: Self = {
+                // SAFETY: any bits are numbers.
+                $number(unsafe { transmute::<[f32; $count], $floats>([<f32 as Real>::ROUNDOFF; $count]) })
+            };
 
             instruction! {
                 fn splat(x: f32) -> Self { $number($all(x)) }

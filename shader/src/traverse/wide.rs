@@ -77,14 +77,14 @@ impl Groups {
         let mut group = self.nodes;
         if !group.has_nodes() {
             self.depth -= 1;
-            let at = 2 * self.depth as usize & (2 * STACK - 1);
+            let at = (2 * self.depth as usize) & (2 * STACK - 1);
             (group.first, group.waiting) = (stack[at], stack[at + 1]);
         }
         let place = 31 - group.waiting.leading_zeros();
         group.waiting &= !(1 << place);
         let slot = (place - 24) ^ inverted;
         if group.has_nodes() {
-            let at = 2 * self.depth as usize & (2 * STACK - 1);
+            let at = (2 * self.depth as usize) & (2 * STACK - 1);
             (stack[at], stack[at + 1]) = (group.first, group.waiting);
             self.depth += 1;
         }

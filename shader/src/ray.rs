@@ -2,7 +2,7 @@
 
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Scalar;
-use crate::real::{Real, TINY, V3};
+use crate::real::{Real, SMALL, TINY, V3};
 
 /// A ray (or one a lane) with what its box and triangle tests share.
 #[derive(Clone, Copy)]
@@ -56,8 +56,17 @@ impl<R: Real> Ray<R> {
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
+        let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
         Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
     }
+}
+
+/// A coordinate of a ray's origin; where it is no number, or infinite, one from where the ray leaves the scene behind, so
+/// that it meets no box on any device.
+#[inline(always)]
+fn started<R: Real>(origin: R, direction: R) -> R {
+    let beyond = R::select(direction.lt(R::splat(0.0)), R::splat(-1.0 / SMALL), R::splat(1.0 / SMALL));
+    R::select(origin.abs().le(R::splat(f32::MAX)), origin, beyond)
 }
 
 impl<R: Real> Shear<R> {

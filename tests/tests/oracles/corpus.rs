@@ -114,7 +114,7 @@ fn aimed(packed: &Packed, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
             _ => point(rng),
         };
         let mut direction = target - origin;
-        if i % 7 == 0 {
+        if i.is_multiple_of(7) {
             direction[rng.usize(0..3)] = 0.0;
         }
         if direction == Vec3::ZERO {
@@ -123,7 +123,7 @@ fn aimed(packed: &Packed, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
         let leaves = StreamRay::NOWHERE;
         StreamRay {
             origin,
-            direction: if i % 2 == 0 { direction.normalize() } else { direction },
+            direction: if i.is_multiple_of(2) { direction.normalize() } else { direction },
             limit: f32::MAX,
             leaves,
         }

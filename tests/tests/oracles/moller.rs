@@ -50,7 +50,7 @@ fn rays(packed: &Packed, count: usize) -> Stream {
         let [a, b, _] = packed.triangles[rng.usize(0..packed.triangles.len())].vertices();
         // The packed ball has a radius of at least 1/2.
         let origin = 0.5 * Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
-        let target = if i % 4 == 0 { a } else { a + (b - a) * rng.f32() };
+        let target = if i.is_multiple_of(4) { a } else { a + (b - a) * rng.f32() };
         StreamRay { origin, direction: target - origin, limit: f32::MAX, leaves: StreamRay::NOWHERE }
     };
     Stream::new((0..count).map(ray))

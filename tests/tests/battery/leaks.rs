@@ -2,9 +2,8 @@
 
 use eyerays::pack::Packed;
 use eyerays::stream::{Stream, StreamRay};
-use eyerays_shader::real::Scalar;
 use eyerays_tests::count;
-use eyerays_tests::machine::{Machine, one_by_one};
+use eyerays_tests::machine::Machine;
 use eyerays_tests::random::Random;
 use eyerays_tests::surface::{Surface, triangles};
 use glam::{DVec3, Vec3};
@@ -54,13 +53,6 @@ impl<'a> Closed<'a> {
         self.assert_no_ray_leaks(|kind, random| towards(inside(random) * self.packed.scale, self.target(kind, random)));
     }
 
-    /// How many of these rays meet the surface in double precision: rounding may have put the origin of one that starts
-    /// very near on the other side.
-    fn meets(&self, rays: Vec<StreamRay>) -> usize {
-        let hits = one_by_one::<f64>(&self.packed, &Stream::new(rays.into_iter()));
-        hits.iter().filter(|&&hit| f64::load(hit).1 != StreamRay::NOWHERE).count()
-    }
-
     /// Rays that `ray` makes, shared out among the traversals of each machine.
     fn assert_no_ray_leaks(&self, ray: impl Fn(usize, &mut Random) -> StreamRay) {
         let total = count::of(self.rays.0, self.rays.1);
@@ -75,12 +67,9 @@ impl<'a> Closed<'a> {
             for &traversal in traversals.iter().cycle() {
                 let size = part.min(total - done);
                 let rays = (0..size).map(|kind| ray(kind, &mut random));
-                let stream = Stream::new(rays);
-                let hits = tracer.closest(traversal, &stream);
+                let hits = tracer.closest(traversal, &Stream::new(rays));
                 let is_met = |t: f32| t > 0.0 && t < f32::MAX;
-                let lost = |i: &usize| hits[*i].w == StreamRay::NOWHERE || !is_met(f32::from_bits(hits[*i].x));
-                let lost: Vec<StreamRay> = (0..hits.len()).filter(lost).map(|i| stream.ray(i)).collect();
-                leaks += self.meets(lost);
+                leaks += hits.iter().filter(|h| h.w == StreamRay::NOWHERE || !is_met(f32::from_bits(h.x))).count();
                 done += size;
                 if done == total {
                     break;
@@ -153,7 +142,8 @@ fn large_cells_from_near() {
     closed.assert_no_ray_leaks(|kind, random| {
         let (target, away) = (closed.target(kind, random), random.direction());
         let height = 10f64.powf(random.between(-7.0, -1.0));
-        let up = 2e-4 + 10f64.powf(random.between(-5.0, 0.0));
+        // Nearer than a sheared vertex errs (16 roundoffs) a ray may as well start behind the surface.
+        let up = (2e-4 + 10f64.powf(random.between(-5.0, 0.0))).max(16.0 * 0.5f64.powi(24) / height);
         towards(target + DVec3::new(away.x, up, away.z) * height, target)
     });
 }

@@ -61,11 +61,14 @@ impl<R: Real> Ray<R> {
     }
 }
 
+/// Far from a scene within [-1, 1], and no overflow when squared.
+const BEYOND: f32 = 1.0 / SMALL;
+
 /// A coordinate of a ray's origin; where it is no number, or infinite, one from where the ray leaves the scene behind, so
 /// that it meets no box on any device.
 #[inline(always)]
 fn started<R: Real>(origin: R, direction: R) -> R {
-    let beyond = R::select(direction.lt(R::splat(0.0)), R::splat(-1.0 / SMALL), R::splat(1.0 / SMALL));
+    let beyond = R::select(direction.lt(R::splat(0.0)), R::splat(-BEYOND), R::splat(BEYOND));
     R::select(origin.abs().le(R::splat(f32::MAX)), origin, beyond)
 }
 

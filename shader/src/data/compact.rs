@@ -1,6 +1,6 @@
 //! Pairs of nodes on a grid.
 
-use super::{CentredPair, numbers, pack};
+use super::{CentredPair, pack};
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
@@ -53,7 +53,7 @@ impl From<&CentredPair> for CompactPair {
 /// A box on the grid around a box; one beyond the grid is cut off, where no ray is.
 #[cfg(not(target_arch = "spirv"))]
 fn to_grid(centre: UVec4, half: UVec4) -> UVec4 {
-    let (c, h) = (numbers(centre).to_array().map(f64::from), numbers(half).to_array().map(f64::from));
+    let (c, h) = (super::numbers(centre).to_array().map(f64::from), super::numbers(half).to_array().map(f64::from));
     let step = f64::from(CompactPair::STEP);
     let place = |i: usize| ((c[i] + 1.0) / step).round().clamp(0.0, 65535.0);
     let reach = |i: usize| {

@@ -1,6 +1,6 @@
 //! References to nodes, and pairs of them.
 
-use super::{numbers, pack};
+use super::pack;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
@@ -146,7 +146,7 @@ impl From<&NodePair> for CentredPair {
 /// Centre and half the extent of a box, the latter rounded up, and wider by the margin.
 #[cfg(not(target_arch = "spirv"))]
 fn centred(least: UVec4, greatest: UVec4) -> (UVec4, UVec4) {
-    let (low, high) = (numbers(least), numbers(greatest));
+    let (low, high) = (super::numbers(least), super::numbers(greatest));
     let centre = (low + high) * 0.5;
     let half = |low: f32, high: f32, centre: f32| {
         let centre = f64::from(centre);

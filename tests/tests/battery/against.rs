@@ -54,7 +54,7 @@ pub fn is_crowded(packed: &Packed) -> bool {
 /// Is an answer a miss, or a place on a triangle?
 fn is_sound(hit: Found) -> bool {
     let [t, u, v] = [hit[0], hit[1], hit[2]].map(f32::from_bits);
-    hit[3] == StreamRay::NOWHERE || (t >= 0.0 && t <= f32::MAX && u.is_finite() && v.is_finite())
+    hit[3] == StreamRay::NOWHERE || ((0.0..=f32::MAX).contains(&t) && u.is_finite() && v.is_finite())
 }
 
 /// In fast precision: is it the other answer but for its last bits?

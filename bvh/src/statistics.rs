@@ -102,7 +102,7 @@ impl Statistics {
             self.wide_sah_cost += Self::TRAVERSAL * area / root;
             let mut next = record.first_child;
             for (child, planes) in real() {
-                if let Child::Leaf { count, .. } = child {
+                if let Child::Leaf { count } = child {
                     self.wide_sah_cost += Self::INTERSECTION * f64::from(count) * half_area(planes) / root;
                 } else {
                     open.push((next, depth + 1, Some(half_area(planes))));
@@ -132,8 +132,8 @@ mod tests {
     #[test]
     fn a_tree_by_hand() {
         let mut children = [Record::NOWHERE; 8];
-        children[0] = (Child::Leaf { place: 0, count: 2 }, [[0; 3], [64; 3]]);
-        children[4] = (Child::Leaf { place: 2, count: 3 }, [[64; 3], [128; 3]]);
+        children[0] = (Child::Leaf { count: 2 }, [[0; 3], [64; 3]]);
+        children[4] = (Child::Leaf { count: 3 }, [[64; 3], [128; 3]]);
         let grid = Grid { origin: [0.0; 3], exponent: [-6; 3] };
         let wide = Record { grid, first_child: 0, first_triangle: 0, children }.encode();
         let inner = (Vec3::ZERO, vec3(2.0, 1.0, 1.0), NodeRef::inner(1));

@@ -22,15 +22,13 @@ fn after(change: impl FnOnce(&mut Vec<WideNode>, &mut Vec<Bounds>)) -> BuildErro
     validate_wide(&nodes, &bounds).expect_err("a corrupted tree")
 }
 
-/// A child's byte.
-fn meta(node: &WideNode, slot: usize) -> u8 {
-    (node.children[2 + slot / 4] >> (8 * (slot % 4))) as u8
+/// Bits of a child's triangles.
+fn leaf(node: &WideNode, slot: usize) -> u32 {
+    node.children.z >> (3 * slot) & 7
 }
 
-fn set_meta(node: &mut WideNode, slot: usize, meta: u8) {
-    let word = &mut node.children[2 + slot / 4];
-    let shift = 8 * (slot % 4);
-    *word = *word & !(0xff << shift) | u32::from(meta) << shift;
+fn set_leaf(node: &mut WideNode, slot: usize, bits: u32) {
+    node.children.z = node.children.z & !(7 << (3 * slot)) | bits << (3 * slot);
 }
 
 fn is_inner(node: &WideNode, slot: usize) -> bool {
@@ -44,7 +42,7 @@ fn find(nodes: &[WideNode], wanted: impl Fn(&WideNode, usize) -> bool) -> (usize
 }
 
 fn is_leaf(node: &WideNode, slot: usize) -> bool {
-    !is_inner(node, slot) && meta(node, slot) != 0
+    leaf(node, slot) != 0
 }
 
 #[test]
@@ -109,47 +107,49 @@ fn triangle_in_no_leaf_and_in_two() {
     assert_eq!(error, BuildError::TriangleLost { triangle: 300 });
     let error = after(|nodes, _| {
         let (node, slot) = find(nodes, is_leaf);
-        set_meta(&mut nodes[node], slot, 0);
+        let fewer = leaf(&nodes[node], slot) >> 1;
+        set_leaf(&mut nodes[node], slot, fewer);
     });
-    assert!(matches!(error, BuildError::TriangleLost { .. } | BuildError::WideNodeMalformed { .. }));
+    assert!(matches!(error, BuildError::TriangleLost { .. } | BuildError::WideNodeMalformed { .. }), "{error}");
     let error = after(|nodes, _| {
-        let (node, slot) = find(nodes, |n, slot| is_leaf(n, slot) && meta(n, slot) & 31 > 0);
-        let less = meta(&nodes[node], slot) - 1;
-        set_meta(&mut nodes[node], slot, less);
+        let (node, _) = find(nodes, |n, slot| is_leaf(n, slot) && n.children.y > 0);
+        nodes[node].children.y -= 1;
     });
     assert!(matches!(error, BuildError::TriangleTwice { .. }), "{error}");
 }
 
 #[test]
-fn mask_that_contradicts_a_childs_byte() {
-    for slot in 0..8 {
-        let error = after(|nodes, _| nodes[2].grid.w ^= 1 << (24 + slot));
-        assert_eq!(error, BuildError::WideNodeMalformed { node: 2 });
-    }
+fn child_that_is_both() {
+    let error = after(|nodes, _| {
+        let (node, slot) = find(nodes, is_leaf);
+        nodes[node].grid.w |= 1 << (24 + slot);
+    });
+    assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{error}");
+    let error = after(|nodes, _| {
+        let (node, slot) = find(nodes, is_inner);
+        set_leaf(&mut nodes[node], slot, 1);
+    });
+    assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{error}");
 }
 
 #[test]
-fn childs_byte_that_says_nothing() {
-    let bad = [1, 31, 2 << 5, 4 << 5, 5 << 5, 6 << 5, 1 << 5 | 24, 3 << 5 | 23, 7 << 5 | 22];
-    for meta in bad {
+fn bits_of_a_leaf_with_a_gap_and_of_no_child() {
+    for bits in [0b010, 0b100, 0b101, 0b110] {
         let error = after(|nodes, _| {
             let (node, slot) = find(nodes, is_leaf);
-            set_meta(&mut nodes[node], slot, meta);
+            set_leaf(&mut nodes[node], slot, bits);
         });
-        assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{meta}: {error}");
+        assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{bits}: {error}");
     }
-    let error = after(|nodes, _| {
-        let (node, slot) = find(nodes, is_inner);
-        set_meta(&mut nodes[node], slot, 32 + 24 + (slot as u8 + 1) % 8);
-    });
-    assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{error}");
+    let error = after(|nodes, _| nodes[0].children.z |= 1 << 24);
+    assert_eq!(error, BuildError::WideNodeMalformed { node: 0 });
 }
 
 #[test]
 fn node_without_children() {
     let error = after(|nodes, _| {
         let node = nodes.len() - 1;
-        (nodes[node].children.z, nodes[node].children.w) = (0, 0);
+        nodes[node].children.z = 0;
         nodes[node].grid.w &= 0xff_ffff;
     });
     assert!(matches!(error, BuildError::WideNodeMalformed { .. }), "{error}");
@@ -161,13 +161,13 @@ fn grid_that_no_box_test_can_scale() {
         let error = after(|nodes, _| nodes[3].grid.y = origin.to_bits());
         assert_eq!(error, BuildError::WideNodeMalformed { node: 3 });
     }
-    for exponent in [0, 127 - 31, 128, 255] {
+    for exponent in [0, 135 - 31, 136, 255] {
         let error = after(|nodes, _| nodes[3].grid.w = nodes[3].grid.w & 0xffff_00ff | exponent << 8);
         assert_eq!(error, BuildError::WideNodeMalformed { node: 3 });
     }
 }
 
-/// The word and the shift of a plane: six of eight bytes each.
+/// The word and the byte of a plane: six of eight bytes each.
 fn plane(node: &mut WideNode, side: usize, slot: usize) -> (&mut u32, usize) {
     let words = [&mut node.low_x_low_y, &mut node.low_z_high_x, &mut node.high_y_high_z];
     let place = side * 2 + slot / 4;
@@ -177,7 +177,7 @@ fn plane(node: &mut WideNode, side: usize, slot: usize) -> (&mut u32, usize) {
         1 => &mut b[place % 4],
         _ => &mut c[place % 4],
     };
-    (word, 8 * (slot % 4))
+    (word, slot % 4)
 }
 
 #[test]
@@ -186,12 +186,14 @@ fn any_plane_of_any_child_one_step_inwards() {
     let mut moved = 0;
     for node in 0..nodes.len() {
         for (slot, side) in (0..8).flat_map(|slot| (0..6).map(move |side| (slot, side))) {
-            if meta(&nodes[node], slot) == 0 {
+            if !is_leaf(&nodes[node], slot) && !is_inner(&nodes[node], slot) {
                 continue;
             }
             let mut nodes = nodes.clone();
-            let (word, shift) = plane(&mut nodes[node], side, slot);
-            *word = if side < 3 { word.wrapping_add(1 << shift) } else { word.wrapping_sub(1 << shift) };
+            let (word, byte) = plane(&mut nodes[node], side, slot);
+            let mut planes = word.rotate_right(WideNode::TURN).to_le_bytes();
+            planes[byte] = if side < 3 { planes[byte].wrapping_add(1) } else { planes[byte].wrapping_sub(1) };
+            *word = u32::from_le_bytes(planes).rotate_left(WideNode::TURN);
             let error = BuildError::WideBoxTooSmall { node: node as u32 };
             assert_eq!(validate_wide(&nodes, &bounds), Err(error), "side {side}");
             moved += 1;
@@ -213,13 +215,12 @@ fn own_box_larger_than_the_margin_lets_it_be() {
 fn chain(length: u32) -> (Vec<WideNode>, Vec<Bounds>) {
     let (least, greatest) = duplicates(1)[0].bounds();
     let own = Bounds { least: pack(least, 0), greatest: pack(greatest, 0) };
-    let leaf = 1 << 5;
     let node = |i: u32| {
         let last = i + 1 == length;
-        let (mask, other) = if last { (0, leaf | 1) } else { (2, 32 + 24 + 1) };
+        let (mask, other) = if last { (0, 1) } else { (2, 0) };
         WideNode {
-            grid: pack(Vec3::NEG_ONE, 121 << 16 | 121 << 8 | 121 | mask << 24),
-            children: UVec4::new(i + 1, i, leaf | other << 8, 0),
+            grid: pack(Vec3::NEG_ONE, 129 << 16 | 129 << 8 | 129 | mask << 24),
+            children: UVec4::new(i + 1, i, 1 | other << 3, 0),
             low_x_low_y: UVec4::ZERO,
             low_z_high_x: UVec4::new(0, 0, u32::MAX, u32::MAX),
             high_y_high_z: UVec4::splat(u32::MAX),

@@ -2,9 +2,9 @@
 //!
 //! Why double precision decides exactly whether a plane is far enough out: an origin is a multiple of
 //! 2^-30 below 4, a step is a power of two from 2^-30 to 2^0 and a plane at most 255 of them from the
-//! origin, and the margin is 2^-19. So a plane's place with its margin is a multiple of 2^-30 below
-//! 2^9: 39 bits, which double precision adds up without rounding. The coordinate that it is compared
-//! with is a single, which converts exactly.
+//! origin, and the margin is 2^-19 and 2^-6 of a step. So a plane's place with its margin is a multiple of
+//! 2^-36 below 2^9: 45 bits, which double precision adds up without rounding. The coordinate that it is
+//! compared with is a single, which converts exactly.
 
 use eyerays_shader::data::WideNode;
 
@@ -31,18 +31,23 @@ pub(crate) const FARTHEST: f32 = 2.0;
 
 const FINEST: f64 = 1.0 / (1u64 << -LEAST_EXPONENT) as f64;
 const MARGIN: f64 = WideNode::MARGIN as f64;
+const SLACK: f64 = WideNode::SLACK as f64;
 const PLANES: f64 = u8::MAX as f64;
 
 impl Grid {
     /// The finest grid around a box in the normalised scene.
     pub fn around(bounds: Bounds) -> Self {
-        let origin = bounds.min.map(|least| float_below(below(least)));
-        let exponent = std::array::from_fn(|axis| {
-            let extent = above(bounds.max[axis]) - f64::from(origin[axis]);
-            let finest = |e: &i32| PLANES * step(*e) >= extent;
-            (LEAST_EXPONENT..GREATEST_EXPONENT).find(finest).unwrap_or(GREATEST_EXPONENT)
+        let along = |axis: usize, exponent: i32| {
+            let slack = SLACK * step(exponent);
+            let origin = origin(below(bounds.min[axis]) - slack);
+            let extent = above(bounds.max[axis]) + slack - f64::from(origin);
+            (PLANES * step(exponent) >= extent).then_some((origin, exponent))
+        };
+        let coarsest = |axis| (origin(below(bounds.min[axis])), GREATEST_EXPONENT);
+        let axes: [_; 3] = std::array::from_fn(|axis| {
+            (LEAST_EXPONENT..=GREATEST_EXPONENT).find_map(|e| along(axis, e)).unwrap_or_else(|| coarsest(axis))
         });
-        Grid { origin, exponent }
+        Grid { origin: axes.map(|(origin, _)| origin), exponent: axes.map(|(_, exponent)| exponent) }
     }
 
     /// The planes closest around a box inside the grid that keep the margin.
@@ -50,8 +55,8 @@ impl Grid {
         // Exact up to the conversion, which takes whole numbers from 0 to 255.
         let steps = |place: f64, axis: usize| (place - f64::from(self.origin[axis])) / step(self.exponent[axis]);
         [
-            std::array::from_fn(|axis| steps(below(bounds.min[axis]), axis).floor() as u8),
-            std::array::from_fn(|axis| steps(above(bounds.max[axis]), axis).ceil() as u8),
+            std::array::from_fn(|axis| (steps(below(bounds.min[axis]), axis) - SLACK).floor() as u8),
+            std::array::from_fn(|axis| (steps(above(bounds.max[axis]), axis) + SLACK).ceil() as u8),
         ]
     }
 
@@ -61,8 +66,9 @@ impl Grid {
             f64::from(self.origin[axis]) + f64::from(planes[side][axis]) * step(self.exponent[axis])
         };
         (0..3).all(|axis| {
-            place(0, axis) + MARGIN <= f64::from(bounds.min[axis])
-                && place(1, axis) - MARGIN >= f64::from(bounds.max[axis])
+            let margin = MARGIN + SLACK * step(self.exponent[axis]);
+            place(0, axis) + margin <= f64::from(bounds.min[axis])
+                && place(1, axis) - margin >= f64::from(bounds.max[axis])
         })
     }
 
@@ -97,9 +103,10 @@ fn above(coordinate: f32) -> f64 {
     (f64::from(coordinate) / FINEST).ceil() * FINEST + MARGIN
 }
 
-/// The greatest single up to a multiple of [`FINEST`], itself such a multiple: a single below 2^-6
-/// holds the place as it is, and larger ones are spaced by [`FINEST`] or more.
-fn float_below(place: f64) -> f32 {
+/// The greatest single up to a place that is a multiple of [`FINEST`]: a single below 2^-6 holds such a
+/// multiple as it is, and larger ones are spaced by [`FINEST`] or more.
+fn origin(place: f64) -> f32 {
+    let place = (place / FINEST).floor() * FINEST;
     let nearest = place as f32;
     if f64::from(nearest) > place { nearest.next_down() } else { nearest }
 }
@@ -150,7 +157,8 @@ mod tests {
             for axis in 0..3 {
                 let extent = f64::from(a.max[axis]) - f64::from(a.min[axis]) + 2.0 * MARGIN;
                 let e = grid.exponent[axis];
-                prop_assert!(e == LEAST_EXPONENT || PLANES * step(e - 1) < extent + 4.0 * FINEST + 2f64.powi(-22));
+                let slack = 2.0 * SLACK * step(e - 1);
+                prop_assert!(e == LEAST_EXPONENT || PLANES * step(e - 1) < extent + slack + 4.0 * FINEST + 2f64.powi(-22));
             }
         }
     }
@@ -162,7 +170,7 @@ mod tests {
         let point = Bounds { min: [1.0; 3], max: [1.0; 3] };
         let grid = Grid::around(point);
         assert_eq!(grid.exponent, [-25; 3]);
-        assert_eq!(grid.origin, [1.0 - WideNode::MARGIN; 3]);
+        assert_eq!(grid.origin, [(1.0 - WideNode::MARGIN).next_down(); 3]);
     }
 
     #[test]

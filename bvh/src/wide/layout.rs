@@ -59,28 +59,21 @@ impl Wide {
     /// Makes wide node `number` of its children. Calls `open` with the numbers, wide and binary, of inner ones.
     fn add(&mut self, number: u32, tree: &Binary, children: &[(u32, bool)], mut open: impl FnMut(u32, u32)) {
         let node = |child: usize| &tree.nodes[children[child].0 as usize];
-        let first_triangle = self.slots.len() as u32;
         let mut record = Record {
             grid: Grid::around(Bounds::around((0..children.len()).map(|i| node(i).bounds))),
             first_child: self.nodes.len() as u32,
-            first_triangle,
+            first_triangle: self.slots.len() as u32,
             children: [Record::NOWHERE; WideNode::ARITY],
         };
-        // Triangles stay in depth-first order, so that a large leaf of the pairs stays in one piece.
-        let mut places = [0; WideNode::ARITY];
-        for (i, place) in places.iter_mut().enumerate().take(children.len()) {
-            *place = self.slots.len() as u32 - first_triangle;
-            if children[i].1 {
-                self.slots.extend(run(node(i)));
-            }
-        }
         let boxes: Vec<Bounds> = (0..children.len()).map(|i| node(i).bounds).collect();
-        for (slot, child) in octant::slots(&boxes).into_iter().enumerate() {
+        for (slot, child) in octant::slots(&boxes, |i| children[i].1).into_iter().enumerate() {
             let Some(i) = child else { continue };
             let (binary, is_leaf) = children[i];
-            let what = if is_leaf { Child::Leaf { place: places[i], count: node(i).count } } else { Child::Inner };
+            let what = if is_leaf { Child::Leaf { count: node(i).count } } else { Child::Inner };
             record.children[slot] = (what, record.grid.planes(boxes[i]));
-            if !is_leaf {
+            if is_leaf {
+                self.slots.extend(run(node(i)));
+            } else {
                 open(self.nodes.len() as u32, binary);
                 self.nodes.push(nothing());
             }

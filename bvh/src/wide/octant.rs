@@ -10,14 +10,15 @@ use crate::bounds::Bounds;
 
 const ARITY: usize = WideNode::ARITY;
 
-/// The child at each slot, as a place in `boxes`; at most eight.
+/// The child at each slot, as a place in `boxes`; at most eight. Leaves are in their order, so that a large leaf
+/// of the pairs stays in one piece: a ray goes through the leaves of a node at once, whatever their slots.
 ///
 /// Ylitie et al. 2017, section 3.2: slots are the octants' diagonals, and the sum of the distances that
 /// children lie along the diagonals of their slots is to be as large as possible. Theirs is an auction;
 /// here each child is swapped with others for as long as that helps. (The order of two children hangs on
 /// the highest bit alone in which their slots differ; a sum over pairs along that bit's axis says so
 /// better, but on Conference and Sibenik rays visit as many nodes with it.)
-pub(crate) fn slots(boxes: &[Bounds]) -> [Option<usize>; ARITY] {
+pub(crate) fn slots(boxes: &[Bounds], is_leaf: impl Fn(usize) -> bool) -> [Option<usize>; ARITY] {
     let middle = Bounds::around(boxes.iter().copied()).centre();
     let along = |child: usize, slot: usize| -> f32 {
         let Some(b) = boxes.get(child) else { return 0.0 };
@@ -34,7 +35,12 @@ pub(crate) fn slots(boxes: &[Bounds]) -> [Option<usize>; ARITY] {
             break;
         }
     }
-    children.map(|child| (child < boxes.len()).then_some(child))
+    let mut leaves = (0..boxes.len()).filter(|&child| is_leaf(child));
+    children.map(|child| match child {
+        nothing if nothing >= boxes.len() => None,
+        leaf if is_leaf(leaf) => leaves.next(),
+        inner => Some(inner),
+    })
 }
 
 /// More passes than were ever seen to help.
@@ -68,16 +74,26 @@ mod tests {
         for turn in 0..8usize {
             let corner = |i: usize| cube([0, 1, 2].map(|axis| ((i ^ turn) >> axis & 1) as f32));
             let boxes: Vec<Bounds> = (0..8).map(corner).collect();
-            assert_eq!(slots(&boxes), std::array::from_fn(|slot| Some(slot ^ turn)));
+            assert_eq!(slots(&boxes, |_| false), std::array::from_fn(|slot| Some(slot ^ turn)));
         }
     }
 
     #[test]
     fn two_children_are_met_in_order_by_rays_either_way() {
         let boxes = [cube([0.5, 0.3, 0.1]), cube([-0.5, 0.0, 0.0])];
-        let slots = slots(&boxes);
+        let slots = slots(&boxes, |_| false);
         let order = |octant: usize| -> Vec<usize> { (0..8).filter_map(|i| slots[i ^ octant]).collect() };
         assert_eq!(order(0b000), [1, 0]);
         assert_eq!(order(0b111), [0, 1]);
+    }
+
+    #[test]
+    fn leaves_stay_in_order() {
+        let boxes: Vec<Bounds> = [3.0, 1.0, -2.0, 2.0, -1.0].map(|x| cube([x, x, 0.0])).into();
+        let is_leaf = |i| i != 2;
+        let slots = slots(&boxes, is_leaf);
+        let leaves: Vec<usize> = slots.into_iter().flatten().filter(|&i| is_leaf(i)).collect();
+        assert_eq!(leaves, [0, 1, 3, 4]);
+        assert_eq!(slots[0], Some(2), "least in every coordinate");
     }
 }

@@ -10,7 +10,7 @@ use crate::{BuildError, bounds::Bounds, validate::Once};
 
 /// Checks a wide hierarchy over the own boxes of slots: every node is well-formed and reached exactly
 /// once from the root, every slot lies in exactly one leaf, every child's planes lie around what is
-/// below it with [`WideNode::MARGIN`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
+/// below it with [`WideNode::MARGIN`] and [`WideNode::SLACK`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
 /// Takes linear time.
 ///
 /// # Errors
@@ -42,7 +42,7 @@ impl Walk<'_> {
         let mut open = vec![(0, 0, 0)];
         while let Some((parent, node, level)) = open.pop() {
             let record = self.enter(parent, node, level)?;
-            let mut child = record.first_child;
+            let (mut child, mut triangle) = (record.first_child, u64::from(record.first_triangle));
             for (what, _) in record.children {
                 match what {
                     Child::None => {}
@@ -50,8 +50,9 @@ impl Walk<'_> {
                         open.push((node, child, level + 1));
                         child = child.saturating_add(1);
                     }
-                    Child::Leaf { place, count } => {
-                        self.leaf(node, u64::from(record.first_triangle) + u64::from(place), count)?;
+                    Child::Leaf { count } => {
+                        self.leaf(node, triangle, count)?;
+                        triangle += u64::from(count);
                     }
                 }
             }
@@ -99,7 +100,7 @@ impl Walk<'_> {
     fn boxes(&self) -> Result<(), BuildError> {
         let mut around = vec![Bounds::EMPTY; self.nodes.len()];
         for (node, record) in self.order.iter().rev() {
-            let mut next = record.first_child as usize;
+            let (mut next, mut triangle) = (record.first_child as usize, record.first_triangle as usize);
             for (what, planes) in record.children {
                 let below = match what {
                     Child::None => continue,
@@ -107,9 +108,10 @@ impl Walk<'_> {
                         next += 1;
                         around[next - 1]
                     }
-                    Child::Leaf { place, count } => {
-                        let first = (record.first_triangle + place) as usize;
-                        Bounds::around(self.bounds[first..first + count as usize].iter().map(Bounds::read))
+                    Child::Leaf { count } => {
+                        let first = triangle;
+                        triangle += count as usize;
+                        Bounds::around(self.bounds[first..triangle].iter().map(Bounds::read))
                     }
                 };
                 if !record.grid.contains(planes, below) {

@@ -199,9 +199,7 @@ impl WideWalk<'_> {
     fn node(&mut self, number: u32, depth: u32) -> Corners {
         assert!(depth <= MAX_WIDE_DEPTH, "too deep");
         let node = self.nodes[number as usize];
-        let metas = bytes([node.children.z, node.children.w]);
-        let leaves: u32 = metas.iter().enumerate().map(|(i, &meta)| triangles(meta, i)).sum();
-        let inner = metas.iter().enumerate().filter(|&(i, &meta)| meta == inner_meta(i)).count() as u32;
+        let [leaves, inner] = [node.children.z.count_ones(), (node.grid.w >> 24).count_ones()];
         if leaves > 0 {
             assert_eq!(node.children.y, self.next, "a node's triangles come first");
         }
@@ -210,20 +208,22 @@ impl WideWalk<'_> {
         }
         assert!(leaves <= 24 && leaves + inner > 0);
         (self.next, self.met) = (self.next + leaves, self.met + inner);
-        let mut child = node.children.x;
+        let (mut child, mut triangle) = (node.children.x, node.children.y as usize);
         let mut all: Option<Corners> = None;
-        for (slot, &meta) in metas.iter().enumerate() {
-            let is_inner = meta == inner_meta(slot);
-            assert_eq!(node.grid.w >> (24 + slot) & 1 == 1, is_inner, "the mask");
-            let below = match (is_inner, triangles(meta, slot)) {
-                (true, _) => self.node(child, depth + 1),
+        for slot in 0..8 {
+            let is_inner = node.grid.w >> (24 + slot) & 1 == 1;
+            let below = match (is_inner, triangles(&node, slot)) {
+                (true, count) => {
+                    assert_eq!(count, 0, "an inner node holds no triangles");
+                    child += 1;
+                    self.node(child - 1, depth + 1)
+                }
                 (_, 0) => continue,
                 (_, count) => {
-                    let first = (node.children.y + u32::from(meta & 31)) as usize;
-                    around(&self.bounds[first..first + count as usize])
+                    triangle += count as usize;
+                    around(&self.bounds[triangle - count as usize..triangle])
                 }
             };
-            child += u32::from(is_inner);
             keeps_margin(&node, slot, below);
             all = Some(all.map_or(below, |all| union(all, below)));
         }
@@ -231,36 +231,30 @@ impl WideWalk<'_> {
     }
 }
 
-fn bytes(words: [u32; 2]) -> [u8; 8] {
-    std::array::from_fn(|i| (words[i / 4] >> (8 * (i % 4))) as u8)
-}
-
-fn inner_meta(slot: usize) -> u8 {
-    32 + 24 + slot as u8
+/// Planes of eight children.
+fn planes(words: [u32; 2]) -> [u8; 8] {
+    std::array::from_fn(|i| (words[i / 4].rotate_right(WideNode::TURN) >> (8 * (i % 4))) as u8)
 }
 
 /// Triangles of a child.
-fn triangles(meta: u8, slot: usize) -> u32 {
-    if meta == inner_meta(slot) {
-        return 0;
-    }
-    let count = (meta >> 5).count_ones();
-    assert_eq!(u32::from(meta >> 5), (1 << count) - 1, "a child's byte");
-    count
+fn triangles(node: &WideNode, slot: usize) -> u32 {
+    let bits = node.children.z >> (3 * slot) & 7;
+    assert_eq!(bits, (1 << bits.count_ones()) - 1, "a child's bits");
+    bits.count_ones()
 }
 
 /// Checks a child's planes against what is below it, in whole multiples of 2^-80.
 fn keeps_margin(node: &WideNode, slot: usize, (least, greatest): Corners) {
     let WideNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, grid, .. } = *node;
-    let low = [[a.x, a.y], [a.z, a.w], [b.x, b.y]].map(|w| i128::from(bytes(w)[slot]));
-    let high = [[b.z, b.w], [c.x, c.y], [c.z, c.w]].map(|w| i128::from(bytes(w)[slot]));
+    let low = [[a.x, a.y], [a.z, a.w], [b.x, b.y]].map(|w| i128::from(planes(w)[slot]));
+    let high = [[b.z, b.w], [c.x, c.y], [c.z, c.w]].map(|w| i128::from(planes(w)[slot]));
     for axis in 0..3 {
-        let exponent = (grid.w >> (8 * axis) & 0xff) as i32 - 127;
+        let exponent = (grid.w >> (8 * axis) & 0xff) as i32 - 127 - 8;
         assert!((-30..=0).contains(&exponent));
         let origin = f32::from_bits(grid[axis]);
         assert!(origin.abs() <= 1.01);
         let plane = |number: i128| fixed(origin) + (number << (80 + exponent));
-        let margin = fixed(WideNode::MARGIN);
+        let margin = fixed(WideNode::MARGIN) + (1 << (80 + exponent - 6));
         assert!(plane(low[axis]) <= fixed(least[axis]) - margin);
         assert!(plane(high[axis]) >= fixed(greatest[axis]) + margin);
     }

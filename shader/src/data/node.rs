@@ -16,6 +16,8 @@ impl NodeRef {
     pub const MAX_INDEX: u32 = (1 << 29) - 1;
     /// The pair that traversal starts with.
     pub const ROOT: NodeRef = NodeRef(0);
+    /// No node. It looks like a leaf, so that a search for leaves ends there.
+    pub const NONE: NodeRef = NodeRef(u32::MAX);
 
     /// The inner node whose children are pair `pair`.
     #[inline(always)]

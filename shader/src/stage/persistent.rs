@@ -23,13 +23,13 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     load: impl Fn(u32) -> (Segment<R>, bool),
     mut store: impl FnMut(u32, bool, &Hit<R>),
 ) {
-    let enough = (W::count(true) * geometry.tuning.busy()).div_ceil(100);
+    let enough = (W::count(true) * geometry.tuning.busy()).div_ceil(100).max(1);
     let mut number = IDLE;
     let mut traced = false;
     let mut ray = Ray::new(V3::zero(), V3::splat(glam::Vec3::ONE));
     let mut hit = Hit::none(R::splat(0.0));
     let mut cursor = M::Cursor::finished();
-    let mut stack = M::EMPTY;
+    let mut stack = M::stack();
     let mut more = true;
     loop {
         if number != IDLE && cursor.is_done() {
@@ -52,7 +52,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
         if !W::any(number != IDLE) {
             return;
         }
-        let least = if more && enough > 1 { enough } else { 1 };
+        let least = if more { enough } else { 1 };
         while W::count(!cursor.is_done()) >= least {
             if !cursor.is_done() {
                 M::step::<Q>(geometry, &ray, &mut hit, &mut cursor, &mut stack);

@@ -1,4 +1,4 @@
-//! Where a traversal stands, and its stack.
+//! Where a traversal stands.
 
 use super::resumable::Progress;
 use crate::data::{CentredPair, NodeRef, STACK};
@@ -6,15 +6,13 @@ use crate::data::{CentredPair, NodeRef, STACK};
 /// Nodes that wait. It is kept beside its [`Cursor`], since rust-gpu lets no pointer live in a struct
 /// that crosses a loop. A packet's is replicated in every lane, which makes its hits right even where
 /// a driver lets lanes part.
-pub type Stack = [u32; STACK];
+pub type Stack = super::stack::Stack<NodeRef, STACK>;
 
 /// The node in hand.
 #[derive(Clone, Copy)]
 pub struct Cursor {
-    /// Visited next, unless the traversal is done.
+    /// Visited next; [`NodeRef::NONE`] if nothing is left to visit.
     pub node: NodeRef,
-    /// Is nothing left to visit?
-    pub done: bool,
     depth: u32,
 }
 
@@ -28,7 +26,7 @@ impl Cursor {
     /// At a node, with nothing waiting.
     #[inline(always)]
     pub fn at(node: NodeRef) -> Self {
-        Cursor { node, done: false, depth: 0 }
+        Cursor { node, depth: 0 }
     }
 
     /// How many nodes wait.
@@ -37,19 +35,27 @@ impl Cursor {
         self.depth
     }
 
+    /// Nothing is to be visited any more.
+    #[inline(always)]
+    pub fn finish(&mut self) {
+        *self = Self::at(NodeRef::NONE);
+    }
+
     /// Goes on to the nearer wanted child and lets the other wait, or pops if none is wanted.
+    ///
+    /// Few and short branches: lanes of a subgroup that take different ones wait for each other.
     #[inline(always)]
     pub fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
-        if left && right {
-            let (near, far) = if right_first { (pair.right(), pair.left()) } else { (pair.left(), pair.right()) };
-            // The mask holds for every valid tree; it spares a check that could return from the kernel.
-            stack[self.depth as usize & (STACK - 1)] = far.0;
+        let children = (pair.left(), pair.right());
+        let turned = right & (right_first | !left);
+        let near = if turned { children.1 } else { children.0 };
+        let far = if turned { children.0 } else { children.1 };
+        if left & right {
+            stack.put(self.depth, far);
             self.depth += 1;
+        }
+        if left | right {
             self.node = near;
-        } else if left {
-            self.node = pair.left();
-        } else if right {
-            self.node = pair.right();
         } else {
             self.pop(stack);
         }
@@ -59,10 +65,11 @@ impl Cursor {
     #[inline(always)]
     pub fn pop(&mut self, stack: &Stack) {
         if self.depth == 0 {
-            self.done = true;
+            self.node = NodeRef::NONE;
         } else {
             self.depth -= 1;
-            self.node = NodeRef(stack[self.depth as usize & (STACK - 1)]);
+            // SAFETY: below the depth all has been put.
+            self.node = unsafe { stack.get(self.depth) };
         }
     }
 }
@@ -75,12 +82,12 @@ impl Progress for Cursor {
 
     #[inline(always)]
     fn finished() -> Self {
-        Cursor { node: NodeRef::ROOT, done: true, depth: 0 }
+        Self::at(NodeRef::NONE)
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        self.done
+        self.node == NodeRef::NONE
     }
 }
 

@@ -5,7 +5,7 @@ use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
 use super::packet::{goes, visit_leaf};
-use super::resumable::finish;
+use super::resumable::{Progress, finish};
 use super::step::children;
 use super::{IfIf, Method, Query};
 use crate::data::{NodeRef, STACK};
@@ -75,23 +75,23 @@ pub struct Hybrid<W, S, T>(PhantomData<(W, S, T)>);
 struct Later<R: Real> {
     nodes: Stack,
     rays: [R::Mask; STACK],
-    count: usize,
+    count: u32,
 }
 
 impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        let mut stack = [0; STACK];
+        let mut stack = Stack::new();
         let mut cursor = Cursor::new();
-        let mut later = Later::<R> { nodes: [0; STACK], rays: [everyone::<R>(); STACK], count: 0 };
-        while !cursor.done {
+        let mut later = Later::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
+        while !cursor.is_done() {
             if S::full(geometry, cursor.depth()) {
                 if T::MEETS {
                     alone::<Q, R>(geometry, cursor.node, everyone::<R>(), ray, hit);
                     cursor.pop(&stack);
                 } else {
                     part::<Q, R>(geometry, &cursor, &stack, ray, hit);
-                    cursor.done = true;
+                    cursor.finish();
                 }
             } else if cursor.node.is_leaf() {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
@@ -107,8 +107,9 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
         }
         while later.count > 0 {
             later.count -= 1;
-            let at = later.count & (STACK - 1);
-            alone::<Q, R>(geometry, NodeRef(later.nodes[at]), later.rays[at], ray, hit);
+            // SAFETY: below the count all has been put.
+            let node = unsafe { later.nodes.get(later.count) };
+            alone::<Q, R>(geometry, node, later.rays[later.count as usize & (STACK - 1)], ray, hit);
         }
     }
 }
@@ -144,11 +145,11 @@ fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
     if !rays.any() {
         return false;
     }
-    if T::MEETS || later.count == STACK {
+    if T::MEETS || later.count == STACK as u32 {
         alone::<Q, R>(geometry, node, rays, ray, hit);
     } else {
-        later.nodes[later.count & (STACK - 1)] = node.0;
-        later.rays[later.count & (STACK - 1)] = rays;
+        later.nodes.put(later.count, node);
+        later.rays[later.count as usize & (STACK - 1)] = rays;
         later.count += 1;
     }
     false
@@ -159,7 +160,7 @@ fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
 fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
     R::lanes(ray, hit, rays, |ray, hit| {
-        let mut stack = [0; STACK];
+        let mut stack = Stack::new();
         finish::<Q, R::Lane, IfIf>(geometry, ray, hit, Cursor::at(node), &mut stack);
     });
     Q::on_parted(false);
@@ -170,10 +171,11 @@ fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mas
 fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
     R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
-        let mut stack = [0; STACK];
+        let mut stack = Stack::new();
         let mut i = 0;
-        while i < cursor.depth() as usize {
-            stack[i & (STACK - 1)] = shared[i & (STACK - 1)];
+        while i < cursor.depth() {
+            // SAFETY: below the depth all has been put.
+            stack.put(i, unsafe { shared.get(i) });
             i += 1;
         }
         finish::<Q, R::Lane, IfIf>(geometry, ray, hit, *cursor, &mut stack);

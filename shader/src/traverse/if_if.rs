@@ -5,7 +5,7 @@ use super::cursor::{Cursor, Stack};
 use super::resumable::{Resumable, follow};
 use super::step::{occluded, pair, triangle};
 use super::{Method, Query};
-use crate::data::STACK;
+use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::Geometry;
@@ -16,7 +16,11 @@ pub struct IfIf;
 impl<R: Scalar> Resumable<R> for IfIf {
     type Cursor = Cursor;
     type Stack = Stack;
-    const EMPTY: Stack = [0; STACK];
+
+    #[inline(always)]
+    fn stack() -> Stack {
+        Stack::new()
+    }
 
     /// The two ifs.
     #[inline(always)]
@@ -24,11 +28,11 @@ impl<R: Scalar> Resumable<R> for IfIf {
         if !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
         }
-        if cursor.node.is_leaf() && !cursor.done {
+        if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
             triangle::<Q, R>(geometry, cursor.node, ray, hit);
             cursor.node = cursor.node.rest();
             if Q::ANY && occluded(hit) {
-                cursor.done = true;
+                cursor.finish();
             } else if !cursor.node.is_leaf() {
                 cursor.pop(stack);
             }

@@ -12,6 +12,7 @@ mod if_if;
 mod packet;
 pub mod resumable;
 mod speculative;
+mod stack;
 pub mod step;
 mod while_while;
 mod wide;

@@ -4,9 +4,9 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
+use super::resumable::Progress;
 use super::step::{children, leaf, occluded};
 use super::{Method, Query};
-use crate::data::STACK;
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
 use crate::scene::Geometry;
@@ -18,9 +18,9 @@ pub struct Packet<W>(PhantomData<W>);
 impl<R: Real, W: Warp> Method<R> for Packet<W> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        let mut stack = [0; STACK];
+        let mut stack = Stack::new();
         let mut cursor = Cursor::new();
-        while !cursor.done {
+        while !cursor.is_done() {
             if cursor.node.is_leaf() {
                 visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
             } else {
@@ -66,7 +66,7 @@ pub(super) fn visit_leaf<Q: Query, R: Real, W: Warp>(
 ) {
     leaf::<Q, R>(geometry, cursor.node, ray, hit);
     if Q::ANY && !W::any(!occluded(hit)) {
-        cursor.done = true;
+        cursor.finish();
     } else {
         cursor.pop(stack);
     }

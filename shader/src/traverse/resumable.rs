@@ -21,9 +21,10 @@ pub trait Resumable<R: Scalar> {
     /// The place in hand.
     type Cursor: Progress;
     /// The places that wait.
-    type Stack: Copy;
+    type Stack;
+
     /// Nothing waits.
-    const EMPTY: Self::Stack;
+    fn stack() -> Self::Stack;
 
     /// One step of a traversal that is not done.
     fn step<Q: Query>(
@@ -38,7 +39,7 @@ pub trait Resumable<R: Scalar> {
 /// From the root to the end.
 #[inline(always)]
 pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-    let mut stack = M::EMPTY;
+    let mut stack = M::stack();
     finish::<Q, R, M>(geometry, ray, hit, M::Cursor::start(), &mut stack);
 }
 

@@ -3,10 +3,11 @@
 
 use core::marker::PhantomData;
 
-use super::cursor::Cursor;
+use super::cursor::{Cursor, Stack};
+use super::resumable::Progress;
 use super::step::{leaf, pair};
 use super::{Method, Query};
-use crate::data::{NodeRef, STACK};
+use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::Geometry;
@@ -18,12 +19,12 @@ pub struct Speculative<W>(PhantomData<W>);
 impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        let mut stack = [0; STACK];
+        let mut stack = Stack::new();
         let mut cursor = Cursor::new();
-        while !cursor.done {
+        while !cursor.is_done() {
             // An inner node stands for none.
             let mut aside = NodeRef::ROOT;
-            while !(cursor.done || cursor.node.is_leaf() && aside.is_leaf()) {
+            while !(cursor.is_done() || cursor.node.is_leaf() && aside.is_leaf()) {
                 if cursor.node.is_leaf() {
                     aside = cursor.node;
                     cursor.pop(&stack);
@@ -34,8 +35,9 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
                     break;
                 }
             }
-            let found = aside.is_leaf() && leaf::<Q, R>(geometry, aside, ray, hit);
-            cursor.done = cursor.done || found;
+            if aside.is_leaf() && leaf::<Q, R>(geometry, aside, ray, hit) {
+                cursor.finish();
+            }
         }
     }
 }

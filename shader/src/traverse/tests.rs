@@ -52,24 +52,23 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
     while nodes.len() < open.len() {
         let range = open[nodes.len()].clone();
         let step = range.len().div_ceil(WideNode::ARITY).max(3) as u32;
-        let (first_child, mut inner, mut bytes) = (open.len() as u32, 0, [0u8; 8]);
+        let (first_child, mut inner, mut all) = (open.len() as u32, 0, 0);
         // Leaves lie behind inner nodes: the last part alone may be shorter than the others.
         let last = range.start + (range.len() as u32 - 1) / step * step;
         let leaves = if step <= WideNode::MAX_LEAF { range.start } else { last };
         for (slot, first) in range.clone().step_by(step as usize).enumerate() {
             let part = first..(first + step).min(range.end);
             if part.len() as u32 <= WideNode::MAX_LEAF {
-                bytes[slot] = (((1u32 << part.len()) - 1) << 5 | (first - leaves)) as u8;
+                all |= ((1 << part.len()) - 1) << (3 * slot);
             } else {
-                (inner, bytes[slot]) = (inner | 1 << slot, (WideNode::INNER + 24) as u8 + slot as u8);
+                inner |= 1 << slot;
                 open.push(part);
             }
         }
-        let word = |bytes: &[u8]| u32::from_le_bytes(bytes.try_into().expect("four bytes"));
-        let exponent = 127 - 6;
+        let exponent = 127 + 2;
         nodes.push(WideNode {
             grid: crate::data::pack(Vec3::splat(-2.0), inner << 24 | exponent << 16 | exponent << 8 | exponent),
-            children: UVec4::new(first_child, leaves, word(&bytes[..4]), word(&bytes[4..])),
+            children: UVec4::new(first_child, leaves, all, 0),
             low_x_low_y: UVec4::ZERO,
             low_z_high_x: UVec4::new(0, 0, u32::MAX, u32::MAX),
             high_y_high_z: UVec4::MAX,

@@ -10,7 +10,7 @@ use super::cursor::{Cursor, Stack};
 use super::resumable::{Resumable, follow};
 use super::step::{leaf, pair};
 use super::{Method, Query};
-use crate::data::STACK;
+use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::Geometry;
@@ -22,22 +22,28 @@ pub struct WhileWhile<W>(PhantomData<W>);
 impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     type Cursor = Cursor;
     type Stack = Stack;
-    const EMPTY: Stack = [0; STACK];
+
+    #[inline(always)]
+    fn stack() -> Stack {
+        Stack::new()
+    }
 
     /// The two inner whiles.
     #[inline(always)]
     fn step<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
         let all = W::count(true);
-        while !cursor.done && !cursor.node.is_leaf() {
+        while !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
-            if 100 * W::count(!cursor.done && !cursor.node.is_leaf()) < geometry.tuning.cut() * all {
+            if 100 * W::count(!cursor.node.is_leaf()) < geometry.tuning.cut() * all {
                 break;
             }
         }
-        if !cursor.done && cursor.node.is_leaf() {
-            let found = leaf::<Q, R>(geometry, cursor.node, ray, hit);
-            cursor.pop(stack);
-            cursor.done = cursor.done || found;
+        if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
+            if leaf::<Q, R>(geometry, cursor.node, ray, hit) {
+                cursor.finish();
+            } else {
+                cursor.pop(stack);
+            }
         }
     }
 }

@@ -8,8 +8,7 @@
 //! entered no later than any triangle's own box below it, and no order of visits can cull a hit.
 
 use super::resumable::{Progress, Resumable, follow};
-use super::step::occluded;
-use super::step::triangle;
+use super::step::{occluded, triangle};
 use super::{Method, Query};
 use crate::buffer::read;
 use crate::data::{NodeRef, STACK, WideNode, numbers};
@@ -21,32 +20,56 @@ use glam::{UVec4, Vec3};
 /// See the module.
 pub struct WideNodes;
 
-/// Children that wait: inner nodes of one parent, or its triangles.
+/// Inner nodes of one parent that wait.
 #[derive(Clone, Copy)]
-struct Group {
-    /// The parent's first inner child, or its first triangle.
+struct Nodes {
+    /// The parent's first.
     first: u32,
-    /// For triangles a bit each. For nodes a bit each from bit 24 on, in the ray's order, the nearest in
-    /// the highest; and in bits 0 to 7 which slots of the parent are inner nodes.
+    /// A bit each from bit 24 on, in the ray's order, the nearest in the highest; and in bits 0 to 7 which slots
+    /// of the parent are inner nodes.
     waiting: u32,
 }
 
+/// Where bits of inner nodes are.
 const NODES: u32 = 0xff00_0000;
 
-impl Group {
-    const NOTHING: Group = Group { first: 0, waiting: 0 };
+impl Nodes {
+    const NOTHING: Nodes = Nodes { first: 0, waiting: 0 };
 
     #[inline(always)]
-    fn has_nodes(self) -> bool {
+    fn any(self) -> bool {
         self.waiting & NODES != 0
     }
 }
 
-/// The groups in hand.
+/// Triangles of one parent that wait.
+#[derive(Clone, Copy)]
+struct Triangles {
+    /// The parent's first.
+    first: u32,
+    /// Bits of those that wait.
+    waiting: u32,
+    /// Bits of all.
+    all: u32,
+}
+
+impl Triangles {
+    const NOTHING: Triangles = Triangles { first: 0, waiting: 0, all: 0 };
+
+    /// Takes one: its slot.
+    #[inline(always)]
+    fn take(&mut self) -> u32 {
+        let bit = 1 << (31 - self.waiting.leading_zeros());
+        self.waiting ^= bit;
+        self.first + (self.all & (bit - 1)).count_ones()
+    }
+}
+
+/// What is in hand.
 #[derive(Clone, Copy)]
 pub struct Groups {
-    nodes: Group,
-    triangles: Group,
+    nodes: Nodes,
+    triangles: Triangles,
     depth: u32,
 }
 
@@ -54,18 +77,17 @@ impl Progress for Groups {
     /// The root, a child without siblings, so that it comes first whatever the ray's order.
     #[inline(always)]
     fn start() -> Self {
-        let root = Group { first: 0, waiting: 1 << 31 };
-        Groups { nodes: root, triangles: Group::NOTHING, depth: 0 }
+        Groups { nodes: Nodes { first: 0, waiting: 1 << 31 }, ..Self::finished() }
     }
 
     #[inline(always)]
     fn finished() -> Self {
-        Groups { nodes: Group::NOTHING, triangles: Group::NOTHING, depth: 0 }
+        Groups { nodes: Nodes::NOTHING, triangles: Triangles::NOTHING, depth: 0 }
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        !self.nodes.has_nodes() && self.triangles.waiting == 0 && self.depth == 0
+        !self.nodes.any() && self.triangles.waiting == 0 && self.depth == 0
     }
 }
 
@@ -75,17 +97,17 @@ impl Groups {
     #[inline(always)]
     fn take(&mut self, inverted: u32, stack: &mut Stack) -> u32 {
         let mut group = self.nodes;
-        if !group.has_nodes() {
+        if !group.any() {
             self.depth -= 1;
-            let at = (2 * self.depth as usize) & (2 * STACK - 1);
-            (group.first, group.waiting) = (stack[at], stack[at + 1]);
+            // SAFETY: below the depth all has been put.
+            group = unsafe { Nodes { first: stack.get(2 * self.depth), waiting: stack.get(2 * self.depth + 1) } };
         }
         let place = 31 - group.waiting.leading_zeros();
         group.waiting &= !(1 << place);
         let slot = (place - 24) ^ inverted;
-        if group.has_nodes() {
-            let at = (2 * self.depth as usize) & (2 * STACK - 1);
-            (stack[at], stack[at + 1]) = (group.first, group.waiting);
+        if group.any() {
+            stack.put(2 * self.depth, group.first);
+            stack.put(2 * self.depth + 1, group.waiting);
             self.depth += 1;
         }
         // The siblings before it.
@@ -94,12 +116,16 @@ impl Groups {
 }
 
 /// Groups that wait, two words each.
-type Stack = [u32; 2 * STACK];
+pub type Stack = super::stack::Stack<u32, { 2 * STACK }>;
 
 impl<R: Scalar> Resumable<R> for WideNodes {
     type Cursor = Groups;
     type Stack = Stack;
-    const EMPTY: Stack = [0; 2 * STACK];
+
+    #[inline(always)]
+    fn stack() -> Stack {
+        Stack::new()
+    }
 
     #[inline(always)]
     fn step<Q: Query>(
@@ -116,9 +142,8 @@ impl<R: Scalar> Resumable<R> for WideNodes {
             (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
         }
         if cursor.triangles.waiting != 0 {
-            let place = 31 - cursor.triangles.waiting.leading_zeros();
-            triangle::<Q, R>(geometry, NodeRef::leaf(cursor.triangles.first + place, 1), ray, hit);
-            cursor.triangles.waiting &= !(1 << place);
+            let slot = cursor.triangles.take();
+            triangle::<Q, R>(geometry, NodeRef::leaf(slot, 1), ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -144,99 +169,100 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Group, Group) {
+fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
     let opening = Opening::<R>::new(node, ray, hit.t);
     // A loop is not always unrolled.
-    let waiting = opening.waiting(0)
-        | opening.waiting(1)
-        | opening.waiting(2)
-        | opening.waiting(3)
-        | opening.waiting(4)
-        | opening.waiting(5)
-        | opening.waiting(6)
-        | opening.waiting(7);
-    let nodes = Group { first: node.children.x, waiting: (waiting & NODES) | (node.grid.w >> 24) };
-    (nodes, Group { first: node.children.y, waiting: waiting & !NODES })
+    let met = opening.met(0)
+        | opening.met(1)
+        | opening.met(2)
+        | opening.met(3)
+        | opening.met(4)
+        | opening.met(5)
+        | opening.met(6)
+        | opening.met(7);
+    let (inner, triangles) = (node.grid.w, node.children.z);
+    let nodes = Nodes { first: node.children.x, waiting: turned(met & inner & NODES, inverted(ray)) | (inner >> 24) };
+    (nodes, Triangles { first: node.children.y, waiting: met & triangles, all: triangles })
+}
+
+/// Bits of slots in a ray's order: bit 24 + `slot` becomes bit 24 + (`slot` XOR `inverted`).
+#[inline(always)]
+fn turned(slots: u32, inverted: u32) -> u32 {
+    let (by_1, by_2, by_4) = (inverted & 1, inverted & 2, inverted & 4);
+    let slots = ((slots << by_1) & 0xaa00_0000) | ((slots >> by_1) & 0x5500_0000);
+    let slots = ((slots << by_2) & 0xcc00_0000) | ((slots >> by_2) & 0x3300_0000);
+    ((slots << by_4) & 0xf000_0000) | ((slots >> by_4) & 0x0f00_0000)
 }
 
 /// A node in a ray's terms.
 struct Opening<R: Scalar> {
-    /// Where the ray meets the grid's origin.
-    start: V3<R>,
-    /// How far it is to the next plane.
-    step: V3<R>,
+    /// Where the ray would meet the plane that is 256 steps before the grid's origin, and that 256 * 256 before it.
+    start: [V3<R>; 2],
+    /// How far 256 steps are.
+    extent: V3<R>,
     /// Where the ray ends.
     limit: R,
-    /// Bytes of the planes that the ray enters by, an axis after the other.
-    near: [[u32; 2]; 3],
-    /// Bytes of the planes that it leaves by.
-    far: [[u32; 2]; 3],
-    /// Bytes of how many bits wait (3 to 0) at each child.
-    bits: [u32; 2],
-    /// Bytes of where they wait.
-    places: [u32; 2],
+    /// Planes that the ray enters by, an axis after the other: those of children 0 and 1, 4 and 5 to be read
+    /// as they are, and the same turned by half for the others.
+    near: [[u32; 4]; 3],
+    /// Planes that it leaves by.
+    far: [[u32; 4]; 3],
 }
 
 impl<R: Scalar> Opening<R> {
     #[inline(always)]
     fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
-        let scale = V3::<R>::splat(Vec3::new(power(0), power(8), power(16)));
+        let extent = V3::<R>::splat(Vec3::new(power(0), power(8), power(16))).times(ray.inverse);
+        let start = (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse);
         let first = |q: UVec4| [q.x, q.y];
         let last = |q: UVec4| [q.z, q.w];
         let zero = R::splat(0.0);
         let x = sides(ray.inverse.x.lt(zero), first(node.low_x_low_y), last(node.low_z_high_x));
         let y = sides(ray.inverse.y.lt(zero), last(node.low_x_low_y), first(node.high_y_high_z));
         let z = sides(ray.inverse.z.lt(zero), first(node.low_z_high_x), last(node.high_y_high_z));
-        let (children, inverted) = (last(node.children), inverted(ray));
         Opening {
-            start: (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse),
-            step: scale.times(ray.inverse),
+            start: [start - extent, start - extent * R::splat(256.0)],
+            extent,
             limit,
             near: [x.0, y.0, z.0],
             far: [x.1, y.1, z.1],
-            bits: [(children[0] >> 5) & 0x0707_0707, (children[1] >> 5) & 0x0707_0707],
-            places: [places(children[0], inverted), places(children[1], inverted)],
         }
     }
 
-    /// What waits of a child if its box is met.
+    /// The bits that a child may have among those that wait, if its box is met.
     #[inline(always)]
-    fn waiting(&self, child: u32) -> u32 {
-        let near = V3::new(plane(self.near[0], child), plane(self.near[1], child), plane(self.near[2], child));
-        let far = V3::new(plane(self.far[0], child), plane(self.far[1], child), plane(self.far[2], child));
-        let near = R::latest(near.fused(self.step, self.start));
-        if near.le(R::earliest(far.fused(self.step, self.start), self.limit)) {
-            byte(self.bits, child) << byte(self.places, child)
-        } else {
-            0
-        }
+    fn met(&self, child: u32) -> u32 {
+        let start = self.start[if child & 1 == 1 { 0 } else { 1 }];
+        let near = self.planes(&self.near, child).fused(self.extent, start);
+        let far = self.planes(&self.far, child).fused(self.extent, start);
+        if R::latest(near).le(R::earliest(far, self.limit)) { (1 << (24 + child)) | (7 << (3 * child)) } else { 0 }
+    }
+
+    /// A child's planes: in units of 256 steps and 1 too large for odd children, 256 too large for the others.
+    #[inline(always)]
+    fn planes(&self, words: &[[u32; 4]; 3], child: u32) -> V3<R> {
+        let word = (child >> 1) as usize & 3;
+        V3::new(plane(words[0][word], child), plane(words[1][word], child), plane(words[2][word], child))
     }
 }
 
 /// The nearer and the farther planes of the lesser and the greater ones.
 #[inline(always)]
-fn sides(down: bool, low: [u32; 2], high: [u32; 2]) -> ([u32; 2], [u32; 2]) {
-    if down { (high, low) } else { (low, high) }
+fn sides(down: bool, low: [u32; 2], high: [u32; 2]) -> ([u32; 4], [u32; 4]) {
+    if down { (both(high), both(low)) } else { (both(low), both(high)) }
 }
 
-/// The number of byte `i`.
+/// Two words, each followed by itself turned by half.
 #[inline(always)]
-fn plane<R: Scalar>(words: [u32; 2], i: u32) -> R {
-    R::splat(byte(words, i) as f32)
+fn both([a, b]: [u32; 2]) -> [u32; 4] {
+    [a, a.rotate_left(16), b, b.rotate_left(16)]
 }
 
-/// Byte `i` of two words.
+/// The plane of a child in its word, put into the fraction of a number: of 1 for odd children, of 256 for the
+/// others, whose plane lies 8 bits lower. That is fewer instructions than a conversion of the byte.
 #[inline(always)]
-fn byte(words: [u32; 2], i: u32) -> u32 {
-    let word = if i < 4 { words[0] } else { words[1] };
-    (word >> (8 * (i & 3))) & 255
-}
-
-/// The places of four children, of all at once (Ylitie et al. 2017, appendix).
-#[inline(always)]
-fn places(children: u32, inverted: u32) -> u32 {
-    // Bits 3 and 4 are set from 24 on.
-    let is_inner = ((children & (children << 1) & 0x1010_1010) >> 4) * 0xff;
-    (children ^ ((inverted * 0x0101_0101) & is_inner)) & 0x1f1f_1f1f
+fn plane<R: Scalar>(word: u32, child: u32) -> R {
+    let bits = if child & 1 == 1 { (word & 0x007f_8000) | 0x3f80_0000 } else { (word & 0x7f80) | 0x4380_0000 };
+    R::splat(f32::from_bits(bits))
 }

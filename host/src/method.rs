@@ -186,8 +186,8 @@ impl Traversal {
         let method = match (self.method, processor, coherence) {
             (Method::Auto, Processor::Cpu, Coherence::Primary) => Method::Packet,
             (Method::Auto, Processor::Cpu, _) => Method::Wide,
-            (Method::Auto, Processor::Gpu, Coherence::Scattered) => Method::WhileWhile,
-            (Method::Auto, Processor::Gpu, _) => Method::IfIf,
+            (Method::Auto, Processor::Gpu, Coherence::Shadow) => Method::IfIf,
+            (Method::Auto, Processor::Gpu, _) => Method::WhileWhile,
             (chosen, ..) => chosen,
         };
         let scheduling = match (self.scheduling, processor, coherence) {

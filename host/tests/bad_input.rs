@@ -241,6 +241,7 @@ fn options_that_contradict_each_other() {
     for (options, wants) in [
         (&["--device", "gpu", "--precision", "reference"][..], &["--device cpu", "--precision exact"][..]),
         (&["--no-passthrough"], &["--precision fast"]),
+        (&["--scheduling", "persistent", "--method", "packet"], &["--scheduling persistent", "if-if"]),
         (&["--triangle", "moller"], &["--triangle moller", "--precision fast"]),
         (&["--triangle", "moller", "--precision", "reference"], &["--triangle moller", "--precision fast"]),
         (&["--device", "cpu", "--adapter", "0"], &["--adapter"]),

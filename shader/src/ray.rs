@@ -43,7 +43,7 @@ impl<R: Real> Ray<R> {
     /// A ray that leaves a triangle.
     #[inline(always)]
     pub fn leaving(leaves: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
-        // No number counts as zero too: its reciprocal is another on every device.
+        // NaN counts as zero too: its reciprocal is another on every device.
         let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);

@@ -7,14 +7,11 @@ use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::gpu::{Caster, Gpu, Renderer, Want};
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
-use eyerays::pack::{Laid, Packed};
+use eyerays::pack::Packed;
 use eyerays::rays::Rays;
 use eyerays::stream::{Answers, Question, Stream};
-use eyerays_shader::real::{Fast, Scalar, V3};
-use eyerays_shader::stage;
-use eyerays_shader::traverse::IfIf;
+use eyerays_shader::real::Fast;
 use glam::UVec4;
-use rayon::prelude::*;
 
 use crate::{gpu, traversals};
 
@@ -116,7 +113,7 @@ impl Tracer<'_> {
                 caster.answers(&cast, question)
             }),
             None if self.machine.exact => cpu::cast(self.packed, traversal, 0, stream, question).map(|(a, _)| a),
-            None => return one_by_one::<Fast>(self.packed, stream),
+            None => cpu::closest::<Fast>(self.packed, Method::IfIf.into(), 0, stream).map(Answers::Closest),
         };
         match answers {
             Ok(Answers::Closest(hits)) => hits,
@@ -124,14 +121,4 @@ impl Tracer<'_> {
             Err(e) => panic!("{}, {traversal:?}: {e}", self.machine),
         }
     }
-}
-
-/// The closest hits of a stream on the CPU in any arithmetic, by if-if: (t, u, v) and the slot of the triangle.
-pub fn one_by_one<R: Scalar<Record: Send + Sync>>(packed: &Packed, stream: &Stream) -> Vec<R::Record> {
-    let (laid, frame) = (Laid::new(packed, Method::IfIf.into()), packed.stream_frame(stream.len()));
-    let geometry = laid.stream(&frame);
-    let widened = |&word: &UVec4| R::store(V3::splat(eyerays_shader::data::numbers(word)), word.w);
-    let words: Vec<R::Record> = stream.words().iter().map(widened).collect();
-    let slots = (0..stream.len() as u32).into_par_iter();
-    slots.map(|slot| stage::trace::<R, IfIf>(&geometry, slot, &words)).collect()
 }

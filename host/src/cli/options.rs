@@ -223,8 +223,13 @@ impl On {
             return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
         }
         check_tests(&[triangle], precision == Precision::Fast)?;
+        let method = self.method.unwrap_or_default();
+        if self.scheduling == Scheduling::Persistent && method != Method::Auto && !method.is_resumable() {
+            let message = "--scheduling persistent is for if-if, while-while and wide: choose one of them, or drop it";
+            return Err(Error::new(message));
+        }
         let traversal = Traversal {
-            method: self.method.unwrap_or_default(),
+            method,
             tuning: tuning(self.stack_max, self.cut)?,
             scheduling: self.scheduling,
             order: self.order,

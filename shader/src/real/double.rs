@@ -1,12 +1,9 @@
 //! `f64`: the reference that errors are measured against, from the same kernels.
 
 use super::{Real, Scalar, TINY, V3};
-use crate::ray::{Hit, Ray};
 
 impl Real for f64 {
-    type Mask = bool;
-    type Index = u32;
-    type Lane = f64;
+    crate::alone!();
     const ROUNDOFF: f64 = 1.0 / (1u64 << 53) as f64;
 
     fn splat(x: f32) -> f64 {
@@ -27,32 +24,12 @@ impl Real for f64 {
     fn same(self, other: f64) -> bool {
         self == other
     }
-    fn select(mask: bool, a: f64, b: f64) -> f64 {
-        if mask { a } else { b }
-    }
     fn abs(self) -> f64 {
         f64::abs(self)
-    }
-    fn index(i: u32) -> u32 {
-        i
-    }
-    fn equals(i: u32, other: u32) -> bool {
-        i == other
-    }
-    fn precedes(i: u32, other: u32) -> bool {
-        i < other
-    }
-    fn select_index(mask: bool, a: u32, b: u32) -> u32 {
-        if mask { a } else { b }
     }
     /// Products of numbers of 2^-60 are far from subnormal, so nothing above that has to be zero.
     fn flush(self, least: f32) -> f64 {
         if f64::abs(self) < f64::from(least.min(TINY)) { 0.0 } else { self }
-    }
-    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
-        if mask {
-            f(ray, hit);
-        }
     }
 }
 
@@ -61,13 +38,7 @@ impl Real for f64 {
 pub struct Record(f64, f64, f64, u32);
 
 impl Scalar for f64 {
-    type Eight = f64;
-    type Four = f64;
-    type Packet = Self;
-    #[cfg(target_arch = "x86_64")]
-    type Avx2 = super::Native;
-    #[cfg(target_arch = "x86_64")]
-    type Avx512 = super::Native;
+    crate::no_registers!(f64, f64);
     type Record = Record;
 
     fn store(v: V3<f64>, word: u32) -> Record {

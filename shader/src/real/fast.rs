@@ -3,7 +3,6 @@
 use super::single::{comparisons, records};
 use super::{Real, Scalar, V3};
 use crate::data;
-use crate::ray::{Hit, Ray};
 use core::ops::{Add, Mul, Neg, Sub};
 use glam::{UVec4, Vec3};
 use spirv_std::num_traits::Float;
@@ -42,9 +41,6 @@ impl Neg for Fast {
 }
 
 impl Real for Fast {
-    type Mask = bool;
-    type Index = u32;
-    type Lane = Fast;
     const ROUNDOFF: Fast = Fast(<f32 as Real>::ROUNDOFF);
     const CHOOSES: bool = true;
 
@@ -67,17 +63,7 @@ impl Real for Fast {
 }
 
 impl Scalar for Fast {
-    #[cfg(not(target_arch = "spirv"))]
-    type Eight = super::Wide<8>;
-    #[cfg(not(target_arch = "spirv"))]
-    type Four = super::Wide<4>;
-    #[cfg(not(target_arch = "spirv"))]
-    type Packet = Self;
-    #[cfg(target_arch = "x86_64")]
-    type Avx2 = super::Native;
-    #[cfg(target_arch = "x86_64")]
-    type Avx512 = super::Native;
-
+    crate::no_registers!(super::Wide<8>, super::Wide<4>);
     records!(Fast, inner);
 
     #[inline(always)]

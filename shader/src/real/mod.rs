@@ -7,6 +7,7 @@
 //! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
+mod alone;
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "spirv")]

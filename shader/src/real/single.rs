@@ -2,12 +2,13 @@
 
 use super::{Real, Scalar, V3, power, soft};
 use crate::data;
-use crate::ray::{Hit, Ray};
 use glam::{UVec4, Vec3};
 
 /// The parts of [`Real`] and [`Scalar`] that exact and fast `f32` share: comparisons and bits.
 macro_rules! comparisons {
     ($wrap:expr, $inner:expr) => {
+        $crate::alone!();
+
         #[inline(always)]
         fn splat(x: f32) -> Self {
             $wrap(x)
@@ -25,28 +26,8 @@ macro_rules! comparisons {
             $inner(self) == $inner(other)
         }
         #[inline(always)]
-        fn select(mask: bool, a: Self, b: Self) -> Self {
-            if mask { a } else { b }
-        }
-        #[inline(always)]
         fn abs(self) -> Self {
             $wrap(f32::from_bits($inner(self).to_bits() & 0x7fff_ffff))
-        }
-        #[inline(always)]
-        fn index(i: u32) -> u32 {
-            i
-        }
-        #[inline(always)]
-        fn equals(i: u32, other: u32) -> bool {
-            i == other
-        }
-        #[inline(always)]
-        fn precedes(i: u32, other: u32) -> bool {
-            i < other
-        }
-        #[inline(always)]
-        fn select_index(mask: bool, a: u32, b: u32) -> u32 {
-            if mask { a } else { b }
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
@@ -74,12 +55,6 @@ macro_rules! comparisons {
         #[inline(always)]
         fn greater(self, other: Self) -> Self {
             $wrap(super::device::greater($inner(self), $inner(other)))
-        }
-        #[inline(always)]
-        fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
-            if mask {
-                f(ray, hit);
-            }
         }
     };
 }
@@ -130,9 +105,6 @@ fn id(x: f32) -> f32 {
 }
 
 impl Real for f32 {
-    type Mask = bool;
-    type Index = u32;
-    type Lane = f32;
     const ROUNDOFF: f32 = 1.0 / (1 << 24) as f32;
 
     comparisons!(id, id);

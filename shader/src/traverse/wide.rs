@@ -1,11 +1,14 @@
 //! Traversal of nodes of eight children (Ylitie, Karras and Laine 2017: CWBVH): every ray by itself, in
 //! every step at most one node and at most one triangle.
 //!
-//! The boxes lie on a grid of bytes. Instead of every plane, the grid is brought into the ray's terms:
-//! a plane `origin + q * 2^e` is met at `q * (2^e * inverse) + (origin - start) * inverse`. With
-//! coordinates in [-1, 1] that errs by less than 2.3 * 2^-22 times the inverse, and the entry into a
-//! triangle's own box by 2^-22 times it; the quantised boxes' margin of 2^-19 covers both, so a node is
-//! entered no later than any triangle's own box below it, and no order of visits can cull a hit.
+//! The boxes lie on a grid of bytes. Instead of every plane, the grid is brought into the ray's terms: a plane
+//! `origin + q * step` is met at `f * extent + start`, where `extent` is 256 steps times the inverse and `f` is
+//! 1 + q / 256, or 256 + q / 256 for every second child, and `start` makes up for the 1 or the 256.
+//!
+//! With coordinates in [-1, 1] that errs by less than 9 * 2^-24 and 3/256 of a step, as a shift of the plane, the
+//! entry into a triangle's own box by 4 * 2^-24, and its wider exit by 17 * 2^-24. The quantised boxes' margin of
+//! 2^-19 and 1/64 of a step covers all, so a node is entered no later than any triangle's own box below it, and no
+//! order of visits can cull a hit.
 
 use super::resumable::{Progress, Resumable, follow};
 use super::step::{occluded, triangle};

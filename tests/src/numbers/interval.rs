@@ -5,8 +5,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 use eyerays_shader::one_lane;
-use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Native, Real, Scalar, V3};
+use eyerays_shader::real::{Real, Scalar, V3};
 
 /// An `f32`, which branches follow, and bounds of what exact arithmetic gives on the way that they take. Where kernels
 /// flush, the bounds stay with the number that was flushed.
@@ -91,9 +90,7 @@ impl Neg for Interval {
 }
 
 impl Real for Interval {
-    type Mask = bool;
-    type Index = u32;
-    type Lane = Self;
+    eyerays_shader::alone!();
     const ROUNDOFF: Self = Interval::exact(<f32 as Real>::ROUNDOFF);
 
     fn splat(x: f32) -> Self {
@@ -125,31 +122,11 @@ impl Real for Interval {
     fn same(self, other: Self) -> bool {
         self.value == other.value
     }
-    fn select(mask: bool, a: Self, b: Self) -> Self {
-        if mask { a } else { b }
-    }
     #[inline(never)]
     fn abs(self) -> Self {
         let (low, high) = (self.low.abs(), self.high.abs());
         let least = if self.contains(0.0) { 0.0 } else { low.min(high) };
         Interval { value: self.value.abs(), low: least, high: low.max(high) }
-    }
-    fn index(i: u32) -> u32 {
-        i
-    }
-    fn precedes(i: u32, other: u32) -> bool {
-        i < other
-    }
-    fn equals(i: u32, other: u32) -> bool {
-        i == other
-    }
-    fn select_index(mask: bool, a: u32, b: u32) -> u32 {
-        if mask { a } else { b }
-    }
-    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
-        if mask {
-            f(ray, hit);
-        }
     }
     #[inline(never)]
     fn min(self, other: Self) -> Self {
@@ -174,13 +151,7 @@ pub struct Record([Interval; 3], u32);
 one_lane!(Interval);
 
 impl Scalar for Interval {
-    type Eight = Self;
-    type Four = Self;
-    type Packet = Self;
-    #[cfg(target_arch = "x86_64")]
-    type Avx2 = Native;
-    #[cfg(target_arch = "x86_64")]
-    type Avx512 = Native;
+    eyerays_shader::no_registers!(Self, Self);
     type Record = Record;
 
     fn store(v: V3<Self>, word: u32) -> Record {

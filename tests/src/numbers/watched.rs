@@ -8,8 +8,7 @@ use std::panic::Location;
 use std::sync::Mutex;
 
 use eyerays_shader::one_lane;
-use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Native, Real, Scalar, V3};
+use eyerays_shader::real::{Real, Scalar, V3};
 use glam::UVec4;
 
 /// What is done with the numbers that operations take and give.
@@ -108,9 +107,7 @@ macro_rules! numbers {
         one_lane!($type);
 
         impl Real for $type {
-            type Mask = bool;
-            type Index = u32;
-            type Lane = Self;
+            eyerays_shader::alone!();
             const ROUNDOFF: Self = Watched(<f32 as Real>::ROUNDOFF, PhantomData);
 
             fn splat(x: f32) -> Self {
@@ -144,28 +141,8 @@ macro_rules! numbers {
             fn same(self, other: Self) -> bool {
                 self.seen() == other.seen()
             }
-            fn select(mask: bool, a: Self, b: Self) -> Self {
-                if mask { a } else { b }
-            }
             fn abs(self) -> Self {
                 Watched(self.0.abs(), PhantomData)
-            }
-            fn index(i: u32) -> u32 {
-                i
-            }
-            fn precedes(i: u32, other: u32) -> bool {
-                i < other
-            }
-            fn equals(i: u32, other: u32) -> bool {
-                i == other
-            }
-            fn select_index(mask: bool, a: u32, b: u32) -> u32 {
-                if mask { a } else { b }
-            }
-            fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: bool, mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>)) {
-                if mask {
-                    f(ray, hit);
-                }
             }
             /// A named place: what is subnormal here becomes zero on every device.
             #[inline(never)]
@@ -175,13 +152,7 @@ macro_rules! numbers {
         }
 
         impl Scalar for $type {
-            type Eight = Self;
-            type Four = Self;
-            type Packet = Self;
-            #[cfg(target_arch = "x86_64")]
-            type Avx2 = Native;
-            #[cfg(target_arch = "x86_64")]
-            type Avx512 = Native;
+            eyerays_shader::no_registers!(Self, Self);
             type Record = UVec4;
 
             #[track_caller]

@@ -6,6 +6,7 @@
 
 use eyerays::bench::Kind;
 use eyerays::bench::rays::{Sight, View};
+use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::method::{Method, Order};
 use eyerays::pack::Packed;
@@ -13,7 +14,7 @@ use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::Triangle;
 use eyerays_shader::real::{SMALL, Scalar};
-use eyerays_tests::machine::{Machine, one_by_one};
+use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, empty, glowing, lamp, matt, sun};
 use eyerays_tests::surface::Surface;
 use eyerays_tests::{count, differences, on_cpu, pack, shipped};
@@ -63,7 +64,7 @@ struct Apart {
 }
 
 fn compare(machine: Machine, packed: &Packed, stream: &Stream) -> Apart {
-    let truth = one_by_one::<f64>(packed, stream);
+    let truth = cpu::closest::<f64>(packed, Method::IfIf.into(), 0, stream).expect("threads");
     let got = machine.tracer(packed).closest(Method::Packet.into(), stream);
     let mut apart = Apart { others: 0, error: 0.0, rays: stream.len() };
     for (i, (hit, &record)) in got.iter().zip(&truth).enumerate() {

@@ -1,0 +1,61 @@
+//! What numbers of one lane have in common.
+
+/// What every [`Real`] of one lane has in common: its mask and its indices stand for themselves.
+#[macro_export]
+macro_rules! alone {
+    () => {
+        type Mask = bool;
+        type Index = u32;
+        type Lane = Self;
+
+        #[inline(always)]
+        fn select(mask: bool, a: Self, b: Self) -> Self {
+            if mask { a } else { b }
+        }
+        #[inline(always)]
+        fn index(i: u32) -> u32 {
+            i
+        }
+        #[inline(always)]
+        fn equals(i: u32, other: u32) -> bool {
+            i == other
+        }
+        #[inline(always)]
+        fn precedes(i: u32, other: u32) -> bool {
+            i < other
+        }
+        #[inline(always)]
+        fn select_index(mask: bool, a: u32, b: u32) -> u32 {
+            if mask { a } else { b }
+        }
+        #[inline(always)]
+        fn lanes(
+            ray: &$crate::ray::Ray<Self>,
+            hit: &mut $crate::ray::Hit<Self>,
+            mask: bool,
+            mut f: impl FnMut(&$crate::ray::Ray<Self>, &mut $crate::ray::Hit<Self>),
+        ) {
+            if mask {
+                f(ray, hit);
+            }
+        }
+    };
+}
+
+/// What every [`Scalar`] has in common for which there are no registers: packets of one lane, the plain instructions,
+/// and the given lanes for the boxes and triangles of wide nodes.
+#[macro_export]
+macro_rules! no_registers {
+    ($eight:ty, $four:ty) => {
+        #[cfg(not(target_arch = "spirv"))]
+        type Eight = $eight;
+        #[cfg(not(target_arch = "spirv"))]
+        type Four = $four;
+        #[cfg(not(target_arch = "spirv"))]
+        type Packet = Self;
+        #[cfg(target_arch = "x86_64")]
+        type Avx2 = $crate::real::Native;
+        #[cfg(target_arch = "x86_64")]
+        type Avx512 = $crate::real::Native;
+    };
+}

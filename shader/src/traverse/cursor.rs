@@ -42,23 +42,41 @@ impl Cursor {
     }
 
     /// Goes on to the nearer wanted child and lets the other wait, or pops if none is wanted.
-    ///
-    /// Few and short branches: lanes of a subgroup that take different ones wait for each other.
     #[inline(always)]
     pub fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
-        let children = (pair.left(), pair.right());
-        let turned = right & (right_first | !left);
-        let near = if turned { children.1 } else { children.0 };
-        let far = if turned { children.0 } else { children.1 };
-        if left & right {
-            stack.put(self.depth, far);
-            self.depth += 1;
-        }
-        if left | right {
+        let (left_child, right_child) = (pair.left(), pair.right());
+        if cfg!(target_arch = "spirv") {
+            // Few and short branches: lanes of a subgroup that take different ones wait for each other.
+            let turned = right & (right_first | !left);
+            let near = if turned { right_child } else { left_child };
+            let far = if turned { left_child } else { right_child };
+            if left & right {
+                self.wait(far, stack);
+            }
+            if left | right {
+                self.node = near;
+            } else {
+                self.pop(stack);
+            }
+        } else if left && right {
+            // A CPU foresees branches, and goes on before it knows the boxes.
+            let (near, far) = if right_first { (right_child, left_child) } else { (left_child, right_child) };
+            self.wait(far, stack);
             self.node = near;
+        } else if left {
+            self.node = left_child;
+        } else if right {
+            self.node = right_child;
         } else {
             self.pop(stack);
         }
+    }
+
+    /// Lets a node wait.
+    #[inline(always)]
+    fn wait(&mut self, node: NodeRef, stack: &mut Stack) {
+        stack.put(self.depth, node);
+        self.depth += 1;
     }
 
     /// Takes the node that waits on top, or is done.

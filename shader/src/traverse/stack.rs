@@ -11,7 +11,7 @@ pub struct Stack<T: Copy, const N: usize>([MaybeUninit<T>; N]);
 impl<T: Copy, const N: usize> Stack<T, N> {
     /// Nothing waits.
     #[inline(always)]
-    #[allow(clippy::new_without_default, reason = "a default is not known to be no constant, which would be copied")]
+    #[allow(clippy::new_without_default, reason = "a default says that something is set")]
     pub fn new() -> Self {
         // SAFETY: values that may be uninitialised need no initialisation.
         Stack(unsafe { MaybeUninit::uninit().assume_init() })
@@ -20,7 +20,7 @@ impl<T: Copy, const N: usize> Stack<T, N> {
     /// Sets what is at a place. Places go round; every valid tree has room.
     #[inline(always)]
     pub fn put(&mut self, place: u32, value: T) {
-        // SAFETY: a power of two bounds what is below it.
+        // SAFETY: what is masked by N - 1 is less than N.
         unsafe { *self.0.index_unchecked_mut(place as usize & (N - 1)) = MaybeUninit::new(value) };
     }
 

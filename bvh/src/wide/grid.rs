@@ -37,17 +37,15 @@ const PLANES: f64 = u8::MAX as f64;
 impl Grid {
     /// The finest grid around a box in the normalised scene.
     pub fn around(bounds: Bounds) -> Self {
-        let along = |axis: usize, exponent: i32| {
-            let slack = SLACK * step(exponent);
-            let origin = origin(below(bounds.min[axis]) - slack);
-            let extent = above(bounds.max[axis]) + slack - f64::from(origin);
-            (PLANES * step(exponent) >= extent).then_some((origin, exponent))
+        let low = |axis: usize, e: i32| origin(below(bounds.min[axis]) - SLACK * step(e));
+        let fits = |axis: usize, e: i32| {
+            let high = above(bounds.max[axis]) + SLACK * step(e);
+            PLANES * step(e) >= high - f64::from(low(axis, e))
         };
-        let coarsest = |axis| (origin(below(bounds.min[axis])), GREATEST_EXPONENT);
-        let axes: [_; 3] = std::array::from_fn(|axis| {
-            (LEAST_EXPONENT..=GREATEST_EXPONENT).find_map(|e| along(axis, e)).unwrap_or_else(|| coarsest(axis))
+        let exponent: [i32; 3] = std::array::from_fn(|axis| {
+            (LEAST_EXPONENT..GREATEST_EXPONENT).find(|&e| fits(axis, e)).unwrap_or(GREATEST_EXPONENT)
         });
-        Grid { origin: axes.map(|(origin, _)| origin), exponent: axes.map(|(_, exponent)| exponent) }
+        Grid { origin: std::array::from_fn(|axis| low(axis, exponent[axis])), exponent }
     }
 
     /// The planes closest around a box inside the grid that keep the margin.
@@ -103,7 +101,7 @@ fn above(coordinate: f32) -> f64 {
     (f64::from(coordinate) / FINEST).ceil() * FINEST + MARGIN
 }
 
-/// The greatest single up to a place that is a multiple of [`FINEST`]: a single below 2^-6 holds such a
+/// The greatest single up to a place among the multiples of [`FINEST`]: one below 2^-6 holds every such
 /// multiple as it is, and larger ones are spaced by [`FINEST`] or more.
 fn origin(place: f64) -> f32 {
     let place = (place / FINEST).floor() * FINEST;

@@ -215,7 +215,9 @@ macro_rules! persistent_entries {
                 count,
                 move |wants| take(wants, lane, counters, counter::TRACED),
                 move |number| (stage::traced::<$real>(&geometry, queued(features, number, queue), paths), true),
-                move |number, _, hit| write(hits, queued(features, number, queue), stage::found(hit)),
+                move |number, _, ray, hit| {
+                    write(hits, queued(features, number, queue), stage::found(&geometry, ray, hit));
+                },
             );
         }
 
@@ -249,7 +251,7 @@ macro_rules! persistent_entries {
                 count * rows,
                 move |wants| take(wants, lane, counters, counter::ASKED),
                 move |number| stage::asked(&geometry, asking, queued(features, number % row, queue), number / row),
-                move |number, traced, hit| {
+                move |number, traced, _, hit| {
                     let answer = if traced { stage::answered(hit) } else { stage::FACES_AWAY };
                     let slot = queued(features, number % row, queue);
                     write(shadows, number / row * geometry.slots() + slot, answer);

@@ -86,7 +86,8 @@ impl<R: Real> Shear<R> {
 pub struct Hit<R: Real> {
     /// Distance in lengths of the ray's direction. Nothing beyond counts.
     pub t: R,
-    /// Weight of the triangle's second vertex, but for its scale.
+    /// Weight of the triangle's second vertex, but for its scale. As the others kept on a CPU alone, see
+    /// [`step::weights`](crate::traverse::step::weights).
     pub u: R,
     /// Weight of the third, likewise.
     pub v: R,

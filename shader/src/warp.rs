@@ -7,6 +7,9 @@ use crate::real::Mask;
 
 /// Lanes that decide together.
 pub trait Warp {
+    /// Do other rays share a lane's instructions?
+    const SHARED: bool;
+
     /// Does it hold in any lane?
     fn any<M: Mask>(mask: M) -> bool;
     /// In how many lanes does it hold?
@@ -17,6 +20,8 @@ pub trait Warp {
 pub struct Alone;
 
 impl Warp for Alone {
+    const SHARED: bool = false;
+
     #[inline(always)]
     fn any<M: Mask>(mask: M) -> bool {
         mask.any()
@@ -33,6 +38,8 @@ pub struct Subgroup;
 
 #[cfg(target_arch = "spirv")]
 impl Warp for Subgroup {
+    const SHARED: bool = true;
+
     #[inline(always)]
     fn any<M: Mask>(mask: M) -> bool {
         spirv_std::arch::subgroup_any(mask.any())

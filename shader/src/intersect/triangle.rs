@@ -11,12 +11,17 @@
 //! no wider arithmetic is needed. A contraction to fused multiply-add would break this, which is why
 //! it is forbidden in every precision.
 //!
+//! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
+//! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
+//! product above 2^-97, from which they are less than a quarter of the last place: it is the same with them and
+//! without. One below counts as zero. So all devices agree, and only candidates are made zero for good.
+//!
 //! How far the sheared points are from true: with coordinates in [-1, 1], a difference to the origin
 //! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all, which
 //! [`BOX_PADDING`](crate::data::BOX_PADDING) = 2^-20 covers, so a triangle's own box does not reject
 //! what the test accepts.
 
-use crate::real::{FAINT, Mask, Real, SMALL, V3};
+use crate::real::{FAINT, Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
 
@@ -37,6 +42,9 @@ pub struct Crossing<R: Real> {
     pub area: R,
 }
 
+/// An edge function of no greater magnitude is zero; see the module.
+const SLIGHT: f32 = 1.0 / (1u128 << 96) as f32;
+
 /// Crosses a triangle, its vertices relative to the ray's origin, with a ray. Their axes are cycled
 /// ([`Shear::cycle`](crate::ray::Shear::cycle)); `shear` is how far the first two move along the third, and `along` the
 /// inverse of the direction's major component.
@@ -50,13 +58,15 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     let wa = cx * by - cy * bx;
     let wb = ax * cy - ay * cx;
     let wc = bx * ay - by * ax;
-    let area = wa + wb + wc;
-    let zero = R::splat(0.0);
-    let around = (zero.le(wa) & zero.le(wb) & zero.le(wc)) | (wa.le(zero) & wb.le(zero) & wc.le(zero));
+    let (zero, slight) = (R::splat(0.0), R::splat(SLIGHT));
+    let above = (-slight).le(wa) & (-slight).le(wb) & (-slight).le(wc);
+    let around = above | (wa.le(slight) & wb.le(slight) & wc.le(slight));
     // Most triangles that a ray comes to are beside it.
     if !around.any() {
-        return Crossing { inside: around, front: around, depth: zero, u: wb, v: wc, area };
+        return Crossing { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
+    let (wa, wb, wc) = (wa.settle(SLIGHT), wb.settle(SLIGHT), wc.settle(SLIGHT));
+    let area = wa + wb + wc;
     let term = |w: R, z: R| (w * z).settle(FAINT);
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
@@ -64,11 +74,10 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     Crossing { inside: around & ahead, front, depth, u: wb, v: wc, area }
 }
 
-/// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray. What is below 2^-40 is
-/// zero, so that no product underflows.
+/// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray.
 #[inline(always)]
 pub fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
-    ((p.x - x * p.z).settle(SMALL), (p.y - y * p.z).settle(SMALL))
+    (p.x - x * p.z, p.y - y * p.z)
 }
 
 #[cfg(not(target_arch = "spirv"))]

@@ -21,7 +21,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     count: u32,
     mut take: impl FnMut(bool) -> u32,
     load: impl Fn(u32) -> (Segment<R>, bool),
-    mut store: impl FnMut(u32, bool, &Hit<R>),
+    mut store: impl FnMut(u32, bool, &Ray<R>, &Hit<R>),
 ) {
     let enough = (W::count(true) * geometry.tuning.busy()).div_ceil(100).max(1);
     let mut number = IDLE;
@@ -33,7 +33,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     let mut more = true;
     loop {
         if number != IDLE && cursor.is_done() {
-            store(number, traced, &hit);
+            store(number, traced, &ray, &hit);
             number = IDLE;
         }
         if more {

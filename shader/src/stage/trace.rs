@@ -2,10 +2,10 @@
 
 use super::{Path, Segment};
 use crate::data::Features;
-use crate::ray::Hit;
+use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::Geometry;
-use crate::traverse::{Closest, Method};
+use crate::traverse::{Closest, Method, step};
 
 /// A slot's ray.
 #[inline(always)]
@@ -17,10 +17,10 @@ pub fn traced<R: Scalar>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]
     Segment { origin: path.origin, direction: path.direction, limit: R::splat(f32::MAX), leaves: path.leaves }
 }
 
-/// What is kept of a hit: (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
+/// What is kept of a ray's hit: (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
 #[inline(always)]
-pub fn found<R: Scalar>(hit: &Hit<R>) -> R::Record {
-    let (u, v) = hit.weights();
+pub fn found<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
+    let (u, v) = step::weights(geometry, ray, hit);
     record(V3::new(hit.t, u, v), hit.slot)
 }
 
@@ -35,6 +35,7 @@ pub(super) fn record<R: Scalar>(place: V3<R>, slot: u32) -> R::Record {
 pub fn trace<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
     let segment = traced::<R>(geometry, slot, paths);
     let mut hit = Hit::none(segment.limit);
-    M::traverse::<Closest>(geometry, &segment.ray(), &mut hit);
-    found(&hit)
+    let ray = segment.ray();
+    M::traverse::<Closest>(geometry, &ray, &mut hit);
+    found(geometry, &ray, &hit)
 }

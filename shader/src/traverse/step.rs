@@ -86,13 +86,36 @@ pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: 
 pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_triangle();
     let triangle = geometry.triangle(leaf.index());
-    let [a, b, c] = triangle.vertices();
-    let from = |p| ray.shear.cycle(V3::splat(p) - ray.origin);
-    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
-    let crossing = crossed::<R, R>(geometry.features, [from(a), from(b), from(c)], shear, along);
+    let crossing = single(geometry, &triangle, ray);
     if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
+}
+
+/// Crosses one triangle.
+#[inline(always)]
+fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
+    let [a, b, c] = triangle.vertices();
+    let from = |p| ray.shear.cycle(V3::splat(p) - ray.origin);
+    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
+    crossed::<R, R>(geometry.features, [from(a), from(b), from(c)], shear, along)
+}
+
+/// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
+///
+/// A CPU has kept them with the hit. The fewer registers a ray takes of a GPU, the more rays it turns to while one
+/// waits for memory: there they are computed again, from the same numbers to the same bits.
+#[inline(always)]
+pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
+    if cfg!(not(target_arch = "spirv")) {
+        return hit.weights();
+    }
+    if hit.slot == Hit::<R>::NOTHING {
+        return (R::splat(0.0), R::splat(0.0));
+    }
+    let crossing = single(geometry, &geometry.triangle(hit.slot), ray);
+    let scale = crossing.area.reciprocal();
+    (crossing.u * scale, crossing.v * scale)
 }
 
 /// Tests the triangles of a block, as many at once as there are lanes.
@@ -190,9 +213,11 @@ fn keep<Q: Query, R: Real>(
     let better = inside & (t.lt(hit.t) | tie);
     if better.any() {
         hit.t = R::select(better, t, hit.t);
-        hit.u = R::select(better, crossing.u, hit.u);
-        hit.v = R::select(better, crossing.v, hit.v);
-        hit.scale = R::select(better, scale, hit.scale);
+        if cfg!(not(target_arch = "spirv")) {
+            hit.u = R::select(better, crossing.u, hit.u);
+            hit.v = R::select(better, crossing.v, hit.v);
+            hit.scale = R::select(better, scale, hit.scale);
+        }
         hit.slot = R::select_index(better, R::index(slot), hit.slot);
         hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
     }

@@ -13,8 +13,8 @@
 //!
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
-//! product above 2^-97, from which they are less than a quarter of the last place: it is the same with them and
-//! without. One below counts as zero. So all devices agree, and only candidates are made zero for good.
+//! product above 2^-97, whose neighbours are 2^-121 away: it is the same with them and without. One below counts
+//! as zero. So all devices agree, and only candidates are made zero for good.
 //!
 //! How far the sheared points are from true: with coordinates in [-1, 1], a difference to the origin
 //! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all, which
@@ -25,7 +25,7 @@ use crate::real::{FAINT, Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
 
-/// Where a ray crosses a triangle's plane, before its division.
+/// Where a ray crosses a triangle's plane, before its division. Beside the triangle nothing but `inside` is told.
 #[derive(Clone, Copy)]
 pub struct Crossing<R: Real> {
     /// Does it cross inside the triangle, in front of the origin?

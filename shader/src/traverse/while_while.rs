@@ -37,7 +37,6 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
             // A turn of the loop and its vote cost a GPU about as much as half a pair.
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
-            inner::<Q, R>(geometry, ray, hit, cursor, stack);
             if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.tuning.cut() * all {
                 break;
             }

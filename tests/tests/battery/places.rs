@@ -2,7 +2,6 @@
 //!
 //! The bound of t: a sheared vertex is off by less than 8 roundoffs of its distance from the origin, and a weight by
 //! as much, times how thin the triangle is; both move the hit along the plane, and the ray by as much over its cosine.
-//! What is below 2^-40 is zero, which adds that.
 
 use eyerays::bench::Kind;
 use eyerays::bench::rays::{Sight, View};
@@ -13,7 +12,7 @@ use eyerays::pack::Packed;
 use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::Triangle;
-use eyerays_shader::real::{SMALL, Scalar};
+use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, empty, glowing, lamp, matt, sun};
 use eyerays_tests::surface::Surface;
@@ -53,7 +52,7 @@ fn bound(triangle: &Triangle, ray: &StreamRay) -> f64 {
     let normal = (b - a).cross(c - a);
     let cosine = (normal.normalize().dot(direction) / direction.length()).abs();
     let thinness = longest * longest / normal.length();
-    (16.0 * ROUNDOFF * reach + 16.0 * f64::from(SMALL)) * thinness / cosine / direction.length()
+    16.0 * ROUNDOFF * reach * thinness / cosine / direction.length()
 }
 
 /// What was found over rays: those that hit another triangle or none, and the largest error of t over its bound.

@@ -45,6 +45,10 @@ pub struct Crossing<R: Real> {
 /// An edge function of no greater magnitude is zero; see the module.
 const SLIGHT: f32 = 1.0 / (1u128 << 96) as f32;
 
+/// What edge functions that count are multiplied by, so that weighted depths of triangles far smaller than the scene are
+/// not too faint.
+const ENLARGED: f32 = (1u64 << 48) as f32;
+
 /// Crosses a triangle, its vertices relative to the ray's origin, with a ray. Their axes are cycled
 /// ([`Shear::cycle`](crate::ray::Shear::cycle)); `shear` is how far the first two move along the third, and `along` the
 /// inverse of the direction's major component.
@@ -65,7 +69,8 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     if !around.any() {
         return Crossing { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
-    let (wa, wb, wc) = (wa.settle(SLIGHT), wb.settle(SLIGHT), wc.settle(SLIGHT));
+    let enlarged = |w: R| w.settle(SLIGHT) * R::splat(ENLARGED);
+    let (wa, wb, wc) = (enlarged(wa), enlarged(wb), enlarged(wc));
     let area = wa + wb + wc;
     let term = |w: R, z: R| (w * z).settle(FAINT);
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;

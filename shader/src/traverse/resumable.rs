@@ -54,7 +54,7 @@ pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
 ) {
     while !cursor.is_done() {
         M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
-        // Two a turn: turns of a loop cost a GPU.
+        // Turns of a loop cost a GPU.
         if !cursor.is_done() {
             M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
         }

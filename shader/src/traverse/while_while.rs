@@ -34,7 +34,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
-            // A turn of the loop and its vote cost a GPU about as much as half a pair.
+            // Turns of a loop cost a GPU, and votes more.
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.tuning.cut() * all {

@@ -2,9 +2,8 @@
 
 use eyerays::method::Traversal;
 use eyerays::pack::{Laid, Packed};
-use eyerays::stream::Stream;
-use eyerays_shader::intersect::cross;
-use eyerays_shader::ray::Ray;
+use eyerays::stream::{Stream, StreamRay};
+use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage;
 use eyerays_shader::traverse::{self, IfIf, WideNodes};
@@ -13,6 +12,7 @@ use eyerays_tests::{SHIPPED, pack, settings, shipped};
 use glam::{UVec4, Vec3};
 
 use super::corpus::{Case, cases};
+use super::hits::crossed;
 
 /// The bits of a picture.
 fn bits<R: Scalar>(packed: &Packed) -> Vec<[u32; 3]> {
@@ -71,10 +71,8 @@ fn coordinate(rng: &mut fastrand::Rng) -> f32 {
 
 /// Is a triangle hit, and the bits of the crossing if so.
 fn crossing<R: Scalar>([origin, towards, a, b, c]: [Vec3; 5]) -> Option<[u32; 4]> {
-    let ray = Ray::<R>::new(V3::splat(origin), V3::splat(towards - origin));
-    let from = |p| ray.shear.cycle(V3::splat(p) - ray.origin);
-    let along = ray.shear.cycle(ray.inverse).z;
-    let crossing = cross(from(a), from(b), from(c), (ray.shear.x, ray.shear.y), along);
+    let ray = StreamRay { origin, direction: towards - origin, limit: f32::MAX, leaves: Hit::<f32>::NOTHING };
+    let crossing = crossed::<R>([a, b, c], &ray);
     let found = [crossing.depth, crossing.area, crossing.u, crossing.v];
     crossing.inside.then_some(found.map(|x| x.to_f32().to_bits()))
 }

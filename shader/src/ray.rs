@@ -48,10 +48,7 @@ impl<R: Real> Ray<R> {
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);
         let y_major = !x_major & size.z.le(size.y);
-        let inverse = d.map(|c| {
-            let least = R::select(c.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
-            R::select(c.same(R::splat(0.0)), least, c).reciprocal()
-        });
+        let inverse = V3::new(inverted(d.x), inverted(d.y), inverted(d.z));
         let mut shear = Shear { x: d.x, y: d.y, x_major, y_major };
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
@@ -59,6 +56,13 @@ impl<R: Real> Ray<R> {
         let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
         Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
     }
+}
+
+/// One over a direction's component, which is zero or at least 2^-60.
+#[inline(always)]
+fn inverted<R: Real>(component: R) -> R {
+    let least = R::select(component.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
+    R::select(component.same(R::splat(0.0)), least, component).reciprocal()
 }
 
 /// Far from a scene within [-1, 1], and no overflow when squared.

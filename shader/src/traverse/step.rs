@@ -11,7 +11,7 @@ use crate::ray::{Hit, Ray};
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
-use glam::UVec4;
+use glam::{UVec4, Vec3};
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
 const FOUND: f32 = -1.0;
@@ -96,9 +96,14 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
 #[inline(always)]
 fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
     let [a, b, c] = triangle.vertices();
-    let from = |p| ray.shear.cycle(V3::splat(p) - ray.origin);
     let (shear, along) = ((ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
-    crossed::<R, R>(geometry.features, [from(a), from(b), from(c)], shear, along)
+    crossed::<R, R>(geometry.features, [seen(a, ray), seen(b, ray), seen(c, ray)], shear, along)
+}
+
+/// A vertex relative to the ray's origin, its axes cycled.
+#[inline(always)]
+fn seen<R: Real>(vertex: Vec3, ray: &Ray<R>) -> V3<R> {
+    ray.shear.cycle(V3::splat(vertex) - ray.origin)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.

@@ -92,7 +92,17 @@ impl Surface {
     /// # Panics
     /// If no device could hold it.
     pub fn pack(&self) -> Packed {
-        let scene = self.scene();
+        self.pack_seen_from(Vec3::ZERO)
+    }
+
+    /// The scene packed, its camera at a place in world units.
+    ///
+    /// # Panics
+    /// If no device could hold it.
+    pub fn pack_seen_from(&self, eye: Vec3) -> Packed {
+        let mut scene = self.scene();
+        let camera = &mut scene.cameras[0];
+        (camera.eye, camera.target) = (eye, eye - Vec3::Z);
         Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }

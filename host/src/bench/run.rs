@@ -76,7 +76,7 @@ struct Asked<'s> {
 
 impl<'a> Bench<'a> {
     fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a Packed, report: &mut Report) -> Result<Self> {
-        let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.scale);
+        let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.normalisation.scale);
         let statistics = &packed.statistics;
         report.scenes.push(SceneRow {
             scene: subject.name.clone(),
@@ -96,7 +96,7 @@ impl<'a> Bench<'a> {
             }
             gpu => gpu?,
         };
-        let ao_length = (ao_length * packed.scale).clamp(1e-30, 1e30) as f32;
+        let ao_length = (ao_length * packed.normalisation.scale).clamp(1e-30, 1e30) as f32;
         Ok(Bench { plan, subject, packed, gpu, ao_length })
     }
 

@@ -123,7 +123,7 @@ fn every_order_has_the_same_rays() {
 #[test]
 fn the_diagonal_is_that_of_the_box() {
     let packed = cornell((8, 8));
-    assert!((diagonal(&packed) / packed.scale - 12f64.sqrt()).abs() < 1e-3);
+    assert!((diagonal(&packed) / packed.normalisation.scale - 12f64.sqrt()).abs() < 1e-3);
 }
 
 pub(super) fn plan() -> Plan {

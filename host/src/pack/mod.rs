@@ -9,14 +9,17 @@ use eyerays_shader::data::{
     Bounds, CentredPair, Features, Frame, Light as LightRecord, Material as MaterialRecord, Normals, Triangle,
     WideNode, pack,
 };
-use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
 
 mod laid;
+mod normalisation;
 mod words;
 
 pub use laid::Laid;
+pub use normalisation::Normalisation;
 pub use words::{NodeWords, TriangleWords};
+
+use normalisation::{flushed, flushed_number};
 
 use crate::error::{Error, Result};
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
@@ -44,8 +47,8 @@ pub struct Packed {
     pub features: Features,
     /// What to render.
     pub settings: Settings,
-    /// World units are multiplied by this power of two.
-    pub scale: f64,
+    /// How the scene became what kernels take.
+    pub normalisation: Normalisation,
     /// The hierarchy's figures.
     pub statistics: Statistics,
     /// What building the hierarchy took.
@@ -75,9 +78,9 @@ impl Packed {
     /// What no device could hold or no ray meet: too many triangles, a light or camera too far away
     /// for the scene's numbers.
     pub fn new(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Result<Packed> {
-        let scale = normalisation(scene, camera);
         let mut features = features(scene, &settings);
-        let triangles = triangles(scene, scale, features);
+        let normalisation = normalisation(scene, camera, features);
+        let triangles = triangles(scene, &normalisation, features);
         let start = Instant::now();
         let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
         let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
@@ -87,19 +90,20 @@ impl Packed {
         let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let statistics = Statistics::of(&bvh, &triangles);
-        let lights = scene.lights.iter().enumerate().map(|(i, l)| light(l, i, scale)).collect::<Result<Vec<_>>>()?;
+        let lights =
+            scene.lights.iter().enumerate().map(|(i, l)| light(l, i, &normalisation)).collect::<Result<Vec<_>>>()?;
         Ok(Packed {
             triangles: bvh.gather(&triangles),
             normals: if features.has(Features::SMOOTH) { bvh.gather(&normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes.iter().map(CentredPair::from).collect(),
             wide: bvh.wide,
             bounds: if features.has(Features::SPLIT) { bvh.bounds } else { Vec::new() },
-            materials: scene.materials.iter().map(|m| material(m, scene.ambient, scale)).collect(),
-            frame: frame(scene, camera, &settings, lights.len(), scale)?,
+            materials: scene.materials.iter().map(|m| material(m, scene.ambient, normalisation.scale)).collect(),
+            frame: frame(scene, camera, &settings, lights.len(), &normalisation)?,
             lights,
             features,
             settings,
-            scale,
+            normalisation,
             statistics,
             build_time,
             full: OnceLock::new(),
@@ -142,7 +146,7 @@ impl Packed {
     /// # Errors
     /// If there is no way to look so.
     pub fn look(&mut self, scene: &Scene, camera: &Camera) -> Result<()> {
-        self.frame = frame(scene, camera, &self.settings, self.lights.len(), self.scale)?;
+        self.frame = frame(scene, camera, &self.settings, self.lights.len(), &self.normalisation)?;
         Ok(())
     }
 
@@ -174,29 +178,10 @@ impl Packed {
     }
 }
 
-/// The power of two that brings every vertex and camera into [-1, 1].
-fn normalisation(scene: &Scene, camera: &Camera) -> f64 {
-    let extent = scene
-        .mesh
-        .positions
-        .iter()
-        .chain(scene.cameras.iter().map(|c| &c.eye))
-        .chain([&camera.eye])
-        .fold(0f32, |most, p| most.max(p.abs().max_element()));
-    if extent == 0.0 { 1.0 } else { (-f64::from(extent).log2().ceil()).exp2() }
-}
-
-/// A world coordinate in the normalised scene; what is below 2^-60 is zero (no subnormals).
-fn place(p: Vec3, scale: f64) -> Vec3 {
-    flushed((p.as_dvec3() * scale).as_vec3())
-}
-
-fn flushed(v: Vec3) -> Vec3 {
-    Vec3::from_array(v.to_array().map(|c| if c.abs() < TINY { 0.0 } else { c }))
-}
-
-fn flushed_number(x: f32) -> f32 {
-    if x.abs() < TINY { 0.0 } else { x }
+fn normalisation(scene: &Scene, camera: &Camera, features: Features) -> Normalisation {
+    let eyes = scene.cameras.iter().chain([camera]).map(|c| c.eye);
+    // The cells of a checkerboard are counted from the world's origin.
+    Normalisation::of(scene.mesh.positions.iter().copied().chain(eyes), !features.has(Features::CHECKER))
 }
 
 fn colour(c: Vec3, word: u32) -> glam::UVec4 {
@@ -225,11 +210,11 @@ fn is_transparent(m: &Material) -> bool {
     m.transmission != Vec3::ZERO
 }
 
-fn triangles(scene: &Scene, scale: f64, features: Features) -> Vec<Triangle> {
+fn triangles(scene: &Scene, normalisation: &Normalisation, features: Features) -> Vec<Triangle> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
     let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
-        let vertices = corners.map(|v| place(mesh.positions[v as usize], scale));
+        let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
         let passes = features.has(Features::REFRACTION) && clear[material as usize];
         Triangle::new(vertices, primitive, material, if passes { Triangle::TRANSPARENT } else { 0 })
     });
@@ -260,10 +245,10 @@ fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
     }
 }
 
-fn light(light: &Light, index: usize, scale: f64) -> Result<LightRecord> {
+fn light(light: &Light, index: usize, normalisation: &Normalisation) -> Result<LightRecord> {
     let far = || Error::new(format!("light {} is too far away: move it nearer to the scene", index + 1));
     let at = |p: Vec3| -> Result<Vec3> {
-        let p = place(p, scale);
+        let p = normalisation.place(p);
         if p.abs().max_element() < 1e18 { Ok(p) } else { Err(far()) }
     };
     let record = |position, kind, light: Vec3, axis: Vec3, (inner, outer): (f32, f32)| LightRecord {
@@ -292,7 +277,13 @@ fn unit_between(from: Vec3, to: Vec3) -> Vec3 {
     flushed((to.as_dvec3() - from.as_dvec3()).normalize_or_zero().as_vec3())
 }
 
-fn frame(scene: &Scene, camera: &Camera, settings: &Settings, lights: usize, scale: f64) -> Result<Frame> {
+fn frame(
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+    lights: usize,
+    normalisation: &Normalisation,
+) -> Result<Frame> {
     let (width, height) = settings.size;
     let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
     let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
@@ -310,7 +301,7 @@ fn frame(scene: &Scene, camera: &Camera, settings: &Settings, lights: usize, sca
     };
     let share = 1.0 / (f64::from(settings.samples) * f64::from(settings.samples));
     Ok(Frame {
-        eye: pack(place(camera.eye, scale), width),
+        eye: pack(normalisation.place(camera.eye), width),
         right: vector(right * step, height),
         up: vector(right.cross(forward) * step, settings.samples),
         forward: vector(forward, 0),

@@ -81,6 +81,10 @@ mod tests {
         assert_eq!(pow(1.0, 1e9), 1.0);
         assert_eq!(pow(0.5, 10.0), 1.0 / 1024.0);
         assert_eq!(pow(0.5, 101.0), 0.0);
+        let least = 1.0 / (1u128 << 100) as f32;
+        assert_eq!(pow(least, 1.0), least);
+        assert_eq!(pow(0.75 * least, 0.5), 0.0);
+        assert_eq!(pow(2.0, 1e9), 1.0 / least);
     }
 
     proptest! {

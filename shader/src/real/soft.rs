@@ -282,6 +282,20 @@ mod tests {
         }
     }
 
+    /// A quotient of 1 that is estimated below it, and the greatest, estimated at 2 and above.
+    #[test]
+    fn estimates_may_leave_their_binade() {
+        let beside = |x: f32, off| f32::from_bits(x.to_bits().wrapping_add_signed(off));
+        for off in -3..=3 {
+            for m in [HIDDEN, HIDDEN + 1, 2 * HIDDEN - 1] {
+                assert_eq!(quotient(m, m, beside(1.0, off)), (1 << 24, false));
+            }
+            let (most, least) = (2 * HIDDEN - 1, HIDDEN);
+            assert_eq!(quotient(most, least, beside(1.999_999_9, off)), (2 * most, false));
+            assert_eq!(root(HIDDEN << 25, beside(1.0, off)), (1 << 24, false));
+        }
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1 << 20))]
 

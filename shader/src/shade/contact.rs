@@ -117,6 +117,31 @@ mod tests {
         Ok(())
     }
 
+    #[test]
+    fn leaves_on_the_side_that_the_direction_is_on() {
+        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
+        let contact = Contact::<f64>::new(&flat, 0.25, 0.25, V3::new(0.6, 0.0, -0.8));
+        for (z, side) in [(1.0, 1.0), (-1.0, -1.0)] {
+            let direction = V3::new(0.6, 0.0, 0.8 * z);
+            assert_eq!(contact.faces(direction), z > 0.0);
+            let off = contact.leave(direction) - contact.position;
+            assert_eq!((off.x, off.y, off.z), (0.0, 0.0, side * contact.clearance));
+        }
+    }
+
+    /// By so steep a direction along itself, by a flatter one along the normal.
+    #[test]
+    fn leaves_along_its_direction_unless_that_grazes() {
+        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
+        let contact = Contact::<f64>::new(&flat, 0.25, 0.25, V3::splat(-Vec3::Z));
+        let off = |cosine: f64| {
+            let direction = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+            (contact.leave_along(direction) - contact.position).x / contact.clearance
+        };
+        assert!((off(0.04) - (1.0f64 - 0.0016).sqrt() / 0.04).abs() < 0.1);
+        assert_eq!(off(0.03), 0.0);
+    }
+
     proptest! {
         #![proptest_config(ProptestConfig { max_global_rejects: 1 << 20, ..ProptestConfig::with_cases(200_000) })]
 

@@ -142,11 +142,27 @@ mod tests {
     }
 
     #[test]
+    fn a_matt_surface_has_no_highlight() {
+        let white = Incidence { direction: V3::splat(Vec3::Y), colour: V3::splat(Vec3::ONE) };
+        let matt = Features(Features::SPECULAR ^ u32::MAX);
+        assert_eq!(illuminate(matt, &surface(), V3::splat(-Vec3::Y), &white), V3::splat(Vec3::splat(0.5)));
+    }
+
+    fn spot(x: f32) -> f64 {
+        let from = V3::<f64>::splat(Vec3::new(x, 0.0, 0.0));
+        Incidence::new(ALL, &light(Light::SPOT, Vec3::Y), from).colour.x
+    }
+
+    #[test]
+    fn a_spot_fades_by_a_cubic_of_its_cosine() {
+        for x in [0.5f32, 0.8, 1.0, 1.5] {
+            let share = (1.0 / (1.0 + f64::from(x).powi(2)).sqrt() - 0.5) / f64::from(0.9f32 - 0.5);
+            assert!((spot(x) - share * share * (3.0 - 2.0 * share)).abs() < 1e-6, "{x}");
+        }
+    }
+
+    #[test]
     fn a_spot_lights_its_cone_only() {
-        let spot = |x: f32| {
-            let from = V3::<f64>::splat(Vec3::new(x, 0.0, 0.0));
-            Incidence::new(ALL, &light(Light::SPOT, Vec3::Y), from).colour.x
-        };
         assert_eq!(spot(0.0), 1.0, "on the axis");
         assert_eq!(spot(0.4), 1.0, "cosine 0.93 is in the inner cone");
         assert!(spot(1.0) > 0.0 && spot(1.0) < 1.0, "cosine 0.71 is between");
@@ -163,6 +179,17 @@ mod tests {
             front: true,
             weights: (0.0, 0.0),
         };
+        let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));
+        let (origin, direction, _) =
+            shadow_ray(ALL, &light(Light::POINT, Vec3::new(3.0, 4.0, 0.0)), &Contact { position: beside, ..contact });
+        assert!((origin - beside).dot(origin - beside) < 1e-11 && (direction.y - 1.0).abs() < 1e-12);
+        // Between place and light's origin the sides differ: the light is below the surface, behind it.
+        let (origin, ..) = shadow_ray(
+            ALL,
+            &light(Light::POINT, Vec3::Y),
+            &Contact { position: V3::splat(Vec3::new(0.0, 2.0, 0.0)), ..contact },
+        );
+        assert!(origin.y < 2.0, "off the side that the light is on");
         let (origin, direction, limit) = shadow_ray(ALL, &light(Light::POINT, Vec3::Y), &contact);
         assert!(origin.y > 0.0 && (direction.y - 1.0).abs() < 1e-12 && limit < 1.0 && limit > 0.999);
         let (_, direction, limit) = shadow_ray(ALL, &light(Light::DIRECTIONAL, Vec3::Y), &contact);

@@ -101,7 +101,7 @@ pub fn background<R: Scalar>(features: Features, frame: &Frame, direction: V3<R>
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::pack;
+    use crate::data::{Normals, pack};
     use bytemuck::Zeroable;
     use glam::Vec3;
 
@@ -128,6 +128,40 @@ mod tests {
             assert!(odd(-0.1, 0.1, 0.0), "the cell below zero is another cell");
             assert_eq!(odd(0.1, 0.1, 1e-7), odd(0.1, 0.1, -1e-7), "a plane through zero has no noise");
         }
+    }
+
+    /// Of a triangle whose vertices' normals lean towards x, y and both ways from z.
+    fn smooth(weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
+        let [a, b, c] = [Vec3::new(0.6, 0.0, 0.8), Vec3::new(0.0, 0.6, 0.8), Vec3::new(-0.6, 0.0, 0.8)];
+        let normals = [Normals { a: pack(a, 0), b: pack(b, 0), c: pack(c, 0) }];
+        let looks = Looks { normals: &normals, materials: &[], lights: &[] };
+        let contact = Contact { weights, ..contact(own, [0.0; 3]) };
+        interpolated(&looks, 0, V3::splat(from), &contact)
+    }
+
+    fn is_near(got: V3<f32>, want: Vec3) -> bool {
+        (Vec3::new(got.x, got.y, got.z) - want).length() < 1e-6
+    }
+
+    #[test]
+    fn normals_are_weighted_as_the_vertices_are() {
+        assert!(is_near(smooth((0.0, 0.0), -Vec3::Z, Vec3::Z), Vec3::new(0.6, 0.0, 0.8)));
+        assert!(is_near(smooth((1.0, 0.0), -Vec3::Z, Vec3::Z), Vec3::new(0.0, 0.6, 0.8)));
+        assert!(is_near(smooth((0.0, 1.0), -Vec3::Z, Vec3::Z), Vec3::new(-0.6, 0.0, 0.8)));
+        assert!(is_near(smooth((0.25, 0.5), -Vec3::Z, Vec3::Z), Vec3::new(-0.15, 0.15, 0.8).normalize()));
+    }
+
+    #[test]
+    fn a_normal_is_on_the_viewers_side_or_the_triangles_own() {
+        let behind = smooth((1.0, 0.0), Vec3::Z, -Vec3::Z);
+        assert!(is_near(behind, Vec3::new(0.0, -0.6, -0.8)), "seen from behind it is turned");
+        let grazing = Vec3::new(0.9, 0.0, -0.1).normalize();
+        assert!(is_near(smooth((0.0, 0.0), grazing, Vec3::Z), Vec3::Z), "turned away from the viewer");
+        let opposite = [Vec3::X, -Vec3::X, Vec3::X].map(|n| pack(n, 0));
+        let normals = [Normals { a: opposite[0], b: opposite[1], c: opposite[2] }];
+        let looks = Looks { normals: &normals, materials: &[], lights: &[] };
+        let contact = Contact { weights: (0.5, 0.0), ..contact(Vec3::Z, [0.0; 3]) };
+        assert!(is_near(interpolated(&looks, 0, V3::splat(-Vec3::Z), &contact), Vec3::Z), "no direction is left");
     }
 
     #[test]

@@ -88,8 +88,13 @@ fn visibly_apart(a: &Film, b: &Film) -> usize {
 
 /// At most these shares may hit another triangle and look otherwise.
 fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
-    scene.settings.size = (count::of(32, 640) as u32, count::of(24, 480) as u32);
-    let packed = pack(&scene, &scene.cameras[0], scene.settings);
+    scene.settings.size = (32, 24);
+    let mut packed = pack(&scene, &scene.cameras[0], scene.settings);
+    // A sample has to do where each ray meets most triangles.
+    if count::full() && !is_crowded(&packed) {
+        scene.settings.size = (640, 480);
+        packed.set(&scene, &scene.cameras[0], scene.settings).unwrap_or_else(|e| panic!("{e}"));
+    }
     let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
     let truth = on_cpu::<f64>(&packed).0;
     for machine in Machine::all() {

@@ -20,6 +20,8 @@ mod lanes;
 pub mod power;
 mod single;
 pub mod soft;
+#[cfg(test)]
+mod tests;
 mod vector;
 #[cfg(not(target_arch = "spirv"))]
 mod wide;

@@ -134,6 +134,7 @@ fn lanes_hold_indices<const N: usize>() {
     let index_of = |index, i| <L<N> as Lanes<f32>>::index_of(index, i);
     let bits = |mask| <L<N> as Lanes<f32>>::bits(mask);
     assert_eq!(bits(L::<N>::equals(11, numbers)), 2);
+    assert!(!L::<N>::equals(9, numbers).any() && L::<N>::equals(9 + N as u32, numbers).any());
     assert_eq!(bits(L::<N>::precedes(11, numbers)), ((1u32 << N) - 1) & !3);
     let chosen = L::<N>::select_index(L::<N>::equals(11, numbers), L::<N>::index(5), numbers);
     assert_eq!((index_of(chosen, 0), index_of(chosen, 1), index_of(chosen, 2)), (10, 5, 12));

@@ -101,6 +101,7 @@ fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -
 }
 
 /// A vertex relative to the ray's origin, its axes cycled.
+// A function as `inside` is, which see.
 #[inline(always)]
 fn seen<R: Real>(vertex: Vec3, ray: &Ray<R>) -> V3<R> {
     ray.shear.cycle(V3::splat(vertex) - ray.origin)

@@ -165,6 +165,10 @@ impl Body<'_> {
         self.b.i_add(self.ids.uint, None, x, y).unwrap()
     }
 
+    pub fn f_negate(&mut self, x: Word) -> Word {
+        self.b.f_negate(self.ids.float, None, x).unwrap()
+    }
+
     pub fn f_add(&mut self, x: Word, y: Word) -> Word {
         self.b.f_add(self.ids.float, None, x, y).unwrap()
     }

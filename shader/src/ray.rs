@@ -3,6 +3,7 @@
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Scalar;
 use crate::real::{Real, SMALL, TINY, V3};
+use glam::Vec3;
 
 /// A ray (or one a lane) with what its box and triangle tests share.
 #[derive(Clone, Copy)]
@@ -55,6 +56,18 @@ impl<R: Real> Ray<R> {
         shear.y = (cycled.y * along).flush(TINY);
         let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
         Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
+    }
+
+    /// A vertex relative to the origin, its axes cycled.
+    #[inline(always)]
+    pub fn seen(&self, vertex: Vec3) -> V3<R> {
+        self.shear.cycle(V3::splat(vertex) - self.origin)
+    }
+
+    /// One over the direction's major component.
+    #[inline(always)]
+    pub fn along(&self) -> R {
+        self.shear.cycle(self.inverse).z
     }
 }
 

@@ -39,8 +39,8 @@ mod tests {
     fn run<R: Real>(test: Test<R>, t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Crossing<R> {
         let v = |p: [f32; 3]| V3::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
-        let [a, b, c] = t.map(|p| ray.shear.cycle(v(p) - ray.origin));
-        test(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z)
+        let [a, b, c] = t.map(|p| ray.seen(p.into()));
+        test(a, b, c, (ray.shear.x, ray.shear.y), ray.along())
     }
 
     proptest! {

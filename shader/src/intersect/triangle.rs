@@ -122,8 +122,8 @@ mod tests {
     fn hit(t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Option<(f32, f32, f32, bool)> {
         let v = |p: [f32; 3]| V::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
-        let [a, b, c] = t.map(|p| ray.shear.cycle(v(p) - ray.origin));
-        let x = cross(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
+        let [a, b, c] = t.map(|p| ray.seen(p.into()));
+        let x = cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along());
         x.inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
     }
 

@@ -89,8 +89,8 @@ mod tests {
 
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
-        let [a, b, c] = vertices.map(|p| ray.shear.cycle(V3::splat(p) - origin));
-        cross(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z).inside
+        let [a, b, c] = vertices.map(|p| ray.seen(p));
+        cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along()).inside
     }
 
     /// From a place on `vertices` towards `d`, and every way that grazes the surface more.
@@ -117,10 +117,15 @@ mod tests {
         Ok(())
     }
 
+    /// On a triangle that faces up the z axis.
+    fn flat_seen_along(direction: V3<f64>) -> Contact<f64> {
+        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
+        Contact::new(&flat, 0.25, 0.25, direction)
+    }
+
     #[test]
     fn leaves_on_the_side_that_the_direction_is_on() {
-        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
-        let contact = Contact::<f64>::new(&flat, 0.25, 0.25, V3::new(0.6, 0.0, -0.8));
+        let contact = flat_seen_along(V3::new(0.6, 0.0, -0.8));
         for (z, side) in [(1.0, 1.0), (-1.0, -1.0)] {
             let direction = V3::new(0.6, 0.0, 0.8 * z);
             assert_eq!(contact.faces(direction), z > 0.0);
@@ -132,8 +137,7 @@ mod tests {
     /// By so steep a direction along itself, by a flatter one along the normal.
     #[test]
     fn leaves_along_its_direction_unless_that_grazes() {
-        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
-        let contact = Contact::<f64>::new(&flat, 0.25, 0.25, V3::splat(-Vec3::Z));
+        let contact = flat_seen_along(V3::splat(-Vec3::Z));
         let off = |cosine: f64| {
             let direction = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
             (contact.leave_along(direction) - contact.position).x / contact.clearance

@@ -11,7 +11,7 @@ use crate::ray::{Hit, Ray};
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
-use glam::{UVec4, Vec3};
+use glam::UVec4;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
 const FOUND: f32 = -1.0;
@@ -96,15 +96,8 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
 #[inline(always)]
 fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
     let [a, b, c] = triangle.vertices();
-    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z);
-    crossed::<R, R>(geometry.features, [seen(a, ray), seen(b, ray), seen(c, ray)], shear, along)
-}
-
-/// A vertex relative to the ray's origin, its axes cycled.
-// A function as `inside` is, which see.
-#[inline(always)]
-fn seen<R: Real>(vertex: Vec3, ray: &Ray<R>) -> V3<R> {
-    ray.shear.cycle(V3::splat(vertex) - ray.origin)
+    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.along());
+    crossed::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], shear, along)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
@@ -130,7 +123,7 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
 pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
     let origin = ray.shear.cycle(ray.origin);
     let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
-    let along = F::all(ray.shear.cycle(ray.inverse).z);
+    let along = F::all(ray.along());
     let mut first = 0;
     while first < Block::TRIANGLES {
         Q::on_triangle();

@@ -181,6 +181,6 @@ fn intervals_hold_exact_crossings() {
 /// Crosses a triangle with a ray by the kernels' own test.
 pub fn crossed<R: Real>(triangle: [Vec3; 3], ray: &StreamRay) -> eyerays_shader::intersect::Crossing<R> {
     let ray = Ray::<R>::new(V3::splat(ray.origin), V3::splat(ray.direction));
-    let [a, b, c] = triangle.map(|p| ray.shear.cycle(V3::splat(p) - ray.origin));
-    cross(a, b, c, (ray.shear.x, ray.shear.y), ray.shear.cycle(ray.inverse).z)
+    let [a, b, c] = triangle.map(|p| ray.seen(p));
+    cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along())
 }

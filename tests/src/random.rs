@@ -1,23 +1,26 @@
-//! Numbers from a seed (splitmix64; Steele, Lea and Flood 2014), the same on every machine.
+//! What the battery draws at random, from a seed.
 
+use fastrand::Rng;
 use glam::{DVec3, Vec3};
 
 /// A sequence of numbers.
 #[derive(Debug, Clone)]
-pub struct Random(pub u64);
+pub struct Random(Rng);
 
 impl Random {
+    /// The sequence of a seed.
+    pub fn new(seed: u64) -> Self {
+        Random(Rng::with_seed(seed))
+    }
+
     /// 32 bits.
     pub fn bits(&mut self) -> u32 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        let mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((mixed ^ (mixed >> 31)) >> 32) as u32
+        self.0.u32(..)
     }
 
     /// In [0, 1).
     pub fn unit(&mut self) -> f64 {
-        f64::from(self.bits()) / 4_294_967_296.0
+        self.0.f64()
     }
 
     /// In [`least`, `greatest`).
@@ -27,7 +30,7 @@ impl Random {
 
     /// Below `count`.
     pub fn index(&mut self, count: usize) -> usize {
-        (self.unit() * count as f64) as usize
+        self.0.usize(..count)
     }
 
     /// In a cube of edge 2 around zero.
@@ -48,7 +51,7 @@ impl Random {
     /// Of either sign, its magnitude 10 to a power between these.
     pub fn magnitude(&mut self, least: f64, greatest: f64) -> f32 {
         let size = 10f64.powf(self.between(least, greatest)) as f32;
-        if self.bits() & 1 == 0 { size } else { -size }
+        if self.0.bool() { size } else { -size }
     }
 
     /// Three of [`Random::magnitude`].

@@ -17,10 +17,12 @@ pub struct Normalisation {
 }
 
 impl Normalisation {
-    /// For finite points, at least one of them. `movable` unless something counts from the world's origin.
+    /// For points of which at least one is finite; whoever packs the others refuses them by their number, so they change
+    /// nothing here. `movable` unless something counts from the world's origin.
     pub fn of(points: impl Iterator<Item = Vec3>, movable: bool) -> Self {
         let nowhere = (Vec3::INFINITY, Vec3::NEG_INFINITY);
-        let (least, greatest) = points.fold(nowhere, |(least, greatest), p| (least.min(p), greatest.max(p)));
+        let finite = points.filter(|p| p.is_finite());
+        let (least, greatest) = finite.fold(nowhere, |(least, greatest), p| (least.min(p), greatest.max(p)));
         let around = |origin| Normalisation { origin, scale: scale(least, greatest, origin) };
         let (here, moved) = (around(Vec3::ZERO), around(middle(least, greatest)));
         if movable && moved.scale >= WORTH_MOVING * here.scale { moved } else { here }

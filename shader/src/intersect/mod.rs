@@ -6,4 +6,4 @@ mod triangle;
 
 pub use moller::moller;
 pub use slab::{Span, slab};
-pub use triangle::{Crossing, cross, sheared};
+pub use triangle::{Crossing, cross, sheared, spans};

@@ -11,6 +11,10 @@
 //! no wider arithmetic is needed. A contraction to fused multiply-add would break this, which is why
 //! it is forbidden in every precision.
 //!
+//! A triangle that is seen edge-on is a line, and an edge function of zero does not tell which part of its line the ray
+//! is at: with two of them zero by rounding, it may be far beside the triangle's ends. So where one is zero a hit
+//! counts only if the vertices lie around the ray on both axes ([`spans`]), as they do wherever it is inside.
+//!
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
 //! product above 2^-97, whose neighbours are 2^-121 away: it is the same with them and without. One below counts
@@ -28,7 +32,7 @@ use crate::real::{Lanes, Scalar};
 /// Where a ray crosses a triangle's plane, before its division. Beside the triangle nothing but `inside` is told.
 #[derive(Clone, Copy)]
 pub struct Crossing<R: Real> {
-    /// Does it cross inside the triangle, in front of the origin?
+    /// Does it cross inside the triangle, in front of the origin? Where it is [`Crossing::in_line`], [`spans`] must agree.
     pub inside: R::Mask,
     /// Is the front (counter-clockwise) side towards the ray? For back-face culling.
     pub front: R::Mask,
@@ -79,6 +83,16 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     Crossing { inside: around & ahead, front, depth, u: wb, v: wc, area }
 }
 
+/// Do a triangle's vertices, as [`cross`] takes them, lie around the ray on both axes? They do wherever it is inside.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+pub fn spans<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
+    let (a, b, c, slight) = (sheared(a, shear), sheared(b, shear), sheared(c, shear), R::splat(SLIGHT));
+    let below = a.0.lesser(b.0).lesser(c.0).le(slight) & a.1.lesser(b.1).lesser(c.1).le(slight);
+    let above = (-slight).le(a.0.greater(b.0).greater(c.0)) & (-slight).le(a.1.greater(b.1).greater(c.1));
+    below & above
+}
+
 /// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray.
 #[inline(always)]
 pub fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
@@ -108,6 +122,13 @@ impl<R: Real> Crossing<R> {
     pub fn nearer(&self, limit: R) -> R::Mask {
         self.inside & self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT))
     }
+
+    /// Is some edge function zero (or nearly, of the first vertex), so that only [`spans`] tells whether it is inside?
+    #[inline(always)]
+    pub fn in_line(&self) -> R::Mask {
+        let zero = R::splat(0.0);
+        self.u.same(zero) | self.v.same(zero) | self.area.same(self.u + self.v)
+    }
 }
 
 #[cfg(test)]
@@ -123,8 +144,10 @@ mod tests {
         let v = |p: [f32; 3]| V::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
-        let x = cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along());
-        x.inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
+        let shear = (ray.shear.x, ray.shear.y);
+        let x = cross(a, b, c, shear, ray.along());
+        let inside = x.inside && (!x.in_line() || spans(a, b, c, shear));
+        inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
     }
 
     const FLAT: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]];
@@ -193,6 +216,20 @@ mod tests {
             prop_assert!(fan_hits(hub, &rim, origin, direction) >= 1);
             let at_hub: [f32; 3] = std::array::from_fn(|k| hub[k] - origin[k]);
             prop_assert!(fan_hits(hub, &rim, origin, at_hub) >= 1);
+        }
+
+        /// A triangle that is seen edge-on is a line, and is not met where that line goes on beside it.
+        #[test]
+        fn edge_on_triangles_are_not_longer_than_they_are(
+            origin in prop::array::uniform3(-0.5f32..0.5), direction in prop::array::uniform3(-1f32..1.0),
+            across in prop::array::uniform3(-1f32..1.0), t in prop::array::uniform3(0.0625f32..0.5),
+            s in prop::array::uniform3(0.0009765625f32..0.5),
+        ) {
+            let [o, d, e] = [origin, direction, across].map(|v| Vec3::from(v).as_dvec3());
+            prop_assume!(d.length() > 0.25 && d.cross(e).length() > 0.25 * d.length());
+            // All on one side of the ray, in a plane with it.
+            let corner = |i: usize| (o + f64::from(t[i]) * d + f64::from(s[i]) * e).as_vec3().to_array();
+            prop_assert!(hit([corner(0), corner(1), corner(2)], origin, direction).is_none());
         }
 
         /// The distance is that of the plane in double precision, within the sheared points' error.

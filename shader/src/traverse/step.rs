@@ -5,7 +5,7 @@ use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 #[cfg(not(target_arch = "spirv"))]
 use crate::full::Block;
-use crate::intersect::{Crossing, Span, cross, moller, slab};
+use crate::intersect::{Crossing, Span, cross, moller, slab, spans};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -178,7 +178,8 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
     !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
 }
 
-/// Divides, moves the hit behind the entry to the slot's box, and takes the lesser (t, primitive).
+/// Leaves out what is beside a triangle seen edge-on, divides, moves the hit behind the entry to the slot's box, and takes
+/// the lesser (t, primitive).
 ///
 /// The box lies in every box that leads here, so nothing that is kept can have been culled. A part of a split
 /// triangle may find a hit in another part, which has the same t there.
@@ -196,6 +197,10 @@ fn keep<Q: Query, R: Real>(
     // The inside of glass is seen from behind.
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
+    }
+    if (inside & crossing.in_line()).any() {
+        let [a, b, c] = triangle.vertices();
+        inside = inside & spans(ray.seen(a), ray.seen(b), ray.seen(c), (ray.shear.x, ray.shear.y));
     }
     let (least, greatest) = geometry.bounds(slot, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);

@@ -24,7 +24,7 @@ pub fn rays(packed: &Packed, count: usize) -> Stream {
     let corners = triangles.as_flattened();
     let least = corners.iter().copied().fold(DVec3::ONE, DVec3::min);
     let extent = corners.iter().copied().fold(DVec3::NEG_ONE, DVec3::max) - least;
-    let mut random = Random(2);
+    let mut random = Random::new(2);
     let rays = (0..count).map(|kind| {
         let place = |random: &mut Random| least + extent * (0.5 + 0.6 * random.cube());
         let [a, b, c] = triangles[random.index(triangles.len())];

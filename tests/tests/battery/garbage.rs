@@ -31,7 +31,7 @@ fn corner(kind: u64, random: &mut Random) -> Vec3 {
 }
 
 fn mesh(seed: u64) -> (Vec<Vec3>, Vec<[u32; 3]>) {
-    let mut random = Random(seed);
+    let mut random = Random::new(seed);
     let vertices = 3 + random.index(60);
     let corners = (0..vertices).map(|_| corner(seed, &mut random)).collect();
     let triangle = |random: &mut Random| std::array::from_fn(|_| random.index(vertices) as u32);

@@ -66,7 +66,7 @@ impl<'a> Closed<'a> {
             }
             let (tracer, traversals) = (machine.tracer(&self.packed), machine.traversals());
             let part = total.div_ceil(traversals.len()).min(PART);
-            let (mut random, mut leaks, mut done) = (Random(1), 0, 0);
+            let (mut random, mut leaks, mut done) = (Random::new(1), 0, 0);
             for &traversal in traversals.iter().cycle() {
                 let size = part.min(total - done);
                 let rays = (0..size).map(|kind| ray(kind, &mut random));

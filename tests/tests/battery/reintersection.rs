@@ -91,7 +91,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
 }
 
 fn assert_none_returns<R: Scalar>(machine: &str) {
-    let (mut random, mut returned, mut left) = (Random(11), Returned::default(), 0);
+    let (mut random, mut returned, mut left) = (Random::new(11), Returned::default(), 0);
     let (triangles, rays) = (count::of(500, 1000), count::of(200, 1000));
     // Some are missed: a triangle that is next to none has no inside.
     while left < triangles {

@@ -8,8 +8,8 @@ use eyerays_shader::real::V3;
 use eyerays_shader::shade::Contact;
 use eyerays_shader::traverse::step;
 use eyerays_tests::numbers::exact::{self, ROUNDOFF};
-use eyerays_tests::numbers::{Interval, picture, samples};
-use eyerays_tests::{SHIPPED, pack, settings, shipped};
+use eyerays_tests::numbers::{Interval, picture};
+use eyerays_tests::{SHIPPED, count, pack, settings, shipped};
 use fastrand::Rng;
 use glam::Vec3;
 
@@ -20,7 +20,7 @@ type V = V3<Interval>;
 /// Each ray with some triangles of its scene.
 fn pairs(mut f: impl FnMut(&Ray<Interval>, [Vec3; 3], &mut Rng)) {
     let mut rng = Rng::with_seed(13);
-    for case in cases(samples(3_000, 300_000)) {
+    for case in cases(count::of(3_000, 300_000)) {
         let triangles = case.triangles();
         for ray in &case.rays {
             let ray = Ray::<Interval>::new(V::splat(ray.origin), V::splat(ray.direction));
@@ -155,7 +155,7 @@ fn places_and_clearances() {
 /// loses some pixels, and with further bounces most.)
 #[test]
 fn pictures() {
-    let edge = samples(48, 256) as u32;
+    let edge = count::of(48, 256) as u32;
     for name in SHIPPED {
         let scene = shipped(name);
         for camera in &scene.cameras {

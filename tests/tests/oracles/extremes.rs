@@ -7,8 +7,8 @@ use eyerays::scene::{self, Background, Light, Material, Scene, Settings};
 use eyerays_shader::real::{Real, Scalar, V3};
 use eyerays_shader::shade::{fresnel, refract};
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt};
-use eyerays_tests::numbers::{is_full, picture};
-use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack};
+use eyerays_tests::numbers::picture;
+use eyerays_tests::{assert_same_bits, count, gpu, on_cpu, pack};
 use glam::Vec3;
 
 /// On the CPU without a value that is not finite, and on a GPU the same bits.
@@ -180,7 +180,7 @@ fn none_and_ten_thousand_bounces_in_a_box_of_mirrors() {
         let expected = |p: &V3<f32>| [p.x, p.y, p.z] == [glow; 3];
         assert!(picture::<f32>(&packed).iter().all(expected), "{bounces} bounces");
     }
-    let on_gpu = mirror_box(if is_full() { 10_000 } else { 200 });
+    let on_gpu = mirror_box(if count::full() { 10_000 } else { 200 });
     films(&pack(&on_gpu, &on_gpu.cameras[0], on_gpu.settings), "a box of mirrors");
 }
 

@@ -3,8 +3,7 @@
 use eyerays::gpu::{Gpu, Want, numerics};
 use eyerays_shader::numerics::{evaluate, function};
 use eyerays_shader::real::{power, soft};
-use eyerays_tests::gpu;
-use eyerays_tests::numbers::{is_full, samples};
+use eyerays_tests::{count, gpu};
 use fastrand::Rng;
 use glam::UVec4;
 use rayon::prelude::*;
@@ -18,7 +17,7 @@ fn ulp(x: f64) -> f64 {
 /// All normal positive numbers in full, else every 1009th. (That every mantissa is rounded right, the functions' own
 /// tests show.)
 fn normals() -> impl ParallelIterator<Item = f32> {
-    let step = if is_full() { 1 } else { 1009 };
+    let step = if count::full() { 1 } else { 1009 };
     (0x0080_0000 / step..0x7f80_0000u32 / step)
         .into_par_iter()
         .map(move |i| f32::from_bits(i * step + step / 2))
@@ -56,7 +55,7 @@ fn ulp_of_one_over(x: f32) -> f64 {
 
 #[test]
 fn quotients_are_correctly_rounded() {
-    let count = samples(8_000_000, 1_000_000_000);
+    let count = count::of(8_000_000, 1_000_000_000);
     let wrong = (0..count.div_ceil(1 << 16))
         .into_par_iter()
         .map(|part| {
@@ -86,7 +85,7 @@ fn powers_err_less_than_stated() {
     }));
     println!("log2: largest error {absolute:.2e} of the greater of 1 and the result; {near:.2} ulp on [1/2, 2)");
     assert!(absolute <= 4e-7 && near <= LOG_ULPS);
-    let count = samples(1 << 22, 1 << 29) as u64;
+    let count = count::of(1 << 22, 1 << 29) as u64;
     let exp = most((0..count).into_par_iter().map(|i| {
         let x = (i as f64 / count as f64 * 200.0 - 100.0) as f32;
         let exact = f64::from(x).exp2();
@@ -143,7 +142,7 @@ fn the_gpu_has_the_same_bits() {
     let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) else { return };
     let names = ["div", "reciprocal", "sqrt", "pow", "log2", "exp2"];
     for (name, function) in names.iter().zip(function::QUOTIENT..) {
-        let count = samples(1 << 20, 1 << 27);
+        let count = count::of(1 << 20, 1 << 27);
         let differing: usize = (0..count as u64 >> 20).map(|part| differing(&gpu, &operations(function, part))).sum();
         println!("{name}: {differing} of {count} differ on {}", gpu.report.name);
         assert_eq!(differing, 0, "{name}");

@@ -6,8 +6,9 @@ use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::intersect::cross;
 use eyerays_shader::ray::Ray;
 use eyerays_shader::real::{Real, V3};
+use eyerays_tests::count;
+use eyerays_tests::numbers::Interval;
 use eyerays_tests::numbers::exact::{self, Crossing, Sheared, nearest};
-use eyerays_tests::numbers::{Interval, samples};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
@@ -122,7 +123,7 @@ fn closest_hits_are_exact_within_their_bounds() {
     println!(
         "scene, rays, exact nearest, ties within bounds, edges within bounds, t error / bound, t error in roundoffs"
     );
-    for case in cases(samples(2_000, 200_000)) {
+    for case in cases(count::of(2_000, 200_000)) {
         let (triangles, answers) = (case.triangles(), [Method::Packet, Method::Wide].map(|m| answers(&case, m)));
         assert!(answers[0] == answers[1], "{}", case.name);
         let tally = (case.rays.par_iter().zip(&answers[0]))
@@ -153,7 +154,7 @@ impl Tally {
 #[test]
 fn intervals_hold_exact_crossings() {
     let (mut crossings, mut rng) = (0, fastrand::Rng::with_seed(5));
-    for case in cases(samples(3_000, 100_000)) {
+    for case in cases(count::of(3_000, 100_000)) {
         let triangles = case.triangles();
         for (i, ray) in case.rays.iter().enumerate() {
             // From where the ray starts to anywhere in a triangle, or a little beside it.

@@ -9,8 +9,7 @@ use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{self, Closest, IfIf, WideNodes};
 use eyerays_tests::model::{add, empty, matt};
-use eyerays_tests::numbers::samples;
-use eyerays_tests::{gpu, pack};
+use eyerays_tests::{count, gpu, pack};
 use fastrand::Rng;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -76,7 +75,7 @@ fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
 #[test]
 fn moller_leaks_and_the_watertight_test_does_not() {
     let packed = ball(100);
-    let stream = rays(&packed, samples(400_000, 10_000_000));
+    let stream = rays(&packed, count::of(400_000, 10_000_000));
     let watertight = TriangleTest::Watertight;
     let none = [
         leaks::<f32, IfIf>(&packed, &stream, watertight),

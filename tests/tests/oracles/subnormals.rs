@@ -7,8 +7,8 @@ use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage;
 use eyerays_shader::traverse::{self, IfIf, WideNodes};
-use eyerays_tests::numbers::{Counting, Flushing, picture, samples, subnormals};
-use eyerays_tests::{SHIPPED, pack, settings, shipped};
+use eyerays_tests::numbers::{Counting, Flushing, picture, subnormals};
+use eyerays_tests::{SHIPPED, count, pack, settings, shipped};
 use glam::{UVec4, Vec3};
 
 use super::corpus::{Case, cases};
@@ -34,7 +34,7 @@ fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<U
 /// One test for pictures and streams, since the counts are of the whole process.
 #[test]
 fn none_is_used_over_scenes_and_rays() {
-    let edge = samples(64, 512) as u32;
+    let edge = count::of(64, 512) as u32;
     let (mut pixels, mut rays) = (0, 0);
     for name in SHIPPED {
         let scene = shipped(name);
@@ -46,7 +46,7 @@ fn none_is_used_over_scenes_and_rays() {
             pixels += alone.len();
         }
     }
-    for case in cases(samples(10_000, 1_000_000)) {
+    for case in cases(count::of(10_000, 1_000_000)) {
         let alone = hits::<f32, IfIf>(&case);
         assert!(hits::<Counting, IfIf>(&case) == alone, "{}", case.name);
         assert!(hits::<Counting, WideNodes>(&case) == alone, "{}", case.name);
@@ -81,7 +81,7 @@ fn crossing<R: Scalar>([origin, towards, a, b, c]: [Vec3; 5]) -> Option<[u32; 4]
 #[test]
 fn a_device_that_flushes_tells_the_same_of_tiny_triangles() {
     let mut rng = fastrand::Rng::with_seed(0x71_47);
-    let count = samples(4_000_000, 400_000_000);
+    let count = count::of(4_000_000, 400_000_000);
     let (mut apart, mut inside) = (0, 0);
     for _ in 0..count {
         let mut points = [Vec3::ZERO; 5].map(|_| Vec3::from_array([0; 3].map(|_| coordinate(&mut rng))));

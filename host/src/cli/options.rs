@@ -1,5 +1,7 @@
 //! What the commands that render share.
 
+use std::fmt::Display;
+use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -153,20 +155,9 @@ impl View {
             culling: self.cull.unwrap_or(own.culling),
         };
         Film::check_size(settings.size.0, settings.size.1)?;
-        if !(1..=Settings::MOST_SAMPLES).contains(&settings.samples) {
-            return Err(Error::new(format!(
-                "--samples {} is not within 1 to {}",
-                settings.samples,
-                Settings::MOST_SAMPLES
-            )));
-        }
-        if settings.bounces > Settings::MOST_BOUNCES {
-            return Err(Error::new(format!("--bounces {} is more than {}", settings.bounces, Settings::MOST_BOUNCES)));
-        }
-        if !(0.0..=1.0).contains(&settings.min_contribution) {
-            let share = settings.min_contribution;
-            return Err(Error::new(format!("--min-contribution {share} is not within 0 to 1")));
-        }
+        within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
+        within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
+        within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;
         Ok(settings)
     }
 
@@ -243,10 +234,22 @@ impl On {
 
 /// `--threads`; 0 is one a core.
 pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
-    match wish {
-        None => Ok(0),
-        Some(threads) if (1..=MOST_THREADS).contains(&threads) => Ok(threads),
-        Some(threads) => Err(Error::new(format!("--threads {threads} is not within 1 to {MOST_THREADS}"))),
+    within("--threads", wish.as_slice(), 1..=MOST_THREADS)?;
+    Ok(wish.unwrap_or(0))
+}
+
+/// Refuses the first number out of a range.
+pub(super) fn within<T: Copy + Display + PartialOrd>(
+    option: &str,
+    values: &[T],
+    range: RangeInclusive<T>,
+) -> Result<()> {
+    match values.iter().find(|value| !range.contains(value)) {
+        Some(value) => {
+            let (least, most) = range.into_inner();
+            Err(Error::new(format!("{option} {value} is not within {least} to {most}")))
+        }
+        None => Ok(()),
     }
 }
 
@@ -260,12 +263,8 @@ pub(super) fn check_tests(tests: &[TriangleTest], fast: bool) -> Result<()> {
 
 /// `--stack-max` and `--cut`.
 pub(super) fn tuning(stack_max: u32, cut: u32) -> Result<Tuning> {
-    if !(1..=63).contains(&stack_max) {
-        return Err(Error::new(format!("--stack-max {stack_max} is not within 1 to 63")));
-    }
-    if cut > 100 {
-        return Err(Error::new(format!("--cut {cut} is more than 100 percent")));
-    }
+    within("--stack-max", &[stack_max], 1..=63)?;
+    within("--cut", &[cut], 0..=100)?;
     Ok(Tuning::new(stack_max, cut))
 }
 

@@ -257,11 +257,9 @@ impl Tried {
             crate::render::Precision::Fast => fast && (self.triangle.is_empty() || self.triangle.contains(&triangle)),
             _ => self.exact(),
         });
-        within("--samples", &self.samples, 1, Settings::MOST_SAMPLES)?;
-        within("--bounces", &self.bounces, 0, Settings::MOST_BOUNCES)?;
-        if let Some(share) = self.min_contribution.iter().find(|share| !(0.0..=1.0).contains(*share)) {
-            return Err(Error::new(format!("--min-contribution {share} is not within 0 to 1")));
-        }
+        options::within("--samples", &self.samples, 1..=Settings::MOST_SAMPLES)?;
+        options::within("--bounces", &self.bounces, 0..=Settings::MOST_BOUNCES)?;
+        options::within("--min-contribution", &self.min_contribution, 0.0..=1.0)?;
         replace(&mut axes.methods, &self.methods);
         replace(&mut axes.layouts, &self.layout);
         replace(&mut axes.bvhs, &self.bvh);
@@ -270,13 +268,6 @@ impl Tried {
         replace(&mut axes.min_contributions, &self.min_contribution);
         axes.sort();
         Ok(())
-    }
-}
-
-fn within(option: &str, values: &[u32], least: u32, most: u32) -> Result<()> {
-    match values.iter().find(|value| !(least..=most).contains(*value)) {
-        Some(value) => Err(Error::new(format!("{option} {value} is not within {least} to {most}"))),
-        None => Ok(()),
     }
 }
 

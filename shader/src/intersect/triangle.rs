@@ -192,6 +192,18 @@ mod tests {
         }
     }
 
+    #[test]
+    fn what_lies_around_the_ray_on_one_axis_alone_does_not_span_it() {
+        for (swapped, side) in [(false, 1.0), (true, 1.0), (false, -1.0), (true, -1.0)] {
+            let at = |along: f32, off: f32| match swapped {
+                false => V::new(along, side * off, 0.5),
+                true => V::new(side * off, along, 0.5),
+            };
+            let spanned = |off| spans(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
+            assert!(spanned(-1.0) && spanned(0.0) && !spanned(1.0), "{swapped} {side}");
+        }
+    }
+
     fn fan_hits(hub: [f32; 3], rim: &[[f32; 3]], origin: [f32; 3], direction: [f32; 3]) -> usize {
         (0..rim.len()).filter(|&i| hit([hub, rim[i], rim[(i + 1) % rim.len()]], origin, direction).is_some()).count()
     }

@@ -1,6 +1,7 @@
 //! The one error of the program: a line that names the file and the remedy.
 
-use std::fmt;
+use std::fmt::{self, Display};
+use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 /// The result of everything that can fail on what the user gave.
@@ -32,6 +33,17 @@ impl Error {
     /// A fault of one line of a file, counted from 1.
     pub fn line(file: &Path, line: usize, message: impl Into<String>) -> Self {
         Error { file: Some(file.to_owned()), line: Some(line), message: message.into() }
+    }
+}
+
+/// Refuses the first of an option's numbers that is out of range.
+pub(crate) fn within<T: Display + PartialOrd>(option: &str, values: &[T], range: RangeInclusive<T>) -> Result<()> {
+    match values.iter().find(|value| !range.contains(value)) {
+        Some(value) => {
+            let (least, most) = range.into_inner();
+            Err(Error::new(format!("{option} {value} is not within {least} to {most}")))
+        }
+        None => Ok(()),
     }
 }
 

@@ -64,6 +64,12 @@ impl<R: Real> Ray<R> {
         self.shear.cycle(V3::splat(vertex) - self.origin)
     }
 
+    /// How far its first two axes move along the third, with its axes cycled.
+    #[inline(always)]
+    pub fn slopes(&self) -> (R, R) {
+        (self.shear.x, self.shear.y)
+    }
+
     /// One over the direction's major component.
     #[inline(always)]
     pub fn along(&self) -> R {

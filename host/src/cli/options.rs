@@ -1,7 +1,5 @@
 //! What the commands that render share.
 
-use std::fmt::Display;
-use std::ops::RangeInclusive;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -10,7 +8,7 @@ use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use glam::Vec3;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
 use crate::film::Film;
 use crate::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use crate::pack::Packed;
@@ -236,21 +234,6 @@ impl On {
 pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
     within("--threads", wish.as_slice(), 1..=MOST_THREADS)?;
     Ok(wish.unwrap_or(0))
-}
-
-/// Refuses the first number out of a range.
-pub(super) fn within<T: Copy + Display + PartialOrd>(
-    option: &str,
-    values: &[T],
-    range: RangeInclusive<T>,
-) -> Result<()> {
-    match values.iter().find(|value| !range.contains(value)) {
-        Some(value) => {
-            let (least, most) = range.into_inner();
-            Err(Error::new(format!("{option} {value} is not within {least} to {most}")))
-        }
-        None => Ok(()),
-    }
 }
 
 /// `--triangle`.

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 
 use super::options::{self, Effort, View};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
 use crate::method::{Layout, Method, TriangleTest};
 use crate::output::{self, Destination, write_error};
 use crate::quality::Bvh;
@@ -257,9 +257,9 @@ impl Tried {
             crate::render::Precision::Fast => fast && (self.triangle.is_empty() || self.triangle.contains(&triangle)),
             _ => self.exact(),
         });
-        options::within("--samples", &self.samples, 1..=Settings::MOST_SAMPLES)?;
-        options::within("--bounces", &self.bounces, 0..=Settings::MOST_BOUNCES)?;
-        options::within("--min-contribution", &self.min_contribution, 0.0..=1.0)?;
+        within("--samples", &self.samples, 1..=Settings::MOST_SAMPLES)?;
+        within("--bounces", &self.bounces, 0..=Settings::MOST_BOUNCES)?;
+        within("--min-contribution", &self.min_contribution, 0.0..=1.0)?;
         replace(&mut axes.methods, &self.methods);
         replace(&mut axes.layouts, &self.layout);
         replace(&mut axes.bvhs, &self.bvh);

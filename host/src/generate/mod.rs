@@ -25,7 +25,7 @@ use std::io::Write;
 
 use clap::ValueEnum;
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, within};
 use crate::output::write_error;
 use model::Model;
 
@@ -90,11 +90,7 @@ impl Recipe {
     /// # Errors
     /// One that names the range.
     pub fn check(&self) -> Result<()> {
-        if (Kind::LEAST..=Kind::MOST).contains(&self.triangles) {
-            return Ok(());
-        }
-        let (least, most) = (Kind::LEAST, Kind::MOST);
-        Err(Error::new(format!("--triangles {} is not within {least} to {most}", self.triangles)))
+        within("--triangles", &[self.triangles], Kind::LEAST..=Kind::MOST)
     }
 
     /// Writes the mesh to `files`, and its materials and a scene beside it: all whole or, but for a fault of the

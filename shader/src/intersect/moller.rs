@@ -40,7 +40,7 @@ mod tests {
         let v = |p: [f32; 3]| V3::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
-        test(a, b, c, (ray.shear.x, ray.shear.y), ray.along())
+        test(a, b, c, ray.slopes(), ray.along())
     }
 
     proptest! {

@@ -144,7 +144,7 @@ mod tests {
         let v = |p: [f32; 3]| V::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
-        let shear = (ray.shear.x, ray.shear.y);
+        let shear = ray.slopes();
         let x = cross(a, b, c, shear, ray.along());
         let inside = x.inside && (!x.in_line() || spans(a, b, c, shear));
         inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))

@@ -128,23 +128,21 @@ fn lanes_are_as_alone<const N: usize>() {
     }
 }
 
-fn lanes_hold_indices<const N: usize>() {
-    type L<const N: usize> = Wide<N>;
-    let numbers = <L<N> as Lanes<f32>>::indices(|i| 10 + i as u32);
-    let index_of = |index, i| <L<N> as Lanes<f32>>::index_of(index, i);
-    let bits = |mask| <L<N> as Lanes<f32>>::bits(mask);
-    assert_eq!(bits(L::<N>::equals(11, numbers)), 2);
-    assert!(!L::<N>::equals(9, numbers).any() && L::<N>::equals(9 + N as u32, numbers).any());
-    assert_eq!(bits(L::<N>::precedes(11, numbers)), ((1u32 << N) - 1) & !3);
-    let chosen = L::<N>::select_index(L::<N>::equals(11, numbers), L::<N>::index(5), numbers);
-    assert_eq!((index_of(chosen, 0), index_of(chosen, 1), index_of(chosen, 2)), (10, 5, 12));
-    let counted = <L<N> as Lanes<f32>>::of(|i| i as f32);
+fn lanes_hold_indices<L: Lanes<f32>>() {
+    let count = L::COUNT as usize;
+    let numbers = L::indices(|i| 10 + i as u32);
+    assert_eq!(L::bits(L::equals(11, numbers)), 2);
+    assert!(!L::equals(9, numbers).any() && L::equals(9 + L::COUNT, numbers).any());
+    assert_eq!(L::bits(L::precedes(11, numbers)), ((1u32 << count) - 1) & !3);
+    let chosen = L::select_index(L::equals(11, numbers), L::index(5), numbers);
+    assert_eq!((L::index_of(chosen, 0), L::index_of(chosen, 1), L::index_of(chosen, 2)), (10, 5, 12));
+    let counted = L::of(|i| i as f32);
     let mut out = [-1.0; 17];
-    <L<N> as Lanes<f32>>::put(counted, &mut out);
-    assert_eq!((out[N - 1], out[N], <L<N> as Lanes<f32>>::lane(&counted, 2)), (N as f32 - 1.0, -1.0, 2.0));
-    let taken = <L<N> as Lanes<f32>>::taken(&out[1..]);
-    assert_eq!((taken.0[0], taken.0[N - 1]), (1.0, -1.0));
-    assert_eq!(<L<N> as Lanes<f32>>::all(2.5).0, [2.5; N]);
+    counted.put(&mut out);
+    assert_eq!((out[count - 1], out[count], counted.lane(2)), (count as f32 - 1.0, -1.0, 2.0));
+    let taken = L::taken(&out[1..]);
+    assert_eq!((taken.lane(0), taken.lane(count - 1)), (1.0, -1.0));
+    assert!((0..count).all(|i| L::all(2.5).lane(i) == 2.5));
 }
 
 #[test]
@@ -152,9 +150,9 @@ fn packets_are_as_their_rays_alone() {
     lanes_are_as_alone::<4>();
     lanes_are_as_alone::<8>();
     lanes_are_as_alone::<16>();
-    lanes_hold_indices::<4>();
-    lanes_hold_indices::<8>();
-    lanes_hold_indices::<16>();
+    lanes_hold_indices::<Wide<4>>();
+    lanes_hold_indices::<Wide<8>>();
+    lanes_hold_indices::<Wide<16>>();
 }
 
 #[test]

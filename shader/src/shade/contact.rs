@@ -90,7 +90,7 @@ mod tests {
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
         let [a, b, c] = vertices.map(|p| ray.seen(p));
-        cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along()).inside
+        cross(a, b, c, ray.slopes(), ray.along()).inside
     }
 
     /// From a place on `vertices` towards `d`, and every way that grazes the surface more.

@@ -96,8 +96,8 @@ pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: 
 #[inline(always)]
 fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
     let [a, b, c] = triangle.vertices();
-    let (shear, along) = ((ray.shear.x, ray.shear.y), ray.along());
-    crossed::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], shear, along)
+    let (slopes, along) = (ray.slopes(), ray.along());
+    crossed::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
@@ -198,9 +198,10 @@ fn keep<Q: Query, R: Real>(
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
+    // Seldom, so that turning the vertices again costs less than to keep them from the crossing.
     if (inside & crossing.in_line()).any() {
         let [a, b, c] = triangle.vertices();
-        inside = inside & spans(ray.seen(a), ray.seen(b), ray.seen(c), (ray.shear.x, ray.shear.y));
+        inside = inside & spans(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
     }
     let (least, greatest) = geometry.bounds(slot, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);

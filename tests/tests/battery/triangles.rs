@@ -113,7 +113,6 @@ fn one_triangle() {
     assert_soup("one", ordinary(1, &mut Random::new(9)));
 }
 
-/// What a scene without vouched-for numbers is refused with.
 /// A triangle and a ray of its plane, exactly, that runs by the triangle on one side; less than `room` from `centre`.
 fn beside_in_plane(centre: DVec3, room: f64, random: &mut Random) -> ([Vec3; 3], StreamRay) {
     let whole = |random: &mut Random, most: usize| random.index(most + 1) as f64;
@@ -156,6 +155,7 @@ fn rays_beside_triangles_in_their_planes() {
     }
 }
 
+/// What a scene without vouched-for numbers is refused with.
 fn refusal(scene: &Scene) -> Option<Error> {
     Packed::new(scene, &scene.cameras[0], scene.settings, Quality::Medium).err()
 }

@@ -35,7 +35,7 @@ fn sheared_vertices() {
     let (mut most, mut vertices) = (0f64, 0);
     pairs(|ray, triangle, _| {
         for p in triangle {
-            let (x, y) = sheared(ray.seen(p), (ray.shear.x, ray.shear.y));
+            let (x, y) = sheared(ray.seen(p), ray.slopes());
             most = most.max(x.error()).max(y.error());
             vertices += 1;
         }

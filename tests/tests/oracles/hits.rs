@@ -183,5 +183,5 @@ fn intervals_hold_exact_crossings() {
 pub fn crossed<R: Real>(triangle: [Vec3; 3], ray: &StreamRay) -> eyerays_shader::intersect::Crossing<R> {
     let ray = Ray::<R>::new(V3::splat(ray.origin), V3::splat(ray.direction));
     let [a, b, c] = triangle.map(|p| ray.seen(p));
-    cross(a, b, c, (ray.shear.x, ray.shear.y), ray.along())
+    cross(a, b, c, ray.slopes(), ray.along())
 }

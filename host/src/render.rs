@@ -64,6 +64,7 @@ pub struct Chosen {
     device: Device,
     choice: Choice,
     why: String,
+    open_time: Duration,
 }
 
 /// A picture and what it took.
@@ -78,7 +79,9 @@ pub struct Rendering {
     pub processor: Processor,
     /// Why it was taken.
     pub why: String,
-    /// Time of a rendering, median of all of them.
+    /// What opening the device took, compiling its kernels, uploading the scene, and making nodes that only it needs.
+    pub prepare_time: Duration,
+    /// Wall-clock time of a rendering, median of all of them.
     pub time: Duration,
     /// Time on the GPU, median of all renderings, where it has a clock.
     pub device_time: Option<Duration>,
@@ -104,7 +107,9 @@ impl Chosen {
     /// # Errors
     /// A GPU was asked for by name and there is none, or none that can do it.
     pub fn new(choice: &Choice) -> Result<Chosen> {
-        let cpu = |why: String| Chosen { device: Device::Cpu, choice: choice.clone(), why };
+        let start = Instant::now();
+        let chosen = |device, why| Chosen { device, choice: choice.clone(), why, open_time: start.elapsed() };
+        let cpu = |why: String| chosen(Device::Cpu, why);
         if choice.device == DeviceWish::Cpu {
             return Ok(cpu("--device cpu".to_owned()));
         }
@@ -126,7 +131,7 @@ impl Chosen {
         match Gpu::open(&want) {
             Ok(gpu) => {
                 let why = if asked { "--device gpu" } else { "a GPU that works" }.to_owned();
-                Ok(Chosen { device: Device::Gpu(Box::new(gpu)), choice: choice.clone(), why })
+                Ok(chosen(Device::Gpu(Box::new(gpu)), why))
             }
             Err(error) if asked || choice.adapter.is_some() => Err(error),
             Err(error) => Ok(cpu(error.message)),
@@ -181,7 +186,9 @@ impl Chosen {
     }
 
     fn on_gpu(&self, gpu: &Gpu, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        let start = Instant::now();
         let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
+        let prepare_time = self.open_time + start.elapsed();
         if runs.warm_up {
             warm(LEAST_WARMING, || {
                 let start = Instant::now();
@@ -199,6 +206,7 @@ impl Chosen {
             device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
             processor: Processor::Gpu,
             why: self.why.clone(),
+            prepare_time,
             time: median(times.clone()),
             device_time: device_times.clone().map(median),
             times: device_times.unwrap_or(times),
@@ -206,11 +214,14 @@ impl Chosen {
     }
 
     fn on_cpu(&self, packed: &Packed, why: String, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let (traversal, threads) = (self.choice.traversal, self.choice.threads);
+        let threads = self.choice.threads;
+        let start = Instant::now();
+        let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
+        let prepare_time = self.open_time + start.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact => cpu::render::<f32>(packed, traversal, threads, done),
-            Precision::Fast => cpu::render::<Fast>(packed, traversal, threads, done),
-            Precision::Reference => cpu::render::<f64>(packed, traversal, threads, done),
+            Precision::Exact => renderer.render::<f32>(done, &()),
+            Precision::Fast => renderer.render::<Fast>(done, &()),
+            Precision::Reference => renderer.render::<f64>(done, &()),
         };
         if runs.warm_up {
             render(&|_| ())?;
@@ -219,8 +230,17 @@ impl Chosen {
         let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
-        let (device, time) = (format!("CPU ({threads} thread{plural})"), median(times.clone()));
-        Ok(Rendering { film, rays, device, processor: Processor::Cpu, why, time, device_time: None, times })
+        Ok(Rendering {
+            film,
+            rays,
+            device: format!("CPU ({threads} thread{plural})"),
+            processor: Processor::Cpu,
+            why,
+            prepare_time,
+            time: median(times.clone()),
+            device_time: None,
+            times,
+        })
     }
 }
 

@@ -96,7 +96,7 @@ fn cone<R: Scalar>(features: Features, light: &Light, contact: &Contact<R>) -> u
 fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed) -> (Film, Vec<Story>) {
     let (width, height) = packed.settings.size;
     let log = Log { packed, stories: Mutex::new(vec![Story::default(); (width * height) as usize]) };
-    let (film, rays) = cpu::observe::<R>(packed, Traversal::default(), 0, &|_| (), &log).unwrap();
+    let (film, rays) = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap().render::<R>(&|_| (), &log).unwrap();
     assert_eq!(rays.non_finite, 0);
     (film, log.stories.into_inner().unwrap())
 }

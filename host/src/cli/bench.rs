@@ -5,9 +5,8 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
-use indicatif::{ProgressBar, ProgressStyle};
 
-use super::options;
+use super::{options, progress};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -158,7 +157,7 @@ impl Bench {
         }
         let plan = self.plan()?;
         let subjects = self.subjects(quiet)?;
-        let progress = bar(bench::streams(&plan, &subjects), quiet);
+        let progress = progress::steps(bench::streams(&plan, &subjects), quiet);
         let report = bench::run(&plan, &subjects, &|stream| {
             progress.set_message(stream.to_owned());
             progress.inc(1);
@@ -304,13 +303,4 @@ fn text(report: &Report, format: Format) -> Result<String> {
         Format::Csv => Ok(bench::csv(report)),
         Format::Markdown => Ok(bench::markdown(report)),
     }
-}
-
-/// A bar over named steps on standard error, if that is a terminal.
-pub(super) fn bar(steps: usize, quiet: bool) -> ProgressBar {
-    if quiet {
-        return ProgressBar::hidden();
-    }
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} (left {eta}) {wide_msg}");
-    ProgressBar::new(steps as u64).with_style(style.expect("the template is valid"))
 }

@@ -7,7 +7,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::options::{Effort, On, View};
-use super::summary::bar;
+use super::progress;
 use crate::compare::{Comparison, compare, heat_map};
 use crate::error::{Error, Result};
 use crate::film::Film;
@@ -103,9 +103,9 @@ impl Diff {
         }
         let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
         let cpu_choice = crate::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
-        let loaded = self.view.load(&self.first, &self.effort, quiet)?;
+        let loaded = self.view.load(&self.first, &self.effort, gpu_choice.threads, quiet)?;
         let (width, height) = loaded.packed.settings.size;
-        let progress = bar(2 * u64::from(width) * u64::from(height), quiet || self.json);
+        let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);
         let render = |choice| -> Result<Rendering> {
             Chosen::new(choice)?.render(&loaded.packed, 1, &|pixels| progress.inc(pixels))
         };

@@ -6,6 +6,7 @@ mod diff;
 mod generate;
 mod info;
 mod options;
+mod progress;
 mod render;
 mod summary;
 mod tradeoff;

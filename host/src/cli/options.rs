@@ -8,6 +8,8 @@ use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use glam::Vec3;
 
+use super::progress;
+use crate::cpu;
 use crate::error::{Error, Result, within};
 use crate::film::Film;
 use crate::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
@@ -121,7 +123,8 @@ pub(super) struct On {
 /// A scene, loaded and packed, and what that took.
 pub(super) struct Loaded {
     pub packed: Packed,
-    pub load_time: Duration,
+    pub read_time: Duration,
+    pub build_time: Duration,
 }
 
 impl View {
@@ -130,16 +133,19 @@ impl View {
         self.size.is_some()
     }
 
-    /// Loads a scene and packs it for these options.
-    pub fn load(&self, path: &Path, effort: &Effort, quiet: bool) -> Result<Loaded> {
+    /// Loads a scene and packs it for these options with `threads` threads (0: one a core).
+    pub fn load(&self, path: &Path, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
         let start = Instant::now();
-        let (scene, warnings) = scene::load(path)?;
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
+        let read_time = start.elapsed();
         super::warn(&warnings, quiet);
-        let load_time = start.elapsed();
         let settings = self.settings(&scene, effort)?;
-        let camera = self.camera(&scene)?;
-        let packed = Packed::new(&scene, &camera, settings, effort.quality()).map_err(|e| e.of(path))?;
-        Ok(Loaded { packed, load_time })
+        let camera = self.camera(&scene).map_err(|e| e.of(path))?;
+        let threads = cpu::pool(threads)?;
+        let pack = || threads.install(|| Packed::new(&scene, &camera, settings, effort.quality()));
+        let start = Instant::now();
+        let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
+        Ok(Loaded { packed, read_time, build_time: start.elapsed() })
     }
 
     /// The scene's settings with the command line's over them.

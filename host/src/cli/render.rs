@@ -2,11 +2,13 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Instant;
 
 use clap::Args;
 
 use super::options::{Effort, On, View};
-use super::summary::{Summary, bar};
+use super::progress;
+use super::summary::{Summary, Times};
 use crate::error::Result;
 use crate::image::{self, BitDepth, Encoding};
 use crate::output::{self, Destination};
@@ -66,15 +68,17 @@ impl Render {
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_writable(&destination)?;
-        let loaded = self.view.load(&self.scene, &self.effort.over(&preset), quiet)?;
-        let chosen = Chosen::new(&choice)?;
+        let loaded = self.view.load(&self.scene, &self.effort.over(&preset), choice.threads, quiet)?;
+        let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
         let (width, height) = loaded.packed.settings.size;
-        let progress = bar(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
+        let progress = progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
         let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
-        image::write(&rendering.film, &destination, &encoding)?;
-        let summary = Summary::new(&destination, &choice, &loaded, &rendering);
+        let start = Instant::now();
+        progress::stage("writing", quiet, || image::write(&rendering.film, &destination, &encoding))?;
+        let times = Times::new(&loaded, &rendering, start.elapsed());
+        let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
         if self.json {
             super::print_json(&summary.json())?;
         } else if !quiet {

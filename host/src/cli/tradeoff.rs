@@ -7,6 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 
 use super::options::{self, Effort, View};
+use super::progress;
 use crate::error::{Error, Result, within};
 use crate::method::{Layout, Method, TriangleTest};
 use crate::output::{self, Destination, write_error};
@@ -136,7 +137,7 @@ impl Tradeoff {
         let subject = self.subject(quiet)?;
         let plan = self.plan(&subject, wish)?;
         let device = Chosen::new(&choice)?;
-        let progress = super::bench::bar(tradeoff::steps(&plan), quiet);
+        let progress = progress::steps(tradeoff::steps(&plan), quiet);
         let report = tradeoff::run(&plan, &subject, device, &|step| {
             progress.set_message(step.to_owned());
             progress.inc(1);

@@ -20,8 +20,54 @@ const PATH_MEMORY: u64 = 64 << 20;
 /// A tile's edge in pixels.
 const TILE: u32 = 32;
 
-/// Renders with `threads` threads (0: one a core) in the arithmetic `R`. `done` hears of every
-/// finished share of the pixels.
+/// A scene laid out for the CPU, with the threads to render it: made once for any number of pictures.
+pub struct Renderer<'a> {
+    laid: Laid<'a>,
+    level: Level,
+    threads: rayon::ThreadPool,
+}
+
+impl<'a> Renderer<'a> {
+    /// Starts `threads` threads (0: one a core) and makes what the traversal needs beside the packed scene, such as
+    /// wide nodes.
+    ///
+    /// # Errors
+    /// If the threads can't be started.
+    pub fn new(packed: &'a Packed, traversal: impl Into<Traversal>, threads: usize) -> Result<Self> {
+        let threads = pool(threads)?;
+        let traversal = traversal.into();
+        let laid = threads.install(|| Laid::new(packed, traversal));
+        Ok(Renderer { laid, level: Level::best(), threads })
+    }
+
+    /// Renders a picture in the arithmetic `R`. `done` hears of every finished share of the pixels, and `observer`
+    /// looks on.
+    ///
+    /// # Errors
+    /// If there is no memory for the film.
+    pub fn render<R>(&self, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>) -> Result<(Film, Rays)>
+    where
+        R: Scalar<Record: Send + Sync>,
+    {
+        let packed = self.laid.packed;
+        let (width, height) = packed.settings.size;
+        let result = Mutex::new((Film::new(width, height)?, Rays::default()));
+        self.threads.install(|| {
+            // A tile a task: coarser splitting leaves threads idle at the end.
+            tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
+                let (film, secondary) = render_tile_by(self.level, &self.laid, region, observer);
+                let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                keep::<R>(region, &film, image, rays);
+                rays.secondary += secondary;
+                rays.primary += u64::from(region.width * region.height) * u64::from(packed.samples());
+                done(u64::from(region.width * region.height));
+            });
+        });
+        Ok(result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+    }
+}
+
+/// One picture: [`Renderer::new`] and [`Renderer::render`].
 ///
 /// # Errors
 /// If the film or the threads can't be had.
@@ -34,38 +80,7 @@ pub fn render<R>(
 where
     R: Scalar<Record: Send + Sync>,
 {
-    observe::<R>(packed, traversal, threads, done, &())
-}
-
-/// [`render`], with somebody who looks on.
-///
-/// # Errors
-/// As [`render`].
-pub fn observe<R>(
-    packed: &Packed,
-    traversal: impl Into<Traversal>,
-    threads: usize,
-    done: &(dyn Fn(u64) + Sync),
-    observer: &dyn Observer<R>,
-) -> Result<(Film, Rays)>
-where
-    R: Scalar<Record: Send + Sync>,
-{
-    let (level, laid) = (Level::best(), Laid::new(packed, traversal.into()));
-    let (width, height) = packed.settings.size;
-    let result = Mutex::new((Film::new(width, height)?, Rays::default()));
-    pool(threads)?.install(|| {
-        // A tile a task: coarser splitting leaves threads idle at the end.
-        tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-            let (film, secondary) = render_tile_by(level, &laid, region, observer);
-            let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            keep::<R>(region, &film, image, rays);
-            rays.secondary += secondary;
-            rays.primary += u64::from(region.width * region.height) * u64::from(packed.samples());
-            done(u64::from(region.width * region.height));
-        });
-    });
-    Ok(result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+    Renderer::new(packed, traversal, threads)?.render::<R>(done, &())
 }
 
 fn tiles(packed: &Packed) -> Vec<Region> {

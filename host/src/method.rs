@@ -1,7 +1,6 @@
 //! Ways through the hierarchy, by name, and the switches around them.
 
 use eyerays_shader::data::{Features, Tuning};
-use eyerays_shader::modules;
 
 /// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
@@ -203,16 +202,6 @@ impl Traversal {
     pub(crate) fn entry(&self) -> String {
         let persistent = if self.scheduling == Scheduling::Persistent { "_persistent" } else { "" };
         format!("{}{persistent}", self.method.entry())
-    }
-
-    /// The module with its kernels, and how their names begin.
-    pub(crate) fn module(&self, exact: bool) -> (&'static [u8], &'static str) {
-        match (exact, self.votes()) {
-            (true, false) => (modules::EXACT, "exact"),
-            (false, false) => (modules::FAST, "fast"),
-            (true, true) => (modules::EXACT_SUBGROUP, "subgroup_exact"),
-            (false, true) => (modules::FAST_SUBGROUP, "subgroup_fast"),
-        }
     }
 
     /// Do its kernels vote across the lanes of a subgroup?

@@ -25,8 +25,20 @@ fn a_cornell_box_is_on_disk() {
     assert_eq!(place.names(), ["cornell.png"]);
     let summary = outcome.stderr.strip_suffix('\n').unwrap();
     assert!(!summary.contains('\n'), "{summary}");
-    for part in ["512x512", "exact", "CPU", "--device cpu", "262144 primary", "Mrays/s", "build", "0 non-finite pixels"]
-    {
+    for part in [
+        "512x512",
+        "exact",
+        "CPU",
+        "--device cpu",
+        "262144 primary",
+        "Mrays/s",
+        "read",
+        "build",
+        "prepare",
+        "render",
+        "write",
+        "0 non-finite pixels",
+    ] {
         assert!(summary.contains(part), "{part}: {summary}");
     }
     assert!(outcome.stdout.is_empty());
@@ -98,7 +110,7 @@ fn json_tells_everything_of_a_rendering() {
     assert_eq!((&rays["primary"], &rays["secondary"]), (&(24 * 18 * 4).into(), &0.into()));
     assert!(rays["shadow"].as_u64().unwrap() > 0);
     assert_eq!(rays["non_finite_pixels"], 0);
-    for time in ["mrays_per_second", "load_ms", "build_ms", "render_ms"] {
+    for time in ["mrays_per_second", "read_ms", "build_ms", "prepare_ms", "render_ms", "write_ms"] {
         assert!(json[time].as_f64().is_some_and(|ms| ms > 0.0), "{time}: {json}");
     }
     assert!(json.as_object().unwrap().contains_key("device_ms") && json["device_ms"].is_null());
@@ -207,7 +219,8 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let (scene, _) = scene::load(path.as_ref()).unwrap();
     let table = place.succeed(&["info", &path]);
     let json = place.succeed(&["info", &path, "--json"]).json();
-    let rows: Vec<Vec<&str>> = table.text().lines().skip(1).map(|line| line.split_whitespace().collect()).collect();
+    let rows = table.text().lines().skip_while(|line| !line.starts_with("BVH")).skip(1);
+    let rows: Vec<Vec<&str>> = rows.map(|line| line.split_whitespace().collect()).collect();
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
     {
@@ -225,6 +238,66 @@ fn info_tells_the_hierarchies_of_a_scene() {
         assert_eq!(hierarchy["triangle_bytes"], 48 * scene.mesh.triangles.len());
     }
     assert_eq!(rows.len(), 3);
+    let one = place.succeed(&["info", &path, "--bvh", "medium", "--json"]).json()["hierarchies"].take();
+    assert_eq!(one.as_array().map(Vec::len), Some(1));
+    assert_eq!(one[0]["bvh"], "medium");
+}
+
+/// Users place cameras and lights by these figures.
+#[test]
+fn check_and_info_tell_where_the_meshes_are_and_the_default_camera() {
+    let place = Place::new(&[("scene.toml", &format!("{SCENE}center = [0, 2, 0]\n")), ("mesh.obj", TRIANGLE)]);
+    let text = place.succeed(&["check", "scene.toml"]);
+    let lines: Vec<&str> = text.text().lines().collect();
+    let [_, bounds, camera, mesh] = lines[..] else { panic!("{lines:?}") };
+    let json = place.succeed(&["info", "scene.toml", "--bvh", "fast", "--json"]).json();
+    assert_eq!(json["meshes"][0]["triangles"], 80);
+    let [least, greatest] = [0, 1].map(|corner| json["bounds"][corner][1].as_f64().unwrap());
+    assert!((least - 1.0).abs() < 0.1 && (greatest - 3.0).abs() < 0.1, "{json}");
+    assert!(bounds.starts_with("bounds: [") && bounds.contains("] to ["), "{bounds}");
+    assert!(
+        mesh.starts_with("mesh 1: sphere, 80 triangles, [") && mesh.ends_with(&bounds["bounds: ".len()..]),
+        "{mesh}"
+    );
+    assert!(place.succeed(&["info", "scene.toml", "--bvh", "fast"]).text().contains(bounds));
+    // The default camera is the one that the scene has when it names none.
+    let own =
+        camera.strip_prefix("default camera: ").unwrap().replace(", target", "\ntarget").replace(", fov", "\nfov");
+    let (before, after) = SCENE.split_once("[[camera]]").unwrap();
+    let sphere = after.split_once("[[mesh]]").unwrap().1;
+    let bare = format!("{before}[[mesh]]{sphere}center = [0, 2, 0]\n");
+    fs::write(place.path("bare.toml"), &bare).unwrap();
+    fs::write(place.path("own.toml"), format!("{bare}\n[[camera]]\nname = \"own\"\n{own}\n")).unwrap();
+    for name in ["bare", "own"] {
+        let (scene, picture) = (format!("{name}.toml"), format!("{name}.exr"));
+        place.succeed(&["render", &scene, "-o", &picture, "--device", "cpu"]);
+    }
+    place.succeed(&["diff", "bare.exr", "own.exr"]);
+    assert!(
+        place
+            .succeed(&["check", "mesh.obj"])
+            .text()
+            .contains("mesh 1: mesh.obj, 1 triangle, [0.0, 0.0, 0.0] to [1.0, 1.0, 0.0]")
+    );
+}
+
+/// Reading and building may take long before the first pixel.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_sees_which_stage_is_under_way() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let program = place.command::<&str>(&[]);
+    let command = format!("{:?} render scene.toml --device cpu", program.get_program());
+    // The one of util-linux gives its command a terminal.
+    let mut script = std::process::Command::new("script");
+    script.args(["-qec", &command, "/dev/null"]).current_dir(place.path("")).env("TERM", "xterm");
+    let Ok(output) = script.output() else { return eprintln!("skipped: there is no script command") };
+    let shown = String::from_utf8_lossy(&output.stdout).into_owned();
+    for stage in ["reading", "building", "opening the device", "rendering", "writing"] {
+        assert!(shown.contains(stage), "{stage}: {shown}");
+    }
+    let piped = place.succeed(&["render", "scene.toml", "--device", "cpu"]);
+    assert!(piped.stderr.starts_with("scene.png: 24x18"), "{}", piped.stderr);
 }
 
 #[test]

@@ -30,7 +30,9 @@ const SUMMARY: &str =
     "Mrays/s, mean of the views. The best of each kind is bold; `*` marks what `auto` takes for the device and kind.";
 
 const SPEEDS: &str =
-    "Frames a second (if these rays were all) / Mrays/s, each from the median time; `*` marks what `auto` takes.";
+    "\
+Frames a second (if these rays were all) / Mrays/s, each from the median time: on a GPU the device's time of the dispatch, on
+the CPU the wall clock's of tracing. `*` marks what `auto` takes.";
 
 const COUNTS: &str = "\
 What the kernels' own hooks count on the CPU over a sample of each stream, a ray, mean of the views. A visit is one of a pair

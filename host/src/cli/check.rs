@@ -6,6 +6,8 @@ use std::process::ExitCode;
 use clap::Args;
 use eyerays_bvh::Quality;
 
+use super::outline::Outline;
+use super::{plural, progress};
 use crate::error::{Error, Result};
 use crate::pack::Packed;
 use crate::scene;
@@ -18,27 +20,26 @@ pub(super) struct Check {
 
 impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let (scene, warnings) = scene::load(&self.scene)?;
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(&self.scene))?;
         super::warn(&warnings, quiet);
         let named = |e: Error| e.of(&self.scene);
+        let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Fast);
+        let mut packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
-            Packed::new(&scene, camera, scene.settings, Quality::Fast).map_err(named)?;
+            packed.look(&scene, camera).map_err(named)?;
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
             super::print(&format!(
-                "{}: {}, {}, {}; cameras {}\n",
+                "{}: {}, {}, {}; cameras {}\n{}",
                 self.scene.display(),
-                count(scene.mesh.triangles.len(), "triangle"),
-                count(scene.materials.len(), "material"),
-                count(scene.lights.len(), "light"),
-                cameras.join(", ")
+                plural(scene.mesh.triangles.len(), "triangle"),
+                plural(scene.materials.len(), "material"),
+                plural(scene.lights.len(), "light"),
+                cameras.join(", "),
+                Outline::of(&scene)
             ))?;
         }
         Ok(ExitCode::SUCCESS)
     }
-}
-
-fn count(n: usize, noun: &str) -> String {
-    format!("{n} {noun}{}", if n == 1 { "" } else { "s" })
 }

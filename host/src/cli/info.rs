@@ -1,21 +1,30 @@
 //! `eyerays info`.
 
+use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::time::Duration;
 
-use clap::Args;
-use eyerays_bvh::{Quality, Statistics};
-use serde_json::json;
+use clap::{Args, ValueEnum};
+use eyerays_bvh::Statistics;
+use serde_json::{Value, json};
 
+use super::outline::Outline;
+use super::progress;
 use crate::error::Result;
 use crate::gpu::{AdapterReport, adapters};
 use crate::pack::Packed;
+use crate::preset;
+use crate::quality::Bvh;
 use crate::scene;
 
 #[derive(Args)]
 pub(super) struct Info {
-    /// A scene, to tell its hierarchy's figures instead
+    /// A scene, to tell where its meshes are and its hierarchy's figures instead
     scene: Option<PathBuf>,
+    /// Build the hierarchy in this quality only [default: each in turn]
+    #[arg(long, value_name = "QUALITY", value_enum, requires = "scene")]
+    bvh: Option<Bvh>,
     /// Print JSON
     #[arg(long)]
     json: bool,
@@ -41,47 +50,62 @@ impl Info {
         adapters.iter().try_for_each(|a| super::print(&describe(a)))
     }
 
-    /// The thesis' table 7.1, for every quality of the hierarchy, with its cost and memory.
+    /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
-        let (scene, warnings) = scene::load(path)?;
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
         super::warn(&warnings, quiet || self.json);
+        let outline = Outline::of(&scene);
+        if !self.json {
+            super::print(&format!("{outline}{HEAD}"))?;
+        }
         let mut rows = Vec::new();
-        for (name, quality) in [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)] {
-            let packed = Packed::new(&scene, &scene.cameras[0], scene.settings, quality)?;
-            rows.push((name, packed.statistics, packed.build_time));
+        for &bvh in self.bvh.as_ref().map_or(Bvh::value_variants(), std::slice::from_ref) {
+            let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, bvh.quality());
+            let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
+            let row = Row { bvh: preset::name(bvh), statistics: packed.statistics, build_time: packed.build_time };
+            if !self.json {
+                super::print(&row.to_string())?;
+            }
+            rows.push(row.json());
         }
         if self.json {
-            let rows: Vec<_> = rows
-                .iter()
-                .map(|(name, s, time)| {
-                    json!({
-                        "bvh": name, "triangles": s.triangles, "nodes": s.nodes, "leaves": s.leaves,
-                        "depth": s.depth, "sah_cost": s.sah_cost, "node_bytes": s.node_bytes,
-                        "triangle_bytes": s.triangle_bytes, "build_ms": time.as_secs_f64() * 1e3,
-                    })
-                })
-                .collect();
-            return super::print_json(&json!({ "scene": path.display().to_string(), "hierarchies": rows }));
+            let mut json = outline.json();
+            json["scene"] = path.display().to_string().into();
+            json["hierarchies"] = rows.into();
+            super::print_json(&json)?;
         }
-        let mut text = "BVH     triangles     nodes    leaves  depth  SAH cost    memory     build\n".to_owned();
-        for (name, statistics, time) in &rows {
-            text += &row(name, statistics, time.as_secs_f64());
-        }
-        super::print(&text)
+        Ok(())
     }
 }
 
-fn row(name: &str, s: &Statistics, seconds: f64) -> String {
-    format!(
-        "{name:<6}{:>11}{:>10}{:>10}{:>7}{:>10.1}{:>7.1} MB{:>7.1} ms\n",
-        s.triangles,
-        s.nodes,
-        s.leaves,
-        s.depth,
-        s.sah_cost,
-        (s.node_bytes + s.triangle_bytes) as f64 / 1e6,
-        seconds * 1e3
-    )
+const HEAD: &str = "BVH      triangles      nodes     leaves  depth  SAH cost       memory          build\n";
+
+/// A hierarchy's figures.
+struct Row {
+    bvh: String,
+    statistics: Statistics,
+    build_time: Duration,
+}
+
+impl Row {
+    fn json(&self) -> Value {
+        let s = &self.statistics;
+        json!({
+            "bvh": self.bvh, "triangles": s.triangles, "nodes": s.nodes, "leaves": s.leaves,
+            "depth": s.depth, "sah_cost": s.sah_cost, "node_bytes": s.node_bytes,
+            "triangle_bytes": s.triangle_bytes, "build_ms": self.build_time.as_secs_f64() * 1e3,
+        })
+    }
+}
+
+impl fmt::Display for Row {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let s = &self.statistics;
+        let megabytes = (s.node_bytes + s.triangle_bytes) as f64 / 1e6;
+        let milliseconds = self.build_time.as_secs_f64() * 1e3;
+        write!(out, "{:<6} {:>11} {:>10} {:>10} {:>6}", self.bvh, s.triangles, s.nodes, s.leaves, s.depth)?;
+        writeln!(out, " {:>9.1} {megabytes:>9.1} MB {milliseconds:>11.1} ms", s.sah_cost)
+    }
 }
 
 fn describe(a: &AdapterReport) -> String {

@@ -6,6 +6,7 @@ mod diff;
 mod generate;
 mod info;
 mod options;
+mod outline;
 mod progress;
 mod render;
 mod summary;
@@ -93,6 +94,11 @@ fn warn(warnings: &[String], quiet: bool) {
     for warning in warnings.iter().filter(|_| !quiet) {
         eprintln!("warning: {warning}");
     }
+}
+
+/// A count with its noun.
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// Standard output is for the JSON or for a picture.

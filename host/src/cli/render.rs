@@ -71,7 +71,8 @@ impl Render {
         let loaded = self.view.load(&self.scene, &self.effort.over(&preset), choice.threads, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
         let (width, height) = loaded.packed.settings.size;
-        let progress = progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
+        let progress =
+            progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
         let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;

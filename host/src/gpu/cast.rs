@@ -11,8 +11,9 @@ use glam::UVec4;
 
 use super::buffers::{self, Buffers, Room};
 use super::device::Gpu;
-use super::kernel::{Compiler, Kernel};
+use super::kernel::{Kernel, compile};
 use super::readback;
+use super::recipe::{Recipe, Step};
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
 use super::warm::warm;
@@ -157,14 +158,16 @@ impl<'a> Caster<'a> {
         if let Some(kernel) = self.kernels.borrow().get(&key) {
             return Ok(kernel.clone());
         }
-        let compiler = Compiler::new(self.gpu, &self.bindings, exact, traversal);
         let features = Features(self.packed.features.0 | Features::STREAM);
-        let stage = match question {
-            Question::Closest => "trace",
-            Question::Occlusion => "shadow",
+        let step = match question {
+            Question::Closest => Step::Trace,
+            Question::Occlusion => Step::Shadow,
         };
-        let kernel = Rc::new(compiler.tracing(features, stage, Coherence::Scattered)?);
+        let traversal = self.gpu.resolved(traversal, Coherence::Scattered)?;
+        let recipe = Recipe::tracing(step, features, exact, traversal);
+        let kernel = compile(self.gpu, &self.bindings, &[recipe]).pop().map(Rc::new);
         self.gpu.check()?;
+        let kernel = kernel.expect("a kernel for a recipe");
         self.kernels.borrow_mut().insert(key, kernel.clone());
         Ok(kernel)
     }

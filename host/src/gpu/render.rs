@@ -10,13 +10,15 @@ use glam::UVec4;
 
 use super::buffers::{self, Buffers, Room};
 use super::device::Gpu;
-use super::kernel::{Compiler, Kernel};
+use super::kernel::{Kernel, compile};
+use super::plan::Plan;
 use super::readback;
+use super::recipe::{Recipe, Step};
 use super::scene::SceneBuffers;
 use super::timer::Timer;
 use crate::error::Result;
 use crate::film::Film;
-use crate::method::{Coherence, Traversal};
+use crate::method::Traversal;
 use crate::pack::{Packed, Region};
 use crate::rays::Rays;
 
@@ -35,34 +37,15 @@ pub struct GpuRendering {
     pub device_time: Option<Duration>,
 }
 
-/// The kernels of a wave, compiled for a scene's features.
-struct Stages {
-    trace: Kernel,
-    shadow: Option<Kernel>,
-    shade: Kernel,
-}
-
-impl Stages {
-    /// The stages of the first wave, whose rays are alike, or of a further one.
-    fn new(compiler: &Compiler<'_>, packed: &Packed, further: bool) -> Result<Stages> {
-        let features = Features(packed.features.0 | if further { Features::SECONDARY } else { 0 });
-        let [traced, asked] = if further { [Coherence::Secondary; 2] } else { [Coherence::Primary, Coherence::Shadow] };
-        let lit = !packed.lights.is_empty();
-        Ok(Stages {
-            trace: compiler.tracing(features, "trace", traced)?,
-            shadow: lit.then(|| compiler.tracing(features, "shadow", asked)).transpose()?,
-            shade: compiler.shading(features, "shade"),
-        })
-    }
-}
-
 /// A scene on a GPU, ready to be rendered any number of times.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     packed: &'a Packed,
     traversal: Traversal,
-    primary: Stages,
-    secondary: Option<(Kernel, Stages)>,
+    /// Of the first wave, in order.
+    first: Vec<Kernel>,
+    /// Of each further wave, in order.
+    further: Vec<Kernel>,
     buffers: Buffers,
     timer: Option<Timer>,
     bands: Vec<Region>,
@@ -78,19 +61,17 @@ impl<'a> Renderer<'a> {
         let slots = buffers::most_slots(gpu, packed)?;
         let bands = bands(packed.settings.size, slots, traversal.features());
         let layout = buffers::layout(gpu);
-        let compiler = Compiler::new(gpu, &layout, exact, traversal);
-        let primary = Stages::new(&compiler, packed, false)?;
-        let secondary = match packed.has_secondary_rays() {
-            true => Some((compiler.shading(packed.features, "advance"), Stages::new(&compiler, packed, true)?)),
-            false => None,
-        };
+        let plan = Plan::new(packed, exact, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
+        let recipes: Vec<Recipe> = plan.recipes().cloned().collect();
+        let mut first = compile(gpu, &layout, &recipes);
+        let further = first.split_off(plan.first.len());
         gpu.check()?;
         let most = |size: &dyn Fn(&Region) -> u32| bands.iter().map(size).max().unwrap_or(0).into();
         let slots = most(&|r| camera::slots(r.width, r.height, traversal.features()));
         let room = Room::of(packed, slots, most(&|r| r.width * r.height));
-        let scene = SceneBuffers::new(gpu, packed, traversal.layout, compiler.hierarchies())?;
+        let scene = SceneBuffers::new(gpu, packed, traversal.layout, plan.hierarchies())?;
         let buffers = Buffers::new(gpu, &layout, &scene, &room)?;
-        Ok(Renderer { gpu, packed, traversal, primary, secondary, buffers, timer: Timer::new(gpu, 1), bands })
+        Ok(Renderer { gpu, packed, traversal, first, further, buffers, timer: Timer::new(gpu, 1), bands })
     }
 
     /// Renders the picture. `done` hears of every finished share of the pixels.
@@ -127,7 +108,7 @@ impl<'a> Renderer<'a> {
             encoder.clear_buffer(&self.buffers.film, 0, None);
         }
         encoder.clear_buffer(&self.buffers.counters, 0, None);
-        let mut waves = if self.secondary.is_some() { WAVES } else { 0 };
+        let mut waves = if self.further.is_empty() { 0 } else { WAVES };
         self.first_wave(&mut encoder, frame.limits.z, waves == 0);
         let (mut turn, mut time) = (0, Duration::ZERO);
         loop {
@@ -171,16 +152,15 @@ impl<'a> Renderer<'a> {
     fn first_wave(&self, encoder: &mut wgpu::CommandEncoder, slots: u32, last: bool) {
         let mut pass = self.pass(encoder, true, last);
         pass.set_bind_group(0, &self.buffers.groups[0], &[]);
-        self.primary.trace.run(&mut pass, slots, 1);
-        if let Some(shadow) = &self.primary.shadow {
-            shadow.run(&mut pass, slots, self.packed.lights.len() as u32);
+        for kernel in &self.first {
+            let rows = if kernel.step == Step::Shadow { self.packed.lights.len() as u32 } else { 1 };
+            kernel.run(&mut pass, slots, rows);
         }
-        self.primary.shade.run(&mut pass, slots, 1);
     }
 
     /// The same over the slots that still have a ray, as many as the GPU has counted.
     fn further_wave(&self, encoder: &mut wgpu::CommandEncoder, turn: usize, last: bool) {
-        let Some((advance, stages)) = &self.secondary else { return };
+        let [advance, stages @ ..] = &self.further[..] else { return };
         let Buffers { counters, arguments, groups, .. } = &self.buffers;
         {
             let mut pass = self.pass(encoder, false, false);
@@ -190,11 +170,10 @@ impl<'a> Renderer<'a> {
         encoder.copy_buffer_to_buffer(counters, 0, arguments, 0, arguments.size());
         let mut pass = self.pass(encoder, false, last);
         pass.set_bind_group(0, &groups[turn], &[]);
-        stages.trace.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SLOTS));
-        if let Some(shadow) = &stages.shadow {
-            shadow.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SHADOWS));
+        for kernel in stages {
+            let offset = if kernel.step == Step::Shadow { counter::SHADOWS } else { counter::SLOTS };
+            kernel.run_indirect(&mut pass, arguments, 4 * u64::from(offset));
         }
-        stages.shade.run_indirect(&mut pass, arguments, 4 * u64::from(counter::SLOTS));
     }
 }
 

@@ -33,9 +33,9 @@ pub enum Error {
     /// No entry point has the prefix of a module.
     #[error("no entry point begins with `{0}`; add one to shader/src/entry.rs or drop the module")]
     NoEntry(&'static str),
-    /// Two entry points of a module have one name.
-    #[error("two entry points are named `{0}`; rename one")]
-    DuplicateEntry(String),
+    /// A pass cannot work on the compiler's module.
+    #[error(transparent)]
+    Pass(#[from] eyerays_passes::Error),
     /// A function that must be protected was inlined.
     #[error("`{0}` is no function of its own; pass it values, not references, and let nothing in it panic")]
     Unprotected(&'static str),

@@ -2,11 +2,12 @@
 
 use std::collections::HashSet;
 
+use eyerays_passes::reach;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{BuiltIn, Decoration, ExecutionMode, Op, StorageClass, Word};
 
 use crate::manifest::{Constant, Entry};
-use crate::pass::{names::Names, reach};
+use crate::pass::names::Names;
 use crate::{Error, Result};
 
 /// The entry points of a module, in its order.
@@ -130,7 +131,7 @@ fn decoration(module: &Module, id: Word, kind: Decoration) -> Option<u32> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn finds_bindings_and_constants() {

@@ -24,12 +24,13 @@ pub fn spirv() -> PathBuf {
     shader().join("spirv")
 }
 
-/// SHA-256 over the sources of the kernels and of this crate, their manifest, and the locked
+/// SHA-256 over the sources of the kernels, of the passes and of this crate, their manifest, and the locked
 /// versions of what they depend on. Line endings do not count; the order and the names of files do.
 pub fn hash(shader: &Path) -> Result<String> {
     let mut files = vec![shader.join("Cargo.toml")];
-    collect(&shader.join("src"), &mut files)?;
-    collect(&shader.join("build/src"), &mut files)?;
+    for folder in ["src", "build/src", "passes/src"] {
+        collect(&shader.join(folder), &mut files)?;
+    }
     let mut named: Vec<(String, PathBuf)> = files.into_iter().map(|path| (relative(&path, shader), path)).collect();
     named.sort();
     let mut digest = Sha256::new();

@@ -47,7 +47,7 @@ fn needed(module: &Module) -> HashSet<Capability> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::{Body, Kernel};
+    use eyerays_passes::testing::{Body, Kernel};
 
     /// The capabilities that remain of all, `Shader` aside.
     fn remaining(body: impl FnOnce(&mut Body)) -> Vec<Capability> {

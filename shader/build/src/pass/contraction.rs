@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
+use eyerays_passes::reach;
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, Op, Word};
 
-use super::{inlining, reach};
+use super::inlining;
 use crate::table::Policy;
 
 /// Decorates float arithmetic: all of it in an exact module, in a fast one that of protected
@@ -66,7 +67,7 @@ pub fn is_arithmetic(op: Op) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     fn decorated(policy: Policy) -> usize {
         let mut kernel = Kernel::new();

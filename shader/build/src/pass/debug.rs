@@ -29,7 +29,7 @@ pub fn strip_local_names(module: &mut Module) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn lines_and_local_names_go() {

@@ -2,10 +2,11 @@
 
 use std::collections::HashSet;
 
+use eyerays_passes::{body, reach};
 use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{GlslStd450Op, Op, Word};
 
-use super::{body, inlining, names::Names, reach};
+use super::{inlining, names::Names};
 use crate::{Error, Result};
 
 const DIVISION: &str = "may occur in `#[inline(never)]` functions only; call `div` or `sqrt` of `real`";
@@ -171,7 +172,7 @@ fn user(module: &Module, id: Word) -> Option<&Function> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::{Body, Kernel};
+    use eyerays_passes::testing::{Body, Kernel};
 
     /// What is forbidden in a kernel of this body.
     fn found(protected: bool, body: impl Fn(&mut Body)) -> Option<String> {

@@ -50,7 +50,7 @@ pub fn require(protected: &[String], wanted: &[&'static str]) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn releases_and_names() {

@@ -118,7 +118,7 @@ fn strip_access(inst: &mut Instruction) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn rewrites_scopes_only() {

@@ -1,21 +1,15 @@
 //! The rewrites and checks between the compiler's module and a committed one, a file each.
 
-pub mod body;
 pub mod capability;
 pub mod contraction;
-pub mod dead;
 pub mod debug;
 pub mod forbidden;
 pub mod inlining;
 pub mod memory;
 pub mod names;
 pub mod pointers;
-pub mod reach;
-pub mod renumber;
-pub mod select;
-#[cfg(test)]
-pub(crate) mod testing;
 
+use eyerays_passes::{dead, renumber, select};
 use rspirv::binary::Assemble;
 use rspirv::dr;
 
@@ -42,7 +36,10 @@ impl Finished {
 pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
     let mut module = dr::load_words(words).map_err(|e| Error::Malformed(e.to_string()))?;
     debug::strip_lines(&mut module);
-    select::entries(&mut module, table.prefix)?;
+    select::entries(&mut module, |name| name.starts_with(table.prefix))?;
+    if module.entry_points.is_empty() {
+        return Err(Error::NoEntry(table.prefix));
+    }
     dead::remove(&mut module);
     pointers::check(&module)?;
     if table.policy == Policy::Exact {
@@ -63,7 +60,7 @@ mod tests {
     use super::*;
     use crate::compile;
     use crate::validate::{self, Validation};
-    use testing::Kernel;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn both_modules_come_from_one() {

@@ -56,8 +56,8 @@ fn user(module: &Module, types: &HashMap<Word, &Instruction>, id: Word) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::dead;
-    use crate::pass::testing::Kernel;
+    use eyerays_passes::dead;
+    use eyerays_passes::testing::Kernel;
 
     #[test]
     fn dead_composites_pass_live_ones_fail() {

@@ -35,7 +35,7 @@ impl Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::Kernel;
+    use crate::testing::Kernel;
     use rspirv::binary::Assemble;
 
     #[test]

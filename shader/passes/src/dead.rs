@@ -5,7 +5,7 @@ use std::collections::{HashMap, HashSet};
 use rspirv::dr::{Instruction, Module};
 use rspirv::spirv::Word;
 
-use super::{body, reach};
+use crate::{body, reach};
 
 /// Removes functions, instructions, globals, names and decorations that no entry point needs, and
 /// the interface variables that an entry point does not reach.
@@ -85,8 +85,8 @@ fn entry_function(entry: &Instruction) -> Word {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::select;
-    use crate::pass::testing::Kernel;
+    use crate::select;
+    use crate::testing::Kernel;
     use rspirv::spirv::Op;
 
     #[test]
@@ -102,7 +102,7 @@ mod tests {
         });
         kernel.entry("exact_a", |b| b.call(called));
         let mut module = kernel.module();
-        select::entries(&mut module, "exact_").unwrap();
+        select::entries(&mut module, |name| name.starts_with("exact_")).unwrap();
         remove(&mut module);
         assert_eq!(module.functions.len(), 2);
         assert_eq!(module.execution_modes.len(), 1);

@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{GlslStd450Op, MemoryAccess, Op, StorageClass, Word};
 
-use super::reach;
+use crate::reach;
 
 /// Removes the dead instructions of every function.
 pub fn remove(module: &mut Module) {
@@ -135,7 +135,7 @@ fn is_pure_extended(inst: &Instruction, glsl: Option<Word>) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::pass::testing::{Body, Kernel};
+    use crate::testing::{Body, Kernel};
 
     /// The instructions that remain of a body, its return aside.
     fn remaining(body: impl FnOnce(&mut Body)) -> Vec<Op> {

@@ -1,5 +1,8 @@
 //! Small modules for the tests of the passes.
 
+// Most functions add the instruction of their name.
+#![allow(missing_docs, clippy::new_without_default)]
+
 use rspirv::dr::{Builder, Module, Operand};
 use rspirv::spirv::*;
 
@@ -194,6 +197,45 @@ impl Body<'_> {
         let subgroup = self.constant_u32(Scope::Subgroup as u32);
         let operation = GroupOperation::Reduce;
         self.b.group_non_uniform_f_add(self.ids.float, None, subgroup, operation, x, None).unwrap();
+    }
+
+    /// Does `then` if a word has a bit.
+    pub fn if_has(&mut self, word: Word, bit: u32, then: impl FnOnce(&mut Body)) {
+        let (uint, bool) = (self.ids.uint, self.b.type_bool());
+        let (bit, zero) = (self.constant_u32(bit), self.constant_u32(0));
+        let masked = self.b.bitwise_and(uint, None, word, bit).unwrap();
+        let has = self.b.i_not_equal(bool, None, masked, zero).unwrap();
+        let (inside, after) = (self.b.id(), self.b.id());
+        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
+        self.b.branch_conditional(has, inside, after, []).unwrap();
+        self.b.begin_block(Some(inside)).unwrap();
+        then(&mut Body { b: self.b, ids: self.ids });
+        self.b.branch(after).unwrap();
+        self.b.begin_block(Some(after)).unwrap();
+    }
+
+    /// The sum of ones over as many rounds of a loop as a word says; another word leaves it after the first.
+    pub fn count_up_to(&mut self, most: Word, once: Word) -> Word {
+        let (uint, bool) = (self.ids.uint, self.b.type_bool());
+        let (zero, one) = (self.constant_u32(0), self.constant_u32(1));
+        let [before, header, body, next, after] = [0; 5].map(|_| self.b.id());
+        let (count, more) = (self.b.id(), self.b.id());
+        self.b.branch(before).unwrap();
+        self.b.begin_block(Some(before)).unwrap();
+        self.b.branch(header).unwrap();
+        self.b.begin_block(Some(header)).unwrap();
+        self.b.phi(uint, Some(count), [(zero, before), (more, next)]).unwrap();
+        let goes_on = self.b.u_less_than(bool, None, count, most).unwrap();
+        self.b.loop_merge(after, next, LoopControl::NONE, []).unwrap();
+        self.b.branch_conditional(goes_on, body, after, []).unwrap();
+        self.b.begin_block(Some(body)).unwrap();
+        let leaves = self.b.i_not_equal(bool, None, once, zero).unwrap();
+        self.b.branch_conditional(leaves, after, next, []).unwrap();
+        self.b.begin_block(Some(next)).unwrap();
+        self.b.i_add(uint, Some(more), count, one).unwrap();
+        self.b.branch(header).unwrap();
+        self.b.begin_block(Some(after)).unwrap();
+        count
     }
 
     pub fn line(&mut self, file: Word) {

@@ -1,0 +1,117 @@
+//! The blocks of a function and the ways between them.
+
+use std::collections::{HashMap, HashSet};
+
+use rspirv::dr::{Block, Function, Instruction, Module, Operand};
+use rspirv::spirv::{Op, Word};
+
+/// The blocks that a block's last instruction may go to.
+pub fn targets(last: &Instruction) -> impl Iterator<Item = Word> {
+    let labels: Vec<Word> = match last.class.opcode {
+        Op::Branch => vec![last.operands[0].unwrap_id_ref()],
+        Op::BranchConditional => last.operands[1..3].iter().map(|label| label.unwrap_id_ref()).collect(),
+        Op::Switch => last.operands[1..].iter().filter_map(|operand| operand.id_ref_any()).collect(),
+        _ => Vec::new(),
+    };
+    labels.into_iter()
+}
+
+/// Whether a selection or a loop begins with the block.
+pub fn has_merge(block: &Block) -> bool {
+    merge(block).is_some()
+}
+
+fn merge(block: &Block) -> Option<&Instruction> {
+    let before = block.instructions.iter().rev().nth(1)?;
+    matches!(before.class.opcode, Op::SelectionMerge | Op::LoopMerge).then_some(before)
+}
+
+/// Removes the blocks that are not reached. Where a selection or loop goes on that is left by no way, and where a loop
+/// goes round that never does, a block must stay; it is emptied.
+pub fn remove_unreachable(function: &mut Function, module: &mut Module) {
+    let reached = reached(function);
+    let ends = ends(function, &reached);
+    function.blocks.retain_mut(|block| {
+        let label = label(block);
+        match ends.get(&label) {
+            _ if reached.contains(&label) => true,
+            Some(end) => {
+                block.instructions = vec![end.clone()];
+                true
+            }
+            None => false,
+        }
+    });
+    prune_phis(function, &reached, module);
+}
+
+/// The id that branches to a block name.
+pub fn label(block: &Block) -> Word {
+    block.label.as_ref().and_then(|label| label.result_id).unwrap_or_default()
+}
+
+fn reached(function: &Function) -> HashSet<Word> {
+    let by_label: HashMap<Word, &Block> = function.blocks.iter().map(|block| (label(block), block)).collect();
+    let mut open: Vec<Word> = function.blocks.first().map(label).into_iter().collect();
+    let mut reached = HashSet::new();
+    while let Some(id) = open.pop() {
+        if reached.insert(id) {
+            open.extend(by_label.get(&id).and_then(|block| block.instructions.last()).into_iter().flat_map(targets));
+        }
+    }
+    reached
+}
+
+/// The blocks that must stay though they are not reached, and what they then consist of.
+fn ends(function: &Function, reached: &HashSet<Word>) -> HashMap<Word, Instruction> {
+    let mut ends = HashMap::new();
+    for block in function.blocks.iter().filter(|block| reached.contains(&label(block))) {
+        let Some(merge) = merge(block) else { continue };
+        let unreachable = Instruction::new(Op::Unreachable, None, None, Vec::new());
+        ends.insert(merge.operands[0].unwrap_id_ref(), unreachable);
+        if merge.class.opcode == Op::LoopMerge {
+            let back = Instruction::new(Op::Branch, None, None, vec![Operand::IdRef(label(block))]);
+            ends.insert(merge.operands[1].unwrap_id_ref(), back);
+        }
+    }
+    ends
+}
+
+/// Forgets values that come from no predecessor; from an emptied one comes no value in particular.
+fn prune_phis(function: &mut Function, reached: &HashSet<Word>, module: &mut Module) {
+    let mut sources: HashMap<Word, HashSet<Word>> = HashMap::new();
+    for block in &function.blocks {
+        for target in block.instructions.last().into_iter().flat_map(targets) {
+            sources.entry(target).or_default().insert(label(block));
+        }
+    }
+    for block in &mut function.blocks {
+        let Some(from) = sources.get(&label(block)) else { continue };
+        for phi in block.instructions.iter_mut().filter(|inst| inst.class.opcode == Op::Phi) {
+            let mut kept = Vec::with_capacity(phi.operands.len());
+            for pair in phi.operands.chunks(2) {
+                let source = pair[1].unwrap_id_ref();
+                if reached.contains(&source) && from.contains(&source) {
+                    kept.extend_from_slice(pair);
+                } else if from.contains(&source) {
+                    kept.extend([Operand::IdRef(undefined(module, phi.result_type)), pair[1].clone()]);
+                }
+            }
+            phi.operands = kept;
+        }
+    }
+}
+
+/// No value in particular of a type.
+fn undefined(module: &mut Module, kind: Option<Word>) -> Word {
+    let globals = &mut module.types_global_values;
+    let there = globals.iter().find(|inst| inst.class.opcode == Op::Undef && inst.result_type == kind);
+    if let Some(id) = there.and_then(|inst| inst.result_id) {
+        return id;
+    }
+    let Some(header) = &mut module.header else { return 0 };
+    let id = header.bound;
+    header.bound += 1;
+    globals.push(Instruction::new(Op::Undef, kind, Some(id), Vec::new()));
+    id
+}

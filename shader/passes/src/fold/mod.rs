@@ -1,0 +1,22 @@
+//! What constants decide: values that follow from them, branches that are always or never taken, and the code behind these.
+//!
+//! Only integers and conditions are computed. Floats stay as they are: a host's rounding is not the device's.
+
+mod blocks;
+mod branch;
+mod constants;
+mod evaluate;
+mod value;
+
+use rspirv::dr::Module;
+
+use crate::dead;
+
+/// Folds until nothing more follows, and removes what is then dead.
+pub fn fold(module: &mut Module) {
+    while value::fold(module) | branch::fold(module) {}
+    dead::remove(module);
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! What remains of small kernels.
+
+use rspirv::binary::Assemble;
+use rspirv::dr;
+use rspirv::spirv::Op;
+
+use crate::testing::{Body, Kernel};
+use crate::{Error, Kernels};
+
+/// Every instruction of the kernel that `body` makes with the value of a specialisation constant in place.
+fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
+    let mut kernel = Kernel::new();
+    let special = kernel.spec_constant(1, 0);
+    kernel.entry("entry::kernel", |b| body(b, special));
+    let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
+    let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap();
+    let module = dr::load_words(cut.words()).unwrap();
+    assert!(!module.types_global_values.iter().any(|inst| inst.class.opcode == Op::SpecConstant));
+    let blocks = module.functions.iter().flat_map(|function| &function.blocks);
+    let ops: Vec<Op> = blocks.flat_map(|block| &block.instructions).map(|inst| inst.class.opcode).collect();
+    assert_eq!(cut.instructions(), ops.len());
+    ops.into_iter().filter(|op| !matches!(op, Op::Branch | Op::Return)).collect()
+}
+
+#[test]
+fn what_a_constant_rules_out_is_gone_and_its_branch_too() {
+    let body = |b: &mut Body, special| {
+        let x = b.load_input();
+        b.if_has(special, 4, |b| {
+            let y = b.f_mul(x, x);
+            b.store_output(y);
+        });
+        b.if_has(special, 8, |b| b.store_output(x));
+    };
+    assert_eq!(folded(0, body), []);
+    assert_eq!(folded(4, body), [Op::Load, Op::FMul, Op::Store]);
+    assert_eq!(folded(8, body), [Op::Load, Op::Store]);
+    assert_eq!(folded(12, body), [Op::Load, Op::FMul, Op::Store, Op::Store]);
+}
+
+#[test]
+fn a_value_that_is_not_constant_decides_nothing() {
+    let ops = folded(0, |b, _| {
+        let word = b.load_counter(rspirv::spirv::MemoryAccess::NONE);
+        b.if_has(word, 1, |b| {
+            let x = b.load_input();
+            b.store_output(x);
+        });
+    });
+    let kept =
+        [Op::Load, Op::BitwiseAnd, Op::INotEqual, Op::SelectionMerge, Op::BranchConditional, Op::Load, Op::Store];
+    assert_eq!(ops, kept);
+}
+
+#[test]
+fn floats_are_left_to_the_device() {
+    let ops = folded(0, |b, _| {
+        let one = b.constant_f32(0x3f80_0000);
+        let two = b.f_add(one, one);
+        b.store_output(two);
+    });
+    assert_eq!(ops, [Op::FAdd, Op::Store]);
+}
+
+/// A loop that is never entered keeps no round, and one that is always left keeps a way back that is never taken.
+#[test]
+fn loops_stay_whole_whatever_is_known_of_them() {
+    let body = |b: &mut Body, special| {
+        let word = b.load_counter(rspirv::spirv::MemoryAccess::NONE);
+        let count = b.count_up_to(word, special);
+        b.store_counter(count);
+    };
+    let whole = [Op::Load, Op::Phi, Op::ULessThan, Op::LoopMerge, Op::BranchConditional, Op::IAdd, Op::Store];
+    assert_eq!(folded(0, body), whole);
+    let left: Vec<Op> = folded(1, body);
+    assert_eq!(left.iter().filter(|op| **op == Op::LoopMerge).count(), 1, "{left:?}");
+    assert!(!left.contains(&Op::IAdd), "{left:?}");
+}
+
+#[test]
+fn what_is_no_module_and_what_has_no_entry_is_refused() {
+    assert!(matches!(Kernels::parse(&[1, 2, 3, 4]), Err(Error::Malformed(_))));
+    let bytes: Vec<u8> = Kernel::new().module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
+    let missing = Kernels::parse(&bytes).unwrap().cut("kernel", &[]);
+    assert_eq!(missing.err(), Some(Error::NoEntry("kernel".to_owned())));
+}

@@ -1,0 +1,57 @@
+//! Values that follow from constants.
+
+use std::collections::HashMap;
+
+use rspirv::dr::{Instruction, Module};
+use rspirv::spirv::Word;
+
+use super::constants::Constants;
+use super::evaluate::{Known, evaluate};
+
+/// Replaces what is known by constants and by what it is the same as; tells whether there was anything.
+pub fn fold(module: &mut Module) -> bool {
+    let mut constants = Constants::of(module);
+    let mut known = Replacements::default();
+    let bodies = module.functions.iter().flat_map(|function| &function.blocks);
+    for inst in bodies.flat_map(|block| &block.instructions) {
+        if let Some((id, with)) = replacement(inst, &mut constants, &known) {
+            known.0.insert(id, with);
+        }
+    }
+    constants.finish(module);
+    known.apply(module);
+    !known.0.is_empty()
+}
+
+/// An instruction's result, and what may stand for it.
+fn replacement(inst: &Instruction, constants: &mut Constants, known: &Replacements) -> Option<(Word, Word)> {
+    let (id, kind) = (inst.result_id?, inst.result_type?);
+    match evaluate(inst, |id| constants.value(known.of(id)))? {
+        Known::Value(value) => constants.folds(kind).then(|| (id, constants.id(kind, value))),
+        // What stands for itself only goes round a loop that is never entered.
+        Known::Same(other) => Some((id, known.of(other))).filter(|(id, other)| id != other),
+    }
+}
+
+/// By the id that goes, the id that stands for it.
+#[derive(Default)]
+struct Replacements(HashMap<Word, Word>);
+
+impl Replacements {
+    fn of(&self, mut id: Word) -> Word {
+        while let Some(&next) = self.0.get(&id) {
+            id = next;
+        }
+        id
+    }
+
+    fn apply(&self, module: &mut Module) {
+        for block in module.functions.iter_mut().flat_map(|function| &mut function.blocks) {
+            block.instructions.retain(|inst| inst.result_id.is_none_or(|id| !self.0.contains_key(&id)));
+            let operands = block.instructions.iter_mut().flat_map(|inst| &mut inst.operands);
+            for id in operands.filter_map(|operand| operand.id_ref_any_mut()) {
+                *id = self.of(*id);
+            }
+        }
+    }
+}

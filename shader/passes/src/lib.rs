@@ -1,0 +1,20 @@
+//! Cuts single kernels out of a SPIR-V module: one entry point, its constants written in and folded, and nothing that
+//! it does not reach. The build of the committed modules uses the same passes.
+//!
+//! A module holds the entry points of many kernels, each compiled for every effect. What a driver compiles takes time by
+//! the size of what it is given, so it is given [`Kernel`]s.
+
+pub mod body;
+pub mod dead;
+pub mod error;
+pub mod fold;
+pub mod kernel;
+pub mod reach;
+pub mod renumber;
+pub mod select;
+pub mod specialise;
+#[cfg(feature = "testing")]
+pub mod testing;
+
+pub use error::{Error, Result};
+pub use kernel::{Kernel, Kernels};

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 use clap::Args;
 use eyerays_bvh::Quality;
 
+use super::console;
 use crate::error::{Error, Result};
 use crate::pack::Packed;
 use crate::scene;
@@ -26,8 +27,8 @@ impl Check {
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
-            super::print(&format!(
-                "{}: {}, {}, {}; cameras {}\n",
+            console::print_line(format_args!(
+                "{}: {}, {}, {}; cameras {}",
                 self.scene.display(),
                 count(scene.mesh.triangles.len(), "triangle"),
                 count(scene.materials.len(), "material"),

@@ -7,6 +7,7 @@ use clap::Args;
 use eyerays_bvh::{Quality, Statistics};
 use serde_json::json;
 
+use super::console;
 use crate::error::Result;
 use crate::gpu::{AdapterReport, adapters};
 use crate::pack::Packed;
@@ -33,12 +34,12 @@ impl Info {
     fn adapters(&self) -> Result<()> {
         let adapters = adapters();
         if self.json {
-            return super::print_json(&json!({ "adapters": adapters }));
+            return console::print_json(&json!({ "adapters": adapters }));
         }
         if adapters.is_empty() {
-            return super::print("no GPU that Vulkan, Metal or Direct3D 12 can use: renderings run on the CPU\n");
+            return console::print("no GPU that Vulkan, Metal or Direct3D 12 can use: renderings run on the CPU\n");
         }
-        adapters.iter().try_for_each(|a| super::print(&describe(a)))
+        adapters.iter().try_for_each(|a| console::print(&describe(a)))
     }
 
     /// The thesis' table 7.1, for every quality of the hierarchy, with its cost and memory.
@@ -61,13 +62,13 @@ impl Info {
                     })
                 })
                 .collect();
-            return super::print_json(&json!({ "scene": path.display().to_string(), "hierarchies": rows }));
+            return console::print_json(&json!({ "scene": path.display().to_string(), "hierarchies": rows }));
         }
         let mut text = "BVH     triangles     nodes    leaves  depth  SAH cost    memory     build\n".to_owned();
         for (name, statistics, time) in &rows {
             text += &row(name, statistics, time.as_secs_f64());
         }
-        super::print(&text)
+        console::print(&text)
     }
 }
 

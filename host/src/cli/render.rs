@@ -2,9 +2,11 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::slice;
 
 use clap::Args;
 
+use super::console;
 use super::options::{Effort, On, View};
 use super::summary::{Summary, bar};
 use crate::error::Result;
@@ -65,6 +67,7 @@ impl Render {
         destination.format()?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
+        output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
         let loaded = self.view.load(&self.scene, &self.effort.over(&preset), quiet)?;
         let chosen = Chosen::new(&choice)?;
@@ -76,9 +79,9 @@ impl Render {
         image::write(&rendering.film, &destination, &encoding)?;
         let summary = Summary::new(&destination, &choice, &loaded, &rendering);
         if self.json {
-            super::print_json(&summary.json())?;
+            console::print_json(&summary.json())?;
         } else if !quiet {
-            eprintln!("{summary}");
+            console::say(summary);
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -8,6 +8,8 @@ mod generate;
 mod info;
 mod options;
 mod render;
+#[cfg(unix)]
+mod signals;
 mod summary;
 mod tradeoff;
 
@@ -23,7 +25,8 @@ const BAD_INPUT: u8 = 2;
 
 const CODES: &str = "\
 Pictures and tables go to files and standard output, summaries and messages to standard error.
-Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given.";
+Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given,
+128 and the signal's number where one ended it.";
 
 /// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
@@ -84,6 +87,8 @@ fn explain(said: &clap::Error) -> Result<ExitCode> {
 
 fn execute(cli: Cli) -> Result<ExitCode> {
     log(cli.verbose);
+    #[cfg(unix)]
+    signals::watch().map_err(|e| Error::new(format!("no thread to wait for signals in: {e}")))?;
     match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),

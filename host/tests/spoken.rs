@@ -133,3 +133,15 @@ fn drivers_add_nothing() {
     let output = place.command(&["render", "scene.toml", "--device", "gpu", "-o", "out.png"]).output().unwrap();
     assert!(output.stderr.starts_with(b"out.png: 24x18"));
 }
+
+#[cfg(unix)]
+#[test]
+fn standard_error_is_as_before_after_many_at_once_asked_for_adapters() {
+    let before = same_file::Handle::stderr().unwrap();
+    std::thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(eyerays::gpu::adapters);
+        }
+    });
+    assert_eq!(same_file::Handle::stderr().unwrap(), before);
+}

@@ -139,7 +139,8 @@ fn what_a_killed_process_left_is_removed_and_what_a_living_one_writes_stays() {
         fs::write(folder.path().join(name), b"not ours").unwrap();
     }
     write(&folder.path().join("out.png"), b"new").unwrap();
-    let mut left = [&others[..], &["out.png", &temporary_name(1, 2)]].concat();
+    let kept = temporary_name(1, 2);
+    let mut left = [&others[..], &["out.png", &kept]].concat();
     left.sort();
     assert_eq!(names(folder.path()), left);
     drop(writer);

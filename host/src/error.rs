@@ -67,8 +67,12 @@ impl fmt::Display for Error {
     }
 }
 
-/// Escapes what would break the line or steer a terminal: names come from hostile files.
 fn one_line(text: &str) -> String {
+    printable(text)
+}
+
+/// Escapes what would break the line or steer a terminal: names come from hostile files.
+pub(crate) fn printable(text: &str) -> String {
     text.chars()
         .flat_map(|c| {
             let escaped: Box<dyn Iterator<Item = char>> =

@@ -1,5 +1,8 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+// A closed standard error makes these panic: the command speaks through `cli::console`.
+#![cfg_attr(not(test), warn(clippy::print_stderr, clippy::print_stdout))]
+
 pub mod bench;
 pub mod cli;
 pub mod compare;

@@ -236,6 +236,24 @@ fn meshes_larger_than_the_buffers_of_a_device() {
 }
 
 #[test]
+fn outputs_that_would_replace_an_input() {
+    let place = Place::new(&[("scene.toml", SCENE), ("kept.png", "samples = 1\n")]);
+    let render = ["render", "scene.toml", "--device", "cpu", "-o"];
+    for name in ["a.png", "b.png"] {
+        place.succeed(&[&render[..], &[name]].concat());
+        place.refuse(&["diff", "a.png", "b.png", "-o", name], &[name, "would replace the input"]);
+    }
+    place.refuse(&[&render[..], &["./kept.png", "--settings", "kept.png"]].concat(), &["kept.png", "would replace"]);
+    let bench = ["bench", "scene.toml", "--device", "cpu", "--format", "json", "-o", "scene.toml"];
+    place.refuse(&bench, &["scene.toml", "would replace"]);
+    #[cfg(unix)]
+    {
+        std::os::unix::fs::symlink("scene.toml", place.path("link.png")).unwrap();
+        place.refuse(&[&render[..], &["link.png"]].concat(), &["link.png", "would replace the input scene.toml"]);
+    }
+}
+
+#[test]
 fn options_that_contradict_each_other() {
     let place = Place::new(&[("scene.toml", SCENE), ("a.png", "")]);
     for (options, wants) in [

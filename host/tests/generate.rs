@@ -93,10 +93,13 @@ fn places_that_cannot_be_written_are_refused() {
 }
 
 #[test]
-fn scenes_and_materials_that_a_person_made_are_kept() {
-    for (name, content) in [("own.toml", program::SCENE), ("own.mtl", "newmtl red\n"), ("own.toml", "")] {
+fn files_that_a_person_made_are_kept() {
+    for (name, content) in
+        [("own.toml", program::SCENE), ("own.mtl", "newmtl red\n"), ("own.toml", ""), ("own.obj", program::TRIANGLE)]
+    {
         let place = Place::new(&[(name, content)]);
-        place.refuse(&["generate", "hall", "--triangles", "20000", "-o", "own.obj"], &[name, "not generated"]);
+        let wants = [name, "not written by eyerays generate", "-o"];
+        place.refuse(&["generate", "hall", "--triangles", "20000", "-o", "own.obj"], &wants);
     }
 }
 

@@ -84,14 +84,15 @@ fn a_report_is_written_in_every_format() {
 
 #[test]
 fn a_wish_that_nothing_serves_is_told_and_nothing_kept() {
-    let place = Place::new(&[("scene.toml", SCENE), ("old.toml", "samples = 3\n")]);
+    let kept = "# eyerays tradeoff scene.toml\nsamples = 3\n";
+    let place = Place::new(&[("scene.toml", SCENE), ("old.toml", kept)]);
     for (wish, nearest) in [("--max-error", "the least RMSE is"), ("--budget", "the fastest takes up to")] {
         let more = ["--samples", "1,2", wish, "1e-12", "--save", "old.toml"];
         let outcome = place.run(&[&["tradeoff", "scene.toml"], &FEW[..], &more].concat());
         assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
         assert!(outcome.stderr.contains(nearest) && outcome.stderr.contains("--precision"), "{}", outcome.stderr);
         assert!(!outcome.text().contains("### Recommended"));
-        assert_eq!(fs::read_to_string(place.path("old.toml")).unwrap(), "samples = 3\n");
+        assert_eq!(fs::read_to_string(place.path("old.toml")).unwrap(), kept);
     }
 }
 
@@ -169,6 +170,10 @@ fn runs_that_can_not_be() {
         (&["-o", "old.svg", "--camera", "back"], &["\"back\"", "0 \"front\""]),
         (&["--save", "kept.toml"], &["--save", "--max-error", "--budget"]),
         (&["--save", "missing/kept.toml", "--budget", "1"], &["missing/kept.toml", "folder does not exist"]),
+        (&["--save", "scene.toml", "--budget", "1"], &["scene.toml", "would replace the input"]),
+        (&["--save", "old.svg", "--budget", "1"], &["old.svg", "not written by eyerays tradeoff", "--save"]),
+        (&["--save", "new.md", "--budget", "1", "-o", "./new.md"], &["new.md", "same file as the output"]),
+        (&["-o", "new.md", "-o", "new.svg", "-o", "./new.md"], &["new.md", "same file as the output"]),
         (&["--max-error", "0"], &["--max-error 0"]),
         (&["--max-error=-1"], &["--max-error -1"]),
         (&["--budget", "nan"], &["--budget NaN"]),

@@ -2,11 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::slice;
 
 use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
 
-use super::{options, progress};
+use super::{console, options, progress};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -152,27 +153,26 @@ impl Bench {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let destination = self.output.clone().map_or(Destination::Stdout, Destination::from);
         let format = self.format(&destination)?;
-        if let Destination::File(_) = &destination {
+        if destination.file().is_some() {
+            output::check_apart(slice::from_ref(&destination), &self.scenes)?;
             output::check_writable(&destination)?;
         }
         let plan = self.plan()?;
         let subjects = self.subjects(quiet)?;
         let progress = progress::steps(bench::streams(&plan, &subjects), quiet);
-        let report = bench::run(&plan, &subjects, &|stream| {
-            progress.set_message(stream.to_owned());
-            progress.inc(1);
-        });
+        let report = bench::run(&plan, &subjects, &|stream| console::step(&progress, stream));
         progress.finish_and_clear();
         let report = report?;
-        destination.write(|out| {
-            let text = text(&report, format)?;
-            out.write_all(text.as_bytes()).map_err(|e| write_error(&e))
-        })?;
+        let text = text(&report, format)?;
+        match &destination {
+            Destination::Stdout => console::print(&text)?,
+            file => file.write(|out| out.write_all(text.as_bytes()).map_err(|e| write_error(&e)))?,
+        }
         for note in report.notes.iter().filter(|_| !quiet) {
-            eprintln!("note: {note}");
+            console::say(format_args!("note: {note}"));
         }
         for fault in &report.faults {
-            eprintln!("error: {fault}");
+            console::say(format_args!("error: {fault}"));
         }
         Ok(if report.faults.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(DIFFERENT) })
     }
@@ -296,10 +296,7 @@ fn unique<T: Copy + PartialEq>(all: &[T]) -> Vec<T> {
 
 fn text(report: &Report, format: Format) -> Result<String> {
     match format {
-        Format::Json => {
-            let json = serde_json::to_string_pretty(report).map_err(|e| Error::new(e.to_string()))?;
-            Ok(json + "\n")
-        }
+        Format::Json => console::json(report),
         Format::Csv => Ok(bench::csv(report)),
         Format::Markdown => Ok(bench::markdown(report)),
     }

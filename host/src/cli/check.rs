@@ -7,7 +7,7 @@ use clap::Args;
 use eyerays_bvh::Quality;
 
 use super::outline::Outline;
-use super::{plural, progress};
+use super::{console, plural, progress};
 use crate::error::{Error, Result};
 use crate::pack::Packed;
 use crate::scene;
@@ -30,15 +30,15 @@ impl Check {
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
-            super::print(&format!(
-                "{}: {}, {}, {}; cameras {}\n{}",
+            console::print_line(format_args!(
+                "{}: {}, {}, {}; cameras {}",
                 self.scene.display(),
                 plural(scene.mesh.triangles.len(), "triangle"),
                 plural(scene.materials.len(), "material"),
                 plural(scene.lights.len(), "light"),
-                cameras.join(", "),
-                Outline::of(&scene)
+                cameras.join(", ")
             ))?;
+            console::print(&Outline::of(&scene).to_string())?;
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::slice;
 
 use clap::Args;
 use serde_json::json;
 
+use super::console;
 use super::options::{Effort, On, View};
 use super::progress;
 use crate::compare::{Comparison, compare, heat_map};
@@ -65,6 +67,7 @@ impl Diff {
         if let Some(destination) = &heat {
             super::one_on_stdout(self.json, destination)?;
             destination.format()?;
+            output::check_apart(slice::from_ref(destination), self.second.iter().chain([&self.first]))?;
             output::check_writable(destination)?;
         }
         let (a, b, names) = match &self.second {
@@ -112,19 +115,20 @@ impl Diff {
         let renderings = render(&gpu_choice).and_then(|gpu| Ok((gpu, render(&cpu_choice)?)));
         progress.finish_and_clear();
         let (gpu, cpu) = renderings?;
-        if gpu.rays != cpu.rays && !quiet {
-            eprintln!("warning: the GPU counted {:?}, the CPU {:?}", gpu.rays, cpu.rays);
+        if gpu.rays != cpu.rays {
+            super::warn(&[format!("the GPU counted {:?}, the CPU {:?}", gpu.rays, cpu.rays)], quiet);
         }
         Ok((gpu.film, cpu.film, [gpu.device, cpu.device]))
     }
 
     fn report(&self, comparison: &Comparison, names: &[String; 2], quiet: bool) -> Result<()> {
         if self.json {
-            return super::print_json(&json!({ "first": names[0], "second": names[1], "comparison": comparison }));
+            return console::print_json(&json!({ "first": names[0], "second": names[1], "comparison": comparison }));
         }
         if quiet {
             return Ok(());
         }
-        super::print(&format!("{} against {}\n{comparison}\n", names[0], names[1]))
+        console::print_line(format_args!("{} against {}", names[0], names[1]))?;
+        console::print(&comparison.to_string())
     }
 }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::Args;
 
+use super::console;
 use crate::error::Result;
 use crate::generate::{Files, Kind, Recipe};
 
@@ -43,7 +44,8 @@ impl Generate {
         recipe.write(&files)?;
         if !quiet {
             let [mesh, materials, scene] = files.paths().map(|path| path.display());
-            eprintln!("{mesh}, {materials}, {scene}: {} of {triangles} triangles, seed {seed}", kind.name());
+            let name = kind.name();
+            console::say(format_args!("{mesh}, {materials}, {scene}: {name} of {triangles} triangles, seed {seed}"));
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -10,7 +10,7 @@ use eyerays_bvh::Statistics;
 use serde_json::{Value, json};
 
 use super::outline::Outline;
-use super::progress;
+use super::{console, progress};
 use crate::error::Result;
 use crate::gpu::{AdapterReport, adapters};
 use crate::pack::Packed;
@@ -42,12 +42,12 @@ impl Info {
     fn adapters(&self) -> Result<()> {
         let adapters = adapters();
         if self.json {
-            return super::print_json(&json!({ "adapters": adapters }));
+            return console::print_json(&json!({ "adapters": adapters }));
         }
         if adapters.is_empty() {
-            return super::print("no GPU that Vulkan, Metal or Direct3D 12 can use: renderings run on the CPU\n");
+            return console::print("no GPU that Vulkan, Metal or Direct3D 12 can use: renderings run on the CPU\n");
         }
-        adapters.iter().try_for_each(|a| super::print(&describe(a)))
+        adapters.iter().try_for_each(|a| console::print(&describe(a)))
     }
 
     /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
@@ -56,7 +56,7 @@ impl Info {
         super::warn(&warnings, quiet || self.json);
         let outline = Outline::of(&scene);
         if !self.json {
-            super::print(&format!("{outline}{HEAD}"))?;
+            console::print(&format!("{outline}{HEAD}"))?;
         }
         let mut rows = Vec::new();
         for &bvh in self.bvh.as_ref().map_or(Bvh::value_variants(), std::slice::from_ref) {
@@ -64,7 +64,7 @@ impl Info {
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
             let row = Row { bvh: preset::name(bvh), statistics: packed.statistics, build_time: packed.build_time };
             if !self.json {
-                super::print(&row.to_string())?;
+                console::print(&row.to_string())?;
             }
             rows.push(row.json());
         }
@@ -72,7 +72,7 @@ impl Info {
             let mut json = outline.json();
             json["scene"] = path.display().to_string().into();
             json["hierarchies"] = rows.into();
-            super::print_json(&json)?;
+            console::print_json(&json)?;
         }
         Ok(())
     }

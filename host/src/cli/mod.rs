@@ -2,6 +2,7 @@
 
 mod bench;
 mod check;
+mod console;
 mod diff;
 mod generate;
 mod info;
@@ -9,6 +10,8 @@ mod options;
 mod outline;
 mod progress;
 mod render;
+#[cfg(unix)]
+mod signals;
 mod summary;
 mod tradeoff;
 
@@ -24,7 +27,8 @@ const BAD_INPUT: u8 = 2;
 
 const CODES: &str = "\
 Pictures and tables go to files and standard output, summaries and messages to standard error.
-Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given.";
+Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given,
+128 and the signal's number where one ended it.";
 
 /// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
@@ -65,9 +69,29 @@ enum Command {
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
-    let cli = Cli::parse();
+    let outcome = Cli::try_parse().map_or_else(|said| explain(&said), execute);
+    outcome.unwrap_or_else(|error| {
+        console::say(format_args!("error: {error}"));
+        ExitCode::from(BAD_INPUT)
+    })
+}
+
+/// Prints the help or version that was asked for, or says what is wrong with the command line.
+fn explain(said: &clap::Error) -> Result<ExitCode> {
+    if said.use_stderr() {
+        console::say_text(&said.render().to_string());
+        return Ok(ExitCode::from(BAD_INPUT));
+    }
+    // In color, which only clap knows how to print.
+    console::printed(said.print())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn execute(cli: Cli) -> Result<ExitCode> {
     log(cli.verbose);
-    let outcome = match cli.command {
+    #[cfg(unix)]
+    signals::watch().map_err(|e| Error::new(format!("no thread to wait for signals in: {e}")))?;
+    match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
         Command::Bench(command) => command.run(cli.quiet),
@@ -75,24 +99,22 @@ pub fn run() -> ExitCode {
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
         Command::Generate(command) => command.run(cli.quiet),
-    };
-    outcome.unwrap_or_else(|error| {
-        eprintln!("error: {error}");
-        ExitCode::from(BAD_INPUT)
-    })
+    }
 }
 
 fn log(verbose: u8) {
     let level = ["off", "warn", "debug"][usize::from(verbose).min(2)];
     let filter = tracing_subscriber::EnvFilter::try_from_default_env();
     let filter = filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(level));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time().init();
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time();
+    // It would tell standard error that standard error failed, and panic.
+    log.log_internal_errors(false).init();
 }
 
 /// Warnings of a scene, each on its line.
 fn warn(warnings: &[String], quiet: bool) {
     for warning in warnings.iter().filter(|_| !quiet) {
-        eprintln!("warning: {warning}");
+        console::say(format_args!("warning: {warning}"));
     }
 }
 
@@ -107,15 +129,4 @@ fn one_on_stdout(json: bool, picture: &Destination) -> Result<()> {
         return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
     }
     Ok(())
-}
-
-/// Prints a JSON value to standard output.
-fn print_json(value: &serde_json::Value) -> Result<()> {
-    print(&format!("{value:#}\n"))
-}
-
-/// Prints to standard output; a reader that has gone away is no panic.
-fn print(text: &str) -> Result<()> {
-    use std::io::Write;
-    std::io::stdout().write_all(text.as_bytes()).map_err(|e| crate::output::write_error(&e))
 }

@@ -6,6 +6,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::plural;
+use crate::error::printable;
 use crate::scene::{Camera, Scene, default_camera};
 
 /// The most meshes that are told one by one as text.
@@ -52,7 +53,8 @@ impl fmt::Display for Outline<'_> {
         let parts = &self.scene.parts;
         for (number, part) in parts.iter().enumerate().take(MOST_MESHES) {
             let triangles = plural(part.triangles.len(), "triangle");
-            writeln!(out, "mesh {}: {}, {triangles}, {}", number + 1, part.name, range(part.bounds))?;
+            let name = printable(&part.name);
+            writeln!(out, "mesh {}: {name}, {triangles}, {}", number + 1, range(part.bounds))?;
         }
         match parts.len().saturating_sub(MOST_MESHES) {
             0 => Ok(()),

@@ -2,10 +2,12 @@
 
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::slice;
 use std::time::Instant;
 
 use clap::Args;
 
+use super::console;
 use super::options::{Effort, On, View};
 use super::progress;
 use super::summary::{Summary, Times};
@@ -67,6 +69,7 @@ impl Render {
         destination.format()?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
+        output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
         let loaded = self.view.load(&self.scene, &self.effort.over(&preset), choice.threads, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
@@ -81,9 +84,9 @@ impl Render {
         let times = Times::new(&loaded, &rendering, start.elapsed());
         let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
         if self.json {
-            super::print_json(&summary.json())?;
+            console::print_json(&summary.json())?;
         } else if !quiet {
-            eprintln!("{summary}");
+            console::say(summary);
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -6,6 +6,7 @@ use std::process::ExitCode;
 
 use clap::{Args, ValueEnum};
 
+use super::console;
 use super::options::{self, Effort, View};
 use super::progress;
 use crate::error::{Error, Result, within};
@@ -25,6 +26,8 @@ Exit code 1 tells that no setting serves --max-error or --budget.";
 
 /// Exit code of a wish that nothing serves.
 const UNSERVED: u8 = 1;
+/// What a file of `--save` begins with, as a comment.
+const SAVED: &str = "eyerays tradeoff";
 
 #[derive(Args)]
 pub(super) struct Tradeoff {
@@ -138,32 +141,30 @@ impl Tradeoff {
         let plan = self.plan(&subject, wish)?;
         let device = Chosen::new(&choice)?;
         let progress = progress::steps(tradeoff::steps(&plan), quiet);
-        let report = tradeoff::run(&plan, &subject, device, &|step| {
-            progress.set_message(step.to_owned());
-            progress.inc(1);
-        });
+        let report = tradeoff::run(&plan, &subject, device, &|step| console::step(&progress, step));
         progress.finish_and_clear();
         let report = report?;
         for (path, format) in &outputs {
             write(path, &text(&report, *format, wish)?)?;
         }
-        if !quiet {
-            super::print(&tradeoff::markdown(&report))?;
-        }
-        self.answer(&report, wish, quiet)
+        let printed = if quiet { Ok(()) } else { console::print(&tradeoff::markdown(&report)) };
+        // What is recommended is kept even where the tables could not be printed.
+        let code = self.answer(&report, wish, quiet)?;
+        printed.map(|()| code)
     }
 
     /// Tells and keeps what is recommended.
     fn answer(&self, report: &Report, wish: Option<Wish>, quiet: bool) -> Result<ExitCode> {
         let Some(wish) = wish else { return Ok(ExitCode::SUCCESS) };
         let Some(best) = report.recommended() else {
-            eprintln!("error: {}: no setting that was tried serves {wish}: {}", report.scene, nearest(report, wish));
+            let (scene, nearest) = (&report.scene, nearest(report, wish));
+            console::say(format_args!("error: {scene}: no setting that was tried serves {wish}: {nearest}"));
             return Ok(ExitCode::from(UNSERVED));
         };
         if let Some(path) = &self.wishes.save {
             let of = |key: &str| report.setup.iter().find(|(name, _)| name == key).map_or("", |(_, value)| value);
             let comment = format!(
-                "eyerays tradeoff {} {wish}: {:.2} ms, RMSE {:.2e}, {} on {}",
+                "{SAVED} {} {wish}: {:.2} ms, RMSE {:.2e}, {} on {}",
                 self.scene.display(),
                 best.time_ms,
                 best.rmse,
@@ -172,7 +173,8 @@ impl Tradeoff {
             );
             write(path, &best.setting.preset(self.on.device).text(&comment))?;
             if !quiet {
-                eprintln!("{}: eyerays render {} --settings {0}", path.display(), self.scene.display());
+                let (path, scene) = (path.display(), self.scene.display());
+                console::say(format_args!("{path}: eyerays render {scene} --settings {path}"));
             }
         }
         Ok(ExitCode::SUCCESS)
@@ -185,10 +187,13 @@ impl Tradeoff {
             format(&path).map(|format| (path, format))
         });
         let outputs: Vec<_> = outputs.collect::<Result<_>>()?;
-        let saved = self.wishes.save.iter();
-        for path in outputs.iter().map(|(path, _)| path).chain(saved) {
-            output::check_writable(&Destination::File(path.clone()))?;
+        let paths = outputs.iter().map(|(path, _)| path).chain(&self.wishes.save);
+        let all: Vec<_> = paths.cloned().map(Destination::File).collect();
+        output::check_apart(&all, [&self.scene])?;
+        if let Some(path) = &self.wishes.save {
+            output::check_own(path, SAVED, "--save")?;
         }
+        all.iter().try_for_each(output::check_writable)?;
         Ok(outputs)
     }
 
@@ -294,10 +299,7 @@ fn text(report: &Report, format: Format, wish: Option<Wish>) -> Result<String> {
     match format {
         Format::Markdown => Ok(tradeoff::markdown(report)),
         Format::Csv => Ok(tradeoff::csv(report)),
-        Format::Json => {
-            let json = serde_json::to_string_pretty(report).map_err(|e| Error::new(e.to_string()))?;
-            Ok(json + "\n")
-        }
+        Format::Json => console::json(report),
         Format::Svg => tradeoff::plot(report, wish),
     }
 }

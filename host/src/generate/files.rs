@@ -1,11 +1,11 @@
 //! The three files of a generated scene.
 
 use std::ffi::OsStr;
-use std::fs::File;
-use std::io::{self, Read, Write};
+use std::io::{self, Write};
+use std::iter;
 use std::path::{Path, PathBuf};
 
-use super::{MARK, fault};
+use super::{COMMAND, fault};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 
@@ -55,16 +55,13 @@ impl Files {
         &self.names[1]
     }
 
-    /// Fails where [`Files::write`] would, without changing a file. Materials and scenes that a person made are not
-    /// replaced, since nobody named them.
+    /// Fails where [`Files::write`] would, without changing a file. What a person made is not replaced.
     pub(super) fn check_writable(&self) -> Result<()> {
-        for path in self.paths() {
-            output::check_writable(&Destination::File(path.to_owned()))?;
-        }
-        for path in [&self.materials, &self.scene] {
-            if path.is_file() && !is_generated(path) {
-                return Err(Error::file(path, "was not generated and would be lost; move it, or give -o another name"));
-            }
+        let files = self.paths().map(|path| Destination::File(path.to_owned()));
+        output::check_apart(&files, iter::empty::<&Path>())?;
+        for (path, file) in self.paths().into_iter().zip(&files) {
+            output::check_writable(file)?;
+            output::check_own(path, COMMAND, "-o")?;
         }
         Ok(())
     }
@@ -89,9 +86,4 @@ fn filled(fill: Fill, out: &mut dyn Write) -> Result<()> {
 /// Whether both a Wavefront and a TOML file hold this name as it is.
 fn is_plain(name: &str) -> bool {
     !name.starts_with(char::is_whitespace) && !name.contains(|c: char| c.is_control() || matches!(c, '\\' | ':'))
-}
-
-fn is_generated(path: &Path) -> bool {
-    let mut start = [0; MARK.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == *MARK.as_bytes()
 }

@@ -82,7 +82,7 @@ impl Recipe {
     /// The comment that begins every file of it.
     fn comment(&self) -> String {
         let Recipe { kind, triangles, seed } = self;
-        format!("{MARK} {} --triangles {triangles} --seed {seed}\n", kind.name())
+        format!("# {COMMAND} {} --triangles {triangles} --seed {seed}\n", kind.name())
     }
 
     /// Refuses a number of triangles out of range.
@@ -112,8 +112,8 @@ impl Recipe {
     }
 }
 
-/// What the first line of a generated file begins with.
-const MARK: &str = "# eyerays generate";
+/// What a generated file begins with, as a comment.
+const COMMAND: &str = "eyerays generate";
 
 /// An error of a writer.
 fn fault(error: std::io::Error) -> Error {

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::hush::Hush;
 use crate::error::{Error, Result};
 
 /// What an adapter offers, for people and machines.
@@ -96,6 +97,7 @@ pub(super) fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
 
 /// What the adapters of this machine offer, in the order that `--adapter` counts.
 pub fn adapters() -> Vec<AdapterReport> {
+    let _hush = Hush::new();
     all(&instance()).iter().enumerate().map(|(i, a)| AdapterReport::of(i, a)).collect()
 }
 

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
+use super::hush::Hush;
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Method, Processor, Scheduling, Traversal};
 
@@ -45,6 +46,7 @@ impl Gpu {
     /// # Errors
     /// If there is none; the message names the remedy.
     pub fn open(want: &Want) -> Result<Gpu> {
+        let _hush = Hush::new();
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
         if report.is_software() && !want.software {

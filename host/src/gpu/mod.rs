@@ -4,6 +4,7 @@ mod adapter;
 mod buffers;
 mod cast;
 mod device;
+mod hush;
 mod kernel;
 mod module;
 pub mod numerics;

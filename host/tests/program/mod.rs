@@ -62,8 +62,6 @@ impl Place {
         let mut command = Command::new(env!("CARGO_BIN_EXE_eyerays"));
         // A caller's wish to see a log would be more lines than the program's own.
         command.args(arguments).current_dir(self.0.path()).env_remove("RUST_LOG");
-        // Without it the Wayland library, which Vulkan layers ask for a display, prints lines of its own.
-        command.env("XDG_RUNTIME_DIR", self.0.path());
         command
     }
 

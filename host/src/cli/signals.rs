@@ -1,0 +1,36 @@
+//! Interrupts: what is half-written goes, and the exit code tells the signal as shells do.
+
+use std::fs;
+use std::io;
+use std::thread;
+
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::iterator::Signals;
+use signal_hook::low_level;
+
+use crate::output;
+
+/// Ends the process on an interrupt, a request to terminate or a terminal that hangs up, whatever it does then.
+///
+/// # Errors
+/// If the system gives no thread to wait in.
+pub(super) fn watch() -> io::Result<()> {
+    let ignored = ignored();
+    // Whoever started the process with a signal ignored, as `nohup` does, wants it to go on.
+    let watched = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let mut signals = Signals::new(watched)?;
+    thread::Builder::new().name("signals".to_owned()).spawn(move || {
+        if let Some(signal) = signals.forever().next() {
+            let _discarded = output::discard();
+            low_level::exit(128 + signal);
+        }
+    })?;
+    Ok(())
+}
+
+/// A bit for every signal that is ignored, as far as the system tells: Linux does.
+fn ignored() -> u64 {
+    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}

@@ -1,0 +1,84 @@
+//! What a signal leaves: nothing half-written, the old files, and its number as the exit code.
+#![cfg(target_os = "linux")]
+
+mod program;
+
+use std::fs;
+use std::io::{BufRead, BufReader};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::time::{Duration, Instant};
+
+use program::{Place, TRIANGLE};
+
+const CODES: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
+
+/// The program, whose signals are not ignored even where those of the tests are, as by `nohup`.
+fn heeding(place: &Place, arguments: &[&str]) -> Command {
+    let program = place.command(arguments);
+    let mut command = Command::new("env");
+    command.arg("--default-signal=HUP,INT,TERM").arg(program.get_program()).args(program.get_args());
+    command.current_dir(place.path("")).env_remove("RUST_LOG");
+    command
+}
+
+fn interrupted(mut child: Child, signal: &str) -> ExitStatus {
+    let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
+    assert!(sent.success());
+    child.wait().unwrap()
+}
+
+/// Whether the mesh is begun.
+fn is_writing(place: &Place) -> bool {
+    let mut entries = fs::read_dir(place.path("")).unwrap().flatten();
+    let is_large = |entry: &fs::DirEntry| entry.metadata().is_ok_and(|found| found.len() > 1 << 16);
+    entries.any(|entry| entry.file_name().as_encoded_bytes().ends_with(b".tmp") && is_large(&entry))
+}
+
+/// A mesh of so many triangles takes seconds to write.
+#[test]
+fn an_interrupt_while_writing_keeps_the_old_files_and_leaves_nothing() {
+    let place = Place::new(&[]);
+    let generate = |triangles| heeding(&place, &["generate", "hall", "--triangles", triangles, "-q"]);
+    assert!(generate("6000").status().unwrap().success());
+    let names = ["hall.mtl", "hall.obj", "hall.toml"];
+    let old = names.map(|name| fs::read(place.path(name)).unwrap());
+    for (signal, code) in CODES {
+        let child = generate("20000000").spawn().unwrap();
+        let start = Instant::now();
+        while !is_writing(&place) {
+            assert!(start.elapsed() < Duration::from_secs(60), "it writes nothing");
+        }
+        assert_eq!(interrupted(child, signal).code(), Some(code));
+        assert_eq!(place.names(), names);
+        assert_eq!(names.map(|name| fs::read(place.path(name)).unwrap()), old);
+    }
+}
+
+#[test]
+fn an_interrupt_ends_a_rendering_at_once() {
+    let place = Place::new(&[("mesh.obj", &format!("mtllib missing.mtl\n{TRIANGLE}"))]);
+    let render = ["render", "mesh.obj", "--device", "cpu", "--size", "4096x4096", "--samples", "64"];
+    for (signal, code) in CODES {
+        let mut child = heeding(&place, &render).stderr(Stdio::piped()).spawn().unwrap();
+        // The warning, after which it renders for a minute.
+        let mut line = String::new();
+        BufReader::new(child.stderr.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let start = Instant::now();
+        assert_eq!(interrupted(child, signal).code(), Some(code), "{line}");
+        assert!(start.elapsed() < Duration::from_secs(5));
+        assert_eq!(place.names(), ["mesh.obj"]);
+    }
+}
+
+/// As `nohup` starts it.
+#[test]
+fn a_signal_that_was_ignored_stays_so() {
+    let place = Place::new(&[]);
+    let program = place.command(&["generate", "hall", "--triangles", "1000000", "-q"]);
+    let mut shell = Command::new("sh");
+    shell.args(["-c", "trap '' HUP; exec \"$@\"", "sh"]).arg(program.get_program()).args(program.get_args());
+    let child = shell.current_dir(place.path("")).spawn().unwrap();
+    while !is_writing(&place) {}
+    assert!(interrupted(child, "HUP").success());
+    assert_eq!(place.names(), ["hall.mtl", "hall.obj", "hall.toml"]);
+}

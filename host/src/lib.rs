@@ -1,5 +1,8 @@
 //! Eyerays as a library: scenes, packing, the CPU and GPU executors, films and images.
 
+// A test's expectation may err by a platform's last bit.
+#![cfg_attr(test, allow(clippy::disallowed_methods))]
+
 pub mod bench;
 pub mod cli;
 pub mod compare;
@@ -9,6 +12,7 @@ pub mod film;
 pub mod generate;
 pub mod gpu;
 pub mod image;
+pub mod math;
 pub mod method;
 pub mod output;
 pub mod pack;

@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::output::Destination;
 
+use crate::math;
 pub use encode::encode;
 pub use read::{decode, read};
 pub use transfer::{linear_to_srgb, srgb_to_linear};
@@ -103,7 +104,7 @@ impl Encoding {
     /// An exposure that is out of range or not a number.
     pub fn scale(&self) -> Result<f64> {
         if self.exposure_ev.abs() <= Self::MAX_EXPOSURE {
-            Ok(f64::from(self.exposure_ev).exp2())
+            Ok(math::exp2(self.exposure_ev.into()))
         } else {
             Err(Error::new(format!(
                 "an exposure of {} stops is out of range; choose one from -{max} to {max}",

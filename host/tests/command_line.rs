@@ -94,6 +94,8 @@ fn json_tells_everything_of_a_rendering() {
     assert_eq!((&json["output"], &json["precision"]), (&"out.png".into(), &"exact".into()));
     assert_eq!((&json["why"], &json["triangles"], &json["bounces"]), (&"--device cpu".into(), &80.into(), &5.into()));
     assert!(json["device"].as_str().unwrap().starts_with("CPU ("));
+    place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "out.exr", "--samples", "2"]);
+    assert_eq!(json["film_hash"], image::read(&place.path("out.exr")).unwrap().hash());
     let rays = &json["rays"];
     assert_eq!((&rays["primary"], &rays["secondary"]), (&(24 * 18 * 4).into(), &0.into()));
     assert!(rays["shadow"].as_u64().unwrap() > 0);

@@ -47,6 +47,7 @@ impl<'a> Summary<'a> {
             "why": self.rendering.why,
             "triangles": statistics.triangles,
             "rays": self.rendering.rays,
+            "film_hash": self.rendering.film.hash(),
             "mrays_per_second": self.mrays(),
             "load_ms": milliseconds(self.loaded.load_time),
             "build_ms": milliseconds(self.loaded.packed.build_time),

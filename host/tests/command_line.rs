@@ -152,8 +152,11 @@ fn every_format_is_written_and_read_again() {
     render("a.png", &[]);
     render("b.PNG", &["--bits", "16"]);
     render("bright.exr", &["--exposure", "1"]);
+    render("half.exr", &["--half"]);
     assert!(place.succeed(&["diff", "a.exr", "b.exr"]).text().contains("differing pixels    0 of 432"));
     place.succeed(&["diff", "a.exr", "a.hdr", "--tolerance", "0.02"]);
+    place.succeed(&["diff", "a.exr", "half.exr", "--tolerance", "0.0005"]);
+    assert_eq!(place.run(&["diff", "a.exr", "half.exr"]).code, Some(1));
     place.succeed(&["diff", "a.exr", "a.png", "--tolerance", "0.01"]);
     place.succeed(&["diff", "a.exr", "b.PNG", "--tolerance", "0.0001"]);
     let [dark, bright] = ["a.exr", "bright.exr"].map(|name| image::read(&place.path(name)).unwrap());

@@ -1,5 +1,7 @@
 //! The finished picture: linear light, before any encoding for a screen or a file.
 
+use sha2::{Digest, Sha256};
+
 use crate::error::{Error, Result};
 
 /// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
@@ -92,6 +94,19 @@ impl Film {
         self.pixels.get(index).copied()
     }
 
+    /// SHA-256 of the size and of every bit, as 64 hexadecimal digits: of width and height as `u32`, then of the
+    /// pixels' channels in order as `f32`, all little-endian. Equal films have equal hashes on every machine.
+    pub fn hash(&self) -> String {
+        let mut digest = Sha256::new();
+        digest.update(self.width.to_le_bytes());
+        digest.update(self.height.to_le_bytes());
+        for run in self.pixels.chunks(1 << 12) {
+            let bytes: Vec<[u8; 4]> = run.as_flattened().iter().map(|v| v.to_le_bytes()).collect();
+            digest.update(bytes.as_flattened());
+        }
+        digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+    }
+
     /// Whether size and every bit agree: 0 and -0 differ, equal NaNs do not.
     pub fn bits_equal(&self, other: &Film) -> bool {
         self.width == other.width
@@ -132,6 +147,24 @@ mod tests {
         assert_eq!(film.pixel(2, 1), Some([5.0; 3]));
         assert_eq!(film.pixel(3, 0), None);
         assert_eq!(film.pixel(0, 2), None);
+    }
+
+    #[test]
+    fn a_hash_is_of_the_size_and_of_every_bit() {
+        let film = |width, values: [f32; 6]| {
+            let pixels = values.chunks(3).map(|v| [v[0], v[1], v[2]]).collect();
+            Film::from_pixels(width, 2 / width, pixels).unwrap().hash()
+        };
+        let values = [0.0, 1.0, -2.5, 0.1, f32::INFINITY, 3.0];
+        let hash = film(2, values);
+        // By another program: Python's hashlib over struct.pack("<II6f", 2, 1, 0, 1, -2.5, 0.1, inf, 3).
+        assert_eq!(hash, "c50ec7616b65874188f491001af24f58fe0abed41149058c618d2e05e247f923");
+        assert_ne!(hash, film(1, values));
+        for i in 0..values.len() {
+            let mut other = values;
+            other[i] = f32::from_bits(other[i].to_bits() ^ if i == 0 { 1 << 31 } else { 1 });
+            assert_ne!(hash, film(2, other), "{i}");
+        }
     }
 
     #[test]

@@ -264,6 +264,8 @@ fn options_that_contradict_each_other() {
         (&["--triangle", "moller", "--precision", "reference"], &["--triangle moller", "--precision fast"]),
         (&["--device", "cpu", "--adapter", "0"], &["--adapter"]),
         (&["--json", "-o", "-"], &["--json", "name a file"]),
+        (&["--half", "-o", "a.hdr"], &["--half", ".exr"]),
+        (&["--half"], &["--half", ".exr"]),
     ] {
         place.refuse(&[&["render", "scene.toml"], options].concat(), wants);
     }

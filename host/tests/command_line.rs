@@ -106,6 +106,8 @@ fn json_tells_everything_of_a_rendering() {
     assert_eq!((&json["output"], &json["precision"]), (&"out.png".into(), &"exact".into()));
     assert_eq!((&json["why"], &json["triangles"], &json["bounces"]), (&"--device cpu".into(), &80.into(), &5.into()));
     assert!(json["device"].as_str().unwrap().starts_with("CPU ("));
+    place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "out.exr", "--samples", "2"]);
+    assert_eq!(json["film_hash"], image::read(&place.path("out.exr")).unwrap().hash());
     let rays = &json["rays"];
     assert_eq!((&rays["primary"], &rays["secondary"]), (&(24 * 18 * 4).into(), &0.into()));
     assert!(rays["shadow"].as_u64().unwrap() > 0);
@@ -162,8 +164,11 @@ fn every_format_is_written_and_read_again() {
     render("a.png", &[]);
     render("b.PNG", &["--bits", "16"]);
     render("bright.exr", &["--exposure", "1"]);
+    render("half.exr", &["--half"]);
     assert!(place.succeed(&["diff", "a.exr", "b.exr"]).text().contains("differing pixels    0 of 432"));
     place.succeed(&["diff", "a.exr", "a.hdr", "--tolerance", "0.02"]);
+    place.succeed(&["diff", "a.exr", "half.exr", "--tolerance", "0.0005"]);
+    assert_eq!(place.run(&["diff", "a.exr", "half.exr"]).code, Some(1));
     place.succeed(&["diff", "a.exr", "a.png", "--tolerance", "0.01"]);
     place.succeed(&["diff", "a.exr", "b.PNG", "--tolerance", "0.0001"]);
     let [dark, bright] = ["a.exr", "bright.exr"].map(|name| image::read(&place.path(name)).unwrap());

@@ -43,6 +43,9 @@ pub(super) struct Render {
     /// Bits a channel of a PNG: 8 or 16
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u32,
+    /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
+    #[arg(long)]
+    half: bool,
     /// Render this many times and tell the median time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
@@ -64,9 +67,9 @@ impl Render {
             None => Destination::from(default_output(&self.scene).as_path()),
         };
         super::one_on_stdout(self.json, &destination)?;
-        let encoding = Encoding { exposure_ev: self.exposure, bits: BitDepth::from_bits(self.bits)? };
-        encoding.scale()?;
-        destination.format()?;
+        let bits = BitDepth::from_bits(self.bits)?;
+        let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half };
+        encoding.check(destination.format()?)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;

@@ -87,6 +87,7 @@ impl<'a> Summary<'a> {
             "why": self.rendering.why,
             "triangles": self.loaded.packed.statistics.triangles,
             "rays": self.rendering.rays,
+            "film_hash": self.rendering.film.hash(),
             "mrays_per_second": self.mrays(times.render),
             "device_mrays_per_second": times.device.map(|time| self.mrays(time)),
             "read_ms": milliseconds(times.read),

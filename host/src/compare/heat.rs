@@ -4,6 +4,7 @@ use super::{check_sizes, difference};
 use crate::error::Result;
 use crate::film::{Film, bits_differ};
 use crate::image::srgb_to_linear;
+use crate::math;
 
 /// One colour a decade, sRGB: the "inferno" map of matplotlib 2.0 (CC0) at 0.2, 0.3, ..., 1.0.
 /// Its lightness grows evenly, and it begins where it can be told from black.
@@ -37,7 +38,7 @@ pub fn heat_map(a: &Film, b: &Film) -> Result<Film> {
 /// The linear colour of a difference of at least 0.
 fn colour(difference: f64) -> [f32; 3] {
     let last = COLOURS.len() - 1;
-    let place = (difference.log10() - FIRST_DECADE).clamp(0.0, last as f64);
+    let place = (math::log10(difference) - FIRST_DECADE).clamp(0.0, last as f64);
     let below = (place as usize).min(last - 1);
     let share = place - below as f64;
     // Mixed as sRGB, where even steps look even.

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::error::{Error, Result};
 use crate::film::{Film, bits_differ};
+use crate::math;
 
 pub use heat::heat_map;
 pub use ulp::ulp_distance;
@@ -48,7 +49,7 @@ pub fn compare(a: &Film, b: &Film) -> Result<Comparison> {
     let pairs = || a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
     let pixels = a.pixels.iter().zip(&b.pixels);
     let differing_pixels = pixels.filter(|&(&a, &b)| bits_differ(a, b)).count() as u64;
-    let squares: f64 = pairs().map(|(&a, &b)| difference(a, b).powi(2)).sum();
+    let squares: f64 = pairs().map(|(&a, &b)| difference(a, b)).map(|d| d * d).sum();
     let rmse = (squares / (a.pixels.len() * 3) as f64).sqrt();
     Ok(Comparison {
         width: a.width,
@@ -59,7 +60,7 @@ pub fn compare(a: &Film, b: &Film) -> Result<Comparison> {
         largest_difference: pairs().map(|(&a, &b)| difference(a, b)).fold(0.0, f64::max),
         rmse,
         // Not -20 log 0, which is as infinite, lest it be "-0" at an RMSE of 1.
-        psnr: 20.0 * rmse.recip().log10(),
+        psnr: 20.0 * math::log10(rmse.recip()),
         non_finite: [a, b].map(non_finite),
     })
 }

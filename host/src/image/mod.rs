@@ -4,9 +4,11 @@
 //! |---|---|---|
 //! | PNG | sRGB, 8 or 16 bit | what is outside \[0, 1\], and rounds |
 //! | OpenEXR | linear, 32-bit floats | nothing at an exposure of 0 |
+//! | OpenEXR, half | linear, 16-bit floats | what is beyond ±65504, and about 0.05 % |
 //! | Radiance HDR | linear, 8 bit and a shared exponent | negative values, and about 1 % |
 
 mod encode;
+mod exr;
 mod read;
 mod transfer;
 
@@ -15,6 +17,7 @@ use std::path::Path;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::math;
 use crate::output::Destination;
 
 pub use encode::encode;
@@ -91,11 +94,24 @@ pub struct Encoding {
     pub exposure_ev: f32,
     /// Of a PNG.
     pub bits: BitDepth,
+    /// Floats of 16 bits instead of 32; only in an EXR.
+    pub half: bool,
 }
 
 impl Encoding {
     /// More stops than lie between the least and the greatest normal `f32`.
     pub const MAX_EXPOSURE: f32 = 256.0;
+
+    /// Whether a file of the format can be written so.
+    ///
+    /// # Errors
+    /// Those of [`Encoding::scale`], and floats of 16 bits in another format than EXR.
+    pub fn check(&self, format: Format) -> Result<()> {
+        if self.half && format != Format::Exr {
+            return Err(Error::new(format!("--half is for .exr files, not for {format}; leave it out or write .exr")));
+        }
+        self.scale().map(drop)
+    }
 
     /// The factor of the exposure.
     ///
@@ -103,7 +119,7 @@ impl Encoding {
     /// An exposure that is out of range or not a number.
     pub fn scale(&self) -> Result<f64> {
         if self.exposure_ev.abs() <= Self::MAX_EXPOSURE {
-            Ok(f64::from(self.exposure_ev).exp2())
+            Ok(math::exp2(self.exposure_ev.into()))
         } else {
             Err(Error::new(format!(
                 "an exposure of {} stops is out of range; choose one from -{max} to {max}",

@@ -8,7 +8,7 @@ use super::*;
 
 const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
 
-const SIXTEEN: Encoding = Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen };
+const SIXTEEN: Encoding = Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen, half: false };
 
 fn bytes(film: &Film, format: Format, encoding: &Encoding) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -41,6 +41,52 @@ fn exr_keeps_every_bit() {
 }
 
 #[test]
+fn an_exr_is_compressed_and_its_bytes_do_not_hang_on_the_threads() {
+    let flat = Film::new(256, 1100).unwrap();
+    let size = flat.pixels.len() * 12;
+    assert!(bytes(&flat, Format::Exr, &Encoding::default()).len() < size / 50);
+    let noise =
+        (0..flat.pixels.len() as u32).map(|i| [0, 1, 2].map(|c| f32::from_bits((3 * i + c).wrapping_mul(0x9e37_79b9))));
+    let noise = Film::from_pixels(256, 1100, noise.collect()).unwrap();
+    let of_threads = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| bytes(&noise, Format::Exr, &Encoding::default()))
+    };
+    let (one, many) = (of_threads(1), of_threads(5));
+    assert!(one == many);
+    assert!(noise.bits_equal(&decode(Cursor::new(one)).unwrap()));
+}
+
+#[test]
+fn half_an_exr_has_the_nearest_floats_of_16_bits_and_keeps_the_finite_finite() {
+    let half = |exposure_ev| Encoding { exposure_ev, half: true, ..Encoding::default() };
+    let values = [
+        [0.1, -0.0, 65_504.0],
+        [65_519.9, 65_520.0, -1e30],
+        [f32::NAN, f32::INFINITY, f32::NEG_INFINITY],
+        [6e-8, 1e-9, f32::MAX],
+    ];
+    let film = Film::from_pixels(2, 2, values.to_vec()).unwrap();
+    let back = round_trip(&film, Format::Exr, &half(0.0));
+    assert_eq!(back.pixels[0], [0.099_975_586, 0.0, 65_504.0]);
+    assert!(back.pixels[0][1].is_sign_negative());
+    assert_eq!(back.pixels[1], [65_504.0, 65_504.0, -65_504.0]);
+    assert!(back.pixels[2][0].is_nan());
+    assert_eq!(back.pixels[2][1..], [f32::INFINITY, f32::NEG_INFINITY]);
+    assert_eq!(back.pixels[3], [2f32.powi(-24), 0.0, 65_504.0]);
+    let brighter = round_trip(&film, Format::Exr, &half(1.0));
+    assert_eq!(brighter.pixels[0], [0.199_951_17, 0.0, 65_504.0]);
+    let noise = (0..4096).map(|i| [i, i + 1, i + 2].map(|i| (i * 7919 % 4099) as f32 / 4099.0)).collect();
+    let noise = Film::from_pixels(64, 64, noise).unwrap();
+    let (whole, halved) = (bytes(&noise, Format::Exr, &Encoding::default()), bytes(&noise, Format::Exr, &half(0.0)));
+    assert!(2 * halved.len() < whole.len() + 500, "{} {}", halved.len(), whole.len());
+    for format in [Format::Png, Format::Hdr] {
+        let error = encode(&film, format, &half(0.0), io::sink()).unwrap_err();
+        assert!(error.message.contains("--half is for .exr"), "{error}");
+    }
+}
+
+#[test]
 fn png_keeps_every_value_it_has() {
     let depths = [(Encoding::default(), 255_u16), (SIXTEEN, 65_535)];
     for (encoding, steps) in depths {
@@ -67,6 +113,15 @@ fn hdr_keeps_a_hundredth_of_the_brightest_channel() {
         assert!(close, "{a:?} {b:?}");
     }
     assert!(back.bits_equal(&round_trip(&back, Format::Hdr, &Encoding::default())));
+}
+
+#[test]
+fn hdr_just_below_a_power_of_two_has_the_lesser_exponent() {
+    for power in [2f32.powi(-100), 0.25, 1.0, 1024.0, 2f32.powi(100)] {
+        let film = Film::from_pixels(1, 1, vec![[power.next_down(), power / 2.0, 0.0]]).unwrap();
+        let back = round_trip(&film, Format::Hdr, &Encoding::default());
+        assert_eq!(back.pixels[0], [255.0 / 256.0 * power, power / 2.0, 0.0]);
+    }
 }
 
 #[test]

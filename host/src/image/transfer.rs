@@ -1,10 +1,12 @@
 //! The sRGB transfer function (IEC 61966-2-1), between linear light and what a PNG stores.
 
+use crate::math;
+
 /// From linear light to the sRGB signal, both in [0, 1]. What is less, and NaN, becomes 0;
 /// what is more becomes 1.
 pub fn linear_to_srgb(linear: f64) -> f64 {
     if linear > 0.003_130_8 {
-        1.055 * linear.min(1.0).powf(1.0 / 2.4) - 0.055
+        1.055 * math::pow(linear.min(1.0), 1.0 / 2.4) - 0.055
     } else if linear > 0.0 {
         12.92 * linear
     } else {
@@ -14,7 +16,7 @@ pub fn linear_to_srgb(linear: f64) -> f64 {
 
 /// From the sRGB signal to linear light, both in [0, 1].
 pub fn srgb_to_linear(signal: f64) -> f64 {
-    if signal <= 0.040_45 { signal / 12.92 } else { ((signal + 0.055) / 1.055).powf(2.4) }
+    if signal <= 0.040_45 { signal / 12.92 } else { math::pow((signal + 0.055) / 1.055, 2.4) }
 }
 
 /// The nearest of `steps + 1` sRGB values for linear light; `steps` is 255 or 65,535.

@@ -22,6 +22,7 @@ pub use words::{NodeWords, TriangleWords};
 use normalisation::{flushed, flushed_number};
 
 use crate::error::{Error, Result};
+use crate::math;
 use crate::scene::{Background, Camera, Light, Material, Scene, Settings};
 
 /// References added by splitting triangles, as a share of the triangles.
@@ -262,7 +263,7 @@ fn light(light: &Light, index: usize, normalisation: &Normalisation) -> Result<L
             record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
         }
         Light::Spot { position, target, colour, outer, inner } => {
-            let cosine = |degrees: f32| flushed_number(f64::from(degrees).to_radians().cos() as f32);
+            let cosine = |degrees: f32| flushed_number(math::cos(f64::from(degrees).to_radians()) as f32);
             let axis = unit_between(position, target);
             record(at(position)?, LightRecord::SPOT, colour, axis, (cosine(inner), cosine(outer)))
         }
@@ -291,7 +292,7 @@ fn frame(
         let message = format!("camera \"{}\" looks along its up vector or at itself", camera.name);
         return Err(Error::new(format!("{message}: move its target or turn its up")));
     }
-    let half_height = (f64::from(camera.fov).to_radians() / 2.0).tan();
+    let half_height = math::tan(f64::from(camera.fov).to_radians() / 2.0);
     // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
     let step = half_height / f64::from(height * settings.samples);
     let vector = |v: DVec3, word| pack(flushed(v.as_vec3()), word);

@@ -3,6 +3,8 @@
 use eyerays_shader::real::TINY;
 use glam::{DVec3, Vec3};
 
+use crate::math;
+
 /// How much larger a scene must become for it to be moved.
 const WORTH_MOVING: f64 = 8.0;
 
@@ -54,7 +56,11 @@ fn middle(least: Vec3, greatest: Vec3) -> Vec3 {
 fn scale(least: Vec3, greatest: Vec3, origin: Vec3) -> f64 {
     let [least, greatest] = [least, greatest].map(|p| (p.as_dvec3() - origin.as_dvec3()).abs().max_element());
     let extent = least.max(greatest);
-    if extent == 0.0 { 1.0 } else { (-extent.log2().ceil()).exp2() }
+    if extent == 0.0 {
+        return 1.0;
+    }
+    let below = math::power_of_two_below(extent);
+    1.0 / if below == extent { extent } else { 2.0 * below }
 }
 
 /// Without what a device may take for zero.
@@ -82,6 +88,10 @@ mod tests {
         }
         assert_eq!(of(&[Vec3::ZERO, Vec3::splat(-555.0)]).scale, 1.0 / 1024.0);
         assert_eq!(of(&[Vec3::ZERO]).scale, 1.0);
+        for power in [1.0, 1024.0, 2f32.powi(-40), 2f32.powi(127)] {
+            let scale = |x: f32| of(&[Vec3::ZERO, Vec3::splat(-x)]).scale * f64::from(power);
+            assert_eq!([power, power.next_up(), power.next_down()].map(scale), [1.0, 0.5, 1.0]);
+        }
     }
 
     #[test]

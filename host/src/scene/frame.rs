@@ -3,6 +3,7 @@
 use glam::{DVec3, Vec3};
 
 use super::{Background, Camera, Light, Mesh};
+use crate::math;
 
 /// From the mesh to the eye: right, above and in front of it.
 const THREE_QUARTER: DVec3 = DVec3::new(0.6, 0.45, 0.66);
@@ -16,8 +17,8 @@ const MARGIN: f64 = 1.05;
 pub fn default_camera(mesh: &Mesh, aspect: f64) -> Option<Camera> {
     let (center, radius) = sphere(mesh);
     let half = f64::from(FOV).to_radians() / 2.0;
-    let across = (half.tan() * aspect).atan();
-    let distance = MARGIN * radius / half.min(across).sin();
+    let across = math::atan(math::tan(half) * aspect);
+    let distance = MARGIN * radius / math::sin(half.min(across));
     let eye = (center + THREE_QUARTER.normalize() * distance).as_vec3();
     let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, fov: FOV };
     (eye.is_finite() && camera.target.is_finite()).then_some(camera)

@@ -7,6 +7,7 @@ use super::normal::unit;
 use super::range::Range;
 use super::table::Table;
 use crate::error::Result;
+use crate::math;
 
 /// An affine map that can be undone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,6 +75,6 @@ fn sin_cos(degrees: f64) -> (f64, f64) {
         90.0 => (1.0, 0.0),
         180.0 => (0.0, -1.0),
         270.0 => (-1.0, 0.0),
-        _ => turn.to_radians().sin_cos(),
+        _ => math::sin_cos(turn.to_radians()),
     }
 }

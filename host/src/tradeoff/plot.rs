@@ -6,6 +6,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use super::scale::Scale;
 use super::{Record, Report, Wish};
 use crate::error::{Error, Result};
+use crate::math;
 use crate::method::TriangleTest;
 use crate::render::Precision;
 
@@ -181,13 +182,13 @@ fn title(report: &Report) -> String {
 
 /// Two digits, as marks have.
 fn rounded(x: f64) -> f64 {
-    let step = 10f64.powi(x.log10().floor() as i32 - 1);
+    let step = math::pow(10.0, math::log10(x).floor() - 1.0);
     (x / step).round() * step
 }
 
 /// Without an exponent.
 fn plain(x: f64) -> String {
-    let decimals = (1.0 - x.log10().floor()).clamp(0.0, 9.0) as usize;
+    let decimals = (1.0 - math::log10(x).floor()).clamp(0.0, 9.0) as usize;
     let text = format!("{x:.decimals$}");
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
 }

@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 
+use crate::math;
+
 /// Fewer marks tell too little.
 const FEWEST: usize = 4;
 
@@ -40,7 +42,7 @@ impl Scale {
 
     /// Where a number lies: 0 at the start, 1 at the end.
     pub fn along(&self, x: f64) -> f64 {
-        (x / self.0.start).ln() / (self.0.end / self.0.start).ln()
+        math::ln(x / self.0.start) / math::ln(self.0.end / self.0.start)
     }
 
     /// Powers of ten where there are enough of them, else also their doubles and fivefolds, or more still.
@@ -51,8 +53,8 @@ impl Scale {
     }
 
     fn multiples(&self, steps: &[f64]) -> Vec<f64> {
-        let decades = self.0.start.log10().floor() as i32..=self.0.end.log10().ceil() as i32;
-        let all = decades.flat_map(|decade| steps.iter().map(move |step| step * 10f64.powi(decade)));
+        let decades = math::log10(self.0.start).floor() as i32..=math::log10(self.0.end).ceil() as i32;
+        let all = decades.flat_map(|decade| steps.iter().map(move |step| step * math::pow(10.0, decade.into())));
         all.filter(|&mark| self.holds(mark)).collect()
     }
 }

@@ -1,0 +1,73 @@
+//! Films to OpenEXR files, compressed by ZIP, which loses nothing.
+
+use std::io::Cursor;
+
+use exr::block::writer::ChunksWriter;
+use exr::block::{self, UncompressedBlock};
+use exr::error::UnitResult;
+use exr::image::write::layers::{LayersWriter, WritableLayers};
+use exr::prelude::*;
+use rayon::prelude::*;
+
+use crate::film::Film;
+
+/// Blocks of 16 lines that are compressed at once: enough for every core, and few of them in memory.
+const BATCH: usize = 64;
+
+/// The file's bytes with floats of 32 bits, their values times `scale`; the very bits where that is 1.
+pub(super) fn single(film: &Film, scale: f64) -> Result<Vec<u8>> {
+    bytes(film, |v| exposed(v, scale))
+}
+
+/// The file's bytes with floats of 16 bits, the nearest to the values times `scale`. What is finite stays finite:
+/// beyond ±65504, the greatest of these floats, it becomes that.
+pub(super) fn half(film: &Film, scale: f64) -> Result<Vec<u8>> {
+    bytes(film, |v| nearest_half(exposed(v, scale)))
+}
+
+/// A value as it is exposed.
+pub(super) fn exposed(v: f32, scale: f64) -> f32 {
+    // A NaN's bits would not outlive the product.
+    if scale == 1.0 { v } else { (f64::from(v) * scale) as f32 }
+}
+
+fn nearest_half(v: f32) -> f16 {
+    let most = f16::MAX.to_f32();
+    f16::from_f32(if v.is_finite() { v.clamp(-most, most) } else { v })
+}
+
+fn bytes<T>(film: &Film, convert: impl Fn(f32) -> T + Sync) -> Result<Vec<u8>>
+where
+    T: IntoSample,
+{
+    let size = Vec2(film.width as usize, film.height as usize);
+    let pixel = |Vec2(x, y): Vec2<usize>| {
+        let [r, g, b] = film.pixels[y * size.0 + x];
+        (convert(r), convert(g), convert(b))
+    };
+    let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, SpecificChannels::rgb(pixel));
+    let mut bytes = Cursor::new(Vec::new());
+    write(&image, &mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+/// Compresses on every core. The crate can as well (its feature `rayon`), but would then also read on threads on
+/// which a damaged file's panic ends the whole program.
+fn write<'a, L: WritableLayers<'a>>(image: &'a Image<L>, bytes: &mut Cursor<Vec<u8>>) -> UnitResult {
+    let headers = image.layer_data.infer_headers(&image.attributes);
+    let layers = image.layer_data.create_writer(&headers);
+    block::write(bytes, headers, true, |meta, out| {
+        let blocks: Vec<_> = block::enumerate_ordered_header_block_indices(&meta.headers).collect();
+        for batch in blocks.chunks(BATCH) {
+            let compress = |&(place, index)| {
+                let data = layers.extract_uncompressed_block(&meta.headers, index);
+                Ok((place, UncompressedBlock { index, data }.compress_to_chunk(&meta.headers)?))
+            };
+            let chunks: Result<Vec<_>> = batch.par_iter().map(compress).collect();
+            for (place, chunk) in chunks? {
+                out.write_chunk(place, chunk)?;
+            }
+        }
+        Ok(())
+    })
+}

@@ -7,6 +7,7 @@ use glam::Vec3;
 pub fn empty() -> Scene {
     Scene {
         mesh: Mesh::default(),
+        parts: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),
         cameras: vec![Camera { name: "front".into(), eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0 }],

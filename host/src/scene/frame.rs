@@ -11,9 +11,9 @@ const FOV: f32 = 40.0;
 /// Room around the bounding sphere.
 const MARGIN: f64 = 1.05;
 
-/// A camera whose image, `aspect` times as wide as high, holds the mesh's bounding sphere; `None` where
-/// the mesh is so large that no such place exists in single precision.
-pub fn camera(mesh: &Mesh, aspect: f64) -> Option<Camera> {
+/// The camera that a scene gets which names none: its image, `aspect` times as wide as high, holds the mesh's
+/// bounding sphere. `None` where the mesh is so large that no such place exists in single precision.
+pub fn default_camera(mesh: &Mesh, aspect: f64) -> Option<Camera> {
     let (center, radius) = sphere(mesh);
     let half = f64::from(FOV).to_radians() / 2.0;
     let across = (half.tan() * aspect).atan();
@@ -38,11 +38,10 @@ pub fn background() -> Background {
 
 /// A sphere around the mesh's vertices, never of radius zero.
 fn sphere(mesh: &Mesh) -> (DVec3, f64) {
-    let points = || mesh.positions.iter().map(|position| position.as_dvec3());
-    let low = points().reduce(DVec3::min).unwrap_or(DVec3::ZERO);
-    let high = points().reduce(DVec3::max).unwrap_or(DVec3::ZERO);
+    let [low, high] = mesh.bounds().map(Vec3::as_dvec3);
     let center = (low + high) / 2.0;
-    let radius = points().map(|point| point.distance(center)).fold(0.0, f64::max);
+    let distances = mesh.positions.iter().map(|position| position.as_dvec3().distance(center));
+    let radius = distances.fold(0.0, f64::max);
     // The eye must differ from the target once both are rounded to single precision.
     let least = center.abs().max_element() * 1e-4;
     let radius = radius.max(least);

@@ -10,7 +10,7 @@ use super::frame;
 use super::material::Fields;
 use super::merge::{Merge, Override, Overrides};
 use super::obj;
-use super::part::{self, Files, Part, is};
+use super::part::{self, Files, Placed, is};
 use super::range::Range;
 use super::source::Source;
 use super::table::Table;
@@ -38,14 +38,16 @@ pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
 
 fn load_obj(path: &Path) -> Result<(Scene, Vec<String>)> {
     let obj = obj::load(path)?;
-    let part = Part { mesh: obj.mesh, materials: obj.materials, material: None };
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let placed = Placed { name, mesh: obj.mesh, materials: obj.materials, material: None };
     let mut merge = Merge::default();
-    merge.add(part, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
-    let (mesh, materials) = merge.finish();
+    merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
+    let (mesh, parts, materials) = merge.finish();
     let settings = Settings::default();
     let scene = Scene {
         cameras: framing(path, &mesh, &settings)?,
         mesh,
+        parts,
         materials,
         lights: frame::lights(),
         background: frame::background(),
@@ -57,7 +59,7 @@ fn load_obj(path: &Path) -> Result<(Scene, Vec<String>)> {
 
 fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>> {
     let (width, height) = settings.size;
-    match frame::camera(mesh, f64::from(width) / f64::from(height)) {
+    match frame::default_camera(mesh, f64::from(width) / f64::from(height)) {
         Some(camera) => Ok(vec![camera]),
         None => {
             let fault = "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
@@ -100,13 +102,14 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
     // A section's misspelt name is a likelier fault than a missing section.
     table.done()?;
     let (merge, warnings) = merge(path, meshes, &overrides)?;
-    let (mesh, materials) = merge.finish();
+    let (mesh, parts, materials) = merge.finish();
     let cameras = match cameras.is_empty() {
         true => framing(path, &mesh, &settings)?,
         false => cameras,
     };
     let scene = Scene {
         mesh,
+        parts,
         materials,
         lights: lights.unwrap_or_else(frame::lights),
         cameras,
@@ -141,9 +144,9 @@ fn merge(path: &Path, tables: Vec<Table>, overrides: &Overrides) -> Result<(Merg
     let mut files = Files::new(file::folder(path));
     let mut merge = Merge::default();
     for mut table in tables {
-        let part = part::read(&mut table, &mut files)?;
-        let key = if part.material.is_some() { "material" } else { "file" };
-        let fault = merge.add(part, overrides).err();
+        let placed = part::read(&mut table, &mut files)?;
+        let key = if placed.material.is_some() { "material" } else { "file" };
+        let fault = merge.add(placed, overrides).err();
         if let Some(fault) = fault {
             return Err(table.fault_of(key, fault));
         }

@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, HashMap};
 use glam::Vec3;
 
 use super::material::{DEFAULT, Fields};
-use super::part::Part;
+use super::part::Placed;
 use super::statement::too_many;
 use super::suggest::suggest;
-use super::{MAX_TRIANGLES, Material, Mesh, Unplaced};
+use super::{MAX_TRIANGLES, Material, Mesh, Part, Unplaced};
 
 /// A `[[material]]` table, and whether any surface has it.
 pub struct Override {
@@ -42,6 +42,7 @@ pub type Overrides = BTreeMap<String, Override>;
 #[derive(Default)]
 pub struct Merge {
     mesh: Mesh,
+    parts: Vec<Part>,
     materials: Vec<Material>,
     by_name: HashMap<String, Vec<u32>>,
 }
@@ -51,43 +52,45 @@ impl Merge {
     ///
     /// # Errors
     /// Its material is unknown, or the triangles are too many to number.
-    pub fn add(&mut self, part: Part, overrides: &Overrides) -> Unplaced<()> {
-        if self.mesh.triangles.len() + part.mesh.triangles.len() > MAX_TRIANGLES {
+    pub fn add(&mut self, placed: Placed, overrides: &Overrides) -> Unplaced<()> {
+        if self.mesh.triangles.len() + placed.mesh.triangles.len() > MAX_TRIANGLES {
             return Err(too_many(MAX_TRIANGLES));
         }
-        let all = part.material.as_deref();
-        let all = all.map(|name| self.named(name, &part, overrides)).transpose()?;
-        let mut numbers = vec![all; part.materials.len()];
+        let all = placed.material.as_deref();
+        let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
+        let mut numbers = vec![all; placed.materials.len()];
         let first = self.mesh.positions.len() as u32;
-        for &local in &part.mesh.materials {
+        for &local in &placed.mesh.materials {
             let local = local as usize;
             let number = *numbers[local].get_or_insert_with(|| {
-                let (name, fields) = &part.materials[local];
+                let (name, fields) = &placed.materials[local];
                 self.number(name, *fields, overrides)
             });
             self.mesh.materials.push(number);
         }
+        let triangles = self.mesh.triangles.len()..self.mesh.materials.len();
+        self.parts.push(placed.part(triangles));
         let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
-        self.mesh.triangles.extend(part.mesh.triangles.into_iter().map(shift));
-        self.mesh.positions.extend(part.mesh.positions);
-        self.mesh.normals.extend(part.mesh.normals);
+        self.mesh.triangles.extend(placed.mesh.triangles.into_iter().map(shift));
+        self.mesh.positions.extend(placed.mesh.positions);
+        self.mesh.normals.extend(placed.mesh.normals);
         self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
         Ok(())
     }
 
-    /// The whole mesh and the materials that it uses, each once.
-    pub fn finish(mut self) -> (Mesh, Vec<Material>) {
+    /// The whole mesh, its parts, and the materials that it uses, each once.
+    pub fn finish(mut self) -> (Mesh, Vec<Part>, Vec<Material>) {
         if self.mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
             self.mesh.normals = Vec::new();
         }
-        (self.mesh, self.materials)
+        (self.mesh, self.parts, self.materials)
     }
 
-    fn named(&mut self, name: &str, part: &Part, overrides: &Overrides) -> Unplaced<u32> {
+    fn named(&mut self, name: &str, placed: &Placed, overrides: &Overrides) -> Unplaced<u32> {
         // The last of a name counts, as in the file itself.
-        let own = part.materials.iter().rev().find(|(own, _)| own == name);
+        let own = placed.materials.iter().rev().find(|(own, _)| own == name);
         if own.is_none() && !overrides.contains_key(name) && name != DEFAULT {
-            let own = part.materials.iter().map(|(own, _)| own.as_str());
+            let own = placed.materials.iter().map(|(own, _)| own.as_str());
             let known = own.chain(overrides.keys().map(String::as_str));
             return Err(format!("unknown material {name:?}; {}", suggest(name, known)));
         }

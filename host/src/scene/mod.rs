@@ -30,6 +30,7 @@ mod transform;
 #[cfg(test)]
 mod tests;
 
+pub use frame::default_camera;
 pub use load::load;
 pub(crate) use load::read_table;
 pub(crate) use range::Range;
@@ -50,6 +51,8 @@ pub const MAX_TRIANGLES: usize = NodeRef::MAX_INDEX as usize;
 pub struct Scene {
     /// Every surface, merged and transformed to world units.
     pub mesh: Mesh,
+    /// Which triangles of the mesh came of what, in file order; together all of them.
+    pub parts: Vec<Part>,
     /// What the mesh's materials index; never empty.
     pub materials: Vec<Material>,
     /// In file order, which is the order of their sums.
@@ -64,6 +67,18 @@ pub struct Scene {
     pub settings: Settings,
 }
 
+/// What one `[[mesh]]` of a scene file adds to the scene's mesh, or the bare mesh file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// The file as the scene names it or the shape's word, and the material where one is named: `sphere (glass)`.
+    /// Several parts may have the same name.
+    pub name: String,
+    /// Where its triangles stand in [`Mesh::triangles`]; never empty.
+    pub triangles: std::ops::Range<usize>,
+    /// Its least and its greatest corner in world units.
+    pub bounds: [Vec3; 2],
+}
+
 /// An indexed triangle mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
@@ -75,6 +90,14 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
     pub materials: Vec<u32>,
+}
+
+impl Mesh {
+    /// The least and the greatest corner of the vertices, in their units; zeros where there are none.
+    pub fn bounds(&self) -> [Vec3; 2] {
+        let bound = |choose: fn(Vec3, Vec3) -> Vec3| self.positions.iter().copied().reduce(choose);
+        [Vec3::min, Vec3::max].map(|choose| bound(choose).unwrap_or_default())
+    }
 }
 
 /// The thesis' illumination model (chapters 3.1 and 3.3); colours are linear RGB in [0, 1].

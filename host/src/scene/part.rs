@@ -10,7 +10,7 @@ use super::obj::{self, Obj};
 use super::range::Range;
 use super::table::Table;
 use super::transform::Transform;
-use super::{Mesh, file, normal, shape};
+use super::{Mesh, Part, file, normal, shape};
 use crate::error::Result;
 
 /// Meshes of files already read, since a scene may place one many times.
@@ -22,11 +22,24 @@ pub struct Files<'p> {
 }
 
 /// A mesh in place, and the materials that its triangles index.
-pub struct Part {
+pub struct Placed {
+    /// The file as the scene names it, or the shape's word.
+    pub name: String,
     pub mesh: Mesh,
     pub materials: Vec<(String, Fields)>,
     /// This one instead of them all.
     pub material: Option<String>,
+}
+
+impl Placed {
+    /// What users are told of the part whose triangles these are.
+    pub fn part(&self, triangles: std::ops::Range<usize>) -> Part {
+        let name = match &self.material {
+            Some(material) => format!("{} ({material})", self.name),
+            None => self.name.clone(),
+        };
+        Part { name, triangles, bounds: self.mesh.bounds() }
+    }
 }
 
 impl<'p> Files<'p> {
@@ -51,11 +64,11 @@ impl<'p> Files<'p> {
 /// # Errors
 /// A file that cannot be read, no file and no shape or both, a number out of range, or a transform that
 /// leads out of single precision.
-pub fn read(table: &mut Table, files: &mut Files) -> Result<Part> {
+pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
     let material = table.name("material")?;
     let smooth = table.flag("smooth")?;
     let transform = Transform::read(table)?;
-    let (mut mesh, materials) = source(table, files)?;
+    let (name, mut mesh, materials) = source(table, files)?;
     match smooth {
         Some(true) => normal::smooth(&mut mesh),
         Some(false) => mesh.normals.clear(),
@@ -67,15 +80,18 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Part> {
     if !mesh.positions.iter().all(|position| position.is_finite()) {
         return Err(table.fault("the mesh leaves the range of single precision; make it smaller"));
     }
-    Ok(Part { mesh, materials, material })
+    Ok(Placed { name, mesh, materials, material })
 }
 
-type Source = (Mesh, Vec<(String, Fields)>);
+type Source = (String, Mesh, Vec<(String, Fields)>);
 
 fn source(table: &mut Table, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, files),
-        (false, true) => Ok((from_shape(table)?, vec![(DEFAULT.into(), Fields::default())])),
+        (false, true) => {
+            let (word, mesh) = from_shape(table)?;
+            Ok((word.into(), mesh, vec![(DEFAULT.into(), Fields::default())]))
+        }
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
         (false, false) => Err(table.fault("[[mesh]] needs \"file\" or \"shape\"; add one")),
     }
@@ -94,7 +110,7 @@ fn from_file(table: &mut Table, files: &mut Files) -> Result<Source> {
         return Err(table.fault_of("file", fault));
     }
     let obj = files.load(&name)?;
-    Ok((obj.mesh.clone(), obj.materials.clone()))
+    Ok((name, obj.mesh.clone(), obj.materials.clone()))
 }
 
 /// Does the path end like this, in capitals or not?
@@ -109,7 +125,7 @@ enum Shape {
     Box,
 }
 
-fn from_shape(table: &mut Table) -> Result<Mesh> {
+fn from_shape(table: &mut Table) -> Result<(&'static str, Mesh)> {
     let words = [("sphere", Shape::Sphere), ("quad", Shape::Quad), ("box", Shape::Box)];
     let shape = table.word("shape", &words)?;
     match table.need("shape", shape)? {
@@ -118,12 +134,12 @@ fn from_shape(table: &mut Table) -> Result<Mesh> {
             let center = table.triple("center", Range::ANY)?.unwrap_or(Vec3::ZERO);
             let radius = table.number("radius", Range::LENGTH)?.unwrap_or(1.0);
             let subdivisions = table.whole("subdivisions", 0, 8)?.unwrap_or(5);
-            Ok(shape::sphere(center, radius, subdivisions))
+            Ok(("sphere", shape::sphere(center, radius, subdivisions)))
         }
         Shape::Quad => {
             table.rename("a quad");
             let corners = table.corners("corners")?;
-            Ok(shape::quad(table.need("corners", corners)?))
+            Ok(("quad", shape::quad(table.need("corners", corners)?)))
         }
         Shape::Box => {
             table.rename("a box");
@@ -135,7 +151,7 @@ fn from_shape(table: &mut Table) -> Result<Mesh> {
                 let fault = "the box's max is not above its min on every axis; swap them";
                 return Err(table.fault_of("max", fault));
             }
-            Ok(shape::cuboid(min, max))
+            Ok(("box", shape::cuboid(min, max)))
         }
     }
 }

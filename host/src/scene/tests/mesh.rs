@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{Folder, TRIANGLE};
 use crate::scene::transform::Transform;
-use crate::scene::{Mesh, Scene, frame, normal, shape};
+use crate::scene::{Mesh, Scene, default_camera, normal, shape};
 
 fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [Vec3; 3] {
     triangle.map(|vertex| mesh.positions[vertex as usize])
@@ -137,7 +137,7 @@ fn smooth_decides_over_a_file_s_normals() {
 fn the_framing_camera_sees_every_vertex() {
     for (at, radius, aspect) in [(0.0, 1.0, 1.0), (1e3, 0.5, 2.0), (-5.0, 1e6, 0.4), (0.0, 1e-6, 1.0)] {
         let ball = shape::sphere(Vec3::splat(at), radius, 3);
-        let camera = frame::camera(&ball, aspect).unwrap();
+        let camera = default_camera(&ball, aspect).unwrap();
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
@@ -159,6 +159,6 @@ fn the_framing_camera_sees_every_vertex() {
 #[test]
 fn a_mesh_of_one_place_is_framed() {
     let dot = Mesh { positions: vec![Vec3::splat(7.0)], ..Mesh::default() };
-    let camera = frame::camera(&dot, 1.0).unwrap();
+    let camera = default_camera(&dot, 1.0).unwrap();
     assert_ne!(camera.eye, camera.target);
 }

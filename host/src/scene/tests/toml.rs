@@ -221,3 +221,22 @@ fn materials_of_one_name_in_two_files_stay_apart_and_a_file_twice_is_one() {
     assert_eq!(scene.materials[1].diffuse, Vec3::Y);
     assert_eq!(scene.mesh.triangles[2], [6, 7, 8]);
 }
+
+#[test]
+fn every_mesh_is_a_part_with_its_name_its_triangles_and_its_bounds() {
+    let scene = format!(
+        "{BALL}radius = 2\n[[mesh]]\nfile = \"a.obj\"\nmaterial = \"default\"\ntranslate = [0, 0, 9]\nscale = -1\n\
+        [[mesh]]\nshape = \"box\"\nmin = [0, 1, 2]\nmax = [3, 4, 5]\n"
+    );
+    let (scene, _) = load(&scene);
+    let names: Vec<_> = scene.parts.iter().map(|part| part.name.as_str()).collect();
+    assert_eq!(names, ["sphere", "a.obj (default)", "box"]);
+    let ranges: Vec<_> = scene.parts.iter().map(|part| part.triangles.clone()).collect();
+    assert_eq!(ranges, [0..20, 20..21, 21..33]);
+    assert_eq!(scene.parts[1].bounds, [Vec3::new(-1.0, -1.0, 9.0), Vec3::new(0.0, 0.0, 9.0)]);
+    assert_eq!(scene.parts[2].bounds, [Vec3::new(0.0, 1.0, 2.0), Vec3::new(3.0, 4.0, 5.0)]);
+    let folder = Folder::new(&[("a.obj", TRIANGLE)]);
+    let (bare, _) = folder.load("a.obj").unwrap();
+    assert_eq!((bare.parts[0].name.as_str(), bare.parts[0].triangles.clone()), ("a.obj", 0..1));
+    assert_eq!(bare.cameras, [crate::scene::default_camera(&bare.mesh, 1.0).unwrap()]);
+}

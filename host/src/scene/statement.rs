@@ -4,6 +4,9 @@ use std::collections::{HashMap, HashSet};
 use std::io::Write;
 use std::path::Path;
 
+use glam::Vec3;
+
+use super::face::Faces;
 use super::lines;
 use super::material::{DEFAULT, Fields};
 use super::tally::Tally;
@@ -23,10 +26,7 @@ pub struct State<'p> {
     pub path: &'p Path,
     /// What is written; the reader takes it away.
     pub text: Vec<u8>,
-    positions: usize,
-    textures: usize,
-    normals: usize,
-    triangles: usize,
+    faces: Faces,
     most: usize,
     material: u32,
     materials: Vec<(String, Fields)>,
@@ -45,10 +45,7 @@ impl<'p> State<'p> {
             path,
             // Normal 1 stands for "flat here", and object 0 has the default material.
             text: b"vn 0 0 0\no 0\n".to_vec(),
-            positions: 0,
-            textures: 0,
-            normals: 0,
-            triangles: 0,
+            faces: Faces::default(),
             most,
             material: 0,
             materials: vec![(DEFAULT.to_owned(), Fields::default())],
@@ -73,11 +70,11 @@ impl<'p> State<'p> {
         let fault = match key {
             "v" => self.position(rest),
             "vn" => self.normal(rest),
-            "f" | "fo" => self.face(rest),
+            "f" | "fo" => self.face(number, rest),
             "usemtl" => self.use_material(number, rest),
             "mtllib" => return self.library(number, rest),
             "vt" => {
-                self.textures += 1;
+                self.faces.textures += 1;
                 Ok(())
             }
             "o" | "g" | "s" | "l" | "p" => Ok(()),
@@ -90,19 +87,17 @@ impl<'p> State<'p> {
     }
 
     fn position(&mut self, rest: &str) -> Unplaced<()> {
-        self.positions += 1;
         // What follows is a weight or a colour, and tobj would divide by the one and want the other
         // on all vertices or none.
         let xyz = three("v", rest)?;
-        for word in xyz {
-            lines::number("v", word)?;
-        }
+        let [x, y, z] = xyz.map(|word| lines::number("v", word));
+        self.faces.positions.push(Vec3::new(x?, y?, z?));
         self.vector("v", xyz);
         Ok(())
     }
 
     fn normal(&mut self, rest: &str) -> Unplaced<()> {
-        self.normals += 1;
+        self.faces.normals += 1;
         let mut xyz = three("vn", rest)?;
         for word in xyz {
             match word.parse::<f32>() {
@@ -125,36 +120,12 @@ impl<'p> State<'p> {
         self.text.push(b'\n');
     }
 
-    fn face(&mut self, rest: &str) -> Unplaced<()> {
-        self.text.push(b'f');
-        let mut corners = 0;
-        for word in lines::words(rest) {
-            let (position, normal) = self.corner(word)?;
-            // Writing to a vector does not fail.
-            let _ = write!(self.text, " {position}//{}", normal + 1);
-            corners += 1;
-        }
-        self.text.push(b'\n');
-        if corners < 3 {
-            return Err(format!("a face has at least 3 corners, not {corners}; remove it"));
-        }
-        self.triangles += corners - 2;
-        if self.triangles > self.most {
+    fn face(&mut self, line: usize, rest: &str) -> Unplaced<()> {
+        self.faces.read(line, rest, &mut self.text)?;
+        if self.faces.triangles > self.most {
             return Err(too_many(self.most));
         }
         Ok(())
-    }
-
-    /// The position's and the normal's number from 1; the normal's is 0 where there is none.
-    fn corner(&self, word: &str) -> Unplaced<(usize, usize)> {
-        let mut parts = word.split('/');
-        let position = index("vertex", parts.next(), self.positions)?;
-        index("texture vertex", parts.next(), self.textures)?;
-        let normal = index("normal", parts.next(), self.normals)?;
-        if position == 0 || parts.next().is_some() {
-            return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
-        }
-        Ok((position, normal))
     }
 
     fn use_material(&mut self, line: usize, name: &str) -> Unplaced<()> {
@@ -215,9 +186,9 @@ impl<'p> State<'p> {
     /// # Errors
     /// There was no face.
     pub fn finish(mut self) -> Result<Found> {
-        if self.triangles == 0 {
-            let fault = "there is no face in it; is it a Wavefront OBJ mesh?";
-            return Err(Error::file(self.path, fault));
+        if self.faces.triangles == 0 {
+            let none = || Error::file(self.path, "there is no face in it; is it a Wavefront OBJ mesh?");
+            return Err(self.faces.left_out(self.path).unwrap_or_else(none));
         }
         let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
         // A missing file explains the missing materials.
@@ -225,6 +196,7 @@ impl<'p> State<'p> {
         let unknown = self.unknown.warn(self.path, "ignored: only polygons are read");
         self.warnings.extend(missing.or(lost));
         self.warnings.extend(unknown);
+        self.warnings.extend(self.faces.left_out(self.path).map(|fault| fault.to_string()));
         Ok(Found { materials: self.materials, warnings: self.warnings })
     }
 }
@@ -239,22 +211,5 @@ fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {
     match (words.next(), words.next(), words.next()) {
         (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
         _ => Err(format!("{key} takes three numbers, not {rest:?}; add what is missing")),
-    }
-}
-
-/// An index as a number from 1, of `count` that there are so far; 0 for one that is left out.
-fn index(what: &str, word: Option<&str>, count: usize) -> Unplaced<usize> {
-    let word = match word {
-        None | Some("") => return Ok(0),
-        Some(word) => word,
-    };
-    let Ok(number) = word.parse::<i64>() else {
-        return Err(format!("{what} {word:?} is no whole number; correct the face"));
-    };
-    let absolute = if number < 0 { (count as i64).saturating_add(number).saturating_add(1) } else { number };
-    match usize::try_from(absolute) {
-        Ok(absolute) if (1..=count).contains(&absolute) => Ok(absolute),
-        _ if number == 0 => Err(format!("{what} 0 does not exist; indices count from 1")),
-        _ => Err(format!("{what} {word} does not exist, {count} precede the face; correct it")),
     }
 }

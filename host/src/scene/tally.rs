@@ -20,11 +20,16 @@ impl Tally {
 
     /// The warning, if there was anything: what was first, how many more, and `why`.
     pub fn warn(&self, path: &Path, why: &str) -> Option<String> {
+        self.fault(path, why).map(|fault| fault.to_string())
+    }
+
+    /// As [`Tally::warn`], for when it is an error.
+    pub fn fault(&self, path: &Path, why: &str) -> Option<Error> {
         let (line, what) = self.first.as_ref()?;
         let more = match self.count - 1 {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        Some(Error::line(path, *line, format!("{what}{more} {why}")).to_string())
+        Some(Error::line(path, *line, format!("{what}{more} {why}")))
     }
 }

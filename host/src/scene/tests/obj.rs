@@ -138,6 +138,34 @@ fn indices_relative_polygons_marks_and_colours_are_read() {
     assert!(mesh.normals.is_empty());
 }
 
+/// A letter U in a slanted plane, whose gap a fan would fill.
+const U: &str = "v 0 0 0\nv 3 0 3\nv 3 3 3\nv 2 3 2\nv 2 1 2\nv 1 1 1\nv 1 3 1\nv 0 3 0\n";
+
+#[test]
+fn a_concave_face_leaves_its_gap_open() {
+    let mesh = mesh(&format!("{U}f 1 2 3 4 5 6 7 8\n"));
+    assert_eq!(mesh.triangles.len(), 6);
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| mesh.positions[vertex as usize]);
+    let areas = mesh.triangles.iter().map(corners).map(|[a, b, c]| (b - a).cross(c - a).dot(Vec3::new(-1.0, 0.0, 1.0)));
+    assert!(areas.clone().all(|area| area > 0.0));
+    // Seen from the front the U covers 7 of 9 squares; a triangle has half of what its edges span.
+    assert_eq!(areas.sum::<f32>() / 2.0, 2.0 * 7.0);
+}
+
+#[test]
+fn faces_that_cross_themselves_are_left_out_with_one_warning() {
+    let bow_ties = format!("{U}f 1 2 3\nf 1 3 2 8\n\nf 2 8 3 1\n");
+    let folder =
+        Folder::new(&[("a.obj", bow_ties.as_bytes()), ("b.obj", &bow_ties.replace("f 1 2 3\n", "").into_bytes())]);
+    let (scene, warnings) = folder.load("a.obj").unwrap();
+    assert_eq!(scene.mesh.triangles.len(), 1);
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    assert!(warning.contains("a.obj:10: face and 1 more left out: the outline crosses itself"), "{warning}");
+    assert_refused(&folder.refuse("b.obj"), "b.obj", Some(9), "crosses itself");
+}
+
 #[test]
 fn normals_are_of_unit_length_and_flat_where_there_are_none() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 5\nvn 0 0 0\nvn nan 0 1\n\

@@ -24,6 +24,7 @@ pub struct Faces {
     corners: Vec<Corner>,
     places: Vec<DVec3>,
     crossing: Tally,
+    absent: Tally,
 }
 
 /// Numbers from 1; the normal's is 0 where there is none.
@@ -41,7 +42,7 @@ impl Faces {
     pub fn read(&mut self, line: usize, rest: &str, text: &mut Vec<u8>) -> Unplaced<()> {
         self.corners.clear();
         for word in lines::words(rest) {
-            let corner = self.corner(word)?;
+            let corner = self.corner(line, word)?;
             self.corners.push(corner);
         }
         let count = self.corners.len();
@@ -66,20 +67,37 @@ impl Faces {
         Ok(())
     }
 
+    /// What was ignored.
+    pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
+        let absent = self.absent.warn(path, "ignored: none precede the face");
+        absent.into_iter().chain(self.left_out(path).map(|fault| fault.to_string()))
+    }
+
     /// The faces that cannot be drawn, if there were any.
     pub fn left_out(&self, path: &Path) -> Option<Error> {
         self.crossing.fault(path, "left out: the outline crosses itself; split it into simple polygons")
     }
 
-    fn corner(&self, word: &str) -> Unplaced<Corner> {
+    fn corner(&mut self, line: usize, word: &str) -> Unplaced<Corner> {
         let mut parts = word.split('/');
         let position = index("vertex", parts.next(), self.positions.len())?;
-        index("texture vertex", parts.next(), self.textures)?;
-        let normal = index("normal", parts.next(), self.normals)?;
+        self.extra(line, "texture vertex", parts.next(), self.textures)?;
+        let normal = self.extra(line, "normal", parts.next(), self.normals)?;
         if position == 0 || parts.next().is_some() {
             return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
         }
         Ok(Corner { position, normal })
+    }
+
+    /// As [`index`], of what a face can do without: exporters number normals that they do not write.
+    fn extra(&mut self, line: usize, what: &str, word: Option<&str>, count: usize) -> Unplaced<usize> {
+        match word {
+            Some(word) if count == 0 && word.parse().is_ok_and(|number: i64| number != 0) => {
+                self.absent.add(line, format_args!("{what} {word}"));
+                Ok(0)
+            }
+            _ => index(what, word, count),
+        }
     }
 }
 

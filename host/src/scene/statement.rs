@@ -1,13 +1,14 @@
 //! The statements of a mesh file, checked one by one and written anew for tobj.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
 use super::face::Faces;
-use super::lines;
+use super::lines::{self, NOT_UTF8};
 use super::material::{DEFAULT, Fields};
 use super::tally::Tally;
 use super::{Unplaced, file, mtl};
@@ -31,10 +32,12 @@ pub struct State<'p> {
     material: u32,
     materials: Vec<(String, Fields)>,
     by_name: HashMap<String, u32>,
-    libraries: HashSet<String>,
+    libraries: HashSet<PathBuf>,
     missing: Tally,
     lost: Tally,
     unknown: Tally,
+    nameless: Tally,
+    latin: Tally,
     warnings: Vec<String>,
 }
 
@@ -54,6 +57,8 @@ impl<'p> State<'p> {
             missing: Tally::default(),
             lost: Tally::default(),
             unknown: Tally::default(),
+            nameless: Tally::default(),
+            latin: Tally::default(),
             warnings: Vec::new(),
         }
     }
@@ -63,15 +68,21 @@ impl<'p> State<'p> {
     /// # Errors
     /// The line, or the material file that it names, makes no sense.
     pub fn line(&mut self, number: usize, line: &[u8]) -> Result<()> {
-        let at = |fault| Error::line(self.path, number, fault);
-        let Some((key, rest)) = lines::split(line).map_err(at)? else {
+        let text = lines::text(line);
+        if let Cow::Owned(_) = text {
+            self.latin.add(number, "line");
+        }
+        let Some((key, rest)) = lines::split(&text) else {
             return Ok(());
         };
         let fault = match key {
             "v" => self.position(rest),
             "vn" => self.normal(rest),
             "f" | "fo" => self.face(number, rest),
-            "usemtl" => self.use_material(number, rest),
+            "usemtl" => {
+                self.use_material(number, rest);
+                Ok(())
+            }
             "mtllib" => return self.library(number, rest),
             "vt" => {
                 self.faces.textures += 1;
@@ -79,7 +90,7 @@ impl<'p> State<'p> {
             }
             "o" | "g" | "s" | "l" | "p" => Ok(()),
             _ => {
-                self.unknown.add(number, &format!("statement {key:?}"));
+                self.unknown.add(number, format_args!("statement {key:?}"));
                 Ok(())
             }
         };
@@ -128,19 +139,18 @@ impl<'p> State<'p> {
         Ok(())
     }
 
-    fn use_material(&mut self, line: usize, name: &str) -> Unplaced<()> {
-        if name.is_empty() {
-            return Err("usemtl names no material; add a name".into());
+    fn use_material(&mut self, line: usize, name: &str) {
+        let number = self.by_name.get(name).copied();
+        match number {
+            None => self.lost.add(line, format_args!("material {name:?}")),
+            Some(_) if name.is_empty() => self.nameless.add(line, "usemtl"),
+            Some(_) => {}
         }
-        let number = self.by_name.get(name).copied().unwrap_or_else(|| {
-            self.lost.add(line, &format!("material {name:?}"));
-            0
-        });
+        let number = number.unwrap_or(0);
         if number != self.material {
             self.material = number;
             let _ = writeln!(self.text, "o {number}");
         }
-        Ok(())
     }
 
     fn library(&mut self, line: usize, names: &str) -> Result<()> {
@@ -149,29 +159,29 @@ impl<'p> State<'p> {
             return Err(Error::line(self.path, line, fault));
         }
         // The format lists files between blanks, but exporters write names that hold blanks.
-        if !self.material_file(line, names)? && names.contains(char::is_whitespace) {
-            for name in names.split_whitespace() {
-                if !self.material_file(line, name)? {
-                    self.missing.add(line, &format!("material file {name:?}"));
-                }
+        if self.material_file(line, names)? {
+            return Ok(());
+        }
+        for name in names.split_whitespace() {
+            if !self.material_file(line, name)? {
+                self.missing.add(line, format_args!("material file {name:?}"));
             }
-        } else if !self.libraries.contains(names) {
-            self.missing.add(line, &format!("material file {names:?}"));
         }
         Ok(())
     }
 
     /// Reads a material file once; false if there is none.
     fn material_file(&mut self, line: usize, name: &str) -> Result<bool> {
-        if self.libraries.contains(name) {
+        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
+        if self.libraries.contains(&path) {
             return Ok(true);
         }
-        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
         if !path.exists() {
             return Ok(false);
         }
-        self.libraries.insert(name.to_owned());
         let library = mtl::load(&path)?;
+        // Paths that differ in dots and slashes are equal.
+        self.libraries.insert(path);
         self.warnings.extend(library.warnings);
         for (name, fields) in library.materials {
             let number = self.materials.len() as u32;
@@ -193,10 +203,14 @@ impl<'p> State<'p> {
         let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
         // A missing file explains the missing materials.
         let lost = self.lost.warn(self.path, "in none of its material files: drawn grey");
-        let unknown = self.unknown.warn(self.path, "ignored: only polygons are read");
-        self.warnings.extend(missing.or(lost));
-        self.warnings.extend(unknown);
-        self.warnings.extend(self.faces.left_out(self.path).map(|fault| fault.to_string()));
+        let warnings = [
+            self.latin.warn(self.path, NOT_UTF8),
+            missing.or(lost),
+            self.nameless.warn(self.path, "without a name: it means the material without one"),
+            self.unknown.warn(self.path, "ignored: only polygons are read"),
+        ];
+        self.warnings.extend(warnings.into_iter().flatten());
+        self.warnings.extend(self.faces.warnings(self.path));
         Ok(Found { materials: self.materials, warnings: self.warnings })
     }
 }

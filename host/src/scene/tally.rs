@@ -1,5 +1,6 @@
 //! Warnings that are given once a file.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use crate::error::Error;
@@ -13,8 +14,8 @@ pub struct Tally {
 
 impl Tally {
     /// Notes one more on a line, counted from 1.
-    pub fn add(&mut self, line: usize, what: &str) {
-        self.first.get_or_insert_with(|| (line, what.to_owned()));
+    pub fn add(&mut self, line: usize, what: impl Display) {
+        self.first.get_or_insert_with(|| (line, what.to_string()));
         self.count += 1;
     }
 

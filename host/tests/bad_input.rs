@@ -84,7 +84,7 @@ fn colours_that_tobj_panics_on() {
         ("mesh.mtl", "newmtl red\nKd 1 0\n"),
     ]);
     place.refuse(&["render", "mesh.obj", "-o", "out.png"], &["mesh.mtl:2: ", "Kd takes three numbers"]);
-    place.refuse(&["check", "mesh.obj"], &["mesh.mtl:2: "]);
+    place.refuse(&["check", "mesh.obj"], &["error: mesh.mtl:2: "]);
 }
 
 #[test]

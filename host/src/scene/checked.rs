@@ -3,14 +3,13 @@
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
-use super::file;
 use super::lines::Lines;
 use super::statement::{Found, State};
 use crate::error::{Error, Result};
 
 /// Reads as the text that tobj is given, made a block at a time from the lines of the file.
 pub struct Checked<'p, R> {
-    lines: Lines<R>,
+    lines: Lines<'p, R>,
     state: State<'p>,
     taken: usize,
     fault: Option<Error>,
@@ -19,7 +18,7 @@ pub struct Checked<'p, R> {
 impl<'p, R: BufRead> Checked<'p, R> {
     /// The text of the lines that `reader` gives, of at most `most` triangles.
     pub fn new(path: &'p Path, reader: R, most: usize) -> Self {
-        Checked { lines: Lines::new(reader), state: State::new(path, most), taken: 0, fault: None }
+        Checked { lines: Lines::new(path, reader), state: State::new(path, most), taken: 0, fault: None }
     }
 
     /// What was found once the text is read, or the fault that ended it.
@@ -35,9 +34,7 @@ impl<'p, R: BufRead> Checked<'p, R> {
         self.state.text.clear();
         self.taken = 0;
         while self.state.text.len() < BLOCK {
-            let next = self.lines.advance();
-            let next = next.map_err(|error| Error::file(self.state.path, file::explain(&error)));
-            match next? {
+            match self.lines.advance()? {
                 None => break,
                 Some((number, line)) => self.state.line(number, line)?,
             }

@@ -50,24 +50,30 @@ pub fn explain(error: &std::io::Error) -> String {
 
 /// The path of a file that another file names, inside that file's `folder`.
 ///
-/// Meshes and materials come from strangers, so a name that is absolute, climbs with `..`, or passes
-/// through a link to the outside is refused. Backslashes separate folders, as Windows wrote them.
+/// Meshes and materials come from strangers, so a name that [`downward`] refuses or that passes through a link to
+/// the outside is refused.
 pub fn inside(folder: &Path, name: &str) -> Unplaced<PathBuf> {
-    let outside = || format!("{name:?} lies outside this file's folder; copy it next to this file");
-    let name_here = name.replace('\\', "/");
-    let drive = name_here.as_bytes().get(1) == Some(&b':');
-    if drive || name_here.starts_with('/') || name_here.split('/').any(|part| part == "..") {
-        return Err(outside());
+    let path = folder.join(downward(name)?);
+    match (path.canonicalize(), real_folder(folder).canonicalize()) {
+        (Ok(real), Ok(root)) if !real.starts_with(&root) => Err(outside(name)),
+        // What does not exist cannot lead outside; opening it reports it.
+        _ => Ok(path),
     }
-    let path = folder.join(name_here);
-    // What does not exist cannot lead outside; opening it reports it.
-    if let (Ok(real), Ok(root)) = (path.canonicalize(), real_folder(folder).canonicalize()) {
-        if !real.starts_with(&root) {
-            return Err(outside());
-        }
-        return Ok(real);
+}
+
+/// A name with slashes between folders, for the backslashes that Windows writes. One that is absolute or climbs
+/// with `..` is refused.
+pub fn downward(name: &str) -> Unplaced<String> {
+    let slashed = name.replace('\\', "/");
+    let drive = slashed.as_bytes().get(1) == Some(&b':');
+    if drive || slashed.starts_with('/') || slashed.split('/').any(|part| part == "..") {
+        return Err(outside(name));
     }
-    Ok(path)
+    Ok(slashed)
+}
+
+fn outside(name: &str) -> String {
+    format!("{name:?} lies outside this file's folder; copy it next to this file")
 }
 
 /// The folder of a file; a bare name lies in the working directory.

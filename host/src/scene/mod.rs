@@ -8,6 +8,7 @@
 
 mod checked;
 mod document;
+mod face;
 mod file;
 mod frame;
 mod lines;
@@ -18,6 +19,7 @@ mod mtl;
 mod normal;
 mod obj;
 mod part;
+mod polygon;
 mod range;
 mod shape;
 mod source;

@@ -16,11 +16,12 @@
 //!
 //! Files are read here and not by tobj, which panics on `Kd 1 0`.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use glam::Vec3;
 
-use super::lines::{self, Lines};
+use super::lines::{self, Lines, NOT_UTF8};
 use super::material::Fields;
 use super::tally::Tally;
 use super::{Unplaced, file};
@@ -45,35 +46,39 @@ pub fn load(path: &Path) -> Result<Library> {
 
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Library> {
-    let mut lines = Lines::new(bytes);
-    let mut reader =
-        Reader { path, line: 0, materials: Vec::new(), ignored: Tally::default(), clamped: Tally::default() };
-    loop {
-        let next = lines.advance();
-        let next = next.map_err(|error| Error::file(path, file::explain(&error)))?;
-        let Some((number, line)) = next else {
-            return Ok(reader.finish());
-        };
+    let mut lines = Lines::new(path, bytes);
+    let mut reader = Reader::default();
+    while let Some((number, line)) = lines.advance()? {
         reader.line = number;
-        lines::split(line)
-            .and_then(|words| words.map_or(Ok(()), |(key, rest)| reader.read(key, rest)))
-            .map_err(|fault| Error::line(path, number, fault))?;
+        reader.read(line).map_err(|fault| Error::line(path, number, fault))?;
     }
+    Ok(reader.finish(path))
 }
 
-struct Reader<'p> {
-    path: &'p Path,
+#[derive(Default)]
+struct Reader {
     line: usize,
     materials: Vec<(String, Statements)>,
     ignored: Tally,
     clamped: Tally,
+    nameless: Tally,
+    latin: Tally,
 }
 
-impl Reader<'_> {
-    fn read(&mut self, key: &str, rest: &str) -> Unplaced<()> {
+impl Reader {
+    fn read(&mut self, line: &[u8]) -> Unplaced<()> {
+        let text = lines::text(line);
+        if let Cow::Owned(_) = text {
+            self.latin.add(self.line, "line");
+        }
+        let Some((key, rest)) = lines::split(&text) else {
+            return Ok(());
+        };
         match key {
-            "newmtl" if rest.is_empty() => Err("newmtl names no material; add a name".into()),
             "newmtl" => {
+                if rest.is_empty() {
+                    self.nameless.add(self.line, key);
+                }
                 let new = (rest.to_owned(), Statements::default());
                 self.materials.push(new);
                 Ok(())
@@ -81,13 +86,11 @@ impl Reader<'_> {
             "bump" | "disp" | "decal" | "refl" | "norm" => self.texture(key, rest),
             _ if key.starts_with("map_") => self.texture(key, rest),
             "Ka" | "Kd" | "Ks" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "illum" => {
-                let Some((_, mut now)) = self.materials.last().cloned() else {
+                let Some((name, mut now)) = self.materials.pop() else {
                     return Err(format!("{key} comes before newmtl; name the material first"));
                 };
                 self.statement(&mut now, key, rest)?;
-                if let Some((_, last)) = self.materials.last_mut() {
-                    *last = now;
-                }
+                self.materials.push((name, now));
                 Ok(())
             }
             _ => Ok(()),
@@ -144,18 +147,20 @@ impl Reader<'_> {
     /// Options come before the name, and the name may hold blanks: no word may lead outside.
     fn texture(&mut self, key: &str, rest: &str) -> Unplaced<()> {
         self.ignored.add(self.line, key);
-        let folder = file::folder(self.path);
-        let mut names = rest.split_whitespace().chain([rest]);
-        names.try_for_each(|name| file::inside(folder, name).map(drop))
+        rest.split_whitespace().try_for_each(|name| file::downward(name).map(drop))
     }
 
-    fn finish(self) -> Library {
-        let ignored = self.ignored.warn(self.path, "ignored: no textures are drawn");
-        let clamped = self.clamped.warn(self.path, "out of range: the nearest value is used");
+    fn finish(self, path: &Path) -> Library {
+        let warnings = [
+            self.latin.warn(path, NOT_UTF8),
+            self.nameless.warn(path, "without a name: usemtl without a name means it"),
+            self.ignored.warn(path, "ignored: no textures are drawn"),
+            self.clamped.warn(path, "out of range: the nearest value is used"),
+        ];
         let fields = |(name, statements): (String, Statements)| (name, statements.fields());
         Library {
             materials: self.materials.into_iter().map(fields).collect(),
-            warnings: ignored.into_iter().chain(clamped).collect(),
+            warnings: warnings.into_iter().flatten().collect(),
         }
     }
 }

@@ -1,10 +1,14 @@
 //! The statements of a mesh file, checked one by one and written anew for tobj.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use super::lines;
+use glam::Vec3;
+
+use super::face::Faces;
+use super::lines::{self, NOT_UTF8};
 use super::material::{DEFAULT, Fields};
 use super::tally::Tally;
 use super::{Unplaced, file, mtl};
@@ -23,18 +27,17 @@ pub struct State<'p> {
     pub path: &'p Path,
     /// What is written; the reader takes it away.
     pub text: Vec<u8>,
-    positions: usize,
-    textures: usize,
-    normals: usize,
-    triangles: usize,
+    faces: Faces,
     most: usize,
     material: u32,
     materials: Vec<(String, Fields)>,
     by_name: HashMap<String, u32>,
-    libraries: HashSet<String>,
+    libraries: HashSet<PathBuf>,
     missing: Tally,
     lost: Tally,
     unknown: Tally,
+    nameless: Tally,
+    latin: Tally,
     warnings: Vec<String>,
 }
 
@@ -45,10 +48,7 @@ impl<'p> State<'p> {
             path,
             // Normal 1 stands for "flat here", and object 0 has the default material.
             text: b"vn 0 0 0\no 0\n".to_vec(),
-            positions: 0,
-            textures: 0,
-            normals: 0,
-            triangles: 0,
+            faces: Faces::default(),
             most,
             material: 0,
             materials: vec![(DEFAULT.to_owned(), Fields::default())],
@@ -57,6 +57,8 @@ impl<'p> State<'p> {
             missing: Tally::default(),
             lost: Tally::default(),
             unknown: Tally::default(),
+            nameless: Tally::default(),
+            latin: Tally::default(),
             warnings: Vec::new(),
         }
     }
@@ -66,23 +68,29 @@ impl<'p> State<'p> {
     /// # Errors
     /// The line, or the material file that it names, makes no sense.
     pub fn line(&mut self, number: usize, line: &[u8]) -> Result<()> {
-        let at = |fault| Error::line(self.path, number, fault);
-        let Some((key, rest)) = lines::split(line).map_err(at)? else {
+        let text = lines::text(line);
+        if let Cow::Owned(_) = text {
+            self.latin.add(number, "line");
+        }
+        let Some((key, rest)) = lines::split(&text) else {
             return Ok(());
         };
         let fault = match key {
             "v" => self.position(rest),
             "vn" => self.normal(rest),
-            "f" | "fo" => self.face(rest),
-            "usemtl" => self.use_material(number, rest),
+            "f" | "fo" => self.face(number, rest),
+            "usemtl" => {
+                self.use_material(number, rest);
+                Ok(())
+            }
             "mtllib" => return self.library(number, rest),
             "vt" => {
-                self.textures += 1;
+                self.faces.textures += 1;
                 Ok(())
             }
             "o" | "g" | "s" | "l" | "p" => Ok(()),
             _ => {
-                self.unknown.add(number, &format!("statement {key:?}"));
+                self.unknown.add(number, format_args!("statement {key:?}"));
                 Ok(())
             }
         };
@@ -90,19 +98,17 @@ impl<'p> State<'p> {
     }
 
     fn position(&mut self, rest: &str) -> Unplaced<()> {
-        self.positions += 1;
         // What follows is a weight or a colour, and tobj would divide by the one and want the other
         // on all vertices or none.
         let xyz = three("v", rest)?;
-        for word in xyz {
-            lines::number("v", word)?;
-        }
+        let [x, y, z] = xyz.map(|word| lines::number("v", word));
+        self.faces.positions.push(Vec3::new(x?, y?, z?));
         self.vector("v", xyz);
         Ok(())
     }
 
     fn normal(&mut self, rest: &str) -> Unplaced<()> {
-        self.normals += 1;
+        self.faces.normals += 1;
         let mut xyz = three("vn", rest)?;
         for word in xyz {
             match word.parse::<f32>() {
@@ -125,51 +131,26 @@ impl<'p> State<'p> {
         self.text.push(b'\n');
     }
 
-    fn face(&mut self, rest: &str) -> Unplaced<()> {
-        self.text.push(b'f');
-        let mut corners = 0;
-        for word in lines::words(rest) {
-            let (position, normal) = self.corner(word)?;
-            // Writing to a vector does not fail.
-            let _ = write!(self.text, " {position}//{}", normal + 1);
-            corners += 1;
-        }
-        self.text.push(b'\n');
-        if corners < 3 {
-            return Err(format!("a face has at least 3 corners, not {corners}; remove it"));
-        }
-        self.triangles += corners - 2;
-        if self.triangles > self.most {
+    fn face(&mut self, line: usize, rest: &str) -> Unplaced<()> {
+        self.faces.read(line, rest, &mut self.text)?;
+        if self.faces.triangles > self.most {
             return Err(too_many(self.most));
         }
         Ok(())
     }
 
-    /// The position's and the normal's number from 1; the normal's is 0 where there is none.
-    fn corner(&self, word: &str) -> Unplaced<(usize, usize)> {
-        let mut parts = word.split('/');
-        let position = index("vertex", parts.next(), self.positions)?;
-        index("texture vertex", parts.next(), self.textures)?;
-        let normal = index("normal", parts.next(), self.normals)?;
-        if position == 0 || parts.next().is_some() {
-            return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
+    fn use_material(&mut self, line: usize, name: &str) {
+        let number = self.by_name.get(name).copied();
+        match number {
+            None => self.lost.add(line, format_args!("material {name:?}")),
+            Some(_) if name.is_empty() => self.nameless.add(line, "usemtl"),
+            Some(_) => {}
         }
-        Ok((position, normal))
-    }
-
-    fn use_material(&mut self, line: usize, name: &str) -> Unplaced<()> {
-        if name.is_empty() {
-            return Err("usemtl names no material; add a name".into());
-        }
-        let number = self.by_name.get(name).copied().unwrap_or_else(|| {
-            self.lost.add(line, &format!("material {name:?}"));
-            0
-        });
+        let number = number.unwrap_or(0);
         if number != self.material {
             self.material = number;
             let _ = writeln!(self.text, "o {number}");
         }
-        Ok(())
     }
 
     fn library(&mut self, line: usize, names: &str) -> Result<()> {
@@ -178,29 +159,29 @@ impl<'p> State<'p> {
             return Err(Error::line(self.path, line, fault));
         }
         // The format lists files between blanks, but exporters write names that hold blanks.
-        if !self.material_file(line, names)? && names.contains(char::is_whitespace) {
-            for name in names.split_whitespace() {
-                if !self.material_file(line, name)? {
-                    self.missing.add(line, &format!("material file {name:?}"));
-                }
+        if self.material_file(line, names)? {
+            return Ok(());
+        }
+        for name in names.split_whitespace() {
+            if !self.material_file(line, name)? {
+                self.missing.add(line, format_args!("material file {name:?}"));
             }
-        } else if !self.libraries.contains(names) {
-            self.missing.add(line, &format!("material file {names:?}"));
         }
         Ok(())
     }
 
     /// Reads a material file once; false if there is none.
     fn material_file(&mut self, line: usize, name: &str) -> Result<bool> {
-        if self.libraries.contains(name) {
+        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
+        if self.libraries.contains(&path) {
             return Ok(true);
         }
-        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
         if !path.exists() {
             return Ok(false);
         }
-        self.libraries.insert(name.to_owned());
         let library = mtl::load(&path)?;
+        // Paths that differ in dots and slashes are equal.
+        self.libraries.insert(path);
         self.warnings.extend(library.warnings);
         for (name, fields) in library.materials {
             let number = self.materials.len() as u32;
@@ -215,16 +196,21 @@ impl<'p> State<'p> {
     /// # Errors
     /// There was no face.
     pub fn finish(mut self) -> Result<Found> {
-        if self.triangles == 0 {
-            let fault = "there is no face in it; is it a Wavefront OBJ mesh?";
-            return Err(Error::file(self.path, fault));
+        if self.faces.triangles == 0 {
+            let none = || Error::file(self.path, "there is no face in it; is it a Wavefront OBJ mesh?");
+            return Err(self.faces.left_out(self.path).unwrap_or_else(none));
         }
         let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
         // A missing file explains the missing materials.
         let lost = self.lost.warn(self.path, "in none of its material files: drawn grey");
-        let unknown = self.unknown.warn(self.path, "ignored: only polygons are read");
-        self.warnings.extend(missing.or(lost));
-        self.warnings.extend(unknown);
+        let warnings = [
+            self.latin.warn(self.path, NOT_UTF8),
+            missing.or(lost),
+            self.nameless.warn(self.path, "without a name: it means the material without one"),
+            self.unknown.warn(self.path, "ignored: only polygons are read"),
+        ];
+        self.warnings.extend(warnings.into_iter().flatten());
+        self.warnings.extend(self.faces.warnings(self.path));
         Ok(Found { materials: self.materials, warnings: self.warnings })
     }
 }
@@ -239,22 +225,5 @@ fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {
     match (words.next(), words.next(), words.next()) {
         (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
         _ => Err(format!("{key} takes three numbers, not {rest:?}; add what is missing")),
-    }
-}
-
-/// An index as a number from 1, of `count` that there are so far; 0 for one that is left out.
-fn index(what: &str, word: Option<&str>, count: usize) -> Unplaced<usize> {
-    let word = match word {
-        None | Some("") => return Ok(0),
-        Some(word) => word,
-    };
-    let Ok(number) = word.parse::<i64>() else {
-        return Err(format!("{what} {word:?} is no whole number; correct the face"));
-    };
-    let absolute = if number < 0 { (count as i64).saturating_add(number).saturating_add(1) } else { number };
-    match usize::try_from(absolute) {
-        Ok(absolute) if (1..=count).contains(&absolute) => Ok(absolute),
-        _ if number == 0 => Err(format!("{what} 0 does not exist; indices count from 1")),
-        _ => Err(format!("{what} {word} does not exist, {count} precede the face; correct it")),
     }
 }

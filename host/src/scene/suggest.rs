@@ -7,17 +7,28 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Stri
     let mut known: Vec<&str> = known.into_iter().collect();
     known.sort_unstable();
     known.dedup();
-    let distance = |other: &&str| strsim::damerau_levenshtein(name, other);
-    match known.iter().copied().min_by_key(distance) {
-        None => "there are none".into(),
-        Some(near) if is_near(name, near) => format!("did you mean {near:?}?"),
-        Some(_) => format!("known are {}", known.join(", ")),
+    let near = known.iter().filter_map(|other| Some((distance(name, other)?, other)));
+    match near.min() {
+        Some((_, near)) => format!("did you mean {near:?}?"),
+        None if known.is_empty() => "there are none".into(),
+        None => format!("known are {}", known.join(", ")),
     }
 }
 
 /// Is `name` probably a misspelling of `known`?
 pub fn is_near(name: &str, known: &str) -> bool {
-    strsim::damerau_levenshtein(name, known) <= (known.chars().count() / 3).max(1)
+    distance(name, known).is_some()
+}
+
+/// How many letters differ, if they are few. Comparing takes as long as both lengths multiplied, so what nobody
+/// types is not compared.
+fn distance(name: &str, known: &str) -> Option<usize> {
+    const LONGEST: usize = 256;
+    if name.len().max(known.len()) > LONGEST {
+        return None;
+    }
+    let distance = strsim::damerau_levenshtein(name, known);
+    (distance <= (known.chars().count() / 3).max(1)).then_some(distance)
 }
 
 #[cfg(test)]
@@ -29,5 +40,12 @@ mod tests {
         assert_eq!(suggest("colour", ["size", "color"]), "did you mean \"color\"?");
         assert_eq!(suggest("glow", ["size", "color"]), "known are color, size");
         assert_eq!(suggest("x", []), "there are none");
+        assert_eq!(suggest("aa", ["aab", "aabbbbbb"]), "did you mean \"aab\"?");
+    }
+
+    #[test]
+    fn names_of_a_million_letters_are_not_compared() {
+        let long = |letter: &str| letter.repeat(1 << 20);
+        assert!(suggest(&long("a"), ["size", &long("b")]).starts_with("known are bbb"));
     }
 }

@@ -169,7 +169,7 @@ impl<'s> Table<'s> {
         self.map(key, |parent, value| {
             let at = value.span().start;
             match value.into_inner() {
-                DeValue::Table(table) => Ok(Table::new(parent.source, format!("[{key}]"), at, table)),
+                DeValue::Table(table) => Ok(Table::new(parent.source.clone(), format!("[{key}]"), at, table)),
                 _ => Err(parent.fault_of(key, format!("{key:?} must be a table: [{key}]"))),
             }
         })
@@ -188,7 +188,7 @@ impl<'s> Table<'s> {
                 let DeValue::Table(table) = item.into_inner() else {
                     return Err(not());
                 };
-                tables.push(Table::new(parent.source, format!("[[{key}]]"), at, table));
+                tables.push(Table::new(parent.source.clone(), format!("[[{key}]]"), at, table));
             }
             Ok(tables)
         })

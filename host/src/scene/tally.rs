@@ -1,5 +1,6 @@
 //! Warnings that are given once a file.
 
+use std::fmt::Display;
 use std::path::Path;
 
 use crate::error::Error;
@@ -13,18 +14,23 @@ pub struct Tally {
 
 impl Tally {
     /// Notes one more on a line, counted from 1.
-    pub fn add(&mut self, line: usize, what: &str) {
-        self.first.get_or_insert_with(|| (line, what.to_owned()));
+    pub fn add(&mut self, line: usize, what: impl Display) {
+        self.first.get_or_insert_with(|| (line, what.to_string()));
         self.count += 1;
     }
 
     /// The warning, if there was anything: what was first, how many more, and `why`.
     pub fn warn(&self, path: &Path, why: &str) -> Option<String> {
+        self.fault(path, why).map(|fault| fault.to_string())
+    }
+
+    /// As [`Tally::warn`], for when it is an error.
+    pub fn fault(&self, path: &Path, why: &str) -> Option<Error> {
         let (line, what) = self.first.as_ref()?;
         let more = match self.count - 1 {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        Some(Error::line(path, *line, format!("{what}{more} {why}")).to_string())
+        Some(Error::line(path, *line, format!("{what}{more} {why}")))
     }
 }

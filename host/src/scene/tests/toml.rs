@@ -1,5 +1,7 @@
 //! TOML scenes.
 
+use std::path::Path;
+
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused};
@@ -14,13 +16,12 @@ fn load(text: &str) -> (Scene, Vec<String>) {
 
 #[test]
 fn the_documented_example_loads_as_documented() {
-    let example = include_bytes!("../example.toml");
-    let folder = Folder::new(&[("scene.toml", example), ("pyramid.obj", TRIANGLE)]);
-    let (scene, warnings) = folder.load("scene.toml").unwrap();
+    let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/scene/example.toml");
+    let (scene, warnings) = crate::scene::load(&example).unwrap();
     assert!(warnings.is_empty(), "{warnings:?}");
     let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["floor", "glass", "mirror", "default"]);
-    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 12 + 1);
+    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 12 + 6);
     assert_eq!(scene.mesh.materials.len(), scene.mesh.triangles.len());
     assert_eq!(scene.mesh.normals.len(), scene.mesh.positions.len());
     assert_eq!(scene.settings.size, (640, 480));
@@ -239,4 +240,21 @@ fn every_mesh_is_a_part_with_its_name_its_triangles_and_its_bounds() {
     let (bare, _) = folder.load("a.obj").unwrap();
     assert_eq!((bare.parts[0].name.as_str(), bare.parts[0].triangles.clone()), ("a.obj", 0..1));
     assert_eq!(bare.cameras, [crate::scene::default_camera(&bare.mesh, 1.0).unwrap()]);
+}
+
+#[test]
+fn a_hundred_thousand_of_everything_take_seconds() {
+    let tables = |text: &dyn Fn(usize) -> String| (0..100_000).map(text).collect::<String>();
+    let text = [
+        tables(&|i| format!("[[material]]\nname = \"m{i}\"\n")),
+        tables(&|i| format!("[[camera]]\nname = \"c{i}\"\neye = [0, 0, 1]\ntarget = [0, 0, 0]\n")),
+        tables(&|_| "[[light]]\nkind = \"point\"\nposition = [0, 0, 0]\n".into()),
+        tables(&|i| format!("[[mesh]]\nfile = \"a.obj\"\nmaterial = \"m{}\"\n", i / 2)),
+    ];
+    let start = std::time::Instant::now();
+    let (scene, warnings) = load(&text.concat());
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    assert_eq!((scene.cameras.len(), scene.lights.len()), (100_000, 100_000));
+    assert_eq!((scene.materials.len(), scene.parts.len()), (50_000, 100_000));
+    assert_eq!(warnings.len(), 50_000);
 }

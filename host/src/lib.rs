@@ -9,6 +9,7 @@ pub mod film;
 pub mod generate;
 pub mod gpu;
 pub mod image;
+mod memory;
 pub mod method;
 pub mod output;
 pub mod pack;

@@ -6,6 +6,7 @@
 //! | OpenEXR | linear, 32-bit floats | nothing at an exposure of 0 |
 //! | Radiance HDR | linear, 8 bit and a shared exponent | negative values, and about 1 % |
 
+mod bounded;
 mod encode;
 mod read;
 mod transfer;

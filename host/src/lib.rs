@@ -15,6 +15,7 @@ pub mod generate;
 pub mod gpu;
 pub mod image;
 pub mod math;
+mod memory;
 pub mod method;
 pub mod output;
 pub mod pack;

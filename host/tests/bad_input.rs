@@ -51,6 +51,21 @@ fn empty_files_and_files_without_triangles() {
     place.refuse(&["check", "mesh_of_points.toml"], &["points.obj", "no face"]);
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn scenes_larger_than_the_memory() {
+    let sphere = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 8\n";
+    let place = Place::new(&[("scene.toml", &sphere.repeat(10))]);
+    for arguments in [&["check", "scene.toml"][..], &["render", "scene.toml", "--device", "cpu", "-o", "out.png"]] {
+        let program = place.command(arguments);
+        let mut limited = std::process::Command::new("sh");
+        limited.args(["-c", "ulimit -v 4000000; exec \"$0\" \"$@\""]);
+        limited.arg(program.get_program()).args(program.get_args()).current_dir(place.path(""));
+        let wants = ["error: scene.toml:", "triangles", "about ", "the limit on address space (ulimit -v) leaves "];
+        place.refuse_run(&mut limited, &wants);
+    }
+}
+
 #[test]
 fn faces_of_vertices_that_do_not_exist() {
     for (index, why) in [

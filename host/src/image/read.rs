@@ -7,9 +7,11 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Primitive, Rgb};
 
+use super::bounded::{Allowance, Bounded};
 use super::transfer::linear_table;
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::memory::Room;
 
 /// Reads a PNG, EXR or HDR file, whatever its name says it is, as [`decode`].
 ///
@@ -45,19 +47,40 @@ pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
         .unwrap_or_else(|_| Err(Error::new("is damaged; write the image again")))
 }
 
-fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
-    let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| Error::new(read_error(&e)))?;
-    let known = [ImageFormat::Png, ImageFormat::OpenExr, ImageFormat::Hdr];
-    if !reader.format().is_some_and(|format| known.contains(&format)) {
-        return Err(Error::new("is not a PNG, EXR or HDR image"));
+/// The most bytes that are read before the size of an image is known: its header, and what describes it.
+const MOST_HEADER: u64 = 16 << 20;
+/// What decoding takes: two buffers of four floats.
+const MEMORY_PER_PIXEL: u64 = 32;
+
+/// The most bytes that a pixel may have in a file, if the format is one of ours.
+fn most_per_pixel(format: ImageFormat) -> Option<u64> {
+    match format {
+        ImageFormat::Png => Some(16),
+        ImageFormat::Hdr => Some(8),
+        // Beside the colors there may be layers of anything.
+        ImageFormat::OpenExr => Some(1024),
+        _ => None,
     }
+}
+
+fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
+    let allowance = Allowance::new(MOST_HEADER);
+    let reader = Bounded::new(reader, allowance.clone());
+    let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| Error::new(read_error(&e)))?;
+    let Some(most_per_pixel) = reader.format().and_then(most_per_pixel) else {
+        return Err(Error::new("is not a PNG, EXR or HDR image"));
+    };
     let mut limits = Limits::default();
     // The widest pixel is one of four floats.
     limits.max_alloc = Some(Film::MAX_PIXELS * 16);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(decode_error)?;
     let (width, height) = decoder.dimensions();
-    Film::check_size(width, height)?;
+    let pixels = Film::check_size(width, height)? as u64;
+    Room::now().check(pixels * MEMORY_PER_PIXEL).map_err(|why| {
+        Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))
+    })?;
+    allowance.add(pixels * most_per_pixel);
     let decoded = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
     Film::from_pixels(width, height, linear_pixels(decoded))
 }
@@ -97,6 +120,7 @@ fn read_error(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file; check the name".to_owned(),
         ErrorKind::PermissionDenied => "no permission to read; change it".to_owned(),
+        ErrorKind::FileTooLarge => "holds more than an image of its size can; write the image again".to_owned(),
         ErrorKind::UnexpectedEof => "is truncated; write the image again".to_owned(),
         _ => format!("cannot be read: {error}"),
     }

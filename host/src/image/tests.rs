@@ -277,6 +277,18 @@ fn a_decoder_that_panics_is_an_error() {
     assert!(decode(Cursor::new(file)).is_err());
 }
 
+#[test]
+fn a_header_without_end_is_given_up() {
+    let folder = tempfile::tempdir().unwrap();
+    for start in [&b"#?RADIANCE\nFORMAT="[..], b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n"] {
+        let path = folder.path().join("a.hdr");
+        std::fs::write(&path, start).unwrap();
+        std::fs::File::options().write(true).open(&path).unwrap().set_len(1 << 30).unwrap();
+        let error = read(&path).unwrap_err();
+        assert!(error.message.contains("holds more"), "{error}");
+    }
+}
+
 #[cfg(target_os = "linux")]
 #[test]
 fn devices_are_not_read() {

@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, Read};
 use std::path::Path;
 
+use super::budget::Budget;
 use super::lines::Lines;
 use super::statement::{Found, State};
 use crate::error::{Error, Result};
@@ -16,9 +17,9 @@ pub struct Checked<'p, R> {
 }
 
 impl<'p, R: BufRead> Checked<'p, R> {
-    /// The text of the lines that `reader` gives, of at most `most` triangles.
-    pub fn new(path: &'p Path, reader: R, most: usize) -> Self {
-        Checked { lines: Lines::new(path, reader), state: State::new(path, most), taken: 0, fault: None }
+    /// The text of the lines that `reader` gives, of a mesh within the budget.
+    pub fn new(path: &'p Path, reader: R, budget: Budget) -> Self {
+        Checked { lines: Lines::new(path, reader), state: State::new(path, budget), taken: 0, fault: None }
     }
 
     /// What was found once the text is read, or the fault that ended it.

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use super::budget::Budget;
 use super::document;
 use super::file;
 use super::frame;
@@ -16,6 +17,7 @@ use super::source::Source;
 use super::table::Table;
 use super::{Background, Camera, Mesh, Scene, Settings};
 use crate::error::{Error, Result};
+use crate::memory::Room;
 
 /// Loads a TOML scene or a bare Wavefront mesh, and says in warnings what of it is not drawn.
 ///
@@ -25,19 +27,24 @@ use crate::error::{Error, Result};
 /// A path that is no readable `.toml` or `.obj` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
+    load_within(path, Budget::new(Room::now()))
+}
+
+/// As [`load`], of a scene within the budget.
+pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
     if is(path, "toml") {
-        load_toml(path)
+        load_toml(path, budget)
     } else if is(path, "obj") {
-        load_obj(path)
+        load_obj(path, budget)
     } else {
         let fault = "unknown kind of scene; name a .toml scene or an .obj mesh";
         Err(Error::file(path, fault))
     }
 }
 
-fn load_obj(path: &Path) -> Result<(Scene, Vec<String>)> {
-    let obj = obj::load(path)?;
+fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+    let obj = obj::load(path, budget)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let placed = Placed { name, mesh: obj.mesh, materials: obj.materials, material: None };
     let mut merge = Merge::default();
@@ -68,9 +75,9 @@ fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>>
     }
 }
 
-fn load_toml(path: &Path) -> Result<(Scene, Vec<String>)> {
+fn load_toml(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes)
+    parse(path, &bytes, budget)
 }
 
 /// Makes something of the tables of a TOML file.
@@ -88,7 +95,7 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
 }
 
 /// The scene of a TOML text, whose meshes are relative to the folder of `path`.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene, Vec<String>)> {
     let mut table = Source::new(path, text(path, bytes)?).parse()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
@@ -101,7 +108,11 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Scene, Vec<String>)> {
     let meshes = table.tables("mesh")?.unwrap_or_default();
     // A section's misspelt name is a likelier fault than a missing section.
     table.done()?;
-    let (merge, warnings) = merge(path, meshes, &overrides)?;
+    if meshes.is_empty() {
+        let fault = "there is no [[mesh]]; add one with a file or a shape";
+        return Err(Error::file(path, fault));
+    }
+    let (merge, warnings) = merge(meshes, &overrides, Files::new(file::folder(path), budget))?;
     let (mesh, parts, materials) = merge.finish();
     let cameras = match cameras.is_empty() {
         true => framing(path, &mesh, &settings)?,
@@ -136,12 +147,7 @@ fn overrides(tables: Vec<Table>) -> Result<Overrides> {
     Ok(overrides)
 }
 
-fn merge(path: &Path, tables: Vec<Table>, overrides: &Overrides) -> Result<(Merge, Vec<String>)> {
-    if tables.is_empty() {
-        let fault = "there is no [[mesh]]; add one with a file or a shape";
-        return Err(Error::file(path, fault));
-    }
-    let mut files = Files::new(file::folder(path));
+fn merge(tables: Vec<Table>, overrides: &Overrides, mut files: Files) -> Result<(Merge, Vec<String>)> {
     let mut merge = Merge::default();
     for mut table in tables {
         let placed = part::read(&mut table, &mut files)?;

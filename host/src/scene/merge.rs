@@ -1,15 +1,14 @@
 //! One mesh of many parts, and the materials in use.
 
 use std::cell::Cell;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, TryReserveError};
 
 use glam::Vec3;
 
 use super::material::{DEFAULT, Fields};
 use super::part::Placed;
-use super::statement::too_many;
 use super::suggest::suggest;
-use super::{MAX_TRIANGLES, Material, Mesh, Part, Unplaced};
+use super::{Material, Mesh, Part, Unplaced};
 
 /// A `[[material]]` table, and whether any surface has it.
 pub struct Override {
@@ -51,11 +50,10 @@ impl Merge {
     /// Adds a part, whose materials `overrides` has the last word on.
     ///
     /// # Errors
-    /// Its material is unknown, or the triangles are too many to number.
+    /// Its material is unknown, or there is no memory for it.
     pub fn add(&mut self, placed: Placed, overrides: &Overrides) -> Unplaced<()> {
-        if self.mesh.triangles.len() + placed.mesh.triangles.len() > MAX_TRIANGLES {
-            return Err(too_many(MAX_TRIANGLES));
-        }
+        let full = |_| "there is no memory left for this mesh; use fewer triangles";
+        self.reserve(&placed.mesh).map_err(full)?;
         let all = placed.material.as_deref();
         let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
         let mut numbers = vec![all; placed.materials.len()];
@@ -76,6 +74,13 @@ impl Merge {
         self.mesh.normals.extend(placed.mesh.normals);
         self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
         Ok(())
+    }
+
+    fn reserve(&mut self, more: &Mesh) -> Result<(), TryReserveError> {
+        self.mesh.materials.try_reserve(more.materials.len())?;
+        self.mesh.triangles.try_reserve(more.triangles.len())?;
+        self.mesh.positions.try_reserve(more.positions.len())?;
+        self.mesh.normals.try_reserve(more.positions.len())
     }
 
     /// The whole mesh, its parts, and the materials that it uses, each once.

@@ -6,6 +6,7 @@
 #![doc = include_str!("example.toml")]
 //! ```
 
+mod budget;
 mod checked;
 mod document;
 mod face;

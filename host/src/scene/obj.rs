@@ -10,10 +10,11 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use super::budget::Budget;
 use super::checked::Checked;
 use super::material::Fields;
 use super::normal::unit;
-use super::{MAX_TRIANGLES, Mesh, file};
+use super::{Mesh, file};
 use crate::error::{Error, Result};
 
 /// A mesh, the materials that its triangles index (the first is the default), and what was ignored.
@@ -27,15 +28,16 @@ pub struct Obj {
 /// Reads a mesh file and the material files it names. A normal is zero where the file has none.
 ///
 /// # Errors
-/// A file that cannot be read, is no mesh, names what does not exist or holds no triangle.
-pub fn load(path: &Path) -> Result<Obj> {
+/// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget
+/// has room for.
+pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
     let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, BufReader::new(file.take(file::MOST_MESH)), MAX_TRIANGLES)
+    parse(path, BufReader::new(file.take(file::MOST_MESH)), budget)
 }
 
-/// The mesh of a text, of at most `most` triangles.
-pub(super) fn parse(path: &Path, reader: impl BufRead, most: usize) -> Result<Obj> {
-    let mut checked = Checked::new(path, reader, most);
+/// The mesh of a text.
+pub(super) fn parse(path: &Path, reader: impl BufRead, budget: Budget) -> Result<Obj> {
+    let mut checked = Checked::new(path, reader, budget);
     let options = tobj::LoadOptions { triangulate: true, single_index: true, ..Default::default() };
     let models = tobj::load_obj_buf(&mut checked, &options, |_| Ok(Default::default()));
     let found = checked.finish()?;

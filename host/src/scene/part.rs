@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
+use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
 use super::obj::{self, Obj};
 use super::range::Range;
@@ -13,9 +14,10 @@ use super::transform::Transform;
 use super::{Mesh, Part, file, normal, shape};
 use crate::error::Result;
 
-/// Meshes of files already read, since a scene may place one many times.
+/// Meshes of files already read, since a scene may place one many times, and what is left for others.
 pub struct Files<'p> {
     folder: &'p Path,
+    budget: Budget,
     read: HashMap<PathBuf, Obj>,
     /// What was ignored in them.
     pub warnings: Vec<String>,
@@ -43,15 +45,15 @@ impl Placed {
 }
 
 impl<'p> Files<'p> {
-    /// The files that a scene in `folder` names.
-    pub fn new(folder: &'p Path) -> Self {
-        Files { folder, read: HashMap::new(), warnings: Vec::new() }
+    /// The files that a scene in `folder` names, all within the budget.
+    pub fn new(folder: &'p Path, budget: Budget) -> Self {
+        Files { folder, budget, read: HashMap::new(), warnings: Vec::new() }
     }
 
     fn load(&mut self, name: &str) -> Result<&Obj> {
         let path = self.folder.join(name);
         if !self.read.contains_key(&path) {
-            let mut obj = obj::load(&path)?;
+            let mut obj = obj::load(&path, self.budget)?;
             self.warnings.append(&mut obj.warnings);
             self.read.insert(path.clone(), obj);
         }
@@ -80,6 +82,7 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
     if !mesh.positions.iter().all(|position| position.is_finite()) {
         return Err(table.fault("the mesh leaves the range of single precision; make it smaller"));
     }
+    files.budget.take(&mesh);
     Ok(Placed { name, mesh, materials, material })
 }
 
@@ -89,7 +92,7 @@ fn source(table: &mut Table, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, files),
         (false, true) => {
-            let (word, mesh) = from_shape(table)?;
+            let (word, mesh) = from_shape(table, files.budget)?;
             Ok((word.into(), mesh, vec![(DEFAULT.into(), Fields::default())]))
         }
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
@@ -109,7 +112,10 @@ fn from_file(table: &mut Table, files: &mut Files) -> Result<Source> {
         let fault = format!("{name:?} is no .obj; meshes are Wavefront OBJ files");
         return Err(table.fault_of("file", fault));
     }
+    let budget = files.budget;
     let obj = files.load(&name)?;
+    let (triangles, vertices) = (obj.mesh.triangles.len(), obj.mesh.positions.len());
+    budget.check(triangles, vertices).map_err(|fault| table.fault(fault))?;
     Ok((name, obj.mesh.clone(), obj.materials.clone()))
 }
 
@@ -125,7 +131,7 @@ enum Shape {
     Box,
 }
 
-fn from_shape(table: &mut Table) -> Result<(&'static str, Mesh)> {
+fn from_shape(table: &mut Table, budget: Budget) -> Result<(&'static str, Mesh)> {
     let words = [("sphere", Shape::Sphere), ("quad", Shape::Quad), ("box", Shape::Box)];
     let shape = table.word("shape", &words)?;
     match table.need("shape", shape)? {
@@ -134,6 +140,8 @@ fn from_shape(table: &mut Table) -> Result<(&'static str, Mesh)> {
             let center = table.triple("center", Range::ANY)?.unwrap_or(Vec3::ZERO);
             let radius = table.number("radius", Range::LENGTH)?.unwrap_or(1.0);
             let subdivisions = table.whole("subdivisions", 0, 8)?.unwrap_or(5);
+            let triangles = 20 << (2 * subdivisions);
+            budget.check(triangles, triangles / 2 + 2).map_err(|fault| table.fault(fault))?;
             Ok(("sphere", shape::sphere(center, radius, subdivisions)))
         }
         Shape::Quad => {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
+use super::budget::Budget;
 use super::face::Faces;
 use super::lines::{self, NOT_UTF8};
 use super::material::{DEFAULT, Fields};
@@ -28,7 +29,7 @@ pub struct State<'p> {
     /// What is written; the reader takes it away.
     pub text: Vec<u8>,
     faces: Faces,
-    most: usize,
+    budget: Budget,
     material: u32,
     materials: Vec<(String, Fields)>,
     by_name: HashMap<String, u32>,
@@ -42,14 +43,14 @@ pub struct State<'p> {
 }
 
 impl<'p> State<'p> {
-    /// Nothing yet of a mesh of at most `most` triangles.
-    pub fn new(path: &'p Path, most: usize) -> Self {
+    /// Nothing yet of a mesh within the budget.
+    pub fn new(path: &'p Path, budget: Budget) -> Self {
         State {
             path,
             // Normal 1 stands for "flat here", and object 0 has the default material.
             text: b"vn 0 0 0\no 0\n".to_vec(),
             faces: Faces::default(),
-            most,
+            budget,
             material: 0,
             materials: vec![(DEFAULT.to_owned(), Fields::default())],
             by_name: HashMap::new(),
@@ -104,7 +105,7 @@ impl<'p> State<'p> {
         let [x, y, z] = xyz.map(|word| lines::number("v", word));
         self.faces.positions.push(Vec3::new(x?, y?, z?));
         self.vector("v", xyz);
-        Ok(())
+        self.budget.check(self.faces.triangles, self.faces.positions.len())
     }
 
     fn normal(&mut self, rest: &str) -> Unplaced<()> {
@@ -133,10 +134,7 @@ impl<'p> State<'p> {
 
     fn face(&mut self, line: usize, rest: &str) -> Unplaced<()> {
         self.faces.read(line, rest, &mut self.text)?;
-        if self.faces.triangles > self.most {
-            return Err(too_many(self.most));
-        }
-        Ok(())
+        self.budget.check(self.faces.triangles, self.faces.positions.len())
     }
 
     fn use_material(&mut self, line: usize, name: &str) {
@@ -213,11 +211,6 @@ impl<'p> State<'p> {
         self.warnings.extend(self.faces.warnings(self.path));
         Ok(Found { materials: self.materials, warnings: self.warnings })
     }
-}
-
-/// The fault of a mesh that has too many triangles to number.
-pub fn too_many(most: usize) -> String {
-    format!("more than {most} triangles; simplify the mesh")
 }
 
 fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 use proptest::prelude::*;
 
+use super::budget;
 use crate::scene::{load, mtl, obj};
 
 /// Words of the format between words of no format.
@@ -43,7 +44,7 @@ fn changed() -> impl Strategy<Value = Vec<u8>> {
 proptest! {
     #[test]
     fn a_mesh_is_refused_or_whole(bytes in text()) {
-        if let Ok(obj) = obj::parse(Path::new("/nowhere/a.obj"), &bytes[..], 1000) {
+        if let Ok(obj) = obj::parse(Path::new("/nowhere/a.obj"), &bytes[..], budget(1 << 20)) {
             let mesh = obj.mesh;
             prop_assert!(!mesh.triangles.is_empty());
             prop_assert_eq!(mesh.triangles.len(), mesh.materials.len());
@@ -72,7 +73,7 @@ proptest! {
 
     #[test]
     fn a_scene_file_is_refused_in_one_line(bytes in changed()) {
-        if let Err(error) = load::parse(Path::new("/nowhere/a.toml"), &bytes) {
+        if let Err(error) = load::parse(Path::new("/nowhere/a.toml"), &bytes, budget(1 << 30)) {
             prop_assert!(!error.to_string().contains('\n'));
         }
     }

@@ -12,7 +12,9 @@ use std::path::PathBuf;
 use tempfile::TempDir;
 
 use super::Scene;
+use super::budget::Budget;
 use crate::error::{Error, Result};
+use crate::memory::Room;
 
 /// A folder of files that is gone after the test.
 pub struct Folder(TempDir);
@@ -40,6 +42,11 @@ impl Folder {
         assert!(!error.to_string().contains('\n'), "{error}");
         error
     }
+}
+
+/// Memory for so many bytes of a scene.
+pub fn budget(bytes: u64) -> Budget {
+    Budget::new(Room { bytes, limit: "the test" })
 }
 
 /// Asserts where and why a file is refused.

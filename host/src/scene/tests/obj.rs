@@ -5,11 +5,11 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::{Folder, TRIANGLE, assert_refused};
+use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::{Mesh, Scene, mtl, obj};
 
 fn mesh(text: &str) -> Mesh {
-    obj::parse(Path::new("a.obj"), BufReader::new(text.as_bytes()), 9).unwrap().mesh
+    obj::parse(Path::new("a.obj"), BufReader::new(text.as_bytes()), budget(1 << 20)).unwrap().mesh
 }
 
 fn with_material(mtl: &str) -> (Scene, Vec<String>) {
@@ -120,11 +120,13 @@ fn large_finite_coordinates_are_accepted_and_framed() {
 }
 
 #[test]
-fn triangles_beyond_the_limit_are_refused() {
+fn triangles_and_vertices_beyond_the_memory_are_refused_where_they_stand() {
     let text = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 3 1 2\n";
-    let parse = |most| obj::parse(Path::new("a.obj"), &text[..], most);
-    assert_eq!(parse(4).unwrap().mesh.triangles.len(), 4);
-    assert_refused(&parse(3).unwrap_err(), "a.obj", Some(5), "more than 3 triangles");
+    let parse = |bytes| obj::parse(Path::new("a.obj"), &text[..], budget(bytes));
+    assert_eq!(parse(3000).unwrap().mesh.triangles.len(), 4);
+    let why = "4 triangles with 3 vertices take about 0 MB of memory, and the test leaves 0 MB; use fewer";
+    assert_refused(&parse(2900).unwrap_err(), "a.obj", Some(5), why);
+    assert_refused(&parse(100).unwrap_err(), "a.obj", Some(3), "0 triangles with 3 vertices");
 }
 
 #[test]
@@ -232,7 +234,7 @@ fn names_in_latin1_and_empty_names_find_their_materials_with_a_warning_each() {
 #[test]
 fn normals_and_texture_vertices_of_which_there_are_none_are_left_out_with_one_warning() {
     let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1/1/1 2/2/-1 3/3/3\n";
-    let obj = obj::parse(Path::new("a.obj"), text.as_bytes(), 9).unwrap();
+    let obj = obj::parse(Path::new("a.obj"), text.as_bytes(), budget(1 << 20)).unwrap();
     assert_eq!(obj.mesh.triangles.len(), 1);
     assert!(obj.mesh.normals.is_empty());
     assert_eq!(obj.warnings, ["a.obj:4: texture vertex 1 and 5 more ignored: none precede the face"]);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::{Folder, TRIANGLE, assert_refused};
+use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::{Background, Light, Scene, Settings};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
@@ -257,4 +257,22 @@ fn a_hundred_thousand_of_everything_take_seconds() {
     assert_eq!((scene.cameras.len(), scene.lights.len()), (100_000, 100_000));
     assert_eq!((scene.materials.len(), scene.parts.len()), (50_000, 100_000));
     assert_eq!(warnings.len(), 50_000);
+}
+
+#[test]
+fn spheres_and_files_placed_again_are_counted_before_they_are_made() {
+    let sphere = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 8\n";
+    let file = "[[mesh]]\nfile = \"a.obj\"\n";
+    let folder = Folder::new(&[
+        ("spheres.toml", sphere.repeat(500).as_bytes()),
+        ("files.toml", file.repeat(9).as_bytes()),
+        ("a.obj", TRIANGLE),
+    ]);
+    let refuse = |name: &str, bytes| {
+        let scene = crate::scene::load::load_within(&folder.path(name), budget(bytes));
+        scene.expect_err("accepted")
+    };
+    let why = "1310720 triangles with 655362 vertices take about 967 MB of memory, and the test leaves 900 MB";
+    assert_refused(&refuse("spheres.toml", 900_000_000), "spheres.toml", Some(1), why);
+    assert_refused(&refuse("files.toml", 4000), "files.toml", Some(9), "5 triangles with 15 vertices");
 }

@@ -310,7 +310,8 @@ fn options_out_of_range() {
     ] {
         place.refuse(&["render", "scene.toml", "-o", "out.png", option, value], &[]);
     }
-    place.refuse(&["render", "scene.toml", "--camera", "nosuch"], &["\"nosuch\"", "0 \"front\""]);
+    place.refuse(&["render", "scene.toml", "--camera", "nosuch"], &["scene.toml: ", "\"nosuch\"", "0 \"front\""]);
+    place.refuse(&["render", "scene.toml", "--camera", "1"], &["scene.toml: ", "\"1\"", "0 \"front\""]);
 }
 
 #[test]

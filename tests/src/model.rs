@@ -8,6 +8,7 @@ pub fn empty() -> Scene {
     Scene {
         mesh: Mesh::default(),
         parts: Vec::new(),
+        files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),
         cameras: vec![Camera { name: "front".into(), eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0 }],

@@ -7,7 +7,8 @@ use std::slice;
 use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
 
-use super::{console, options, progress};
+use super::options::{self, Read};
+use super::{console, progress};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -158,7 +159,7 @@ impl Bench {
             output::check_writable(&destination)?;
         }
         let plan = self.plan()?;
-        let subjects = self.subjects(quiet)?;
+        let subjects = self.subjects(slice::from_ref(&destination), quiet)?;
         let progress = progress::steps(bench::streams(&plan, &subjects), quiet);
         let report = bench::run(&plan, &subjects, &|stream| console::step(&progress, stream));
         progress.finish_and_clear();
@@ -227,11 +228,10 @@ impl Bench {
     }
 
     /// Every scene, before any is measured, with the cameras that are asked for.
-    fn subjects(&self, quiet: bool) -> Result<Vec<Subject>> {
+    fn subjects(&self, outputs: &[Destination], quiet: bool) -> Result<Vec<Subject>> {
         let mut subjects: Vec<Subject> = Vec::new();
         for path in &self.scenes {
-            let (scene, warnings) = scene::load(path)?;
-            super::warn(&warnings, quiet);
+            let Read { scene, .. } = Read::scene(path, outputs, quiet)?;
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
             subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }

@@ -6,11 +6,11 @@ use std::process::ExitCode;
 use clap::Args;
 use eyerays_bvh::Quality;
 
+use super::options::Read;
 use super::outline::Outline;
 use super::{console, plural, progress};
 use crate::error::{Error, Result};
 use crate::pack::Packed;
-use crate::scene;
 
 #[derive(Args)]
 pub(super) struct Check {
@@ -20,8 +20,7 @@ pub(super) struct Check {
 
 impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(&self.scene))?;
-        super::warn(&warnings, quiet);
+        let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
         let named = |e: Error| e.of(&self.scene);
         let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Fast);
         let mut packed = progress::stage("building", quiet, pack).map_err(named)?;

@@ -8,7 +8,7 @@ use clap::Args;
 use serde_json::json;
 
 use super::console;
-use super::options::{Effort, On, View};
+use super::options::{Effort, On, Read, View};
 use super::progress;
 use crate::compare::{Comparison, compare, heat_map};
 use crate::error::{Error, Result};
@@ -72,7 +72,7 @@ impl Diff {
         }
         let (a, b, names) = match &self.second {
             Some(second) => self.pictures(second)?,
-            None => self.renderings(quiet)?,
+            None => self.renderings(heat.as_slice(), quiet)?,
         };
         let comparison = compare(&a, &b)?;
         if let Some(destination) = &heat {
@@ -97,7 +97,7 @@ impl Diff {
     }
 
     /// The unquantised films of a scene from GPU and CPU.
-    fn renderings(&self, quiet: bool) -> Result<(Film, Film, [String; 2])> {
+    fn renderings(&self, outputs: &[Destination], quiet: bool) -> Result<(Film, Film, [String; 2])> {
         if has_extension(&self.first, &["png", "exr", "hdr"]) {
             return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
         }
@@ -106,7 +106,8 @@ impl Diff {
         }
         let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
         let cpu_choice = crate::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
-        let loaded = self.view.load(&self.first, &self.effort, gpu_choice.threads, quiet)?;
+        let read = Read::scene(&self.first, outputs, quiet)?;
+        let loaded = self.view.pack(read, &self.effort, gpu_choice.threads, quiet)?;
         let (width, height) = loaded.packed.settings.size;
         let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);
         let render = |choice| -> Result<Rendering> {

@@ -9,6 +9,7 @@ use clap::{Args, ValueEnum};
 use eyerays_bvh::Statistics;
 use serde_json::{Value, json};
 
+use super::options::Read;
 use super::outline::Outline;
 use super::{console, progress};
 use crate::error::Result;
@@ -16,7 +17,6 @@ use crate::gpu::{AdapterReport, adapters};
 use crate::pack::Packed;
 use crate::preset;
 use crate::quality::Bvh;
-use crate::scene;
 
 #[derive(Args)]
 pub(super) struct Info {
@@ -52,8 +52,7 @@ impl Info {
 
     /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
-        super::warn(&warnings, quiet || self.json);
+        let Read { scene, .. } = Read::scene(path, &[], quiet || self.json)?;
         let outline = Outline::of(&scene);
         if !self.json {
             console::print(&format!("{outline}{HEAD}"))?;

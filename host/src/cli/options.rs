@@ -13,6 +13,7 @@ use crate::cpu;
 use crate::error::{Error, Result, within};
 use crate::film::Film;
 use crate::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
+use crate::output::{self, Destination};
 use crate::pack::Packed;
 use crate::preset::Preset;
 use crate::quality::Bvh;
@@ -120,7 +121,26 @@ pub(super) struct On {
     pub no_passthrough: bool,
 }
 
-/// A scene, loaded and packed, and what that took.
+/// A scene that was read, from which file, and what that took.
+pub(super) struct Read<'a> {
+    pub path: &'a Path,
+    pub scene: Scene,
+    pub time: Duration,
+}
+
+impl<'a> Read<'a> {
+    /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
+    pub fn scene(path: &'a Path, outputs: &[Destination], quiet: bool) -> Result<Self> {
+        let start = Instant::now();
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
+        let time = start.elapsed();
+        super::warn(&warnings, quiet);
+        output::check_apart(outputs, &scene.files)?;
+        Ok(Read { path, scene, time })
+    }
+}
+
+/// A scene, packed, and what that took.
 pub(super) struct Loaded {
     pub packed: Packed,
     pub read_time: Duration,
@@ -133,12 +153,9 @@ impl View {
         self.size.is_some()
     }
 
-    /// Loads a scene and packs it for these options with `threads` threads (0: one a core).
-    pub fn load(&self, path: &Path, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
-        let start = Instant::now();
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
-        let read_time = start.elapsed();
-        super::warn(&warnings, quiet);
+    /// Packs a scene for these options with `threads` threads (0: one a core).
+    pub fn pack(&self, read: Read<'_>, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
+        let Read { path, scene, time: read_time } = read;
         let settings = self.settings(&scene, effort)?;
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;
         let threads = cpu::pool(threads)?;

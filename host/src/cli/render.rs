@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::Args;
 
 use super::console;
-use super::options::{Effort, On, View};
+use super::options::{Effort, On, Read, View};
 use super::progress;
 use super::summary::{Summary, Times};
 use crate::error::Result;
@@ -74,7 +74,8 @@ impl Render {
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
-        let loaded = self.view.load(&self.scene, &self.effort.over(&preset), choice.threads, quiet)?;
+        let read = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
+        let loaded = self.view.pack(read, &self.effort.over(&preset), choice.threads, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
         let (width, height) = loaded.packed.settings.size;
         let progress =

@@ -7,7 +7,7 @@ use std::process::ExitCode;
 use clap::{Args, ValueEnum};
 
 use super::console;
-use super::options::{self, Effort, View};
+use super::options::{self, Effort, Read, View};
 use super::progress;
 use crate::error::{Error, Result, within};
 use crate::method::{Layout, Method, TriangleTest};
@@ -187,14 +187,19 @@ impl Tradeoff {
             format(&path).map(|format| (path, format))
         });
         let outputs: Vec<_> = outputs.collect::<Result<_>>()?;
-        let paths = outputs.iter().map(|(path, _)| path).chain(&self.wishes.save);
-        let all: Vec<_> = paths.cloned().map(Destination::File).collect();
+        let all = self.destinations();
         output::check_apart(&all, [&self.scene])?;
         if let Some(path) = &self.wishes.save {
             output::check_own(path, SAVED, "--save")?;
         }
         all.iter().try_for_each(output::check_writable)?;
         Ok(outputs)
+    }
+
+    /// Every file that is written.
+    fn destinations(&self) -> Vec<Destination> {
+        let reports = self.output.iter().map(PathBuf::from);
+        reports.chain(self.wishes.save.clone()).map(Destination::File).collect()
     }
 
     fn choice(&self) -> Result<Choice> {
@@ -211,8 +216,7 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let (scene, warnings) = scene::load(&self.scene)?;
-        super::warn(&warnings, quiet);
+        let Read { scene, .. } = Read::scene(&self.scene, &self.destinations(), quiet)?;
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);

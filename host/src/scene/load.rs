@@ -55,6 +55,7 @@ fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         cameras: framing(path, &mesh, &settings)?,
         mesh,
         parts,
+        files: obj.libraries,
         materials,
         lights: frame::lights(),
         background: frame::background(),
@@ -112,8 +113,10 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         let fault = "there is no [[mesh]]; add one with a file or a shape";
         return Err(Error::file(path, fault));
     }
-    let (merge, warnings) = merge(meshes, &overrides, Files::new(file::folder(path), budget))?;
-    let (mesh, parts, materials) = merge.finish();
+    let mut files = Files::new(file::folder(path), budget);
+    let (mesh, parts, materials) = merge(meshes, &overrides, &mut files)?.finish();
+    let mut warnings = files.warnings;
+    warnings.extend(overrides.values().filter_map(Override::warning));
     let cameras = match cameras.is_empty() {
         true => framing(path, &mesh, &settings)?,
         false => cameras,
@@ -121,6 +124,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     let scene = Scene {
         mesh,
         parts,
+        files: files.paths,
         materials,
         lights: lights.unwrap_or_else(frame::lights),
         cameras,
@@ -147,10 +151,10 @@ fn overrides(tables: Vec<Table>) -> Result<Overrides> {
     Ok(overrides)
 }
 
-fn merge(tables: Vec<Table>, overrides: &Overrides, mut files: Files) -> Result<(Merge, Vec<String>)> {
+fn merge(tables: Vec<Table>, overrides: &Overrides, files: &mut Files) -> Result<Merge> {
     let mut merge = Merge::default();
     for mut table in tables {
-        let placed = part::read(&mut table, &mut files)?;
+        let placed = part::read(&mut table, files)?;
         let key = if placed.material.is_some() { "material" } else { "file" };
         let fault = merge.add(placed, overrides).err();
         if let Some(fault) = fault {
@@ -158,7 +162,5 @@ fn merge(tables: Vec<Table>, overrides: &Overrides, mut files: Files) -> Result<
         }
         table.done()?;
     }
-    let mut warnings = files.warnings;
-    warnings.extend(overrides.values().filter_map(Override::warning));
-    Ok((merge, warnings))
+    Ok(merge)
 }

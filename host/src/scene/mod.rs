@@ -56,6 +56,8 @@ pub struct Scene {
     pub mesh: Mesh,
     /// Which triangles of the mesh came of what, in file order; together all of them.
     pub parts: Vec<Part>,
+    /// The meshes and material files that it was read from, beside the scene file itself.
+    pub files: Vec<std::path::PathBuf>,
     /// What the mesh's materials index; never empty.
     pub materials: Vec<Material>,
     /// In file order, which is the order of their sums.

@@ -6,7 +6,7 @@
 //! objects named by the number of their material.
 
 use std::io::{BufRead, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
@@ -23,6 +23,8 @@ pub struct Obj {
     pub mesh: Mesh,
     pub materials: Vec<(String, Fields)>,
     pub warnings: Vec<String>,
+    /// The material files that were read.
+    pub libraries: Vec<PathBuf>,
 }
 
 /// Reads a mesh file and the material files it names. A normal is zero where the file has none.
@@ -49,7 +51,7 @@ pub(super) fn parse(path: &Path, reader: impl BufRead, budget: Budget) -> Result
     if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
         mesh.normals.clear();
     }
-    Ok(Obj { mesh, materials: found.materials, warnings: found.warnings })
+    Ok(Obj { mesh, materials: found.materials, warnings: found.warnings, libraries: found.libraries })
 }
 
 /// Adds one of tobj's models, whose name is the number of its material.

@@ -21,6 +21,8 @@ pub struct Files<'p> {
     read: HashMap<PathBuf, Obj>,
     /// What was ignored in them.
     pub warnings: Vec<String>,
+    /// Every file that was read, material files too.
+    pub paths: Vec<PathBuf>,
 }
 
 /// A mesh in place, and the materials that its triangles index.
@@ -47,7 +49,7 @@ impl Placed {
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names, all within the budget.
     pub fn new(folder: &'p Path, budget: Budget) -> Self {
-        Files { folder, budget, read: HashMap::new(), warnings: Vec::new() }
+        Files { folder, budget, read: HashMap::new(), warnings: Vec::new(), paths: Vec::new() }
     }
 
     fn load(&mut self, name: &str) -> Result<&Obj> {
@@ -55,6 +57,8 @@ impl<'p> Files<'p> {
         if !self.read.contains_key(&path) {
             let mut obj = obj::load(&path, self.budget)?;
             self.warnings.append(&mut obj.warnings);
+            self.paths.push(path.clone());
+            self.paths.append(&mut obj.libraries);
             self.read.insert(path.clone(), obj);
         }
         Ok(&self.read[&path])

@@ -20,6 +20,8 @@ pub struct Found {
     /// By the numbers that the objects in the text are named by.
     pub materials: Vec<(String, Fields)>,
     pub warnings: Vec<String>,
+    /// The material files that were read, by name.
+    pub libraries: Vec<PathBuf>,
 }
 
 /// What has been seen so far, and the text that comes of it.
@@ -209,7 +211,9 @@ impl<'p> State<'p> {
         ];
         self.warnings.extend(warnings.into_iter().flatten());
         self.warnings.extend(self.faces.warnings(self.path));
-        Ok(Found { materials: self.materials, warnings: self.warnings })
+        let mut libraries: Vec<PathBuf> = self.libraries.into_iter().collect();
+        libraries.sort();
+        Ok(Found { materials: self.materials, warnings: self.warnings, libraries })
     }
 }
 

@@ -17,7 +17,7 @@ use crate::gpu::{Gpu, Want};
 use crate::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use crate::output::{self, Destination, write_error};
 use crate::quality::Bvh;
-use crate::scene::{self, Camera, Scene};
+use crate::scene::{Camera, Scene};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:

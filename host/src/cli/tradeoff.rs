@@ -14,7 +14,7 @@ use crate::method::{Layout, Method, TriangleTest};
 use crate::output::{self, Destination, write_error};
 use crate::quality::Bvh;
 use crate::render::{Choice, Chosen, DeviceWish};
-use crate::scene::{self, Settings};
+use crate::scene::Settings;
 use crate::tradeoff::{self, Axes, Plan, Record, Report, Subject, Wish};
 
 pub(super) const EXAMPLES: &str = "\

@@ -4,39 +4,36 @@ use rspirv::binary::Assemble;
 use rspirv::dr::{self, Module, Operand};
 use rspirv::spirv::{Decoration, StorageClass, Word};
 
-use crate::{Error, Result, dead, fold, renumber, select, specialise};
+use crate::slice::Sliced;
+use crate::{Error, Result, fold, renumber, specialise};
 
-/// A module of many kernels, parsed.
+/// A module of many kernels.
 #[derive(Debug, Clone)]
-pub struct Kernels(Module);
+pub struct Kernels(Sliced);
 
 impl Kernels {
-    /// Parses the bytes of a module's file.
+    /// Reads the bytes of a module's file.
     ///
     /// # Errors
     /// They are no SPIR-V module.
     pub fn parse(bytes: &[u8]) -> Result<Self> {
-        dr::load_bytes(bytes).map(Kernels).map_err(|e| Error::Malformed(e.to_string()))
+        Sliced::new(bytes).map(Kernels)
     }
 
-    /// The names of the entry points.
+    /// The names of the entry points, sorted.
     pub fn names(&self) -> Vec<String> {
-        let entries = self.0.entry_points.iter();
-        entries.map(|entry| entry.operands[2].unwrap_literal_string().to_owned()).collect()
+        self.0.names()
     }
 
     /// The kernel of one entry point, with a value for each `SpecId` of its specialisation constants (the others keep
     /// their defaults) and every branch gone that these decide.
     ///
     /// # Errors
-    /// There is no such entry point.
+    /// There is no such entry point, or its function is no SPIR-V.
     pub fn cut(&self, entry: &str, constants: &[(u32, u32)]) -> Result<Kernel> {
-        let mut module = self.0.clone();
-        select::entries(&mut module, |name| name == entry)?;
-        if module.entry_points.is_empty() {
-            return Err(Error::NoEntry(entry.to_owned()));
-        }
-        dead::remove(&mut module);
+        let words = self.0.of_entry(entry)?;
+        let mut module = dr::load_words(words).map_err(|e| Error::Malformed(e.to_string()))?;
+        module.entry_points.retain(|declared| declared.operands[2] == Operand::LiteralString(entry.to_owned()));
         specialise::write(&mut module, constants);
         fold::fold(&mut module);
         renumber::compact(&mut module);

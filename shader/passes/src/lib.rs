@@ -12,6 +12,7 @@ pub mod kernel;
 pub mod reach;
 pub mod renumber;
 pub mod select;
+pub mod slice;
 pub mod specialise;
 #[cfg(feature = "testing")]
 pub mod testing;

@@ -11,7 +11,7 @@ use crate::{Error, Kernels};
 fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
     let mut kernel = Kernel::new();
     let special = kernel.spec_constant(1, 0);
-    kernel.entry("entry::kernel", |b| body(b, special));
+    kernel.entry("kernel", |b| body(b, special));
     let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
     let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap();
     let module = dr::load_words(cut.words()).unwrap();

@@ -252,7 +252,15 @@ fn meshes_larger_than_the_buffers_of_a_device() {
 
 #[test]
 fn outputs_that_would_replace_an_input() {
-    let place = Place::new(&[("scene.toml", SCENE), ("kept.png", "samples = 1\n")]);
+    let mesh = format!("mtllib mesh.mtl\n{TRIANGLE}");
+    let meshes = "[[mesh]]\nfile = \"mesh.obj\"\n";
+    let place = Place::new(&[
+        ("scene.toml", SCENE),
+        ("kept.png", "samples = 1\n"),
+        ("mesh.obj", &mesh),
+        ("mesh.mtl", "newmtl red\n"),
+        ("meshes.toml", meshes),
+    ]);
     let render = ["render", "scene.toml", "--device", "cpu", "-o"];
     for name in ["a.png", "b.png"] {
         place.succeed(&[&render[..], &[name]].concat());
@@ -261,6 +269,10 @@ fn outputs_that_would_replace_an_input() {
     place.refuse(&[&render[..], &["./kept.png", "--settings", "kept.png"]].concat(), &["kept.png", "would replace"]);
     let bench = ["bench", "scene.toml", "--device", "cpu", "--format", "json", "-o", "scene.toml"];
     place.refuse(&bench, &["scene.toml", "would replace"]);
+    for name in ["mesh.obj", "./mesh.mtl"] {
+        let bench = ["bench", "meshes.toml", "--device", "cpu", "--format", "json", "-o", name];
+        place.refuse(&bench, &[name, "would replace the input"]);
+    }
     #[cfg(unix)]
     {
         std::os::unix::fs::symlink("scene.toml", place.path("link.png")).unwrap();
@@ -329,7 +341,9 @@ fn pictures_that_cannot_be_compared() {
 #[test]
 fn lights_and_cameras_beyond_all_numbers() {
     let light = format!("{SCENE}\n[[light]]\nkind = \"point\"\nposition = [1e38, 0, 0]\n");
-    Place::new(&[("scene.toml", &light)]).refuse_scene("scene.toml", &["light 1", "too far"]);
+    let place = Place::new(&[("scene.toml", &light)]);
+    place.refuse_scene("scene.toml", &["light 1", "too far"]);
+    place.refuse(&["info", "scene.toml"], &["scene.toml: light 1", "too far"]);
 }
 
 #[test]

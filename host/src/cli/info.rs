@@ -1,5 +1,6 @@
 //! `eyerays info`.
 
+use std::collections::BTreeMap;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -13,14 +14,15 @@ use super::options::Read;
 use super::outline::Outline;
 use super::{console, progress};
 use crate::error::Result;
-use crate::gpu::{AdapterReport, adapters};
+use crate::gpu::{AdapterReport, Cost, adapters};
+use crate::method::Traversal;
 use crate::pack::Packed;
 use crate::preset;
 use crate::quality::Bvh;
 
 #[derive(Args)]
 pub(super) struct Info {
-    /// A scene, to tell where its meshes are and its hierarchy's figures instead
+    /// A scene, to tell where its meshes are, its hierarchy's figures and what a GPU runs for it instead
     scene: Option<PathBuf>,
     /// Build the hierarchy in this quality only [default: each in turn]
     #[arg(long, value_name = "QUALITY", value_enum, requires = "scene")]
@@ -54,27 +56,50 @@ impl Info {
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
         let Read { scene, .. } = Read::scene(path, &[], quiet || self.json)?;
         let outline = Outline::of(&scene);
-        if !self.json {
-            console::print(&format!("{outline}{HEAD}"))?;
-        }
-        let mut rows = Vec::new();
+        let (mut rows, mut cost) = (Vec::new(), None);
         for &bvh in self.bvh.as_ref().map_or(Bvh::value_variants(), std::slice::from_ref) {
             let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, bvh.quality());
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
             let row = Row { bvh: preset::name(bvh), statistics: packed.statistics, build_time: packed.build_time };
+            if !self.json && rows.is_empty() {
+                console::print(&format!("{outline}{HEAD}"))?;
+            }
             if !self.json {
                 console::print(&row.to_string())?;
             }
             rows.push(row.json());
+            cost = Some(Cost::of(&packed, true, Traversal::default())?);
         }
-        if self.json {
-            let mut json = outline.json();
-            json["scene"] = path.display().to_string().into();
-            json["hierarchies"] = rows.into();
-            console::print_json(&json)?;
+        let cost = cost.expect("one quality at least");
+        if !self.json {
+            return console::print(&paid(&cost));
         }
-        Ok(())
+        let mut json = outline.json();
+        json["scene"] = path.display().to_string().into();
+        json["hierarchies"] = rows.into();
+        json["gpu"] = json!({
+            "kernels": cost.kernels,
+            "scene_bytes": cost.scene.iter().copied().collect::<BTreeMap<_, _>>(),
+            "ray_bytes": cost.ray.iter().copied().collect::<BTreeMap<_, _>>(),
+        });
+        console::print_json(&json)
     }
+}
+
+/// What a GPU runs and holds for the scene, in exact precision by the methods of `auto`.
+fn paid(cost: &Cost) -> String {
+    let mut text = "kernel of a GPU                        instructions  buffers\n".to_owned();
+    for kernel in &cost.kernels {
+        let name = if kernel.further { format!("+ {}", kernel.name) } else { kernel.name.clone() };
+        text += &format!("{name:<38} {:>12}  {}\n", kernel.instructions, kernel.buffers.join(", "));
+    }
+    let sum = |buffers: &[(&str, u64)]| {
+        let list: Vec<String> = buffers.iter().map(|(name, bytes)| format!("{name} {bytes}")).collect();
+        list.join(", ")
+    };
+    text += "+ runs for reflected and refracted rays, once for each wave of them\n";
+    text += &format!("bytes of the scene: {}\n", sum(&cost.scene));
+    text + &format!("bytes of a ray in flight: {}\n", sum(&cost.ray))
 }
 
 const HEAD: &str = "BVH      triangles      nodes     leaves  depth  SAH cost       memory          build\n";

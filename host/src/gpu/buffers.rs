@@ -9,14 +9,37 @@ use super::scene::SceneBuffers;
 use crate::error::{Error, Result};
 use crate::pack::Packed;
 
-/// What stands for a buffer that the scene does not need.
-pub(super) const DUMMY: u64 = 16;
+/// What stands for a buffer that the scene does not need: as large as the largest record, since a kernel may be
+/// validated against its size.
+pub(super) const DUMMY: u64 = 128;
 /// Bytes of a record.
 const RECORD: u64 = 16;
 /// The most memory one kind of record takes; a larger picture is rendered in more bands.
 const MOST: u64 = 1 << 30;
 /// The most rays a dispatch traces, so that no watchdog takes it for hung.
 const RAYS: u64 = 1 << 22;
+
+/// What a binding is called by people.
+pub fn name(binding: u32) -> &'static str {
+    match binding {
+        binding::FRAME => "frame",
+        binding::NODES => "hierarchy",
+        binding::TRIANGLES => "triangles",
+        binding::NORMALS => "normals",
+        binding::MATERIALS => "materials",
+        binding::LIGHTS => "lights",
+        binding::PATHS => "paths",
+        binding::HITS => "hits",
+        binding::SHADOWS => "shadows",
+        binding::FILM => "film",
+        binding::QUEUE => "queue",
+        binding::NEXT => "next queue",
+        binding::COUNTERS => "counters",
+        binding::WIDE => "wide hierarchy",
+        binding::BOUNDS => "bounds",
+        _ => "unknown",
+    }
+}
 
 /// What a slot takes of each buffer of a launch, in bytes.
 struct Share {

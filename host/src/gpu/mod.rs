@@ -3,6 +3,7 @@
 mod adapter;
 mod buffers;
 mod cast;
+mod cost;
 mod device;
 mod hush;
 mod kernel;
@@ -18,6 +19,7 @@ mod warm;
 
 pub use adapter::{AdapterReport, adapters};
 pub use cast::{Cast, Caster};
+pub use cost::{Cost, KernelCost};
 pub use device::{Gpu, Route, Want};
 pub use plan::Plan;
 pub use recipe::{Recipe, Step};

@@ -1,25 +1,48 @@
 //! Device memory of a scene.
 
-use bytemuck::NoUninit;
 use eyerays_shader::data::Features;
 use eyerays_shader::launch::binding;
 
-use super::buffers::DUMMY;
+use super::buffers::{self, DUMMY};
 use super::device::Gpu;
 use crate::error::{Error, Result};
 use crate::method::Layout;
 use crate::pack::{NodeWords, Packed, TriangleWords};
 
-/// What kernels read of a scene; a dummy for what they do not.
-pub(super) struct SceneBuffers {
-    nodes: wgpu::Buffer,
-    wide: wgpu::Buffer,
-    triangles: wgpu::Buffer,
-    bounds: wgpu::Buffer,
-    normals: wgpu::Buffer,
-    materials: wgpu::Buffer,
-    lights: wgpu::Buffer,
+/// The records of a scene as kernels read them, before they are uploaded.
+pub(super) struct SceneRecords<'a> {
+    packed: &'a Packed,
+    nodes: Option<NodeWords<'a>>,
+    triangles: TriangleWords<'a>,
+    wide: bool,
 }
+
+impl<'a> SceneRecords<'a> {
+    /// A scene in one of its layouts. A hierarchy that no method walks is left out.
+    pub fn new(packed: &'a Packed, layout: Layout, hierarchies: Hierarchies) -> Self {
+        let nodes = hierarchies.binary.then(|| NodeWords::of(packed, layout));
+        SceneRecords { packed, nodes, triangles: TriangleWords::of(packed, layout), wide: hierarchies.wide }
+    }
+
+    /// Every binding with its bytes, none where the scene has no use for it.
+    pub fn bytes(&self) -> [(u32, &[u8]); 7] {
+        let packed = self.packed;
+        let wide = if self.wide { &packed.wide[..] } else { &[] };
+        let normals = if packed.features.has(Features::SMOOTH) { &packed.normals[..] } else { &[] };
+        [
+            (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
+            (binding::WIDE, bytemuck::cast_slice(wide)),
+            (binding::TRIANGLES, bytemuck::cast_slice(&self.triangles.0)),
+            (binding::BOUNDS, bytemuck::cast_slice(&packed.bounds)),
+            (binding::NORMALS, bytemuck::cast_slice(normals)),
+            (binding::MATERIALS, bytemuck::cast_slice(&packed.materials)),
+            (binding::LIGHTS, bytemuck::cast_slice(&packed.lights)),
+        ]
+    }
+}
+
+/// What kernels read of a scene; a dummy for what they do not.
+pub(super) struct SceneBuffers(Vec<(u32, wgpu::Buffer)>);
 
 impl SceneBuffers {
     /// Uploads a scene in one of its layouts. A hierarchy that no method walks may be left
@@ -28,30 +51,14 @@ impl SceneBuffers {
     /// # Errors
     /// If a part is larger than a buffer, or what the GPU reports.
     pub fn new(gpu: &Gpu, packed: &Packed, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
-        let nodes = NodeWords::of(packed, layout);
-        let smooth = packed.features.has(Features::SMOOTH);
-        Ok(SceneBuffers {
-            nodes: upload(gpu, "hierarchy", if hierarchies.binary { &nodes.0 } else { &[] })?,
-            wide: upload(gpu, "wide hierarchy", if hierarchies.wide { &packed.wide } else { &[] })?,
-            triangles: upload(gpu, "triangles", &TriangleWords::of(packed, layout).0)?,
-            bounds: upload(gpu, "bounds", &packed.bounds)?,
-            normals: upload(gpu, "normals", if smooth { &packed.normals } else { &[] })?,
-            materials: upload(gpu, "materials", &packed.materials)?,
-            lights: upload(gpu, "lights", &packed.lights)?,
-        })
+        let records = SceneRecords::new(packed, layout, hierarchies);
+        let upload = |(binding, bytes)| Ok((binding, upload(gpu, buffers::name(binding), bytes)?));
+        records.bytes().into_iter().map(upload).collect::<Result<_>>().map(SceneBuffers)
     }
 
     /// Every buffer with its binding.
-    pub fn bound(&self) -> [(u32, &wgpu::Buffer); 7] {
-        [
-            (binding::NODES, &self.nodes),
-            (binding::WIDE, &self.wide),
-            (binding::TRIANGLES, &self.triangles),
-            (binding::BOUNDS, &self.bounds),
-            (binding::NORMALS, &self.normals),
-            (binding::MATERIALS, &self.materials),
-            (binding::LIGHTS, &self.lights),
-        ]
+    pub fn bound(&self) -> impl Iterator<Item = (u32, &wgpu::Buffer)> {
+        self.0.iter().map(|(binding, buffer)| (*binding, buffer))
     }
 }
 
@@ -62,9 +69,8 @@ pub(super) struct Hierarchies {
     pub wide: bool,
 }
 
-/// A read-only buffer of records, or a dummy of zeros.
-fn upload<T: NoUninit>(gpu: &Gpu, name: &str, records: &[T]) -> Result<wgpu::Buffer> {
-    let bytes: &[u8] = bytemuck::cast_slice(records);
+/// A read-only buffer, or a dummy of zeros.
+fn upload(gpu: &Gpu, name: &str, bytes: &[u8]) -> Result<wgpu::Buffer> {
     let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
     if bytes.len() as u64 > limit {
         return Err(Error::new(format!(
@@ -73,8 +79,7 @@ fn upload<T: NoUninit>(gpu: &Gpu, name: &str, records: &[T]) -> Result<wgpu::Buf
             gpu.report.name
         )));
     }
-    // A dummy has room for the largest record, since a kernel may be validated against its size.
-    let size = (bytes.len() as u64).max(DUMMY).max(size_of::<T>() as u64);
+    let size = (bytes.len() as u64).max(DUMMY);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size,

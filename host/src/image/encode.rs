@@ -9,7 +9,7 @@ use image::{ExtendedColorType, ImageEncoder, ImageResult};
 use rayon::prelude::*;
 
 use super::exr::{self, exposed};
-use super::transfer::quantise;
+use super::transfer::{quantise, quantise_to_byte};
 use super::{BitDepth, Encoding, Format};
 use crate::error::{Error, Result};
 use crate::film::Film;
@@ -57,7 +57,7 @@ const PNG_HEADER: usize = 33;
 fn png(film: &Film, depth: BitDepth, scale: f64) -> ImageResult<Vec<u8>> {
     match depth {
         BitDepth::Eight => {
-            let values = samples(film, |v| quantise(v * scale, 255.0) as u8);
+            let values = samples(film, |v| quantise_to_byte(v * scale));
             png_of(film, &values, ExtendedColorType::Rgb8)
         }
         BitDepth::Sixteen => {

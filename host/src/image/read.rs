@@ -66,10 +66,18 @@ fn most_per_pixel(format: ImageFormat) -> Option<u64> {
 fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
     let allowance = Allowance::new(MOST_HEADER);
     let reader = Bounded::new(reader, allowance.clone());
-    let mut reader = ImageReader::new(reader).with_guessed_format().map_err(|e| Error::new(read_error(&e)))?;
-    let Some(most_per_pixel) = reader.format().and_then(most_per_pixel) else {
+    let unreadable = |e: io::Error| Error::new(read_error(&e));
+    let reader = ImageReader::new(reader).with_guessed_format().map_err(unreadable)?;
+    let kind = reader.format().and_then(|format| Some((format, most_per_pixel(format)?)));
+    let Some((format, most_per_pixel)) = kind else {
         return Err(Error::new("is not a PNG, EXR or HDR image"));
     };
+    let mut reader = reader.into_inner();
+    if format == ImageFormat::OpenExr {
+        check_parts(&mut reader)?;
+        reader.rewind().map_err(unreadable)?;
+    }
+    let mut reader = ImageReader::with_format(reader, format);
     let mut limits = Limits::default();
     // The widest pixel is one of four floats.
     limits.max_alloc = Some(Film::MAX_PIXELS * 16);
@@ -83,6 +91,26 @@ fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
     allowance.add(pixels * most_per_pixel);
     let decoded = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
     Film::from_pixels(width, height, linear_pixels(decoded))
+}
+
+/// Refuses an EXR whose parts hold more than their pixels may: a decoder takes memory by the size of the data, and
+/// `image` asks for that of the display alone.
+fn check_parts(reader: &mut impl BufRead) -> Result<()> {
+    let damaged = |error| match error {
+        ::exr::error::Error::Io(error) => Error::new(read_error(&error)),
+        error => Error::new(format!("is damaged or of an unknown kind ({error}); write the image again")),
+    };
+    let parts = ::exr::meta::MetaData::read_from_buffered(reader, false).map_err(damaged)?.headers;
+    let most = most_per_pixel(ImageFormat::OpenExr).unwrap_or(0);
+    parts.iter().try_for_each(|part| {
+        let [width, height] =
+            [part.layer_size.0, part.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
+        Film::check_size(width, height)?;
+        match part.channels.bytes_per_pixel as u64 <= most {
+            true => Ok(()),
+            false => Err(Error::new(format!("has pixels of more than {most} bytes; write fewer layers"))),
+        }
+    })
 }
 
 fn linear_pixels(image: DynamicImage) -> Vec<[f32; 3]> {

@@ -311,6 +311,20 @@ fn greys_and_alpha_are_read() {
     assert_eq!(film.pixels, [[1.0; 3], [grey; 3]]);
 }
 
+/// A decoder takes memory by the size of the data, which differs from that of the display in some files.
+#[test]
+fn an_exr_that_claims_more_data_than_its_display_is_refused_before_memory_is_taken() {
+    let file = bytes(&striped_film(), Format::Exr, &Encoding::default());
+    let window = b"dataWindow\0box2i\0";
+    let at = file.windows(window.len()).position(|bytes| bytes == window).unwrap() + window.len() + 4;
+    for (corner, value) in [(8, 1_000_000_000i32), (12, 1_000_000_000), (8, 40_000)] {
+        let mut damaged = file.clone();
+        damaged[at + corner..at + corner + 4].copy_from_slice(&value.to_le_bytes());
+        let error = decode(Cursor::new(damaged)).unwrap_err();
+        assert!(error.message.contains("too large"), "{error}");
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..Default::default() })]
 

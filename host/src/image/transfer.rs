@@ -1,5 +1,7 @@
 //! The sRGB transfer function (IEC 61966-2-1), between linear light and what a PNG stores.
 
+use std::sync::LazyLock;
+
 use crate::math;
 
 /// From linear light to the sRGB signal, both in [0, 1]. What is less, and NaN, becomes 0;
@@ -22,6 +24,25 @@ pub fn srgb_to_linear(signal: f64) -> f64 {
 /// The nearest of `steps + 1` sRGB values for linear light; `steps` is 255 or 65,535.
 pub(super) fn quantise(linear: f64, steps: f64) -> f64 {
     (linear_to_srgb(linear) * steps).round()
+}
+
+/// The least linear light of each sRGB value of 8 bits but 0: a search among them takes a fifth of a power.
+static LEAST_OF_VALUE: LazyLock<Vec<f64>> = LazyLock::new(|| (1..=255).map(|value| least(value, 255.0)).collect());
+
+/// [`quantise`] for 8 bits.
+pub(super) fn quantise_to_byte(linear: f64) -> u8 {
+    LEAST_OF_VALUE.partition_point(|&least| least <= linear) as u8
+}
+
+/// The least linear light that becomes `value` of `steps` or more; the bits of positive numbers have their order.
+fn least(value: u32, steps: f64) -> f64 {
+    let (mut below, mut above) = (0.0f64.to_bits(), 1.0f64.to_bits());
+    while above - below > 1 {
+        let middle = below.midpoint(above);
+        let reaches = quantise(f64::from_bits(middle), steps) >= f64::from(value);
+        *(if reaches { &mut above } else { &mut below }) = middle;
+    }
+    f64::from_bits(above)
 }
 
 /// Linear light for every one of `steps + 1` sRGB values, so that equal values decode equally.
@@ -59,6 +80,17 @@ mod tests {
         for range in [floats.collect::<Vec<_>>(), around.collect()] {
             let values = range.iter().map(|&v| quantise(v.into(), 65_535.0));
             assert!(values.is_sorted());
+        }
+    }
+
+    #[test]
+    fn a_byte_is_found_where_the_function_has_it() {
+        let below = |x: f64| f64::from_bits(x.to_bits() - 1);
+        let joints = LEAST_OF_VALUE.iter().flat_map(|&least| [least, below(least), f64::from(least as f32)]);
+        let spread = (0..=1.0_f32.to_bits()).step_by(4099).map(|bits| f64::from(f32::from_bits(bits)));
+        let odd = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -0.0, 0.0, 2.0, 1.0, 5e-324];
+        for linear in joints.chain(spread).chain(odd) {
+            assert_eq!(f64::from(quantise_to_byte(linear)), quantise(linear, 255.0), "{linear:e}");
         }
     }
 

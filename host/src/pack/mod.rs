@@ -11,6 +11,7 @@ use eyerays_shader::data::{
 };
 use glam::{DVec3, Vec3};
 
+mod check;
 mod laid;
 mod normalisation;
 mod words;
@@ -76,9 +77,11 @@ impl Packed {
     /// Normalises, builds the hierarchy and packs.
     ///
     /// # Errors
-    /// What no device could hold or no ray meet: too many triangles, a light or camera too far away
-    /// for the scene's numbers.
+    /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
+    /// or no ray meet: too many triangles, a light or camera too far away for the scene's numbers.
     pub fn new(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Result<Packed> {
+        check::scene(scene)?;
+        check::settings(&settings)?;
         let mut features = features(scene, &settings);
         let normalisation = normalisation(scene, camera, features);
         let triangles = triangles(scene, &normalisation, features);
@@ -154,8 +157,9 @@ impl Packed {
     /// Takes other settings and keeps the hierarchy, which does not depend on them.
     ///
     /// # Errors
-    /// As [`Packed::look`].
+    /// As [`Packed::look`], and settings out of range.
     pub fn set(&mut self, scene: &Scene, camera: &Camera, settings: Settings) -> Result<()> {
+        check::settings(&settings)?;
         let split = self.features.0 & Features::SPLIT;
         self.features = Features(features(scene, &settings).0 | split);
         self.settings = settings;

@@ -20,10 +20,16 @@ impl Room {
     /// groups around this process, and what the machine has available.
     pub fn now() -> Room {
         let root = Path::new("/");
-        let limits = [address_space(root), group(root), machine()];
+        let limits = [address_space(root).map(Room::less_threads), group(root), machine()];
         let least = limits.into_iter().flatten().min_by_key(|room| room.bytes);
         // A system that does not tell is not second-guessed.
         least.unwrap_or(Room { bytes: u64::MAX, limit: "this system" })
+    }
+
+    /// Without the address space that the threads of a rendering will have, one a core.
+    fn less_threads(self) -> Room {
+        let threads = std::thread::available_parallelism().map_or(1, usize::from) as u64;
+        Room { bytes: self.bytes.saturating_sub(threads * THREAD), ..self }
     }
 
     /// Refuses what takes more than there is.
@@ -52,6 +58,9 @@ fn machine() -> Option<Room> {
     system.refresh_memory_specifics(MemoryRefreshKind::everything());
     Some(Room { bytes: system.available_memory() + system.free_swap(), limit: "this machine" })
 }
+
+/// Address space that the C library sets aside for a thread's allocations (64 MiB) and its stack, taken or not.
+const THREAD: u64 = 68 << 20;
 
 /// What `ulimit -v` leaves of the address space. Systems without these files do not enforce it.
 fn address_space(root: &Path) -> Option<Room> {

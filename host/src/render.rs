@@ -96,6 +96,8 @@ struct Runs {
     warm_up: bool,
     /// At least once.
     repeat: u32,
+    /// When their preparation began; a GPU that then can't is part of it.
+    since: Instant,
 }
 
 /// Pictures, with pauses to read them, raise a GPU's clocks in so long.
@@ -162,7 +164,7 @@ impl Chosen {
     /// # Errors
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
     pub fn render(&self, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        self.run(packed, Runs { warm_up: false, repeat }, done)
+        self.run(packed, Runs { warm_up: false, repeat, since: Instant::now() }, done)
     }
 
     /// [`Chosen::render`] after a warm-up, which counts for no time.
@@ -170,7 +172,7 @@ impl Chosen {
     /// # Errors
     /// As [`Chosen::render`].
     pub fn measure(&self, packed: &Packed, repeat: u32) -> Result<Rendering> {
-        self.run(packed, Runs { warm_up: true, repeat }, &|_| ())
+        self.run(packed, Runs { warm_up: true, repeat, since: Instant::now() }, &|_| ())
     }
 
     fn run(&self, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
@@ -186,9 +188,8 @@ impl Chosen {
     }
 
     fn on_gpu(&self, gpu: &Gpu, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let start = Instant::now();
         let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
-        let prepare_time = self.open_time + start.elapsed();
+        let prepare_time = self.open_time + runs.since.elapsed();
         if runs.warm_up {
             warm(LEAST_WARMING, || {
                 let start = Instant::now();
@@ -196,9 +197,15 @@ impl Chosen {
                 Ok(rendering.device_time.unwrap_or_else(|| start.elapsed()))
             })?;
         }
-        let (rendering, times) = repeated(runs.repeat, || renderer.render(done))?;
-        let device_times: Option<Vec<Duration>> = rendering.iter().map(|r| r.device_time).collect();
-        let last = rendering.into_iter().last().expect("at least one rendering");
+        let mut device_times = Some(Vec::new());
+        let (last, times) = repeated(runs.repeat, || {
+            let rendering = renderer.render(done)?;
+            match rendering.device_time.zip(device_times.as_mut()) {
+                Some((time, times)) => times.push(time),
+                None => device_times = None,
+            }
+            Ok(rendering)
+        })?;
         let route = if self.choice.no_passthrough { ", through naga" } else { "" };
         Ok(Rendering {
             film: last.film,
@@ -215,9 +222,8 @@ impl Chosen {
 
     fn on_cpu(&self, packed: &Packed, why: String, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         let threads = self.choice.threads;
-        let start = Instant::now();
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
-        let prepare_time = self.open_time + start.elapsed();
+        let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
             Precision::Exact => renderer.render::<f32>(done, &()),
             Precision::Fast => renderer.render::<Fast>(done, &()),
@@ -226,8 +232,7 @@ impl Chosen {
         if runs.warm_up {
             render(&|_| ())?;
         }
-        let (rendering, times) = repeated(runs.repeat, || render(done))?;
-        let (film, rays) = rendering.into_iter().last().expect("at least one rendering");
+        let ((film, rays), times) = repeated(runs.repeat, || render(done))?;
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
         Ok(Rendering {
@@ -244,16 +249,17 @@ impl Chosen {
     }
 }
 
-/// Runs `repeat` times and keeps the results and times.
-fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(Vec<T>, Vec<Duration>)> {
-    let mut results = Vec::new();
+/// Runs `repeat` times, at least once, and keeps the last result and all times.
+fn repeated<T>(repeat: u32, mut run: impl FnMut() -> Result<T>) -> Result<(T, Vec<Duration>)> {
     let mut times = Vec::new();
-    for _ in 0..repeat.max(1) {
+    loop {
         let start = Instant::now();
-        results.push(run()?);
+        let result = run()?;
         times.push(start.elapsed());
+        if times.len() >= repeat as usize {
+            return Ok((result, times));
+        }
     }
-    Ok((results, times))
 }
 
 fn median(mut times: Vec<Duration>) -> Duration {

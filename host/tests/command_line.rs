@@ -225,6 +225,7 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let table = place.succeed(&["info", &path]);
     let json = place.succeed(&["info", &path, "--json"]).json();
     let rows = table.text().lines().skip_while(|line| !line.starts_with("BVH")).skip(1);
+    let rows = rows.take_while(|line| !line.starts_with("kernel of a GPU"));
     let rows: Vec<Vec<&str>> = rows.map(|line| line.split_whitespace().collect()).collect();
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
@@ -246,6 +247,16 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let one = place.succeed(&["info", &path, "--bvh", "medium", "--json"]).json()["hierarchies"].take();
     assert_eq!(one.as_array().map(Vec::len), Some(1));
     assert_eq!(one[0]["bvh"], "medium");
+    // What a GPU would run and hold for it.
+    let last = table.text().lines().skip_while(|line| !line.starts_with("kernel of a GPU")).collect::<Vec<_>>();
+    let kernels = json["gpu"]["kernels"].as_array().unwrap();
+    assert_eq!((kernels.len(), last.len()), (7, 1 + 7 + 3), "{last:?}");
+    for (kernel, line) in kernels.iter().zip(&last[1..]) {
+        assert!(line.contains(kernel["name"].as_str().unwrap()), "{line}");
+        assert!(line.contains(&kernel["instructions"].to_string()), "{line}");
+    }
+    let nodes = json["gpu"]["scene_bytes"]["hierarchy"].as_u64().unwrap();
+    assert!(nodes > 0 && last[9].contains(&format!("hierarchy {nodes}")), "{last:?}");
 }
 
 /// Users place cameras and lights by these figures.

@@ -90,7 +90,8 @@ fn explain(said: &clap::Error) -> Result<ExitCode> {
 fn execute(cli: Cli) -> Result<ExitCode> {
     log(cli.verbose);
     #[cfg(unix)]
-    signals::watch().map_err(|e| Error::new(format!("no thread to wait for signals in: {e}")))?;
+    signals::watch()
+        .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;
     match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),

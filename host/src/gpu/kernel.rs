@@ -4,6 +4,7 @@ use eyerays_shader::launch::WORKGROUP;
 use rayon::prelude::*;
 
 use super::device::Gpu;
+use super::hush::Hush;
 use super::module;
 use super::recipe::{Recipe, Step};
 
@@ -48,6 +49,7 @@ pub(super) fn compile(gpu: &Gpu, bindings: &wgpu::BindGroupLayout, recipes: &[Re
         bind_group_layouts: &[Some(bindings)],
         immediate_size: 0,
     });
+    let _hush = Hush::new();
     recipes.par_iter().map(|recipe| one(gpu, &layout, recipe)).collect()
 }
 

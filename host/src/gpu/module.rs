@@ -11,7 +11,7 @@ pub(super) fn create(gpu: &Gpu, words: &[u32], entry: &str) -> wgpu::ShaderModul
     match gpu.route {
         Route::Passthrough => {
             let entry = wgpu::PassthroughShaderEntryPoint { name: entry.into(), workgroup_size: (WORKGROUP, 1, 1) };
-            // SAFETY: the words are the committed module, built and validated from our own kernels; every
+            // SAFETY: the words are a kernel of our own, cut out of a committed module by passes that keep it valid; every
             // index in the buffers it reads was validated, and every buffer has room for every slot.
             unsafe {
                 gpu.device.create_shader_module_passthrough(wgpu::ShaderModuleDescriptorPassthrough {

@@ -85,12 +85,18 @@ fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
     let decoder = reader.into_decoder().map_err(decode_error)?;
     let (width, height) = decoder.dimensions();
     let pixels = Film::check_size(width, height)? as u64;
-    Room::now().check(pixels * MEMORY_PER_PIXEL).map_err(|why| {
-        Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))
-    })?;
+    room(width, height, MEMORY_PER_PIXEL)?;
     allowance.add(pixels * most_per_pixel);
     let decoded = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
     Film::from_pixels(width, height, linear_pixels(decoded))
+}
+
+/// Refuses pixels of so many bytes each that there is no memory for.
+fn room(width: u32, height: u32, each: u64) -> Result<()> {
+    let bytes = u64::from(width) * u64::from(height) * each;
+    Room::now().check(bytes).map_err(|why| {
+        Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))
+    })
 }
 
 /// Refuses an EXR whose parts hold more than their pixels may: a decoder takes memory by the size of the data, and
@@ -106,10 +112,11 @@ fn check_parts(reader: &mut impl BufRead) -> Result<()> {
         let [width, height] =
             [part.layer_size.0, part.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
         Film::check_size(width, height)?;
-        match part.channels.bytes_per_pixel as u64 <= most {
-            true => Ok(()),
-            false => Err(Error::new(format!("has pixels of more than {most} bytes; write fewer layers"))),
+        let each = part.channels.bytes_per_pixel as u64;
+        if each > most {
+            return Err(Error::new(format!("has pixels of more than {most} bytes; write fewer layers")));
         }
+        room(width, height, each)
     })
 }
 

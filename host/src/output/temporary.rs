@@ -92,7 +92,8 @@ impl Drop for Temporary {
 /// Locks a new file. Another process that clears the folder may have been faster: it removes the file then.
 fn is_taken(file: &File, path: &Path) -> bool {
     match file.try_lock() {
-        Ok(()) => is_at(file, path).is_err_and(|error| error.kind() == ErrorKind::NotFound),
+        // Where the system cannot tell, nobody took it.
+        Ok(()) => is_at(file, path).map_or_else(|error| error.kind() == ErrorKind::NotFound, |here| !here),
         Err(TryLockError::WouldBlock) => true,
         // A file system without locks, where nobody else can lock it either.
         Err(TryLockError::Error(_)) => false,

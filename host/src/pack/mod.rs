@@ -160,8 +160,9 @@ impl Packed {
     /// As [`Packed::look`], and settings out of range.
     pub fn set(&mut self, scene: &Scene, camera: &Camera, settings: Settings) -> Result<()> {
         check::settings(&settings)?;
-        let split = self.features.0 & Features::SPLIT;
-        self.features = Features(features(scene, &settings).0 | split);
+        // What was packed stays packed.
+        let geometry = Features::SPLIT | Features::SMOOTH;
+        self.features = Features(features(scene, &settings).0 & !geometry | self.features.0 & geometry);
         self.settings = settings;
         self.look(scene, camera)
     }

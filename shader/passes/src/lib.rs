@@ -1,6 +1,8 @@
 //! Cuts single kernels out of a SPIR-V module: one entry point, its constants written in and folded, and nothing that
 //! it does not reach. The build of the committed modules uses the same passes.
 //!
+//! Modules must be valid, as `spirv-val` has it: the passes may panic on others.
+//!
 //! A module holds the entry points of many kernels, each compiled for every effect. What a driver compiles takes time by
 //! the size of what it is given, so it is given [`Kernel`]s.
 

@@ -3,7 +3,7 @@
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Decoration, Op, Word};
 
-/// Gives every specialisation constant of 32 bits the value of its `SpecId` in `values`, or else its default, and makes
+/// Gives every specialisation constant, of 32 bits each, the value of its `SpecId` in `values`, or else its default, and makes
 /// it a constant like any other: wgpu passes none to modules that it does not translate.
 pub fn write(module: &mut Module, values: &[(u32, u32)]) {
     let ids: Vec<(Word, u32)> = module.annotations.iter().filter_map(spec_id).collect();

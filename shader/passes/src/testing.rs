@@ -214,6 +214,29 @@ impl Body<'_> {
         self.b.begin_block(Some(after)).unwrap();
     }
 
+    /// A loop that a word other than zero leaves in its first round, and whose way back has two blocks.
+    pub fn leave_long_loop(&mut self, once: Word) {
+        let (uint, bool) = (self.ids.uint, self.b.type_bool());
+        let (zero, one) = (self.constant_u32(0), self.constant_u32(1));
+        let [before, header, next, back, after] = [0; 5].map(|_| self.b.id());
+        let (count, more) = (self.b.id(), self.b.id());
+        self.b.branch(before).unwrap();
+        self.b.begin_block(Some(before)).unwrap();
+        self.b.branch(header).unwrap();
+        self.b.begin_block(Some(header)).unwrap();
+        self.b.phi(uint, Some(count), [(zero, before), (more, back)]).unwrap();
+        let leaves = self.b.i_not_equal(bool, None, once, zero).unwrap();
+        self.b.loop_merge(after, next, LoopControl::NONE, []).unwrap();
+        self.b.branch_conditional(leaves, after, next, []).unwrap();
+        self.b.begin_block(Some(next)).unwrap();
+        self.b.i_add(uint, Some(more), count, one).unwrap();
+        self.b.branch(back).unwrap();
+        self.b.begin_block(Some(back)).unwrap();
+        self.b.branch(header).unwrap();
+        self.b.begin_block(Some(after)).unwrap();
+        self.store_counter(count);
+    }
+
     /// The sum of ones over as many rounds of a loop as a word says; another word leaves it after the first.
     pub fn count_up_to(&mut self, most: Word, once: Word) -> Word {
         let (uint, bool) = (self.ids.uint, self.b.type_bool());

@@ -1,6 +1,6 @@
 //! The blocks of a function and the ways between them.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use rspirv::dr::{Block, Function, Instruction, Module, Operand};
 use rspirv::spirv::{Op, Word};
@@ -68,9 +68,10 @@ fn ends(function: &Function, reached: &HashSet<Word>) -> HashMap<Word, Instructi
     for block in function.blocks.iter().filter(|block| reached.contains(&label(block))) {
         let Some(merge) = merge(block) else { continue };
         let unreachable = Instruction::new(Op::Unreachable, None, None, Vec::new());
-        ends.insert(merge.operands[0].unwrap_id_ref(), unreachable);
+        ends.entry(merge.operands[0].unwrap_id_ref()).or_insert(unreachable);
         if merge.class.opcode == Op::LoopMerge {
             let back = Instruction::new(Op::Branch, None, None, vec![Operand::IdRef(label(block))]);
+            // A loop must keep its way back, even where a selection ends, too.
             ends.insert(merge.operands[1].unwrap_id_ref(), back);
         }
     }
@@ -79,7 +80,7 @@ fn ends(function: &Function, reached: &HashSet<Word>) -> HashMap<Word, Instructi
 
 /// Forgets values that come from no predecessor; from an emptied one comes no value in particular.
 fn prune_phis(function: &mut Function, reached: &HashSet<Word>, module: &mut Module) {
-    let mut sources: HashMap<Word, HashSet<Word>> = HashMap::new();
+    let mut sources: HashMap<Word, BTreeSet<Word>> = HashMap::new();
     for block in &function.blocks {
         for target in block.instructions.last().into_iter().flat_map(targets) {
             sources.entry(target).or_default().insert(label(block));
@@ -89,13 +90,16 @@ fn prune_phis(function: &mut Function, reached: &HashSet<Word>, module: &mut Mod
         let Some(from) = sources.get(&label(block)) else { continue };
         for phi in block.instructions.iter_mut().filter(|inst| inst.class.opcode == Op::Phi) {
             let mut kept = Vec::with_capacity(phi.operands.len());
+            let mut open = from.clone();
             for pair in phi.operands.chunks(2) {
                 let source = pair[1].unwrap_id_ref();
-                if reached.contains(&source) && from.contains(&source) {
+                if reached.contains(&source) && open.remove(&source) {
                     kept.extend_from_slice(pair);
-                } else if from.contains(&source) {
-                    kept.extend([Operand::IdRef(undefined(module, phi.result_type)), pair[1].clone()]);
                 }
+            }
+            // An emptied block may go where it did not before.
+            for source in open {
+                kept.extend([Operand::IdRef(undefined(module, phi.result_type)), Operand::IdRef(source)]);
             }
             phi.operands = kept;
         }

@@ -77,6 +77,21 @@ fn loops_stay_whole_whatever_is_known_of_them() {
     assert!(!left.contains(&Op::IAdd), "{left:?}");
 }
 
+/// Its way back is one emptied block then, from which its counter has no value in particular.
+#[test]
+fn a_counter_keeps_a_value_for_every_way_into_its_loop() {
+    let mut kernel = Kernel::new();
+    let special = kernel.spec_constant(1, 0);
+    kernel.entry("kernel", |b| b.leave_long_loop(special));
+    let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
+    let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, 1)]).unwrap();
+    let module = dr::load_words(cut.words()).unwrap();
+    let function = &module.functions[0];
+    assert_eq!(function.blocks.len(), 5, "one of two blocks is left of the way back");
+    let phi = function.all_inst_iter().find(|inst| inst.class.opcode == Op::Phi).unwrap();
+    assert_eq!(phi.operands.len(), 4, "two ways in");
+}
+
 #[test]
 fn what_is_no_module_and_what_has_no_entry_is_refused() {
     assert!(matches!(Kernels::parse(&[1, 2, 3, 4]), Err(Error::Malformed(_))));

@@ -57,10 +57,11 @@ impl Info {
         let Read { scene, .. } = Read::scene(path, &[], quiet)?;
         let outline = Outline::of(&scene);
         let (mut rows, mut cost) = (Vec::new(), None);
-        for &bvh in self.bvh.as_ref().map_or(Bvh::value_variants(), std::slice::from_ref) {
+        let qualities = self.bvh.as_ref().map_or(Bvh::value_variants(), std::slice::from_ref);
+        for bvh in qualities {
             let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, bvh.quality());
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
-            let row = Row { bvh: preset::name(bvh), statistics: packed.statistics, build_time: packed.build_time };
+            let row = Row { bvh: preset::name(*bvh), statistics: packed.statistics, build_time: packed.build_time };
             if !self.json && rows.is_empty() {
                 console::print(&format!("{outline}{HEAD}"))?;
             }
@@ -68,7 +69,10 @@ impl Info {
                 console::print(&row.to_string())?;
             }
             rows.push(row.json());
-            cost = Some(Cost::of(&packed, true, Traversal::default())?);
+            // The kernels are the same for all, and cutting them takes time.
+            if Some(bvh) == qualities.last() {
+                cost = Some(Cost::of(&packed, true, Traversal::default())?);
+            }
         }
         let cost = cost.expect("one quality at least");
         if !self.json {

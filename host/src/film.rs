@@ -1,8 +1,12 @@
 //! The finished picture: linear light, before any encoding for a screen or a file.
 
+use eyerays_shader::real::Scalar;
+use eyerays_shader::stage::NON_FINITE;
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Result};
+use crate::rays::Rays;
+use crate::view::Region;
 
 /// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
 #[derive(Debug, Clone)]
@@ -83,6 +87,21 @@ impl Film {
             )));
         }
         Ok(())
+    }
+
+    /// Sets a region to the mean of `samples` samples of each pixel, whose sums a gather stage left in `records`, row by row;
+    /// and counts.
+    pub(crate) fn develop<R: Scalar>(&mut self, region: Region, records: &[R::Record], samples: u32, rays: &mut Rays) {
+        let samples = R::splat(samples as f32);
+        for (row, line) in records.chunks_exact(region.width as usize).enumerate() {
+            let start = (region.y as usize + row) * self.width as usize + region.x as usize;
+            for (pixel, &record) in self.pixels[start..].iter_mut().zip(line) {
+                let (sum, word) = R::load(record);
+                *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(samples).to_f32());
+                rays.shadow += u64::from(word & !NON_FINITE);
+                rays.non_finite += u64::from(word & NON_FINITE != 0);
+            }
+        }
     }
 
     /// The pixel in column `x` and row `y` from the top left; `None` outside.

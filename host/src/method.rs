@@ -1,6 +1,6 @@
 //! Ways through the hierarchy, by name, and the switches around them.
 
-use eyerays_shader::data::{Features, Tuning};
+use eyerays_shader::data::{Launch, Layout as LayoutBits, Order as OrderBits, Tuning};
 
 /// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
@@ -92,6 +92,17 @@ pub enum Order {
     Morton,
 }
 
+impl Order {
+    /// The constant of kernels.
+    pub fn bits(self) -> OrderBits {
+        OrderBits(match self {
+            Order::Tiled => 0,
+            Order::Linear => OrderBits::LINEAR,
+            Order::Morton => OrderBits::MORTON,
+        })
+    }
+}
+
 /// How the hierarchy and its triangles lie in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
 pub enum Layout {
@@ -104,6 +115,17 @@ pub enum Layout {
     Compact,
 }
 
+impl Layout {
+    /// Bits of the constant of kernels, see [`LayoutBits`].
+    pub fn bits(self) -> u32 {
+        match self {
+            Layout::Gathered => 0,
+            Layout::Indexed => LayoutBits::INDEXED,
+            Layout::Compact => LayoutBits::COMPACT,
+        }
+    }
+}
+
 /// How a ray is tested against a triangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
 pub enum TriangleTest {
@@ -112,6 +134,16 @@ pub enum TriangleTest {
     Watertight,
     /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
     Moller,
+}
+
+impl TriangleTest {
+    /// Bits of the constant of kernels, see [`Launch`].
+    pub fn bits(self) -> u32 {
+        match self {
+            TriangleTest::Watertight => 0,
+            TriangleTest::Moller => Launch::MOLLER,
+        }
+    }
 }
 
 /// A method and its switches.
@@ -160,25 +192,6 @@ pub enum Coherence {
 }
 
 impl Traversal {
-    /// The bits that kernels are specialised for.
-    pub fn features(&self) -> Features {
-        let order = match self.order {
-            Order::Tiled => 0,
-            Order::Linear => Features::LINEAR,
-            Order::Morton => Features::MORTON,
-        };
-        let layout = match self.layout {
-            Layout::Gathered => 0,
-            Layout::Indexed => Features::INDEXED,
-            Layout::Compact => Features::COMPACT,
-        };
-        let triangle = match self.triangle {
-            TriangleTest::Watertight => 0,
-            TriangleTest::Moller => Features::MOLLER,
-        };
-        Features(order | layout | triangle)
-    }
-
     /// The method and scheduling that [`Method::Auto`] and [`Scheduling::Auto`] stand for: the fastest of
     /// docs/benchmarks.md.
     pub fn resolved(self, processor: Processor, coherence: Coherence) -> Traversal {
@@ -198,10 +211,10 @@ impl Traversal {
         Traversal { method, scheduling, ..self }
     }
 
-    /// Its kernels' part of an entry point's name.
-    pub(crate) fn entry(&self) -> String {
-        let persistent = if self.scheduling == Scheduling::Persistent { "_persistent" } else { "" };
-        format!("{}{persistent}", self.method.entry())
+    /// Its part of the paths of its kernels.
+    pub(crate) fn path(&self) -> String {
+        let persistent = if self.scheduling == Scheduling::Persistent { "persistent::" } else { "" };
+        format!("{persistent}{}::", self.method.entry())
     }
 
     /// Do its kernels vote across the lanes of a subgroup?

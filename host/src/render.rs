@@ -11,6 +11,7 @@ use crate::gpu::{Gpu, Renderer, Want, warm};
 use crate::method::{Processor, Traversal};
 use crate::pack::Packed;
 use crate::rays::Rays;
+use crate::view::View;
 
 /// How numbers are computed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
@@ -89,6 +90,9 @@ pub struct Rendering {
     pub times: Vec<Duration>,
 }
 
+/// A scene, and how it is seen.
+type Seen<'a> = (&'a Packed, &'a View);
+
 /// How often a picture is rendered.
 #[derive(Debug, Clone, Copy)]
 struct Runs {
@@ -163,43 +167,55 @@ impl Chosen {
     ///
     /// # Errors
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
-    pub fn render(&self, packed: &Packed, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        self.run(packed, Runs { warm_up: false, repeat, since: Instant::now() }, done)
+    pub fn render(
+        &self,
+        packed: &Packed,
+        view: &View,
+        repeat: u32,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Rendering> {
+        self.run((packed, view), Runs { warm_up: false, repeat, since: Instant::now() }, done)
     }
 
     /// [`Chosen::render`] after a warm-up, which counts for no time.
     ///
     /// # Errors
     /// As [`Chosen::render`].
-    pub fn measure(&self, packed: &Packed, repeat: u32) -> Result<Rendering> {
-        self.run(packed, Runs { warm_up: true, repeat, since: Instant::now() }, &|_| ())
+    pub fn measure(&self, packed: &Packed, view: &View, repeat: u32) -> Result<Rendering> {
+        self.run((packed, view), Runs { warm_up: true, repeat, since: Instant::now() }, &|_| ())
     }
 
-    fn run(&self, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn run(&self, scene: Seen<'_>, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         if let Device::Gpu(gpu) = &self.device {
-            match self.on_gpu(gpu, packed, runs, done) {
+            match self.on_gpu(gpu, scene, runs, done) {
                 Err(error) if self.choice.device == DeviceWish::Auto => {
-                    return self.on_cpu(packed, error.message, runs, done);
+                    return self.on_cpu(scene, error.message, runs, done);
                 }
                 result => return result,
             }
         }
-        self.on_cpu(packed, self.why.clone(), runs, done)
+        self.on_cpu(scene, self.why.clone(), runs, done)
     }
 
-    fn on_gpu(&self, gpu: &Gpu, packed: &Packed, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        let renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
+    fn on_gpu(
+        &self,
+        gpu: &Gpu,
+        (packed, view): Seen<'_>,
+        runs: Runs,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Rendering> {
+        let mut renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         if runs.warm_up {
             warm(LEAST_WARMING, || {
                 let start = Instant::now();
-                let rendering = renderer.render(&|_| ())?;
+                let rendering = renderer.render(view, &|_| ())?;
                 Ok(rendering.device_time.unwrap_or_else(|| start.elapsed()))
             })?;
         }
         let mut device_times = Some(Vec::new());
         let (last, times) = repeated(runs.repeat, || {
-            let rendering = renderer.render(done)?;
+            let rendering = renderer.render(view, done)?;
             match rendering.device_time.zip(device_times.as_mut()) {
                 Some((time, times)) => times.push(time),
                 None => device_times = None,
@@ -220,14 +236,20 @@ impl Chosen {
         })
     }
 
-    fn on_cpu(&self, packed: &Packed, why: String, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn on_cpu(
+        &self,
+        (packed, view): Seen<'_>,
+        why: String,
+        runs: Runs,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Rendering> {
         let threads = self.choice.threads;
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact => renderer.render::<f32>(done, &()),
-            Precision::Fast => renderer.render::<Fast>(done, &()),
-            Precision::Reference => renderer.render::<f64>(done, &()),
+            Precision::Exact => renderer.render::<f32>(view, done, &()),
+            Precision::Fast => renderer.render::<Fast>(view, done, &()),
+            Precision::Reference => renderer.render::<f64>(view, done, &()),
         };
         if runs.warm_up {
             render(&|_| ())?;

@@ -1,28 +1,28 @@
 //! Pixels to rays.
 
-use crate::data::{Features, Frame, numbers};
-use crate::real::{Scalar, V3};
+use crate::data::{Frame, Order, numbers};
+use crate::real::{Scalar, TINY, V3};
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
-/// ([`Features::LINEAR`]: beside each other), or a square for [`Features::MORTON`].
+/// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
 #[inline(always)]
-pub fn blocks(features: Features) -> (u32, u32) {
-    if features.has(Features::LINEAR) {
+pub fn blocks(order: Order) -> (u32, u32) {
+    if order.has(Order::LINEAR) {
         (32, 1)
-    } else if features.has(Features::MORTON) {
+    } else if order.has(Order::MORTON) {
         (64, 64)
     } else {
         (8, 4)
     }
 }
 
-/// Slots for a region of `width` x `height` pixels: whole blocks, so that some may lie outside.
-pub fn slots(width: u32, height: u32, features: Features) -> u32 {
-    let (columns, rows) = blocks(features);
+/// Slots for a sample of every pixel of a region of `width` x `height`: whole blocks, so that some may lie outside.
+pub fn slots(width: u32, height: u32, order: Order) -> u32 {
+    let (columns, rows) = blocks(order);
     width.next_multiple_of(columns) * height.next_multiple_of(rows)
 }
 
-/// A slot's pixel within the launch's region.
+/// A slot's sample: a pixel within the launch's region, and which of its samples.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pixel {
     /// Columns from the region's left edge.
@@ -33,22 +33,50 @@ pub struct Pixel {
     pub inside: bool,
     /// Its place in the region's film.
     pub index: u32,
+    /// Which sample of the pixel.
+    pub sample: u32,
 }
 
-/// The pixel of a slot: blocks in rows, so that the lanes of a subgroup are neighbours.
+/// The pixel and sample of a slot: a sample of every pixel before the next; blocks in rows, so that the lanes of a
+/// subgroup are neighbours.
 #[inline(always)]
-pub fn pixel(frame: &Frame, features: Features, slot: u32) -> Pixel {
-    let (width, height) = (frame.region.z, frame.region.w);
-    let (columns, rows) = blocks(features);
+pub fn pixel(frame: &Frame, order: Order, slot: u32) -> Pixel {
+    let (width, height) = (frame.columns, frame.rows);
+    let (columns, rows) = blocks(order);
     let across = width.div_ceil(columns);
-    // A host never launches an empty region; the greater keeps a division by zero out of the kernel.
+    // A host never launches an empty region; these keep divisions by zero out of the kernel.
     let across = if across == 0 { 1 } else { across };
+    let pixel_slots = if frame.pixel_slots == 0 { 1 } else { frame.pixel_slots };
+    let (sample, slot) = (frame.sample + slot / pixel_slots, slot % pixel_slots);
     let (block, lane) = (slot / (columns * rows), slot % (columns * rows));
     let (right, down) =
-        if features.has(Features::MORTON) { (even(lane), even(lane >> 1)) } else { (lane % columns, lane / columns) };
+        if order.has(Order::MORTON) { (even(lane), even(lane >> 1)) } else { (lane % columns, lane / columns) };
     let (x, y) = (block % across * columns + right, block / across * rows + down);
-    Pixel { x, y, inside: x < width && y < height, index: y * width + x }
+    Pixel { x, y, inside: x < width && y < height, index: y * width + x, sample }
 }
+
+/// Where a ray that starts outside the cube [-1, 1], in which the scene lies, comes close to it: the errors of the tests
+/// of boxes and triangles are bounded for coordinates of that size (docs/numerics.md). It stops short of the cube by more
+/// than the step errs, so that nothing on the cube's faces is passed.
+#[inline(always)]
+pub fn approach<R: Scalar>(origin: V3<R>, direction: V3<R>) -> V3<R> {
+    let one = R::splat(1.0);
+    if origin.abs().greatest().le(one) {
+        return origin;
+    }
+    let entry = |origin: R, direction: R| {
+        let along = if direction.lt(R::splat(0.0)) { -origin } else { origin };
+        if direction.abs().le(R::splat(TINY)) { R::splat(0.0) } else { (-one - along).div(direction.abs()) }
+    };
+    let (x, y, z) =
+        (entry(origin.x, direction.x), entry(origin.y, direction.y), entry(origin.z, direction.z));
+    let distance = x.max(y).max(z) * R::splat(1.0 - SHORT_SHARE) - R::splat(SHORT);
+    if R::splat(0.0).lt(distance) { origin + direction * distance } else { origin }
+}
+
+/// How far before the cube a ray stops, and which share of its way: a step of length D errs by some D * 2^-24.
+const SHORT: f32 = 1.0 / 64.0;
+const SHORT_SHARE: f32 = 1.0 / (1 << 20) as f32;
 
 /// The even bits of a 12-bit number, put together: a coordinate of a place on a Morton curve.
 #[inline(always)]
@@ -59,74 +87,80 @@ fn even(place: u32) -> u32 {
     (x | (x >> 4)) & 0x3f
 }
 
-/// Origin and unit direction of the ray through this launch's sample of a pixel.
+/// Origin and unit direction of the ray through a sample of a pixel.
 ///
 /// A pixel has N x N samples on a regular grid (thesis chapter 3.4.5); the offset from the image's centre
 /// is a whole number of half samples, so that no division is needed.
 #[inline(always)]
 pub fn ray<R: Scalar>(frame: &Frame, pixel: Pixel) -> (V3<R>, V3<R>) {
-    let (width, height, samples, sample) = (frame.eye.w, frame.right.w, frame.up.w, frame.forward.w);
-    let samples = if samples == 0 { 1 } else { samples };
+    let samples = if frame.samples == 0 { 1 } else { frame.samples };
     let half_steps = |at: u32, size: u32, sample: u32| {
         let from_edge = 2 * (at * samples + sample) + 1;
         R::splat((from_edge as i32 - (size * samples) as i32) as f32)
     };
-    let right = half_steps(frame.region.x + pixel.x, width, sample % samples);
-    let down = half_steps(frame.region.y + pixel.y, height, sample / samples);
-    let direction = V3::splat(numbers(frame.forward))
-        + V3::splat(numbers(frame.right)) * right
-        + V3::splat(numbers(frame.up)) * -down;
-    (V3::splat(numbers(frame.eye)), direction.normalised().0)
+    let right = half_steps(frame.left + pixel.x, frame.width, pixel.sample % samples);
+    let down: R = half_steps(frame.top + pixel.y, frame.height, pixel.sample / samples);
+    let direction = frame.lens.direction(right, -down);
+    (V3::splat(numbers(frame.lens.eye)), direction.normalised().0)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::pack;
-    use bytemuck::Zeroable;
-    use glam::{UVec4, Vec3};
+    use crate::data::Lens;
+    use glam::Vec3;
 
-    fn frame(width: u32, height: u32, samples: u32, sample: u32) -> Frame {
+    /// `batch` samples of every pixel in a launch, from `sample` on, of `samples` along an edge.
+    fn frame(width: u32, height: u32, samples: u32, sample: u32, order: Order, batch: u32) -> Frame {
+        let (right, up) = (Vec3::X / (width * samples) as f32, Vec3::Y / (height * samples) as f32);
+        let pixel_slots = slots(width, height, order);
         Frame {
-            eye: pack(Vec3::new(0.5, 0.0, 0.0), width),
-            right: pack(Vec3::X / (width * samples) as f32, height),
-            up: pack(Vec3::Y / (height * samples) as f32, samples),
-            forward: pack(-Vec3::Z, sample),
-            region: UVec4::new(0, 0, width, height),
-            ..Frame::zeroed()
+            lens: Lens::new(Vec3::new(0.5, 0.0, 0.0), right, up, -Vec3::Z),
+            width,
+            height,
+            samples,
+            sample,
+            columns: width,
+            rows: height,
+            pixel_slots,
+            slots: batch * pixel_slots,
+            ..Frame::default()
         }
     }
 
     #[test]
-    fn every_pixel_has_one_slot() {
-        for features in [0, Features::LINEAR, Features::MORTON].map(Features) {
+    fn every_sample_of_every_pixel_has_one_slot() {
+        for order in [0, Order::LINEAR, Order::MORTON].map(Order) {
             for (width, height) in [(1, 1), (8, 4), (9, 5), (37, 23), (64, 3), (130, 70)] {
-                let frame = frame(width, height, 1, 0);
-                let all = (0..slots(width, height, features)).map(|s| pixel(&frame, features, s));
-                let mut seen: Vec<u32> = all.filter(|p| p.inside).map(|p| p.index).collect();
+                let frame = frame(width, height, 2, 1, order, 3);
+                let all = (0..frame.slots).map(|s| pixel(&frame, order, s));
+                let mut seen: Vec<_> = all.filter(|p| p.inside).map(|p| (p.sample, p.index)).collect();
                 seen.sort_unstable();
-                assert_eq!(seen, (0..width * height).collect::<Vec<_>>(), "{width}x{height}, {features:?}");
+                let want = (1..4).flat_map(|sample| (0..width * height).map(move |index| (sample, index)));
+                assert_eq!(seen, want.collect::<Vec<_>>(), "{width}x{height}, {order:?}");
             }
         }
     }
 
     #[test]
     fn a_morton_curve_fills_a_square_before_the_next() {
-        let frame = frame(64, 64, 1, 0);
+        let order = Order(Order::MORTON);
+        let frame = frame(64, 64, 1, 0, order, 1);
         for edge in [2, 4, 8, 16, 32] {
-            let square = (0..edge * edge).map(|s| pixel(&frame, Features(Features::MORTON), s));
+            let square = (0..edge * edge).map(|s| pixel(&frame, order, s));
             assert!(square.clone().all(|p| p.x < edge && p.y < edge), "{edge}");
         }
     }
 
     #[test]
     fn the_first_pixel_is_top_left_and_samples_surround_its_centre() {
-        let (origin, d) = ray::<f64>(&frame(2, 2, 1, 0), pixel(&frame(2, 2, 1, 0), Features(0), 0));
+        let one = frame(2, 2, 1, 0, Order(0), 1);
+        let (origin, d) = ray::<f64>(&one, pixel(&one, Order(0), 0));
         assert_eq!((origin.x, origin.y, origin.z), (0.5, 0.0, 0.0));
         assert!((d.x / d.z - 0.5).abs() < 1e-12 && (d.y / d.z + 0.5).abs() < 1e-12, "left and up: {d:?}");
+        let four = frame(2, 2, 2, 0, Order(0), 4);
         let grid: Vec<_> = (0..4)
-            .map(|s| frame(2, 2, 2, s))
-            .map(|f| ray::<f64>(&f, pixel(&f, Features(0), 0)).1)
+            .map(|sample| ray::<f64>(&four, pixel(&four, Order(0), sample * four.pixel_slots)).1)
             .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
             .collect();
         assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);

@@ -2,52 +2,63 @@
 
 use crate::buffer::read;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
+    Bounds, CentredPair, CompactPair, Frame, Layout, Light, Material, Normals, Specialisation, Triangle, WideNode, numbers,
 };
 #[cfg(not(target_arch = "spirv"))]
 use crate::full::Full;
 use glam::{UVec4, Vec3};
 
-/// The launch and what its rays meet.
+/// A launch, and the triangles of its scene.
 #[derive(Clone, Copy)]
-pub struct Geometry<'a> {
-    /// The launch.
+pub struct LaunchContext<'a> {
+    /// What is rendered.
     pub frame: &'a Frame,
-    /// Which effects there are; a constant of the compiled kernel on the GPU.
-    pub features: Features,
-    /// When hybrid methods part; a constant of the compiled kernel on the GPU.
-    pub tuning: Tuning,
-    /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Features::COMPACT`]).
+    /// What the kernel is compiled for; constants on the GPU.
+    pub spec: Specialisation,
+    /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Layout::INDEXED`]).
+    pub triangles: &'a [UVec4],
+}
+
+impl LaunchContext<'_> {
+    /// The triangle at a slot: a record of its own, gathered before; or a record of three vertices'
+    /// numbers and the primitive, whose vertices carry the material and the flags.
+    #[inline(always)]
+    pub fn triangle(&self, slot: u32) -> Triangle {
+        let word = |i| read(self.triangles, i);
+        if self.spec.layout.has(Layout::INDEXED) {
+            let corners = word(slot);
+            let vertex = |i: u32| word(self.frame.vertices + i);
+            let (mut a, mut b, mut c) = (vertex(corners.x), vertex(corners.y), vertex(corners.z));
+            (a.w, b.w, c.w) = (corners.w, b.w & !Triangle::CLEAR_VERTEX, b.w >> 31);
+            Triangle { a, b, c }
+        } else {
+            Triangle { a: word(3 * slot), b: word(3 * slot + 1), c: word(3 * slot + 2) }
+        }
+    }
+}
+
+/// A launch and what its rays meet.
+#[derive(Clone, Copy)]
+pub struct TraceContext<'a> {
+    /// The launch and its triangles.
+    pub base: LaunchContext<'a>,
+    /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Layout::COMPACT`]).
     pub nodes: &'a [UVec4],
-    /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
+    /// Nodes of eight children; the root is node 0. Of the method `wide` alone.
     pub wide: &'a [WideNode],
     /// The same for a CPU. Empty unless the method is `wide`.
     #[cfg(not(target_arch = "spirv"))]
     pub full: Full<'a>,
-    /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
-    pub triangles: &'a [UVec4],
-    /// Bounds by slot ([`Features::SPLIT`]).
+    /// Bounds by slot ([`Layout::SPLIT`]).
     pub bounds: &'a [Bounds],
 }
 
-impl Geometry<'_> {
-    /// How many lights there are.
-    #[inline(always)]
-    pub fn light_count(&self) -> u32 {
-        self.frame.top.w
-    }
-
-    /// Rays a launch has room for.
-    #[inline(always)]
-    pub fn slots(&self) -> u32 {
-        self.frame.limits.z
-    }
-
+impl TraceContext<'_> {
     /// The child pair of this number.
     #[inline(always)]
     pub fn pair(&self, number: u32) -> CentredPair {
         let word = |i| read(self.nodes, i);
-        if self.features.has(Features::COMPACT) {
+        if self.base.spec.layout.has(Layout::COMPACT) {
             CompactPair { left: word(2 * number), right: word(2 * number + 1) }.into()
         } else {
             let [left_centre, left_half] = [word(4 * number), word(4 * number + 1)];
@@ -56,27 +67,17 @@ impl Geometry<'_> {
         }
     }
 
-    /// The triangle at a slot: a record of its own, gathered before; or a record of three vertices'
-    /// numbers and the primitive, whose vertices carry the material and the flags.
+    /// The triangle at a slot.
     #[inline(always)]
     pub fn triangle(&self, slot: u32) -> Triangle {
-        let word = |i| read(self.triangles, i);
-        if self.features.has(Features::INDEXED) {
-            let corners = word(slot);
-            let vertex = |i: u32| word(self.frame.limits.w + i);
-            let (mut a, mut b, mut c) = (vertex(corners.x), vertex(corners.y), vertex(corners.z));
-            (a.w, b.w, c.w) = (corners.w, b.w & !Triangle::CLEAR_VERTEX, b.w >> 31);
-            Triangle { a, b, c }
-        } else {
-            Triangle { a: word(3 * slot), b: word(3 * slot + 1), c: word(3 * slot + 2) }
-        }
+        self.base.triangle(slot)
     }
 
     /// The box (least, greatest corner) that a ray must meet for a hit at a slot to count: the triangle's own,
     /// or that of the part that the slot stands for.
     #[inline(always)]
     pub fn bounds(&self, slot: u32, triangle: &Triangle) -> (Vec3, Vec3) {
-        if self.features.has(Features::SPLIT) {
+        if self.base.spec.layout.has(Layout::SPLIT) {
             let bounds = read(self.bounds, slot);
             (numbers(bounds.least), numbers(bounds.greatest))
         } else {
@@ -85,10 +86,10 @@ impl Geometry<'_> {
     }
 }
 
-/// What surfaces look like. A buffer that no effect asks for is a dummy of one record.
+/// What surfaces look like.
 #[derive(Clone, Copy)]
 pub struct Looks<'a> {
-    /// Vertex normals in leaf order ([`Features::SMOOTH`]).
+    /// Vertex normals in leaf order ([`Effects::SMOOTH`](crate::data::Effects)).
     pub normals: &'a [Normals],
     /// Materials.
     pub materials: &'a [Material],

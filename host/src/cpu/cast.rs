@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::scene::Geometry;
+use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::Asking;
 use glam::UVec4;
 use rayon::prelude::*;
@@ -89,7 +89,7 @@ where
 fn trace<R>(
     level: Level,
     method: Method,
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     slots: &[u32],
     rays: &[R::Record],
     hits: &mut [R::Record],

@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use eyerays_shader::real::{Native, Scalar, Vectors};
-use eyerays_shader::scene::Geometry;
+use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
     self, Cut, FullNodes, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
@@ -22,7 +22,7 @@ pub enum Job<'a, R: Scalar> {
 }
 
 /// Follows the rays of slots by a method, with the instructions of a level.
-pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     let follow = match method {
         Method::Auto | Method::IfIf => alone::<R, IfIf>,
         Method::Wide => nodes::<R>,
@@ -39,14 +39,14 @@ pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &Geometry<'_>, 
 
 /// The slots of a task.
 struct Slots<'a, R: Scalar, M> {
-    geometry: Geometry<'a>,
+    geometry: TraceContext<'a>,
     slots: &'a [u32],
     job: Job<'a, R>,
     method: PhantomData<M>,
 }
 
 impl<'a, R: Scalar, M> Slots<'a, R, M> {
-    fn new(geometry: &Geometry<'a>, slots: &'a [u32], job: Job<'a, R>) -> Self {
+    fn new(geometry: &TraceContext<'a>, slots: &'a [u32], job: Job<'a, R>) -> Self {
         Slots { geometry: *geometry, slots, job, method: PhantomData }
     }
 }
@@ -54,7 +54,7 @@ impl<'a, R: Scalar, M> Slots<'a, R, M> {
 /// Every ray by itself.
 struct EachAlone<'a, R: Scalar, M>(Slots<'a, R, M>);
 
-fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     level.run::<R>(EachAlone::<R, M>(Slots::new(geometry, slots, job)));
 }
 
@@ -68,7 +68,7 @@ impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
 /// Every ray by itself through nodes of eight children, whose boxes and triangles take all lanes.
 struct Nodes<'a, R: Scalar>(Slots<'a, R, ()>);
 
-fn nodes<R: Scalar>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+fn nodes<R: Scalar>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     level.run::<R>(Nodes::<R>(Slots::new(geometry, slots, job)));
 }
 
@@ -80,7 +80,7 @@ impl<R: Scalar> Task<R> for Nodes<'_, R> {
 }
 
 #[inline(always)]
-fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     match job {
         Job::Trace(paths, hits) => {
             for (&slot, hit) in slots.iter().zip(hits) {
@@ -98,13 +98,13 @@ fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &Geometry<'_>, slots:
 /// Neighbours together.
 struct Neighbours<'a, R: Scalar, M>(Slots<'a, R, M>);
 
-fn together<R: Scalar, M: Together>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+fn together<R: Scalar, M: Together>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     level.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
 }
 
 /// As [`together`], with the instructions that every processor has: the hybrids are there to be compared, and to
 /// compile them for every level would take as long as all else.
-fn plainly<R: Scalar, M: Together>(_: Level, geometry: &Geometry<'_>, slots: &[u32], job: Job<'_, R>) {
+fn plainly<R: Scalar, M: Together>(_: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     Neighbours::<R, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }
 

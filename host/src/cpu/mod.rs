@@ -10,5 +10,5 @@ mod tile;
 pub use cast::{cast, cast_by, closest};
 pub use level::Level;
 pub(crate) use pool::pool;
-pub use render::{Renderer, render};
-pub use tile::{Observer, Records, render_tile, render_tile_by};
+pub use render::{Picture, Renderer, render};
+pub use tile::{Observer, Planned, Records};

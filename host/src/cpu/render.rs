@@ -1,19 +1,22 @@
 //! Whole pictures.
 
-use std::sync::Mutex;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
 
 use eyerays_shader::real::Scalar;
-use eyerays_shader::stage::{NON_FINITE, RECORDS};
+use eyerays_shader::resources::binding;
 use rayon::prelude::*;
 
 use super::level::Level;
 use super::pool::pool;
-use super::tile::{Observer, render_tile_by};
+use super::tile::{Observer, Planned};
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
-use crate::pack::{Laid, Packed, Region};
+use crate::pack::{Laid, Packed};
 use crate::rays::Rays;
+use crate::scene::Light;
+use crate::view::{Region, View};
 
 /// Memory for the waiting rays of a tile, in bytes, that makes a tile smaller than [`TILE`].
 const PATH_MEMORY: u64 = 64 << 20;
@@ -22,9 +25,21 @@ const TILE: u32 = 32;
 
 /// A scene laid out for the CPU, with the threads to render it: made once for any number of pictures.
 pub struct Renderer<'a> {
-    laid: Laid<'a>,
-    level: Level,
+    planned: Planned<'a>,
     threads: rayon::ThreadPool,
+}
+
+/// A picture that samples are added to: [`Renderer::start`].
+pub struct Picture<R: Scalar> {
+    view: View,
+    tiles: Vec<Tile<R>>,
+    samples: u32,
+}
+
+struct Tile<R: Scalar> {
+    region: Region,
+    film: Vec<R::Record>,
+    secondary: u64,
 }
 
 impl<'a> Renderer<'a> {
@@ -37,7 +52,15 @@ impl<'a> Renderer<'a> {
         let threads = pool(threads)?;
         let traversal = traversal.into();
         let laid = threads.install(|| Laid::new(packed, traversal));
-        Ok(Renderer { laid, level: Level::best(), threads })
+        Ok(Renderer { planned: Planned::new(laid, Level::best()), threads })
+    }
+
+    /// Goes on with other lights: as many as the scene's, of the same kinds.
+    ///
+    /// # Errors
+    /// As [`Packed::relit`].
+    pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
+        self.planned.laid.set_lights(lights)
     }
 
     /// Renders a picture in the arithmetic `R`. `done` hears of every finished share of the pixels, and `observer`
@@ -45,25 +68,97 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// If there is no memory for the film.
-    pub fn render<R>(&self, done: &(dyn Fn(u64) + Sync), observer: &dyn Observer<R>) -> Result<(Film, Rays)>
+    pub fn render<R>(
+        &self,
+        view: &View,
+        done: &(dyn Fn(u64) + Sync),
+        observer: &dyn Observer<R>,
+    ) -> Result<(Film, Rays)>
     where
         R: Scalar<Record: Send + Sync>,
     {
-        let packed = self.laid.packed;
-        let (width, height) = packed.settings.size;
+        let (width, height) = view.size();
         let result = Mutex::new((Film::new(width, height)?, Rays::default()));
         self.threads.install(|| {
             // A tile a task: coarser splitting leaves threads idle at the end.
-            tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-                let (film, secondary) = render_tile_by(self.level, &self.laid, region, observer);
-                let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                keep::<R>(region, &film, image, rays);
-                rays.secondary += secondary;
-                rays.primary += u64::from(region.width * region.height) * u64::from(packed.samples());
-                done(u64::from(region.width * region.height));
+            self.tiles(view).into_par_iter().with_max_len(1).for_each(|region| {
+                let mut tile = Tile { region, film: self.planned.film::<R>(region), secondary: 0 };
+                tile.add(&self.planned, view, 0..view.samples(), observer);
+                let (image, rays) = &mut *result.lock().unwrap_or_else(PoisonError::into_inner);
+                tile.develop(view.samples(), image, rays);
+                done(region.pixels());
             });
         });
-        Ok(result.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner))
+        Ok(result.into_inner().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// Starts a picture without any sample.
+    pub fn start<R: Scalar>(&self, view: &View) -> Picture<R> {
+        let tile = |region| Tile { region, film: self.planned.film::<R>(region), secondary: 0 };
+        Picture { view: *view, tiles: self.tiles(view).into_iter().map(tile).collect(), samples: 0 }
+    }
+
+    /// Adds the next `count` samples of each pixel to a picture, or as many as its view has: n and then n more give the
+    /// bits of 2n at once.
+    pub fn add<R>(&self, picture: &mut Picture<R>, count: u32)
+    where
+        R: Scalar<Record: Send + Sync>,
+    {
+        let end = picture.samples.saturating_add(count).min(picture.view.samples());
+        let samples = picture.samples..end;
+        self.threads.install(|| {
+            let tiles = picture.tiles.par_iter_mut().with_max_len(1);
+            tiles.for_each(|tile| tile.add(&self.planned, &picture.view, samples.clone(), &()));
+        });
+        picture.samples = end;
+    }
+
+    fn tiles(&self, view: &View) -> Vec<Region> {
+        let (width, height) = view.size();
+        let paths = self.planned.plan.slot_bytes.iter().find(|(binding, _)| *binding == binding::PATHS);
+        // Records of numbers of 64 bits take twice as much.
+        let slot = paths.map_or(0, |&(_, bytes)| 2 * bytes);
+        let mut edge = TILE;
+        while edge > 8 && u64::from(edge * edge) * slot > PATH_MEMORY {
+            edge /= 2;
+        }
+        let edge = edge as usize;
+        let rows = (0..height).step_by(edge);
+        rows.flat_map(|y| (0..width).step_by(edge).map(move |x| (x, y)))
+            .map(|(x, y)| Region { x, y, width: (width - x).min(edge as u32), height: (height - y).min(edge as u32) })
+            .collect()
+    }
+}
+
+impl<R: Scalar> Tile<R> {
+    fn add(&mut self, planned: &Planned<'_>, view: &View, samples: Range<u32>, observer: &dyn Observer<R>) {
+        self.secondary += planned.add(view, self.region, samples, &mut self.film, observer);
+    }
+
+    fn develop(&self, samples: u32, image: &mut Film, rays: &mut Rays) {
+        image.develop::<R>(self.region, &self.film, samples, rays);
+        rays.secondary += self.secondary;
+        rays.primary += self.region.pixels() * u64::from(samples);
+    }
+}
+
+impl<R: Scalar> Picture<R> {
+    /// How many samples of each pixel it has.
+    pub fn samples(&self) -> u32 {
+        self.samples
+    }
+
+    /// The mean of its samples so far, black without any, and the rays that they took.
+    ///
+    /// # Errors
+    /// If there is no memory for the film.
+    pub fn film(&self) -> Result<(Film, Rays)> {
+        let (width, height) = self.view.size();
+        let (mut film, mut rays) = (Film::new(width, height)?, Rays::default());
+        if self.samples > 0 {
+            self.tiles.iter().for_each(|tile| tile.develop(self.samples, &mut film, &mut rays));
+        }
+        Ok((film, rays))
     }
 }
 
@@ -73,6 +168,7 @@ impl<'a> Renderer<'a> {
 /// If the film or the threads can't be had.
 pub fn render<R>(
     packed: &Packed,
+    view: &View,
     traversal: impl Into<Traversal>,
     threads: usize,
     done: &(dyn Fn(u64) + Sync),
@@ -80,32 +176,5 @@ pub fn render<R>(
 where
     R: Scalar<Record: Send + Sync>,
 {
-    Renderer::new(packed, traversal, threads)?.render::<R>(done, &())
-}
-
-fn tiles(packed: &Packed) -> Vec<Region> {
-    let (width, height) = packed.settings.size;
-    let slot = u64::from(packed.levels()) * u64::from(RECORDS) * 32;
-    let mut edge = TILE;
-    while edge > 8 && u64::from(edge * edge) * slot > PATH_MEMORY {
-        edge /= 2;
-    }
-    let edge = edge as usize;
-    let rows = (0..height).step_by(edge);
-    rows.flat_map(|y| (0..width).step_by(edge).map(move |x| (x, y)))
-        .map(|(x, y)| Region { x, y, width: (width - x).min(edge as u32), height: (height - y).min(edge as u32) })
-        .collect()
-}
-
-/// Copies a tile's film into the image and counts.
-fn keep<R: Scalar>(region: Region, film: &[R::Record], image: &mut Film, rays: &mut Rays) {
-    for (row, line) in film.chunks_exact(region.width as usize).enumerate() {
-        let start = (region.y as usize + row) * image.width as usize + region.x as usize;
-        for (pixel, &record) in image.pixels[start..].iter_mut().zip(line) {
-            let (colour, word) = R::load(record);
-            *pixel = [colour.x.to_f32(), colour.y.to_f32(), colour.z.to_f32()];
-            rays.shadow += u64::from(word & !NON_FINITE);
-            rays.non_finite += u64::from(word & NON_FINITE != 0);
-        }
-    }
+    Renderer::new(packed, traversal, threads)?.render::<R>(view, done, &())
 }

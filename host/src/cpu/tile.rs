@@ -1,28 +1,35 @@
-//! A tile of the picture: the waves of a small launch.
+//! A tile of the picture: small launches, a sample each, whose sums are added in the order of the samples.
+
+use std::ops::Range;
 
 use eyerays_shader::camera;
-use eyerays_shader::data::{Features, Light};
+use eyerays_shader::data::Frame;
+use eyerays_shader::integrator::{self, Wave};
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::scene::{Geometry, Looks};
-use eyerays_shader::stage::{self, Asking, RECORDS, Wave};
+use eyerays_shader::resources::binding;
+use eyerays_shader::scene::{Looks, TraceContext};
+use eyerays_shader::stage::{self, Asking};
 
 use super::follow::{Job, follow};
 use super::level::Level;
-use crate::method::{Coherence, Method, Processor, Traversal};
-use crate::pack::{Laid, Packed, Region};
+use crate::error::Result;
+use crate::method::{Method, Processor};
+use crate::pack::Laid;
+use crate::plan::{self, Executor, Plan, Stage, Step};
+use crate::view::{Region, View};
 
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
 pub trait Observer<R: Scalar>: Sync {
     /// Is called when a wave has been traced and before it is shaded.
-    fn wave(&self, geometry: &Geometry<'_>, slots: &[u32], records: &Records<R>);
+    fn wave(&self, scene: &TraceContext<'_>, slots: &[u32], records: &Records<R>);
 }
 
 /// Looks at nothing.
 impl<R: Scalar> Observer<R> for () {
-    fn wave(&self, _: &Geometry<'_>, _: &[u32], _: &Records<R>) {}
+    fn wave(&self, _: &TraceContext<'_>, _: &[u32], _: &Records<R>) {}
 }
 
-/// The memory that the stages of a tile exchange.
+/// The memory that the stages of a launch exchange.
 pub struct Records<R: Scalar> {
     /// Paths by level, record and slot; empty without secondary rays.
     pub paths: Vec<R::Record>,
@@ -30,102 +37,138 @@ pub struct Records<R: Scalar> {
     pub hits: Vec<R::Record>,
     /// Answers of the shadow stage by light and slot.
     pub shadows: Vec<u32>,
-    /// Colour and counts by pixel.
-    pub film: Vec<R::Record>,
+    /// Colour and counts by slot.
+    pub sums: Vec<R::Record>,
 }
 
-/// Every sample of a region, wherever its edges are: its film (row-major; the integers count shadow rays) and
-/// how many secondary rays it took.
-pub fn render_tile<R: Scalar>(
-    packed: &Packed,
-    traversal: impl Into<Traversal>,
-    region: Region,
-    observer: &dyn Observer<R>,
-) -> (Vec<R::Record>, u64) {
-    render_tile_by(Level::best(), &Laid::new(packed, traversal.into()), region, observer)
-}
-
-/// The method for the rays of a wave and for their shadow rays.
-fn methods(traversal: Traversal, features: Features) -> (Method, Method) {
-    let of = |coherence| traversal.resolved(Processor::Cpu, coherence).method;
-    if features.has(Features::SECONDARY) {
-        (of(Coherence::Secondary), of(Coherence::Secondary))
-    } else {
-        (of(Coherence::Primary), of(Coherence::Shadow))
+impl<R: Scalar> Records<R> {
+    fn new(plan: &Plan, slots: u32) -> Self {
+        let of = |wanted: u32| plan.slot_bytes.iter().find(|(binding, _)| *binding == wanted).map_or(0, |(_, b)| *b);
+        let count = |binding, bytes| (of(binding) / bytes) as usize * slots as usize;
+        let records = |binding| vec![R::store(V3::zero(), 0); count(binding, 16)];
+        Records {
+            paths: records(binding::PATHS),
+            hits: records(binding::HITS),
+            shadows: vec![0; count(binding::SHADOWS, 4)],
+            sums: records(binding::SUMS),
+        }
     }
 }
 
-/// [`render_tile`] with the instructions of a level.
-pub fn render_tile_by<R: Scalar>(
-    level: Level,
-    laid: &Laid<'_>,
-    region: Region,
-    observer: &dyn Observer<R>,
-) -> (Vec<R::Record>, u64) {
-    let (packed, features) = (laid.packed, laid.features());
-    let slots = packed.frame(region, 0, features).limits.z as usize;
-    let black = R::store(V3::zero(), 0);
-    let mut records = Records::<R> {
-        paths: vec![black; slots * (packed.levels() * RECORDS) as usize],
-        hits: vec![black; slots],
-        shadows: vec![0; slots * packed.lights.len()],
-        film: vec![black; (region.width * region.height) as usize],
-    };
-    let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
-    let mut secondary = 0;
-    for sample in 0..packed.samples() {
-        let frame = packed.frame(region, sample, features);
-        let mut geometry = laid.geometry(&frame);
-        let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, features, s).inside).collect();
-        loop {
-            trace::<R>(
-                level,
-                methods(laid.traversal, geometry.features),
-                &geometry,
-                looks.lights,
-                &queue,
-                &mut records,
-            );
-            observer.wave(&geometry, &queue, &records);
-            shade(&geometry, &looks, &mut queue, &mut records);
-            if queue.is_empty() {
-                break;
+/// A scene with the plan of its pictures.
+pub struct Planned<'a> {
+    /// The scene.
+    pub laid: Laid<'a>,
+    pub(super) plan: Plan,
+    pub(super) level: Level,
+}
+
+impl<'a> Planned<'a> {
+    /// Plans pictures of a scene, with the instructions of a level.
+    pub fn new(laid: Laid<'a>, level: Level) -> Self {
+        let traversal = laid.traversal;
+        let plan = Plan::new(laid.packed, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
+        Planned { laid, plan: plan.expect("a CPU has every method"), level }
+    }
+
+    /// An empty film for a region.
+    pub fn film<R: Scalar>(&self, region: Region) -> Vec<R::Record> {
+        vec![R::store(V3::zero(), 0); region.pixels() as usize]
+    }
+
+    /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays), and
+    /// returns how many secondary rays they took.
+    pub fn add<R: Scalar>(
+        &self,
+        view: &View,
+        region: Region,
+        samples: Range<u32>,
+        film: &mut [R::Record],
+        observer: &dyn Observer<R>,
+    ) -> u64 {
+        let order = self.laid.specialisation().order;
+        let slots = view.launch(region, 0, 1, order).slots;
+        let mut records = Records::new(&self.plan, slots);
+        let mut secondary = 0;
+        for sample in samples {
+            let frame = view.launch(region, sample, 1, order);
+            let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
+            let queue = pixels.collect();
+            let mut launch = Launch { planned: self, frame: &frame, queue, records, film, observer, secondary: 0 };
+            plan::run(&self.plan, &mut launch).expect("a CPU reports no errors");
+            secondary += launch.secondary;
+            records = launch.records;
+        }
+        secondary
+    }
+}
+
+/// One sample of a region.
+struct Launch<'l, 'a, R: Scalar> {
+    planned: &'l Planned<'a>,
+    frame: &'l Frame,
+    queue: Vec<u32>,
+    records: Records<R>,
+    film: &'l mut [R::Record],
+    observer: &'l dyn Observer<R>,
+    secondary: u64,
+}
+
+impl<R: Scalar> Executor for Launch<'_, '_, R> {
+    fn step(&mut self, _: usize, step: &Step) -> Result<()> {
+        let scene = self.planned.laid.context(self.frame, step.spec);
+        let method = step.traversal.map(|traversal| traversal.method).unwrap_or_default();
+        match step.stage {
+            Stage::Advance => self.secondary += self.queue.len() as u64,
+            Stage::Trace => self.trace(&scene, method),
+            Stage::Shadow => self.shadow(&scene, method),
+            Stage::Shade => self.shade(&scene),
+            Stage::Gather => {
+                for slot in 0..self.frame.pixel_slots {
+                    stage::gather::<R>(self.frame, step.spec.order, slot, &self.records.sums, self.film);
+                }
             }
-            secondary += queue.len() as u64;
-            geometry.features = Features(features.0 | Features::SECONDARY);
         }
+        Ok(())
     }
-    (records.film, secondary)
-}
 
-/// The stages of a wave that follow rays.
-fn trace<R: Scalar>(
-    level: Level,
-    (traced, asked): (Method, Method),
-    geometry: &Geometry<'_>,
-    lights: &[Light],
-    queue: &[u32],
-    records: &mut Records<R>,
-) {
-    let mut hits = vec![R::store(V3::zero(), 0); queue.len()];
-    follow::<R>(level, traced, geometry, queue, Job::Trace(&records.paths, &mut hits));
-    for (&slot, hit) in queue.iter().zip(hits) {
-        records.hits[slot as usize] = hit;
-    }
-    let mut answers = vec![0; queue.len()];
-    for light in 0..geometry.light_count() {
-        let asking = Asking { lights, paths: &records.paths, hits: &records.hits };
-        follow::<R>(level, asked, geometry, queue, Job::Shadow(asking, light, &mut answers));
-        for (&slot, &answer) in queue.iter().zip(&answers) {
-            records.shadows[(light * geometry.slots() + slot) as usize] = answer;
-        }
+    fn goes_on(&mut self) -> Result<bool> {
+        Ok(!self.queue.is_empty())
     }
 }
 
-/// The last stage of a wave; leaves the slots of the next one in the queue.
-fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, queue: &mut Vec<u32>, records: &mut Records<R>) {
-    let Records { paths, hits, shadows, film } = records;
-    queue.retain(|&slot| {
-        stage::shade(geometry, looks, slot, Wave::<R> { paths: &mut *paths, hits, shadows, film: &mut *film })
-    });
+impl<R: Scalar> Launch<'_, '_, R> {
+    fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
+        let mut hits = vec![R::store(V3::zero(), 0); self.queue.len()];
+        let job = Job::Trace(&self.records.paths, &mut hits);
+        follow::<R>(self.planned.level, method, scene, &self.queue, job);
+        for (&slot, hit) in self.queue.iter().zip(hits) {
+            self.records.hits[slot as usize] = hit;
+        }
+    }
+
+    fn shadow(&mut self, scene: &TraceContext<'_>, method: Method) {
+        let Records { paths, hits, shadows, .. } = &mut self.records;
+        let mut answers = vec![0; self.queue.len()];
+        for light in 0..self.frame.shadow_rays {
+            let asking = Asking { lights: self.planned.laid.lights(), paths, hits };
+            let job = Job::Shadow(asking, light, &mut answers);
+            follow::<R>(self.planned.level, method, scene, &self.queue, job);
+            for (&slot, &answer) in self.queue.iter().zip(&answers) {
+                shadows[(light * self.frame.slots + slot) as usize] = answer;
+            }
+        }
+    }
+
+    /// Leaves the slots of the next wave in the queue.
+    fn shade(&mut self, scene: &TraceContext<'_>) {
+        self.observer.wave(scene, &self.queue, &self.records);
+        let Records { paths, hits, shadows, sums } = &mut self.records;
+        let (laid, packed) = (&self.planned.laid, self.planned.laid.packed);
+        let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: laid.lights() };
+        self.queue.retain(|&slot| {
+            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, sums: &mut *sums };
+            integrator::shade(&scene.base, &looks, slot, wave)
+        });
+    }
 }

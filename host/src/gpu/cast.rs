@@ -5,26 +5,30 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::time::Duration;
 
-use eyerays_shader::data::Features;
+use eyerays_shader::data::Launch;
 use eyerays_shader::launch::{ROW, WORKGROUP};
+use eyerays_shader::resources::binding;
 use glam::UVec4;
 
-use super::buffers::{self, Buffers, Room};
 use super::device::Gpu;
 use super::kernel::{Kernel, compile};
+use super::memory::LaunchBuffers;
 use super::readback;
-use super::recipe::{Recipe, Step};
+use super::recipe::Recipe;
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
 use super::warm::warm;
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Layout, Traversal};
 use crate::pack::Packed;
+use crate::plan::{Stage, Step};
 use crate::stream::{Answers, Question, Stream};
 
 /// What a kernel is compiled for: exact or fast, how, and what for.
 type Key = (bool, Traversal, Question);
 
+/// Bytes of a ray and of either answer, by binding.
+const RAY_BYTES: [(u32, u64); 3] = [(binding::PATHS, 32), (binding::HITS, 16), (binding::SHADOWS, 4)];
 /// Dispatches of a submission.
 const BATCH: u32 = 8;
 /// Dispatches without a pause between them raise a GPU's clocks in so long.
@@ -35,7 +39,6 @@ pub struct Caster<'a> {
     gpu: &'a Gpu,
     packed: &'a Packed,
     layout: Layout,
-    bindings: wgpu::BindGroupLayout,
     scene: SceneBuffers,
     kernels: RefCell<HashMap<Key, Rc<Kernel>>>,
     timer: Option<Timer>,
@@ -43,7 +46,7 @@ pub struct Caster<'a> {
 
 /// A stream on the GPU, and room for its answers.
 pub struct Cast {
-    buffers: Buffers,
+    buffers: LaunchBuffers,
     count: u32,
 }
 
@@ -54,8 +57,7 @@ impl<'a> Caster<'a> {
     /// What does not fit the GPU, or what its driver reports.
     pub fn new(gpu: &'a Gpu, packed: &'a Packed, layout: Layout) -> Result<Self> {
         let scene = SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: true })?;
-        let (bindings, timer) = (buffers::layout(gpu), Timer::new(gpu, BATCH));
-        Ok(Caster { gpu, packed, layout, bindings, scene, kernels: RefCell::default(), timer })
+        Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
     }
 
     /// Uploads a stream.
@@ -71,11 +73,10 @@ impl<'a> Caster<'a> {
                 self.gpu.report.name
             )));
         }
-        let room = Room { paths: size, hits: 16 * count, shadows: 4 * count, ..Room::default() };
-        let buffers = Buffers::new(self.gpu, &self.bindings, &self.scene, &room)?;
+        let buffers = LaunchBuffers::new(self.gpu, &RAY_BYTES, count as u32)?;
         let frame = self.packed.stream_frame(stream.len());
-        self.gpu.queue.write_buffer(&buffers.frame, 0, bytemuck::bytes_of(&frame));
-        self.gpu.queue.write_buffer(&buffers.paths, 0, bytemuck::cast_slice(stream.words()));
+        self.gpu.queue.write_buffer(buffers.of(binding::FRAME), 0, bytemuck::bytes_of(&frame));
+        self.gpu.queue.write_buffer(buffers.of(binding::PATHS), 0, bytemuck::cast_slice(stream.words()));
         self.gpu.queue.submit([]);
         self.gpu.wait()?;
         Ok(Cast { buffers, count: count as u32 })
@@ -114,13 +115,13 @@ impl<'a> Caster<'a> {
 
     /// Dispatches one after the other in a submission, and what each took.
     fn batch(&self, cast: &Cast, kernel: &Kernel, count: u32) -> Result<Vec<Duration>> {
+        let group = kernel.group(self.gpu, |own| self.scene.find(own).or_else(|| cast.buffers.find(own, false)));
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        for stretch in 0..count {
-            encoder.clear_buffer(&cast.buffers.counters, 0, None);
-            let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(stretch, true, true));
+        for pass in 0..count {
+            encoder.clear_buffer(cast.buffers.of(binding::COUNTERS), 0, None);
+            let timestamp_writes = self.timer.as_ref().map(|timer| timer.writes(pass));
             let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes });
-            pass.set_bind_group(0, &cast.buffers.groups[0], &[]);
-            kernel.run(&mut pass, cast.count.min(ROW), cast.count.div_ceil(ROW));
+            kernel.run(&mut pass, &group, cast.count.min(ROW), cast.count.div_ceil(ROW));
         }
         if let Some(timer) = &self.timer {
             timer.resolve(&mut encoder, count);
@@ -140,12 +141,12 @@ impl<'a> Caster<'a> {
         let count = u64::from(cast.count);
         Ok(match question {
             Question::Closest => {
-                let bytes = readback::read(self.gpu, &cast.buffers.hits, 16 * count)?;
+                let bytes = readback::read(self.gpu, cast.buffers.of(binding::HITS), 16 * count)?;
                 let words: Vec<u32> = readback::words(&bytes).collect();
                 Answers::Closest(words.chunks_exact(4).map(UVec4::from_slice).collect())
             }
             Question::Occlusion => {
-                let bytes = readback::read(self.gpu, &cast.buffers.shadows, 4 * count)?;
+                let bytes = readback::read(self.gpu, cast.buffers.of(binding::SHADOWS), 4 * count)?;
                 Answers::Occlusion(readback::words(&bytes).collect())
             }
         })
@@ -158,14 +159,14 @@ impl<'a> Caster<'a> {
         if let Some(kernel) = self.kernels.borrow().get(&key) {
             return Ok(kernel.clone());
         }
-        let features = Features(self.packed.features.0 | Features::STREAM);
-        let step = match question {
-            Question::Closest => Step::Trace,
-            Question::Occlusion => Step::Shadow,
+        let stage = match question {
+            Question::Closest => Stage::Trace,
+            Question::Occlusion => Stage::Shadow,
         };
         let traversal = self.gpu.resolved(traversal, Coherence::Scattered)?;
-        let recipe = Recipe::tracing(step, features, exact, traversal);
-        let kernel = compile(self.gpu, &self.bindings, &[recipe]).pop().map(Rc::new);
+        let spec = self.packed.specialisation(&traversal).with_launch(Launch::STREAM);
+        let step = Step { stage, traversal: Some(traversal), spec };
+        let kernel = compile(self.gpu, &[Recipe::new(step, self.gpu.target(exact))]).pop().map(Rc::new);
         self.gpu.check()?;
         let kernel = kernel.expect("a kernel for a recipe");
         self.kernels.borrow_mut().insert(key, kernel.clone());

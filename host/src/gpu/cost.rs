@@ -1,16 +1,14 @@
 //! What a scene pays for on a GPU: the kernels that run, and the memory that they read and write.
 
-use eyerays_passes::Kernel;
-use eyerays_shader::launch::binding;
+use eyerays_shader::data::Launch;
+use eyerays_shader::resources::RESOURCES;
 use serde::Serialize;
 
-use super::buffers::{self, Room};
-use super::plan::Plan;
-use super::recipe::Recipe;
+use super::recipe::{Recipe, Target};
 use super::scene::SceneRecords;
-use crate::error::Result;
 use crate::method::{Processor, Traversal};
 use crate::pack::Packed;
+use crate::plan::{Plan, Step};
 
 /// The cost of a scene, which an effect that it does not have adds nothing to.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,8 +17,10 @@ pub struct Cost {
     pub kernels: Vec<KernelCost>,
     /// What is uploaded once, and its bytes.
     pub scene: Vec<(&'static str, u64)>,
-    /// What each ray in flight takes of the memory that kernels exchange, in bytes.
-    pub ray: Vec<(&'static str, u64)>,
+    /// What each sample in flight takes of the memory that kernels exchange, in bytes.
+    pub sample: Vec<(&'static str, u64)>,
+    /// What each pixel takes of the film, in bytes.
+    pub pixel: u64,
 }
 
 /// The cost of a kernel.
@@ -38,45 +38,28 @@ pub struct KernelCost {
 
 impl Cost {
     /// Of a scene in the exact or the fast precision, on a GPU with subgroups.
-    ///
-    /// # Errors
-    /// None today: every method runs on such a GPU.
-    pub fn of(packed: &Packed, exact: bool, traversal: Traversal) -> Result<Cost> {
-        let plan = Plan::new(packed, exact, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence)))?;
-        let kernels = |recipes: &[Recipe], further| -> Vec<KernelCost> {
-            recipes.iter().map(|recipe| kernel(recipe, &recipe.cut(), further)).collect()
+    pub fn of(packed: &Packed, exact: bool, traversal: Traversal) -> Cost {
+        let resolve = |coherence| Ok(traversal.resolved(Processor::Gpu, coherence));
+        let plan = Plan::new(packed, &traversal, resolve).expect("such a GPU has every method");
+        let name = |binding: u32| RESOURCES[binding as usize].name;
+        let kernel = |step: &Step| {
+            let recipe = Recipe::new(*step, Target { exact, subgroups: true });
+            let cut = recipe.cut();
+            KernelCost {
+                name: recipe.name,
+                further: step.spec.launch.has(Launch::SECONDARY),
+                instructions: cut.instructions(),
+                buffers: cut.bindings().iter().map(|&binding| name(binding)).collect(),
+            }
         };
-        let records = SceneRecords::new(packed, traversal.layout, plan.hierarchies());
-        let named = |(binding, bytes)| (buffers::name(binding), bytes);
-        let used = |(_, bytes): &(&str, u64)| *bytes > 0;
-        let Room { paths, hits, shadows, film, queue } = Room::of(packed, 1, 1);
-        let ray = [
-            (binding::PATHS, paths),
-            (binding::HITS, hits),
-            (binding::SHADOWS, shadows),
-            (binding::FILM, film),
-            (binding::QUEUE, queue),
-            (binding::NEXT, queue),
-        ];
-        Ok(Cost {
-            kernels: [kernels(&plan.first, false), kernels(&plan.further, true)].concat(),
-            scene: records
-                .bytes()
-                .map(|(binding, bytes)| named((binding, bytes.len() as u64)))
-                .into_iter()
-                .filter(used)
-                .collect(),
-            ray: ray.map(named).into_iter().filter(used).collect(),
-        })
-    }
-}
-
-fn kernel(recipe: &Recipe, kernel: &Kernel, further: bool) -> KernelCost {
-    KernelCost {
-        name: recipe.name.clone(),
-        further,
-        instructions: kernel.instructions(),
-        buffers: kernel.bindings().into_iter().map(buffers::name).collect(),
+        let records = SceneRecords::new(packed, traversal.layout, (&plan).into());
+        let records = records.bytes().map(|(binding, bytes)| (name(binding), bytes.len() as u64));
+        Cost {
+            kernels: plan.steps().map(kernel).collect(),
+            scene: records.into_iter().filter(|(_, bytes)| *bytes > 0).collect(),
+            sample: plan.slot_bytes.iter().map(|&(binding, bytes)| (name(binding), bytes)).collect(),
+            pixel: Plan::FILM_BYTES,
+        }
     }
 }
 
@@ -92,8 +75,8 @@ mod tests {
     }
 
     fn cost(scene: &Scene) -> Cost {
-        let packed = Packed::new(scene, &scene.cameras[0], scene.settings, Quality::Fast).unwrap();
-        Cost::of(&packed, true, Traversal::default()).unwrap()
+        let packed = Packed::new(scene, scene.settings, Quality::Fast).unwrap();
+        Cost::of(&packed, true, Traversal::default())
     }
 
     fn names(cost: &Cost) -> Vec<&str> {
@@ -104,19 +87,21 @@ mod tests {
         buffers.iter().map(|&(name, _)| name).collect()
     }
 
-    const FIRST: [&str; 3] = ["exact_trace_while_while", "exact_shadow_if_if", "exact_shade"];
-    const FURTHER: [&str; 4] = ["exact_advance", "exact_trace_while_while", "exact_shadow_while_while", "exact_shade"];
+    const TRACE: &str = "exact::while_while::trace";
+    const FIRST: [&str; 3] = [TRACE, "exact::if_if::shadow", "subgroup_exact::shade"];
+    const FURTHER: [&str; 4] = ["exact::advance", TRACE, "exact::while_while::shadow", "subgroup_exact::shade"];
+    const LAST: [&str; 1] = ["exact::gather"];
 
     /// All of them have lights, smooth normals, and glass or mirrors that send rays on.
     #[test]
     fn every_shipped_scene_has_exactly_these_kernels_and_buffers() {
         let all = ["hierarchy", "triangles", "normals", "materials", "lights"];
-        let waves = ["paths", "hits", "shadows", "film", "queue", "next queue"];
+        let waves = ["paths", "hits", "shadows", "sums", "queue", "next queue"];
         for name in ["cornell", "whitted", "glass", "lights"] {
             let cost = cost(&shipped(name));
-            assert_eq!(names(&cost), [&FIRST[..], &FURTHER].concat(), "{name}");
+            assert_eq!(names(&cost), [&FIRST[..], &FURTHER, &LAST].concat(), "{name}");
             let scene: Vec<_> = used(&cost.scene).into_iter().filter(|&name| name != "bounds").collect();
-            assert_eq!((scene, used(&cost.ray)), (all.to_vec(), waves.to_vec()), "{name}");
+            assert_eq!((scene, used(&cost.sample)), (all.to_vec(), waves.to_vec()), "{name}");
         }
     }
 
@@ -131,9 +116,9 @@ mod tests {
             material.transmission = glam::Vec3::ZERO;
         }
         let primary = cost(&scene);
-        assert_eq!(names(&primary), FIRST);
-        assert_eq!(used(&primary.ray), ["hits", "shadows", "film"]);
-        let shade = |cost: &Cost| cost.kernels.iter().find(|kernel| kernel.name == "exact_shade").unwrap().clone();
+        assert_eq!(names(&primary), [TRACE, "exact::if_if::shadow", "exact::shade", "exact::gather"]);
+        assert_eq!(used(&primary.sample), ["hits", "shadows", "sums"]);
+        let shade = |cost: &Cost| cost.kernels.iter().find(|kernel| kernel.name.ends_with("::shade")).unwrap().clone();
         assert!(shade(&primary).instructions < shade(&whole).instructions);
         assert!(shade(&whole).buffers.contains(&"paths") && !shade(&primary).buffers.contains(&"paths"));
         scene.mesh.normals.clear();
@@ -142,7 +127,7 @@ mod tests {
         assert!(shade(&flat).instructions < shade(&primary).instructions);
         scene.lights.clear();
         let dark = cost(&scene);
-        assert_eq!(names(&dark), ["exact_trace_while_while", "exact_shade"]);
-        assert_eq!((used(&dark.ray), used(&dark.scene).contains(&"lights")), (vec!["hits", "film"], false));
+        assert_eq!(names(&dark), [TRACE, "exact::shade", "exact::gather"]);
+        assert_eq!((used(&dark.sample), used(&dark.scene).contains(&"lights")), (vec!["hits", "sums"], false));
     }
 }

@@ -4,6 +4,7 @@ use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
 use super::hush::Hush;
+use super::recipe::Target;
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Method, Processor, Scheduling, Traversal};
 
@@ -106,6 +107,11 @@ impl Gpu {
         )))
     }
 
+    /// Which kernels it takes in a precision.
+    pub(super) fn target(&self, exact: bool) -> Target {
+        Target { exact, subgroups: self.device.features().contains(wgpu::Features::SUBGROUP) }
+    }
+
     /// The first fault that the GPU reported since, if any.
     ///
     /// # Errors
@@ -122,7 +128,19 @@ impl Gpu {
     /// # Errors
     /// What the GPU reported.
     pub fn wait(&self) -> Result<()> {
-        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    /// Waits until a submission is done.
+    ///
+    /// # Errors
+    /// What the GPU reported.
+    pub(super) fn wait_for(&self, submission: wgpu::SubmissionIndex) -> Result<()> {
+        self.poll(wgpu::PollType::Wait { submission_index: Some(submission), timeout: None })
+    }
+
+    fn poll(&self, what: wgpu::PollType) -> Result<()> {
+        let polled = self.device.poll(what);
         self.check()?;
         polled.map(|_| ()).map_err(|e| Error::new(format!("\"{}\" failed: {e}", self.report.name)))
     }

@@ -1,12 +1,15 @@
-//! Compiled kernels, and how many threads they are run with.
+//! Compiled kernels: how many threads they are run with, and what they bind.
 
+use eyerays_passes::Kernel as Cut;
 use eyerays_shader::launch::WORKGROUP;
+use eyerays_shader::resources::{Access, RESOURCES};
 use rayon::prelude::*;
 
 use super::device::Gpu;
 use super::hush::Hush;
 use super::module;
-use super::recipe::{Recipe, Step};
+use super::recipe::Recipe;
+use crate::plan::Stage;
 
 /// Workgroups of persistent subgroups: more than any GPU of today runs at once. Those too many find no
 /// ray left.
@@ -14,15 +17,36 @@ const RESIDENT: u32 = 4096;
 
 /// A step, compiled.
 pub(super) struct Kernel {
-    pub step: Step,
+    pub stage: Stage,
     pipeline: wgpu::ComputePipeline,
+    layout: wgpu::BindGroupLayout,
+    /// What it binds, by the numbers of the table of resources: its own binding `i` is the `i`th.
+    bindings: Vec<u32>,
     persistent: bool,
 }
 
 impl Kernel {
+    /// Binds buffers to it; `buffer` gives that of a resource.
+    pub fn group<'b>(&self, gpu: &Gpu, buffer: impl Fn(u32) -> Option<&'b wgpu::Buffer>) -> wgpu::BindGroup {
+        let entry = |(place, &binding): (usize, &u32)| {
+            let buffer = buffer(binding);
+            let name = RESOURCES[binding as usize].name;
+            let buffer = buffer.unwrap_or_else(|| panic!("the plan has no {name} for {:?}", self.stage));
+            wgpu::BindGroupEntry { binding: place as u32, resource: buffer.as_entire_binding() }
+        };
+        let entries: Vec<_> = self.bindings.iter().enumerate().map(entry).collect();
+        let (layout, entries) = (&self.layout, &entries[..]);
+        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
+    }
+
+    /// Does it bind this resource?
+    pub fn binds(&self, binding: u32) -> bool {
+        self.bindings.contains(&binding)
+    }
+
     /// Runs a thread for each of `slots` slots in each of `rows` rows, or takes them in turn.
-    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, slots: u32, rows: u32) {
-        pass.set_pipeline(&self.pipeline);
+    pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, slots: u32, rows: u32) {
+        self.set(pass, group);
         let groups = slots.div_ceil(WORKGROUP);
         if self.persistent {
             pass.dispatch_workgroups(groups.saturating_mul(rows).min(RESIDENT), 1, 1);
@@ -31,37 +55,71 @@ impl Kernel {
         }
     }
 
-    /// The same with numbers that a kernel has left at `offset` of a buffer.
-    pub fn run_indirect(&self, pass: &mut wgpu::ComputePass<'_>, arguments: &wgpu::Buffer, offset: u64) {
-        pass.set_pipeline(&self.pipeline);
+    /// The same with numbers that a kernel has left at word `offset` of a buffer.
+    pub fn run_indirect(
+        &self,
+        pass: &mut wgpu::ComputePass<'_>,
+        group: &wgpu::BindGroup,
+        arguments: &wgpu::Buffer,
+        offset: u32,
+    ) {
+        self.set(pass, group);
         if self.persistent {
             pass.dispatch_workgroups(RESIDENT, 1, 1);
         } else {
-            pass.dispatch_workgroups_indirect(arguments, offset);
+            pass.dispatch_workgroups_indirect(arguments, 4 * u64::from(offset));
         }
+    }
+
+    fn set(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, group, &[]);
     }
 }
 
-/// Compiles kernels that share a layout of bindings, all at once: drivers take most of the time to a first picture.
-pub(super) fn compile(gpu: &Gpu, bindings: &wgpu::BindGroupLayout, recipes: &[Recipe]) -> Vec<Kernel> {
-    let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(bindings)],
-        immediate_size: 0,
-    });
+/// Compiles kernels, all at once: drivers take most of the time to a first picture.
+pub(super) fn compile(gpu: &Gpu, recipes: &[Recipe]) -> Vec<Kernel> {
     let _hush = Hush::new();
-    recipes.par_iter().map(|recipe| one(gpu, &layout, recipe)).collect()
+    recipes.par_iter().map(|recipe| one(gpu, recipe)).collect()
 }
 
-fn one(gpu: &Gpu, layout: &wgpu::PipelineLayout, recipe: &Recipe) -> Kernel {
-    let module = module::create(gpu, &recipe.cut().words(), &recipe.name);
+fn one(gpu: &Gpu, recipe: &Recipe) -> Kernel {
+    let cut = recipe.cut();
+    let layout = layout(gpu, &cut);
+    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
+        label: None,
+        bind_group_layouts: &[Some(&layout)],
+        immediate_size: 0,
+    });
+    let module = module::create(gpu, &cut.words(), &recipe.name);
     let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
         label: Some(&recipe.name),
-        layout: Some(layout),
+        layout: Some(&pipeline_layout),
         module: &module,
         entry_point: Some(&recipe.name),
         compilation_options: Default::default(),
         cache: None,
     });
-    Kernel { step: recipe.step, pipeline, persistent: recipe.persistent }
+    let bindings = cut.bindings().to_vec();
+    Kernel { stage: recipe.step.stage, pipeline, layout, bindings, persistent: recipe.is_persistent() }
+}
+
+/// What a kernel binds, and nothing else.
+fn layout(gpu: &Gpu, cut: &Cut) -> wgpu::BindGroupLayout {
+    let entry = |(place, &binding): (usize, &u32)| wgpu::BindGroupLayoutEntry {
+        binding: place as u32,
+        visibility: wgpu::ShaderStages::COMPUTE,
+        ty: wgpu::BindingType::Buffer {
+            ty: match RESOURCES[binding as usize].access {
+                Access::Uniform => wgpu::BufferBindingType::Uniform,
+                Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
+                Access::Write => wgpu::BufferBindingType::Storage { read_only: false },
+            },
+            has_dynamic_offset: false,
+            min_binding_size: None,
+        },
+        count: None,
+    };
+    let entries: Vec<_> = cut.bindings().iter().enumerate().map(entry).collect();
+    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
 }

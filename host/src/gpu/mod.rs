@@ -1,15 +1,16 @@
 //! The kernels on the GPU, through wgpu.
 
 mod adapter;
-mod buffers;
+mod bands;
 mod cast;
 mod cost;
 mod device;
 mod hush;
 mod kernel;
+mod launch;
+mod memory;
 mod module;
 pub mod numerics;
-mod plan;
 mod readback;
 mod recipe;
 mod render;
@@ -21,7 +22,6 @@ pub use adapter::{AdapterReport, adapters};
 pub use cast::{Cast, Caster};
 pub use cost::{Cost, KernelCost};
 pub use device::{Gpu, Route, Want};
-pub use plan::Plan;
-pub use recipe::{Recipe, Step};
+pub use recipe::{Recipe, Target};
 pub use render::{GpuRendering, Renderer};
 pub use warm::warm;

@@ -1,13 +1,13 @@
-//! Which kernel a step runs: an entry point of a committed module, and the constants that are written into it.
+//! Which kernel runs a step: an entry point of a committed module, and the constants that are written into it.
 
 use std::sync::LazyLock;
 
 use eyerays_passes::{Kernel, Kernels};
-use eyerays_shader::data::{Features, Tuning};
-use eyerays_shader::launch::{FEATURES_ID, TUNING_ID};
+use eyerays_shader::data::Effects;
 use eyerays_shader::modules;
 
-use crate::method::{Method, Scheduling, Traversal};
+use crate::method::Scheduling;
+use crate::plan::{Stage, Step};
 
 /// A committed module, parsed when the first kernel is cut out of it.
 type Module = LazyLock<Kernels>;
@@ -21,102 +21,87 @@ fn parse(module: &[u8]) -> Kernels {
     Kernels::parse(module).unwrap_or_else(|e| panic!("a committed module: {e}"))
 }
 
-/// What a kernel of a rendering does.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Step {
-    /// Counts the slots of the next wave.
-    Advance,
-    /// Follows the rays of a wave.
-    Trace,
-    /// Follows the shadow rays of its hits.
-    Shadow,
-    /// Shades its hits.
-    Shade,
-}
-
-impl Step {
-    fn name(self) -> &'static str {
-        match self {
-            Step::Advance => "advance",
-            Step::Trace => "trace",
-            Step::Shadow => "shadow",
-            Step::Shade => "shade",
-        }
-    }
+/// Which of a step's kernels a device takes.
+#[derive(Debug, Clone, Copy)]
+pub struct Target {
+    /// Exact precision, or the device's own arithmetic.
+    pub exact: bool,
+    /// Can lanes of a subgroup vote?
+    pub subgroups: bool,
 }
 
 /// A kernel that is not compiled yet.
 #[derive(Clone)]
 pub struct Recipe {
-    /// What it does.
+    /// The step that it runs.
     pub step: Step,
-    /// The name of its entry point.
+    /// The path of its entry point.
     pub name: String,
-    /// The method, of a step that follows rays.
-    pub method: Option<Method>,
-    /// Does it take rays until none is left, instead of one a thread?
-    pub persistent: bool,
     module: &'static Module,
-    constants: [(u32, u32); 2],
 }
 
 impl Recipe {
-    /// A step that follows rays by a method that is named, in the exact or the fast precision.
-    pub fn tracing(step: Step, features: Features, exact: bool, traversal: Traversal) -> Self {
-        let persistent = traversal.scheduling == Scheduling::Persistent;
-        let (module, prefix) = match (exact, traversal.votes()) {
+    /// The kernel of a step.
+    pub fn new(step: Step, target: Target) -> Self {
+        let votes = match step.traversal {
+            Some(traversal) => traversal.votes(),
+            // A subgroup adds its slots to the next wave at once.
+            None => target.subgroups && step.stage == Stage::Shade && goes_on(&step),
+        };
+        let (module, precision) = match (target.exact, votes) {
             (true, false) => (&EXACT, "exact"),
             (false, false) => (&FAST, "fast"),
             (true, true) => (&EXACT_SUBGROUP, "subgroup_exact"),
             (false, true) => (&FAST_SUBGROUP, "subgroup_fast"),
         };
-        let name = format!("{prefix}_{}_{}", step.name(), traversal.entry());
-        let constants = constants(features, &traversal);
-        Recipe { step, name, method: Some(traversal.method), persistent, module, constants }
+        let method = step.traversal.map(|traversal| traversal.path()).unwrap_or_default();
+        Recipe { step, name: format!("{precision}::{method}{}", step.stage.name()), module }
     }
 
-    /// A step that follows none.
-    pub fn shading(step: Step, features: Features, exact: bool, traversal: &Traversal) -> Self {
-        let (module, prefix) = if exact { (&EXACT, "exact") } else { (&FAST, "fast") };
-        let name = format!("{prefix}_{}", step.name());
-        Recipe { step, name, method: None, persistent: false, module, constants: constants(features, traversal) }
+    /// Does it take rays until none is left, instead of one a thread?
+    pub fn is_persistent(&self) -> bool {
+        self.step.traversal.is_some_and(|traversal| traversal.scheduling == Scheduling::Persistent)
     }
 
     /// The kernel as a module of its own: what the scene does not ask for is not in it.
     pub fn cut(&self) -> Kernel {
-        self.module.cut(&self.name, &self.constants).unwrap_or_else(|e| panic!("a committed module: {e}"))
+        let constants = self.step.spec.constants();
+        self.module.cut(&self.name, &constants).unwrap_or_else(|e| panic!("a committed module: {e}"))
     }
 }
 
-fn constants(features: Features, traversal: &Traversal) -> [(u32, u32); 2] {
-    let Tuning(tuning) = traversal.tuning;
-    [(FEATURES_ID, features.0 | traversal.features().0), (TUNING_ID, tuning)]
+fn goes_on(step: &Step) -> bool {
+    step.spec.effects.has(Effects::REFLECTION | Effects::REFRACTION)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::method::Processor;
+    use crate::method::{Coherence, Method, Processor, Traversal};
 
-    /// Every method in both precisions has its kernels; the names are made here and in the shader's table of entries.
+    /// Every method in both precisions has its kernels; their paths are made here and in the shader's table of methods.
     #[test]
     fn every_way_to_follow_rays_has_its_kernels() {
-        for method in Method::ALL {
-            for scheduling in [Scheduling::Grid, Scheduling::Persistent] {
-                let traversal = Traversal { scheduling, ..method.into() };
-                let traversal = traversal.resolved(Processor::Gpu, crate::method::Coherence::Primary);
-                for exact in [true, false] {
-                    for step in [Step::Trace, Step::Shadow] {
-                        let recipe = Recipe::tracing(step, Features(0), exact, traversal);
-                        assert!(recipe.cut().instructions() > 100, "{}", recipe.name);
+        let mut recipes = Vec::new();
+        for (exact, subgroups) in [(true, true), (true, false), (false, true), (false, false)] {
+            let target = Target { exact, subgroups };
+            let mut spec = eyerays_shader::data::Specialisation::default();
+            spec.effects.0 |= Effects::REFLECTION;
+            for method in Method::ALL {
+                for scheduling in [Scheduling::Grid, Scheduling::Persistent] {
+                    let traversal = Traversal { scheduling, ..method.into() };
+                    let traversal = Some(traversal.resolved(Processor::Gpu, Coherence::Primary));
+                    for stage in [Stage::Trace, Stage::Shadow] {
+                        recipes.push(Recipe::new(Step { stage, traversal, spec }, target));
                     }
                 }
             }
-        }
-        for exact in [true, false] {
-            for step in [Step::Advance, Step::Shade] {
-                Recipe::shading(step, Features(0), exact, &Traversal::default()).cut();
+            for stage in [Stage::Advance, Stage::Shade, Stage::Gather] {
+                recipes.push(Recipe::new(Step { stage, traversal: None, spec }, target));
             }
+        }
+        for recipe in recipes {
+            assert!(recipe.cut().instructions() > 10, "{}", recipe.name);
         }
     }
 }

@@ -1,31 +1,33 @@
-//! Launches on the GPU: waves of trace, shadow and shade over bands of the image.
+//! Pictures on the GPU: launches over bands of the image and batches of samples, whose sums the film keeps.
 
 use std::time::Duration;
 
 use eyerays_shader::camera;
-use eyerays_shader::data::{Features, numbers};
+use eyerays_shader::data::Order;
 use eyerays_shader::launch::counter;
-use eyerays_shader::stage::NON_FINITE;
+use eyerays_shader::resources::binding;
 use glam::UVec4;
+use wgpu::BufferUsages as Use;
 
-use super::buffers::{self, Buffers, Room};
+use super::bands::bands;
 use super::device::Gpu;
 use super::kernel::{Kernel, compile};
-use super::plan::Plan;
+use super::launch::{Launch, Queue};
+use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::readback;
-use super::recipe::{Recipe, Step};
+use super::recipe::Recipe;
 use super::scene::SceneBuffers;
-use super::timer::Timer;
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
-use crate::pack::{Packed, Region};
+use crate::pack::Packed;
+use crate::plan::{self, Plan};
 use crate::rays::Rays;
+use crate::scene::Light;
+use crate::view::{Region, View};
 
-/// Waves that are first submitted without looking whether any ray is left; doubled each time.
-const WAVES: u32 = 4;
-/// Waves at most in a submission, so that no watchdog takes it for hung.
-const MOST_WAVES: u32 = 64;
+/// Bytes of films that are read back at once.
+const READ: u64 = 1 << 28;
 
 /// A picture and what it took.
 pub struct GpuRendering {
@@ -37,18 +39,42 @@ pub struct GpuRendering {
     pub device_time: Option<Duration>,
 }
 
-/// A scene on a GPU, ready to be rendered any number of times.
+/// A scene on a GPU, ready for any number of pictures: cameras, sizes and samples may change from one to the next, and
+/// neither geometry nor kernels move for that.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
     packed: &'a Packed,
-    traversal: Traversal,
-    /// Of the first wave, in order.
-    first: Vec<Kernel>,
-    /// Of each further wave, in order.
-    further: Vec<Kernel>,
-    buffers: Buffers,
-    timer: Option<Timer>,
-    bands: Vec<Region>,
+    order: Order,
+    plan: Plan,
+    /// By the plan's steps.
+    kernels: Vec<Kernel>,
+    scene: SceneBuffers,
+    most_slots: u32,
+    memory: Option<Memory>,
+    picture: Option<Picture>,
+    queue: Queue<'a>,
+}
+
+/// What launches exchange, bound to the kernels: for a wave, and for the next, whose queues are exchanged.
+pub(super) struct Memory {
+    pub buffers: LaunchBuffers,
+    /// By the plan's steps; none for those that bind the film.
+    pub groups: Vec<Option<[wgpu::BindGroup; 2]>>,
+}
+
+/// A picture that samples are added to.
+struct Picture {
+    view: View,
+    bands: Vec<Band>,
+    samples: u32,
+}
+
+/// A region of the image with its film.
+pub(super) struct Band {
+    pub region: Region,
+    film: wgpu::Buffer,
+    /// For the steps that bind the film.
+    pub group: wgpu::BindGroup,
 }
 
 impl<'a> Renderer<'a> {
@@ -58,166 +84,182 @@ impl<'a> Renderer<'a> {
     /// What does not fit the GPU, or what its driver reports.
     pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
-        let slots = buffers::most_slots(gpu, packed)?;
-        let bands = bands(packed.settings.size, slots, traversal.features());
-        let layout = buffers::layout(gpu);
-        let plan = Plan::new(packed, exact, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
-        let recipes: Vec<Recipe> = plan.recipes().cloned().collect();
-        let mut first = compile(gpu, &layout, &recipes);
-        let further = first.split_off(plan.first.len());
+        let plan = Plan::new(packed, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
+        let most_slots = most_slots(gpu, &plan)?;
+        let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
+        let kernels = compile(gpu, &recipes);
         gpu.check()?;
-        let most = |size: &dyn Fn(&Region) -> u32| bands.iter().map(size).max().unwrap_or(0).into();
-        let slots = most(&|r| camera::slots(r.width, r.height, traversal.features()));
-        let room = Room::of(packed, slots, most(&|r| r.width * r.height));
-        let scene = SceneBuffers::new(gpu, packed, traversal.layout, plan.hierarchies())?;
-        let buffers = Buffers::new(gpu, &layout, &scene, &room)?;
-        Ok(Renderer { gpu, packed, traversal, first, further, buffers, timer: Timer::new(gpu, 1), bands })
+        let scene = SceneBuffers::new(gpu, packed, traversal.layout, (&plan).into())?;
+        let (order, queue) = (traversal.order.bits(), Queue::new(gpu));
+        Ok(Renderer { gpu, packed, order, plan, kernels, scene, most_slots, memory: None, picture: None, queue })
     }
 
-    /// Renders the picture. `done` hears of every finished share of the pixels.
+    /// Goes on with other lights: as many as the scene's, of the same kinds.
+    ///
+    /// # Errors
+    /// As [`Packed::relit`].
+    pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
+        let records = self.packed.relit(lights)?;
+        if let Some(buffer) = self.scene.find(binding::LIGHTS) {
+            self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&records));
+        }
+        Ok(())
+    }
+
+    /// Renders a picture. `done` hears of every finished share of the pixels.
     ///
     /// # Errors
     /// What the GPU reports.
-    pub fn render(&self, done: &(dyn Fn(u64) + Sync)) -> Result<GpuRendering> {
-        let (width, height) = self.packed.settings.size;
-        let mut film = Film::new(width, height)?;
-        let mut rays = Rays::default();
-        let mut time = Duration::ZERO;
-        for &band in &self.bands {
-            let pixels = u64::from(band.width * band.height);
-            for sample in 0..self.packed.samples() {
-                let (secondary, took) = self.launch(band, sample)?;
-                rays.secondary += secondary;
-                time += took;
+    pub fn render(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<GpuRendering> {
+        self.start(view)?;
+        self.add(view.samples(), done)?;
+        let rendering = self.film();
+        done(self.queue.forget());
+        rendering
+    }
+
+    /// Starts a picture without any sample. Memory is taken if no picture before needed as much.
+    ///
+    /// # Errors
+    /// What the GPU reports.
+    pub fn start(&mut self, view: &View) -> Result<()> {
+        let (width, height) = view.size();
+        let wanted = u64::from(camera::slots(width, height, self.order)) * u64::from(view.samples());
+        self.reserve(wanted.min(self.most_slots.into()) as u32)?;
+        let regions = bands((width, height), self.slots(), self.order);
+        let bands = match self.picture.take() {
+            Some(picture) if picture.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => picture.bands,
+            _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
+        };
+        self.picture = Some(Picture { view: *view, bands, samples: 0 });
+        self.queue.restart(self.buffers().of(binding::COUNTERS));
+        Ok(())
+    }
+
+    /// Adds the next `count` samples of each pixel, or as many as the view has: n and then n more give the bits of 2n at
+    /// once. Does not wait for the GPU, unless it has enough to do, or reflected and refracted rays branch, where the end of
+    /// each launch is waited for. `done` hears of finished shares of the pixels, sooner or later.
+    ///
+    /// # Errors
+    /// What the GPU reports.
+    ///
+    /// # Panics
+    /// If no picture was started.
+    pub fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let mut picture = self.picture.take().expect("a picture was started");
+        let result = self.add_to(&picture, count, done);
+        picture.samples = picture.samples.saturating_add(count).min(picture.view.samples());
+        self.picture = Some(picture);
+        result
+    }
+
+    fn add_to(&mut self, picture: &Picture, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let Picture { view, bands, samples } = picture;
+        let end = samples.saturating_add(count).min(view.samples());
+        for band in bands {
+            let (width, height) = (band.region.width, band.region.height);
+            let batch = (self.slots() / camera::slots(width, height, self.order)).max(1);
+            let mut first = *samples;
+            while first < end {
+                let count = batch.min(end - first);
+                let frame = view.launch(band.region, first, count, self.order);
+                let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
+                let memory = self.memory.as_ref().expect("it was reserved");
+                let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
+                plan::run(&self.plan, &mut launch)?;
+                launch.submit(share(first + count) - share(first))?;
+                done(self.queue.finished()?);
+                first += count;
             }
-            rays.primary += pixels * u64::from(self.packed.samples());
-            let bytes = readback::read(self.gpu, &self.buffers.film, 16 * pixels)?;
-            keep(band, &bytes, &mut film, &mut rays);
-            done(pixels);
         }
-        Ok(GpuRendering { film, rays, device_time: self.timer.is_some().then_some(time) })
+        Ok(())
     }
 
-    /// One sample of a band: the first wave, and further ones until no ray is left. Returns the
-    /// secondary rays and the device time.
-    fn launch(&self, band: Region, sample: u32) -> Result<(u64, Duration)> {
-        let frame = self.packed.frame(band, sample, self.traversal.features());
-        self.gpu.queue.write_buffer(&self.buffers.frame, 0, bytemuck::bytes_of(&frame));
-        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
-        if sample == 0 {
-            encoder.clear_buffer(&self.buffers.film, 0, None);
+    /// Waits for the picture: the mean of its samples so far, black without any, and the rays that they took.
+    ///
+    /// # Errors
+    /// What the GPU reports, or if there is no memory for the film.
+    ///
+    /// # Panics
+    /// If no picture was started.
+    pub fn film(&mut self) -> Result<GpuRendering> {
+        let Picture { view, bands, samples } = self.picture.as_ref().expect("a picture was started");
+        let (width, height) = view.size();
+        let (mut film, mut rays) = (Film::new(width, height)?, Rays::default());
+        let mut device_time = self.queue.has_clock().then_some(Duration::ZERO);
+        if *samples == 0 {
+            return Ok(GpuRendering { film, rays, device_time });
         }
-        encoder.clear_buffer(&self.buffers.counters, 0, None);
-        let mut waves = if self.further.is_empty() { 0 } else { WAVES };
-        self.first_wave(&mut encoder, frame.limits.z, waves == 0);
-        let (mut turn, mut time) = (0, Duration::ZERO);
-        loop {
-            for wave in 0..waves {
-                turn = 1 - turn;
-                self.further_wave(&mut encoder, turn, wave + 1 == waves);
+        let counters = self.buffers().of(binding::COUNTERS).clone();
+        let mut rest = &bands[..];
+        while !rest.is_empty() {
+            let mut bytes = 0;
+            let fits = |band: &&Band| {
+                bytes += Plan::FILM_BYTES * band.region.pixels();
+                bytes <= READ
+            };
+            let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
+            let films = now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels()));
+            let mut read = self.queue.read(&counters, films)?;
+            for (band, bytes) in now.iter().zip(read.films.drain(..)) {
+                let records: Vec<UVec4> = bytemuck::pod_collect_to_vec(&bytes);
+                film.develop::<f32>(band.region, &records, *samples, &mut rays);
             }
-            time += self.submit(encoder)?;
-            if waves == 0 {
-                return Ok((0, time));
+            let words: Vec<u32> = readback::words(&read.counters).collect();
+            let [low, high] = [0, 1].map(|i| u64::from(words[(counter::RAYS + i) as usize]));
+            rays.secondary = high << 32 | low;
+            device_time = read.device_time;
+            rest = later;
+        }
+        rays.primary = view.region().pixels() * u64::from(*samples);
+        Ok(GpuRendering { film, rays, device_time })
+    }
+
+    fn buffers(&self) -> &LaunchBuffers {
+        &self.memory.as_ref().expect("it was reserved").buffers
+    }
+
+    fn slots(&self) -> u32 {
+        self.buffers().slots
+    }
+
+    /// Takes memory for launches of so many slots, or of fewer where there is too little.
+    fn reserve(&mut self, mut slots: u32) -> Result<()> {
+        if self.memory.as_ref().is_some_and(|memory| memory.buffers.slots >= slots) {
+            return Ok(());
+        }
+        (self.memory, self.picture) = (None, None);
+        let buffers = loop {
+            match LaunchBuffers::new(self.gpu, &self.plan.slot_bytes, slots) {
+                Ok(buffers) => break buffers,
+                Err(_) if slots > LEAST_SLOTS => slots = (slots / 2).next_multiple_of(32),
+                Err(error) => return Err(error),
             }
-            let bytes = readback::read(self.gpu, &self.buffers.counters, 4 * u64::from(counter::LENGTH))?;
-            let counters: Vec<u32> = readback::words(&bytes).collect();
-            if counters[counter::NEXT as usize] == 0 {
-                return Ok((counters[counter::RAYS as usize].into(), time));
-            }
-            waves = (2 * waves).min(MOST_WAVES);
-            encoder = self.gpu.device.create_command_encoder(&Default::default());
-            // The start of the submission's time, which the first wave marks elsewhere.
-            self.pass(&mut encoder, true, false);
-        }
+        };
+        let group = |kernel: &Kernel, is_second| {
+            kernel.group(self.gpu, |binding| self.scene.find(binding).or_else(|| buffers.find(binding, is_second)))
+        };
+        let both = |kernel: &Kernel| [group(kernel, false), group(kernel, true)];
+        let groups = self.kernels.iter().map(|kernel| (!kernel.binds(binding::FILM)).then(|| both(kernel))).collect();
+        self.gpu.check()?;
+        // What is remembered of other buffers' launches holds for these.
+        self.memory = Some(Memory { buffers, groups });
+        self.most_slots = self.most_slots.min(slots.max(self.most_slots));
+        Ok(())
     }
 
-    fn submit(&self, mut encoder: wgpu::CommandEncoder) -> Result<Duration> {
-        if let Some(timer) = &self.timer {
-            timer.resolve(&mut encoder, 1);
-        }
-        self.gpu.queue.submit([encoder.finish()]);
-        match &self.timer {
-            Some(timer) => Ok(timer.read(self.gpu, 1)?[0]),
-            None => self.gpu.wait().map(|()| Duration::ZERO),
-        }
-    }
-
-    fn pass<'e>(&self, encoder: &'e mut wgpu::CommandEncoder, first: bool, last: bool) -> wgpu::ComputePass<'e> {
-        let timestamp_writes = self.timer.as_ref().and_then(|t| t.writes(0, first, last));
-        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes })
-    }
-
-    /// One thread a slot, and one a slot and light.
-    fn first_wave(&self, encoder: &mut wgpu::CommandEncoder, slots: u32, last: bool) {
-        let mut pass = self.pass(encoder, true, last);
-        pass.set_bind_group(0, &self.buffers.groups[0], &[]);
-        for kernel in &self.first {
-            let rows = if kernel.step == Step::Shadow { self.packed.lights.len() as u32 } else { 1 };
-            kernel.run(&mut pass, slots, rows);
-        }
-    }
-
-    /// The same over the slots that still have a ray, as many as the GPU has counted.
-    fn further_wave(&self, encoder: &mut wgpu::CommandEncoder, turn: usize, last: bool) {
-        let [advance, stages @ ..] = &self.further[..] else { return };
-        let Buffers { counters, arguments, groups, .. } = &self.buffers;
-        {
-            let mut pass = self.pass(encoder, false, false);
-            pass.set_bind_group(0, &groups[turn], &[]);
-            advance.run(&mut pass, 1, 1);
-        }
-        encoder.copy_buffer_to_buffer(counters, 0, arguments, 0, arguments.size());
-        let mut pass = self.pass(encoder, false, last);
-        pass.set_bind_group(0, &groups[turn], &[]);
-        for kernel in stages {
-            let offset = if kernel.step == Step::Shadow { counter::SHADOWS } else { counter::SLOTS };
-            kernel.run_indirect(&mut pass, arguments, 4 * u64::from(offset));
-        }
+    fn band(&self, region: Region) -> Result<Band> {
+        let size = Plan::FILM_BYTES * region.pixels();
+        let film = buffer(self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
+        let kernel = self.kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
+        let group = kernel.group(self.gpu, |binding| match binding {
+            binding::FILM => Some(&film),
+            other => self.buffers().find(other, false),
+        });
+        self.gpu.check()?;
+        Ok(Band { region, film, group })
     }
 }
 
-/// Cuts the image into regions of at most `slots` slots: whole rows, if that many fit.
-fn bands((width, height): (u32, u32), slots: u32, features: Features) -> Vec<Region> {
-    let (least, most) = camera::blocks(features);
-    let columns = width.min((slots / (least * most) * least).max(least));
-    let rows = (slots / camera::slots(columns, most, features) * most).max(most);
-    let tops = (0..height).step_by(rows as usize);
-    tops.flat_map(|y| (0..width).step_by(columns as usize).map(move |x| (x, y)))
-        .map(|(x, y)| Region { x, y, width: (width - x).min(columns), height: (height - y).min(rows) })
-        .collect()
-}
-
-/// Copies a band into the image and counts.
-fn keep(band: Region, bytes: &[u8], film: &mut Film, rays: &mut Rays) {
-    let words: Vec<u32> = readback::words(bytes).collect();
-    for (row, line) in words.chunks_exact(4 * band.width as usize).enumerate() {
-        let start = (band.y as usize + row) * film.width as usize + band.x as usize;
-        for (pixel, record) in film.pixels[start..].iter_mut().zip(line.chunks_exact(4)) {
-            *pixel = numbers(UVec4::from_slice(record)).to_array();
-            rays.shadow += u64::from(record[3] & !NON_FINITE);
-            rays.non_finite += u64::from(record[3] & NON_FINITE != 0);
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn bands_cover_every_pixel_once_and_fit() {
-        for (size, slots) in [((1, 1), 32), ((100, 70), 32), ((100, 70), 512), ((100, 70), 1 << 22), ((9, 3), 64)] {
-            let mut seen = vec![0; (size.0 * size.1) as usize];
-            for band in bands(size, slots, Features(0)) {
-                assert!(camera::slots(band.width, band.height, Features(0)) <= slots, "{size:?} {slots}: {band:?}");
-                for y in band.y..band.y + band.height {
-                    for x in band.x..band.x + band.width {
-                        seen[(y * size.0 + x) as usize] += 1;
-                    }
-                }
-            }
-            assert!(seen.iter().all(|&n| n == 1), "{size:?} {slots}");
-        }
-    }
-}
+/// Launches of fewer slots are not worth a try.
+const LEAST_SLOTS: u32 = 1 << 16;

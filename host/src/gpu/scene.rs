@@ -1,13 +1,13 @@
 //! Device memory of a scene.
 
-use eyerays_shader::data::Features;
-use eyerays_shader::launch::binding;
+use eyerays_shader::data::Effects;
+use eyerays_shader::resources::{RESOURCES, binding};
 
-use super::buffers::{self, DUMMY};
 use super::device::Gpu;
 use crate::error::{Error, Result};
 use crate::method::Layout;
 use crate::pack::{NodeWords, Packed, TriangleWords};
+use crate::plan::Plan;
 
 /// The records of a scene as kernels read them, before they are uploaded.
 pub(super) struct SceneRecords<'a> {
@@ -27,21 +27,21 @@ impl<'a> SceneRecords<'a> {
     /// Every binding with its bytes, none where the scene has no use for it.
     pub fn bytes(&self) -> [(u32, &[u8]); 7] {
         let packed = self.packed;
-        let wide = if self.wide { &packed.wide[..] } else { &[] };
-        let normals = if packed.features.has(Features::SMOOTH) { &packed.normals[..] } else { &[] };
+        let wide = if self.wide { packed.wide() } else { &[] };
+        let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
             (binding::WIDE, bytemuck::cast_slice(wide)),
             (binding::TRIANGLES, bytemuck::cast_slice(&self.triangles.0)),
-            (binding::BOUNDS, bytemuck::cast_slice(&packed.bounds)),
+            (binding::BOUNDS, bytemuck::cast_slice(packed.bounds())),
             (binding::NORMALS, bytemuck::cast_slice(normals)),
-            (binding::MATERIALS, bytemuck::cast_slice(&packed.materials)),
-            (binding::LIGHTS, bytemuck::cast_slice(&packed.lights)),
+            (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),
+            (binding::LIGHTS, bytemuck::cast_slice(packed.lights())),
         ]
     }
 }
 
-/// What kernels read of a scene; a dummy for what they do not.
+/// What kernels read of a scene, and nothing else.
 pub(super) struct SceneBuffers(Vec<(u32, wgpu::Buffer)>);
 
 impl SceneBuffers {
@@ -52,13 +52,13 @@ impl SceneBuffers {
     /// If a part is larger than a buffer, or what the GPU reports.
     pub fn new(gpu: &Gpu, packed: &Packed, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
         let records = SceneRecords::new(packed, layout, hierarchies);
-        let upload = |(binding, bytes)| Ok((binding, upload(gpu, buffers::name(binding), bytes)?));
-        records.bytes().into_iter().map(upload).collect::<Result<_>>().map(SceneBuffers)
+        let used = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty());
+        used.map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?))).collect::<Result<_>>().map(SceneBuffers)
     }
 
-    /// Every buffer with its binding.
-    pub fn bound(&self) -> impl Iterator<Item = (u32, &wgpu::Buffer)> {
-        self.0.iter().map(|(binding, buffer)| (*binding, buffer))
+    /// The buffer of a resource.
+    pub fn find(&self, binding: u32) -> Option<&wgpu::Buffer> {
+        self.0.iter().find(|(own, _)| *own == binding).map(|(_, buffer)| buffer)
     }
 }
 
@@ -69,9 +69,15 @@ pub(super) struct Hierarchies {
     pub wide: bool,
 }
 
-/// A read-only buffer, or a dummy of zeros.
-fn upload(gpu: &Gpu, name: &str, bytes: &[u8]) -> Result<wgpu::Buffer> {
-    let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
+impl From<&Plan> for Hierarchies {
+    fn from(plan: &Plan) -> Self {
+        Hierarchies { binary: plan.walks_pairs(), wide: plan.walks_wide() }
+    }
+}
+
+/// A read-only buffer.
+fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
+    let (limit, name) = (gpu.report.max_binding.min(gpu.report.max_buffer), RESOURCES[binding as usize].name);
     if bytes.len() as u64 > limit {
         return Err(Error::new(format!(
             "the scene's {name} take {} bytes, but \"{}\" has buffers of at most {limit}: use --device cpu",
@@ -79,11 +85,10 @@ fn upload(gpu: &Gpu, name: &str, bytes: &[u8]) -> Result<wgpu::Buffer> {
             gpu.report.name
         )));
     }
-    let size = (bytes.len() as u64).max(DUMMY);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
-        size,
-        usage: wgpu::BufferUsages::STORAGE,
+        size: bytes.len() as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
         mapped_at_creation: true,
     });
     gpu.check()?;

@@ -63,7 +63,7 @@ mod tests {
     }
 
     fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
-        let packed = Packed::new(scene, &scene.cameras[0], settings, Quality::Fast);
+        let packed = Packed::new(scene, settings, Quality::Fast);
         packed.err().map(|error| error.message)
     }
 
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn settings_beyond_their_limits_are_refused_when_they_are_taken_too() {
         let scene = whitted();
-        let mut packed = Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Fast).unwrap();
+        let mut packed = Packed::new(&scene, scene.settings, Quality::Fast).unwrap();
         for beyond in [
             Settings { size: (0, 4), ..scene.settings },
             Settings { samples: 0, ..scene.settings },
@@ -95,8 +95,8 @@ mod tests {
             Settings { min_contribution: f32::NAN, ..scene.settings },
         ] {
             assert!(refusal(&scene, beyond).is_some(), "{beyond:?}");
-            assert!(packed.set(&scene, &scene.cameras[0], beyond).is_err(), "{beyond:?}");
+            assert!(packed.set(&scene, beyond).is_err(), "{beyond:?}");
         }
-        assert_eq!(packed.settings, scene.settings);
+        assert_eq!(*packed.settings(), scene.settings);
     }
 }

@@ -1,11 +1,15 @@
 //! A scene as the kernels of a processor see it.
 
-use eyerays_shader::data::{Features, Frame};
+use std::borrow::Cow;
+
+use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::full::Full;
-use eyerays_shader::scene::Geometry;
+use eyerays_shader::scene::{LaunchContext, TraceContext};
 
 use super::{NodeWords, Packed, TriangleWords};
+use crate::error::Result;
 use crate::method::{Method, Traversal};
+use crate::scene::Light;
 
 /// A scene laid out for a traversal, once for all launches.
 pub struct Laid<'a> {
@@ -16,6 +20,7 @@ pub struct Laid<'a> {
     nodes: NodeWords<'a>,
     triangles: TriangleWords<'a>,
     full: Full<'a>,
+    lights: Cow<'a, [LightRecord]>,
 }
 
 impl<'a> Laid<'a> {
@@ -26,30 +31,41 @@ impl<'a> Laid<'a> {
             Method::Auto | Method::Wide => packed.full().borrow(),
             _ => Full::default(),
         };
-        Laid { packed, traversal, nodes, triangles, full }
+        Laid { packed, traversal, nodes, triangles, full, lights: Cow::Borrowed(packed.lights()) }
     }
 
-    /// What the scene and the traversal ask of kernels.
-    pub fn features(&self) -> Features {
-        Features(self.packed.features.0 | self.traversal.features().0)
+    /// Lights in file order.
+    pub fn lights(&self) -> &[LightRecord] {
+        &self.lights
     }
 
-    /// The scene for a launch of the camera's rays.
-    pub fn geometry<'g>(&'g self, frame: &'g Frame) -> Geometry<'g> {
-        Geometry {
-            frame,
-            features: self.features(),
-            tuning: self.traversal.tuning,
+    /// Takes other lights.
+    ///
+    /// # Errors
+    /// As [`Packed::relit`].
+    pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
+        self.lights = Cow::Owned(self.packed.relit(lights)?);
+        Ok(())
+    }
+
+    /// What kernels are compiled for that follow the camera's rays.
+    pub fn specialisation(&self) -> Specialisation {
+        self.packed.specialisation(&self.traversal)
+    }
+
+    /// The scene for a launch by a kernel that is compiled for `spec`.
+    pub fn context<'g>(&'g self, frame: &'g Frame, spec: Specialisation) -> TraceContext<'g> {
+        TraceContext {
+            base: LaunchContext { frame, spec, triangles: &self.triangles.0 },
             nodes: &self.nodes.0,
-            wide: &self.packed.wide,
+            wide: self.packed.wide(),
             full: self.full,
-            triangles: &self.triangles.0,
-            bounds: &self.packed.bounds,
+            bounds: self.packed.bounds(),
         }
     }
 
     /// The scene for a launch of a stream's rays, see [`Packed::stream_frame`].
-    pub fn stream<'g>(&'g self, frame: &'g Frame) -> Geometry<'g> {
-        Geometry { features: Features(self.features().0 | Features::STREAM), ..self.geometry(frame) }
+    pub fn stream<'g>(&'g self, frame: &'g Frame) -> TraceContext<'g> {
+        self.context(frame, self.specialisation().with_launch(Launch::STREAM))
     }
 }

@@ -5,11 +5,14 @@ use glam::{DVec3, Vec3};
 
 use crate::math;
 
+/// The farthest that anything is from a scene, in its half extents: squares of it are finite.
+const FARTHEST: f32 = 1e18;
+
 /// How much larger a scene must become for it to be moved.
 const WORTH_MOVING: f64 = 8.0;
 
-/// Moves a scene that lies far from the world's origin and multiplies it by a power of two, so that every vertex and
-/// every camera comes into [-1, 1] and no bit of a coordinate is lost.
+/// Moves a scene that lies far from the world's origin and multiplies it by a power of two, so that every vertex comes
+/// into [-1, 1] and no bit of its coordinates is lost. Cameras and lights may lie outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normalisation {
     /// The place that becomes zero, in world units.
@@ -30,9 +33,16 @@ impl Normalisation {
         if movable && moved.scale >= WORTH_MOVING * here.scale { moved } else { here }
     }
 
-    /// A place in the normalised scene, which for a vertex or a camera is exact.
+    /// A place in the normalised scene, which for a vertex is exact.
     pub fn exactly(&self, p: DVec3) -> DVec3 {
         (p - self.origin.as_dvec3()) * self.scale
+    }
+
+    /// A place that may lie outside the scene, such as a camera's or a light's, as a kernel takes it; none if it is too
+    /// far away for the kernel's numbers.
+    pub fn place_anywhere(&self, p: Vec3) -> Option<Vec3> {
+        let placed = self.place(p);
+        (placed.abs().max_element() < FARTHEST).then_some(placed)
     }
 
     /// A place as a kernel takes it; coordinates below 2^-60 are zero (no subnormals).
@@ -64,7 +74,7 @@ fn scale(least: Vec3, greatest: Vec3, origin: Vec3) -> f64 {
 }
 
 /// Without what a device may take for zero.
-pub(super) fn flushed(v: Vec3) -> Vec3 {
+pub(crate) fn flushed(v: Vec3) -> Vec3 {
     Vec3::from_array(v.to_array().map(flushed_number))
 }
 

@@ -9,7 +9,7 @@ use glam::UVec4;
 use super::Packed;
 use crate::method::Layout;
 
-/// The words of all triangles in one of their layouts, see [`eyerays_shader::scene::Geometry::triangle`].
+/// The words of all triangles in one of their layouts, see [`eyerays_shader::scene::LaunchContext::triangle`].
 pub struct TriangleWords<'a>(pub Cow<'a, [UVec4]>);
 
 impl<'a> TriangleWords<'a> {
@@ -22,7 +22,7 @@ impl<'a> TriangleWords<'a> {
     }
 }
 
-/// The words of all pairs of nodes, see [`eyerays_shader::scene::Geometry::pair`].
+/// The words of all pairs of nodes, see [`eyerays_shader::scene::TraceContext::pair`].
 pub struct NodeWords<'a>(pub Cow<'a, [UVec4]>);
 
 impl<'a> NodeWords<'a> {

@@ -36,9 +36,9 @@ impl Module {
 ///
 /// Methods that vote have modules of their own, so that a device without subgroups takes the others.
 pub const MODULES: [Module; 5] = [
-    Module { name: "exact", prefix: "exact_", policy: Policy::Exact, protects: &[] },
-    Module { name: "fast", prefix: "fast_", policy: Policy::Fast, protects: &["triangle::cross"] },
-    Module { name: "exact_subgroup", prefix: "subgroup_exact_", policy: Policy::Exact, protects: &[] },
-    Module { name: "fast_subgroup", prefix: "subgroup_fast_", policy: Policy::Fast, protects: &["triangle::cross"] },
-    Module { name: "numerics", prefix: "numerics_", policy: Policy::Exact, protects: &[] },
+    Module { name: "exact", prefix: "exact::", policy: Policy::Exact, protects: &[] },
+    Module { name: "fast", prefix: "fast::", policy: Policy::Fast, protects: &["triangle::cross"] },
+    Module { name: "exact_subgroup", prefix: "subgroup_exact::", policy: Policy::Exact, protects: &[] },
+    Module { name: "fast_subgroup", prefix: "subgroup_fast::", policy: Policy::Fast, protects: &["triangle::cross"] },
+    Module { name: "numerics", prefix: "numerics::", policy: Policy::Exact, protects: &[] },
 ];

@@ -2,10 +2,9 @@
 
 use rspirv::binary::Assemble;
 use rspirv::dr::{self, Module, Operand};
-use rspirv::spirv::{Decoration, StorageClass, Word};
 
 use crate::slice::Sliced;
-use crate::{Error, Result, fold, renumber, specialise};
+use crate::{Error, Result, bindings, fold, renumber, specialise};
 
 /// A module of many kernels.
 #[derive(Debug, Clone)]
@@ -37,41 +36,33 @@ impl Kernels {
         specialise::write(&mut module, constants);
         fold::fold(&mut module);
         renumber::compact(&mut module);
-        Ok(Kernel(module))
+        let bindings = bindings::close_up(&mut module);
+        Ok(Kernel { module, bindings })
     }
 }
 
 /// A module of one entry point that holds what this reaches and nothing else.
 #[derive(Debug, Clone)]
-pub struct Kernel(Module);
+pub struct Kernel {
+    module: Module,
+    bindings: Vec<u32>,
+}
 
 impl Kernel {
     /// The words of the module's file.
     pub fn words(&self) -> Vec<u32> {
-        self.0.assemble()
+        self.module.assemble()
     }
 
     /// How many instructions its functions have.
     pub fn instructions(&self) -> usize {
-        let functions = self.0.functions.iter();
+        let functions = self.module.functions.iter();
         functions.flat_map(|f| &f.blocks).map(|block| block.instructions.len()).sum()
     }
 
-    /// The bindings of the buffers that it reaches, in order.
-    pub fn bindings(&self) -> Vec<u32> {
-        let is_buffer = |id: &Word| {
-            let variable = self.0.types_global_values.iter().find(|inst| inst.result_id == Some(*id));
-            let class = variable.and_then(|inst| inst.operands.first());
-            matches!(class, Some(Operand::StorageClass(StorageClass::StorageBuffer | StorageClass::Uniform)))
-        };
-        let of = |inst: &dr::Instruction| match inst.operands[..] {
-            [Operand::IdRef(id), Operand::Decoration(Decoration::Binding), Operand::LiteralBit32(binding)] => {
-                is_buffer(&id).then_some(binding)
-            }
-            _ => None,
-        };
-        let mut bindings: Vec<u32> = self.0.annotations.iter().filter_map(of).collect();
-        bindings.sort_unstable();
-        bindings
+    /// The bindings of the buffers that it reaches, in order. In its module they are numbered from 0 on: drivers want a
+    /// layout without gaps.
+    pub fn bindings(&self) -> &[u32] {
+        &self.bindings
     }
 }

@@ -6,6 +6,7 @@
 //! A module holds the entry points of many kernels, each compiled for every effect. What a driver compiles takes time by
 //! the size of what it is given, so it is given [`Kernel`]s.
 
+pub mod bindings;
 pub mod body;
 pub mod dead;
 pub mod error;

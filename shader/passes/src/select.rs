@@ -4,15 +4,15 @@ use rspirv::dr::{Instruction, Module, Operand};
 
 use crate::{Error, Result};
 
-/// Keeps the entry points whose names `wanted` accepts, in order of their names. The compiler names them by path; only
-/// the last segment stays and is asked for.
+/// Keeps the entry points whose names `wanted` accepts, in order of their names. The compiler names them by path; what
+/// is before and in the module `kernels` is left out.
 ///
 /// # Errors
 /// Two of them have one name.
 pub fn entries(module: &mut Module, wanted: impl Fn(&str) -> bool) -> Result<()> {
     module.entry_points.retain_mut(|entry| {
         let path = entry.operands[2].unwrap_literal_string();
-        let name = path.rsplit("::").next().unwrap_or(path).to_owned();
+        let name = path.rsplit_once("kernels::").map_or(path, |(_, name)| name).to_owned();
         let keep = wanted(&name);
         entry.operands[2] = Operand::LiteralString(name);
         keep
@@ -31,22 +31,22 @@ mod tests {
     use crate::testing::Kernel;
 
     #[test]
-    fn keeps_what_is_wanted_and_the_last_segment() {
+    fn keeps_what_is_wanted_and_its_path_in_the_kernels() {
         let mut kernel = Kernel::new();
-        kernel.entry("entry::exact_b", |_| {});
-        kernel.entry("entry::fast_a", |_| {});
-        kernel.entry("entry::exact_a", |_| {});
+        kernel.entry("entry::kernels::exact::b", |_| {});
+        kernel.entry("entry::kernels::fast::a", |_| {});
+        kernel.entry("entry::kernels::exact::a", |_| {});
         let mut module = kernel.module();
-        entries(&mut module, |name| name.starts_with("exact_")).unwrap();
+        entries(&mut module, |name| name.starts_with("exact::")).unwrap();
         let names: Vec<_> = module.entry_points.iter().map(|entry| entry.operands[2].unwrap_literal_string()).collect();
-        assert_eq!(names, ["exact_a", "exact_b"]);
+        assert_eq!(names, ["exact::a", "exact::b"]);
     }
 
     #[test]
     fn refuses_doubles() {
         let mut kernel = Kernel::new();
-        kernel.entry("a::fast_x", |_| {});
-        kernel.entry("b::fast_x", |_| {});
+        kernel.entry("a::kernels::fast_x", |_| {});
+        kernel.entry("b::kernels::fast_x", |_| {});
         let doubles = entries(&mut kernel.module(), |_| true);
         assert_eq!(doubles, Err(Error::DuplicateEntry("fast_x".to_owned())));
     }

@@ -6,16 +6,18 @@
 //! a power of two so that every coordinate, cameras included, lies in [-1, 1].
 
 mod compact;
-mod launch;
+mod frame;
 mod look;
 mod node;
+mod specialisation;
 mod triangle;
 mod wide;
 
 pub use compact::CompactPair;
-pub use launch::{Features, Frame, Tuning};
+pub use frame::{Frame, Lens};
 pub use look::{Light, Material, Normals};
 pub use node::{CentredPair, NodePair, NodeRef};
+pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
 pub use triangle::{Bounds, Triangle};
 pub use wide::WideNode;
 

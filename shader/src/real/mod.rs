@@ -38,7 +38,7 @@ pub use vector::V3;
 pub use wide::{Wide, WideIndex, WideMask};
 
 #[cfg(doc)]
-use crate::data::Features;
+use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
@@ -77,7 +77,7 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
 
-    /// May a launch choose how triangles are met ([`Features::MOLLER`])? Other numbers know the watertight test alone.
+    /// May a launch choose how triangles are met ([`Launch::MOLLER`])? Other numbers know the watertight test alone.
     const CHOOSES: bool = false;
 
     /// The same number in every lane.

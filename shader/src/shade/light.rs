@@ -1,7 +1,7 @@
 //! Lights without extent, and what a surface makes of them: Lambert and Phong (thesis 3.1).
 
 use super::{Contact, Surface, reflect};
-use crate::data::{Features, Light, numbers};
+use crate::data::{Effects, Light, numbers};
 use crate::real::{FAINT, Real, Scalar, V3};
 
 /// A shadow ray stops short of its light by this share, so that a light that lies on a surface is
@@ -9,15 +9,15 @@ use crate::real::{FAINT, Real, Scalar, V3};
 const SHORT: f32 = 1.0 / 16_384.0;
 
 #[inline(always)]
-fn is(features: Features, light: &Light, feature: u32, kind: u32) -> bool {
-    features.has(feature) && light.position.w == kind
+fn is(effects: Effects, light: &Light, feature: u32, kind: u32) -> bool {
+    effects.has(feature) && light.position.w == kind
 }
 
 /// Where a shadow ray starts, its unit direction and its limit.
 #[inline(always)]
-pub fn shadow_ray<R: Scalar>(features: Features, light: &Light, contact: &Contact<R>) -> (V3<R>, V3<R>, R) {
+pub fn shadow_ray<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<R>) -> (V3<R>, V3<R>, R) {
     let place = V3::<R>::splat(numbers(light.position));
-    if is(features, light, Features::DIRECTIONAL, Light::DIRECTIONAL) {
+    if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
         (contact.leave(place), place, R::splat(f32::MAX))
     } else {
         let origin = contact.leave(place - contact.position);
@@ -38,14 +38,14 @@ pub struct Incidence<R: Real> {
 impl<R: Scalar> Incidence<R> {
     /// A light as seen from `position`.
     #[inline(always)]
-    pub fn new(features: Features, light: &Light, position: V3<R>) -> Self {
+    pub fn new(effects: Effects, light: &Light, position: V3<R>) -> Self {
         let place = V3::<R>::splat(numbers(light.position));
         let colour = V3::splat(numbers(light.colour));
-        if is(features, light, Features::DIRECTIONAL, Light::DIRECTIONAL) {
+        if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
             return Incidence { direction: place, colour };
         }
         let direction = (place - position).normalised().0;
-        if is(features, light, Features::SPOT, Light::SPOT) {
+        if is(effects, light, Effects::SPOT, Light::SPOT) {
             let share = spot(light, direction);
             return Incidence { direction, colour: (colour * share).map(|c| c.flush(FAINT)) };
         }
@@ -73,7 +73,7 @@ fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
 /// Light that a surface sends along `-direction`: Lambert's law and Phong's highlight.
 #[inline(always)]
 pub fn illuminate<R: Scalar>(
-    features: Features,
+    effects: Effects,
     surface: &Surface<R>,
     direction: V3<R>,
     incidence: &Incidence<R>,
@@ -81,7 +81,7 @@ pub fn illuminate<R: Scalar>(
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let cosine = surface.normal.dot(incidence.direction).max(zero).min(one);
     let mut answer = surface.diffuse * cosine;
-    if features.has(Features::SPECULAR) && zero.lt(cosine) {
+    if effects.has(Effects::SPECULAR) && zero.lt(cosine) {
         // The light's mirrored direction against the direction to the viewer.
         let mirrored = reflect(-incidence.direction, surface.normal);
         let highlight = (-mirrored.dot(direction)).max(zero).min(one);
@@ -96,7 +96,7 @@ mod tests {
     use crate::data::pack;
     use glam::Vec3;
 
-    const ALL: Features = Features(u32::MAX);
+    const ALL: Effects = Effects(u32::MAX);
 
     fn light(kind: u32, position: Vec3) -> Light {
         Light {
@@ -144,7 +144,7 @@ mod tests {
     #[test]
     fn a_matt_surface_has_no_highlight() {
         let white = Incidence { direction: V3::splat(Vec3::Y), colour: V3::splat(Vec3::ONE) };
-        let matt = Features(Features::SPECULAR ^ u32::MAX);
+        let matt = Effects(Effects::SPECULAR ^ u32::MAX);
         assert_eq!(illuminate(matt, &surface(), V3::splat(-Vec3::Y), &white), V3::splat(Vec3::splat(0.5)));
     }
 

@@ -2,7 +2,7 @@
 
 use super::Contact;
 use crate::buffer::read;
-use crate::data::{Features, Frame, Material, Triangle, numbers};
+use crate::data::{Effects, Frame, Material, Triangle, numbers};
 use crate::real::{Real, Scalar, V3};
 use crate::scene::Looks;
 
@@ -31,7 +31,7 @@ impl<R: Scalar> Surface<R> {
     /// The surface of triangle `slot` at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
-        features: Features,
+        effects: Effects,
         looks: &Looks<'_>,
         slot: u32,
         triangle: &Triangle,
@@ -42,9 +42,9 @@ impl<R: Scalar> Surface<R> {
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal =
-            if features.has(Features::SMOOTH) { interpolated(looks, slot, direction, contact) } else { contact.normal };
+            if effects.has(Effects::SMOOTH) { interpolated(looks, slot, direction, contact) } else { contact.normal };
         let other =
-            features.has(Features::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
+            effects.has(Effects::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
         Surface {
             normal,
             ambient: if other { colour(material.checker_ambient) } else { colour(material.ambient) },
@@ -89,20 +89,19 @@ fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
 
 /// What a ray sees that leaves the scene: one colour, or a gradient over the height of its direction.
 #[inline(always)]
-pub fn background<R: Scalar>(features: Features, frame: &Frame, direction: V3<R>) -> V3<R> {
-    let bottom = V3::splat(numbers(frame.bottom));
-    if !features.has(Features::GRADIENT) {
+pub fn background<R: Scalar>(effects: Effects, frame: &Frame, direction: V3<R>) -> V3<R> {
+    let bottom = V3::splat(numbers(frame.horizon));
+    if !effects.has(Effects::GRADIENT) {
         return bottom;
     }
     let height = direction.y.max(R::splat(0.0)).min(R::splat(1.0));
-    bottom * (R::splat(1.0) - height) + V3::splat(numbers(frame.top)) * height
+    bottom * (R::splat(1.0) - height) + V3::splat(numbers(frame.zenith)) * height
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::{Normals, pack};
-    use bytemuck::Zeroable;
     use glam::Vec3;
 
     fn contact(normal: Vec3, position: [f32; 3]) -> Contact<f32> {
@@ -168,11 +167,11 @@ mod tests {
 
     #[test]
     fn a_gradient_runs_from_the_horizon_up() {
-        let frame = Frame { bottom: pack(Vec3::X, 0), top: pack(Vec3::Y, 0), ..Frame::zeroed() };
-        let seen = |y: f64, features| background(Features(features), &frame, V3::new(0.0, y, 0.0));
+        let frame = Frame { horizon: pack(Vec3::X, 0), zenith: pack(Vec3::Y, 0), ..Frame::default() };
+        let seen = |y: f64, effects| background(Effects(effects), &frame, V3::new(0.0, y, 0.0));
         let red = V3::splat(Vec3::X);
-        assert_eq!(seen(-0.5, Features::GRADIENT), red);
-        assert_eq!(seen(0.25, Features::GRADIENT), V3::new(0.75, 0.25, 0.0));
+        assert_eq!(seen(-0.5, Effects::GRADIENT), red);
+        assert_eq!(seen(0.25, Effects::GRADIENT), V3::new(0.75, 0.25, 0.0));
         assert_eq!(seen(1.0, 0), red);
     }
 }

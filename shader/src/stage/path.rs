@@ -2,10 +2,10 @@
 
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::Features;
+use crate::data::Launch;
 use crate::ray::Hit;
 use crate::real::{Real, Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::LaunchContext;
 
 /// Records a path takes in device memory.
 pub const RECORDS: u32 = 3;
@@ -31,11 +31,12 @@ pub struct Path<R: Real> {
 impl<R: Scalar> Path<R> {
     /// The slot's ray: the camera's in the first wave, which keeps none in memory.
     #[inline(always)]
-    pub fn current(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> Self {
-        if geometry.features.has(Features::SECONDARY) {
-            return Self::load(geometry.slots(), slot, 0, paths);
+    pub fn current(launch: &LaunchContext<'_>, slot: u32, paths: &[R::Record]) -> Self {
+        if launch.spec.launch.has(Launch::SECONDARY) {
+            return Self::load(launch.frame.slots, slot, 0, paths);
         }
-        let (origin, direction) = camera::ray(geometry.frame, camera::pixel(geometry.frame, geometry.features, slot));
+        let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
+        let (origin, direction) = camera::ray(launch.frame, pixel);
         Path {
             origin,
             direction,

@@ -4,7 +4,7 @@
 use super::Segment;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::traverse::Query;
 use crate::traverse::resumable::{Progress, Resumable};
 use crate::warp::Warp;
@@ -17,13 +17,13 @@ const IDLE: u32 = u32::MAX;
 /// outcome.
 #[inline(always)]
 pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     count: u32,
     mut take: impl FnMut(bool) -> u32,
     load: impl Fn(u32) -> (Segment<R>, bool),
     mut store: impl FnMut(u32, bool, &Ray<R>, &Hit<R>),
 ) {
-    let enough = (W::count(true) * geometry.tuning.busy()).div_ceil(100).max(1);
+    let enough = (W::count(true) * geometry.base.spec.tuning.busy()).div_ceil(100).max(1);
     let mut number = IDLE;
     let mut traced = false;
     let mut ray = Ray::new(V3::zero(), V3::splat(glam::Vec3::ONE));

@@ -3,7 +3,7 @@
 use crate::buffer::read;
 use crate::ray::Ray;
 use crate::real::{Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 
 /// Where a ray starts, where it goes and how far.
 #[derive(Clone, Copy)]
@@ -22,9 +22,9 @@ impl<R: Scalar> Segment<R> {
     /// Ray `index` of a stream: two records, all first ones before all second ones, so that
     /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
     #[inline(always)]
-    pub fn load(geometry: &Geometry<'_>, index: u32, stream: &[R::Record]) -> Self {
+    pub fn load(geometry: &TraceContext<'_>, index: u32, stream: &[R::Record]) -> Self {
         let (origin, leaves) = R::load(read(stream, index));
-        let (direction, limit) = R::load(read(stream, geometry.slots() + index));
+        let (direction, limit) = R::load(read(stream, geometry.base.frame.slots + index));
         Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), leaves }
     }
 

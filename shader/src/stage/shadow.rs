@@ -2,10 +2,10 @@
 
 use super::{Path, Segment};
 use crate::buffer::read;
-use crate::data::{Features, Light};
+use crate::data::{Launch, Light};
 use crate::ray::Hit;
 use crate::real::Scalar;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::shade::{Contact, shadow_ray};
 use crate::traverse::{Method, Occlusion, step};
 
@@ -29,11 +29,11 @@ pub struct Asking<'a, R: Scalar> {
 
 /// The ray from a slot's hit towards light `index`, and whether it is to be traced at all.
 #[inline(always)]
-pub fn asked<R: Scalar>(geometry: &Geometry<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> (Segment<R>, bool) {
-    if geometry.features.has(Features::STREAM) {
+pub fn asked<R: Scalar>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> (Segment<R>, bool) {
+    if geometry.base.spec.launch.has(Launch::STREAM) {
         return (Segment::load(geometry, slot, asking.paths), true);
     }
-    let path = Path::<R>::current(geometry, slot, asking.paths);
+    let path = Path::<R>::current(&geometry.base, slot, asking.paths);
     let (hit, place) = R::load(read(asking.hits, slot));
     if place == Hit::<R>::NOTHING {
         let nowhere = Segment { origin: path.origin, direction: path.direction, limit: hit.x, leaves: path.leaves };
@@ -42,13 +42,13 @@ pub fn asked<R: Scalar>(geometry: &Geometry<'_>, asking: Asking<'_, R>, slot: u3
     let triangle = geometry.triangle(place);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
     let light = read(asking.lights, index);
-    let (origin, direction, limit) = shadow_ray(geometry.features, &light, &contact);
+    let (origin, direction, limit) = shadow_ray(geometry.base.spec.effects, &light, &contact);
     (Segment { origin, direction, limit, leaves: triangle.primitive() }, contact.faces(direction))
 }
 
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
-pub fn shadow<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> u32 {
+pub fn shadow<R: Scalar, M: Method<R>>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> u32 {
     let (segment, faces) = asked(geometry, asking, slot, index);
     if !faces {
         return FACES_AWAY;

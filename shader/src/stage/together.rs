@@ -5,7 +5,7 @@ use core::array::from_fn;
 use super::{Segment, shadow, trace};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::traverse::{Closest, Occlusion, Query, Together, step};
 
 /// Values of lanes that are followed at once.
@@ -22,7 +22,7 @@ pub const fn most<S: Scalar, P: Lanes<S>>() -> usize {
 /// The closest hits of at most [`most`] rays; `keep` is told the record of each.
 #[inline(always)]
 pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     segments: &[Segment<S>],
     mut keep: impl FnMut(usize, S::Record),
 ) {
@@ -42,7 +42,7 @@ pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
 /// Whether something opaque is before the limit of at most [`most`] rays; `keep` is told each answer.
 #[inline(always)]
 pub fn shadow_together<S: Scalar, P: Lanes<S>, M: Together>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     segments: &[Segment<S>],
     mut keep: impl FnMut(usize, u32),
 ) {
@@ -56,7 +56,7 @@ pub fn shadow_together<S: Scalar, P: Lanes<S>, M: Together>(
 
 #[inline(always)]
 fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     segments: &[Segment<S>],
 ) -> [Hit<P>; VALUES] {
     let lanes = P::COUNT as usize;

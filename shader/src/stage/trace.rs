@@ -1,25 +1,28 @@
 //! The closest hit of a slot's ray, primary, secondary or of a stream.
 
 use super::{Path, Segment};
-use crate::data::Features;
+use crate::camera;
+use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::traverse::{Closest, Method, step};
 
 /// A slot's ray.
 #[inline(always)]
-pub fn traced<R: Scalar>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
-    if geometry.features.has(Features::STREAM) {
+pub fn traced<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
+    if geometry.base.spec.launch.has(Launch::STREAM) {
         return Segment::load(geometry, slot, paths);
     }
-    let path = Path::<R>::current(geometry, slot, paths);
-    Segment { origin: path.origin, direction: path.direction, limit: R::splat(f32::MAX), leaves: path.leaves }
+    let path = Path::<R>::current(&geometry.base, slot, paths);
+    let is_secondary = geometry.base.spec.launch.has(Launch::SECONDARY);
+    let origin = if is_secondary { path.origin } else { camera::approach(path.origin, path.direction) };
+    Segment { origin, direction: path.direction, limit: R::splat(f32::MAX), leaves: path.leaves }
 }
 
 /// What is kept of a ray's hit: (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
 #[inline(always)]
-pub fn found<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
+pub fn found<R: Scalar>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
     let (u, v) = step::weights(geometry, ray, hit);
     record(V3::new(hit.t, u, v), hit.slot)
 }
@@ -32,7 +35,7 @@ pub(super) fn record<R: Scalar>(place: V3<R>, slot: u32) -> R::Record {
 
 /// Traces a slot's ray; returns what [`found`] does.
 #[inline(always)]
-pub fn trace<R: Scalar, M: Method<R>>(geometry: &Geometry<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
+pub fn trace<R: Scalar, M: Method<R>>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
     let segment = traced::<R>(geometry, slot, paths);
     let mut hit = Hit::none(segment.limit);
     let ray = segment.ray();

@@ -15,14 +15,14 @@ use super::{Method, Query};
 use crate::full::{FullNode, FullRef};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Native, Scalar, V3, Vectors};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 
 /// See the module. `V` are the vectors that test boxes and triangles.
 pub struct FullNodes<V = Native>(PhantomData<V>);
 
 impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let boxes = Boxes::<R, V::Eight>::new(ray);
         let mut waiting = Waiting::new();
         let mut at = FullRef::ROOT;

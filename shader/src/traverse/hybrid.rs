@@ -11,15 +11,15 @@ use super::{IfIf, Method, Query};
 use crate::data::{NodeRef, STACK};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::warp::Warp;
 
 /// When a packet parts.
 pub trait Switch {
     /// Does it part for good, `depth` nodes waiting?
-    fn full(geometry: &Geometry<'_>, depth: u32) -> bool;
+    fn full(geometry: &TraceContext<'_>, depth: u32) -> bool;
     /// Do those who want a child part from the `active` rays of the packet?
-    fn few(geometry: &Geometry<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
+    fn few(geometry: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
 }
 
 /// Parts when a small stack is full (thesis: stack max).
@@ -27,11 +27,11 @@ pub struct StackMax;
 
 impl Switch for StackMax {
     #[inline(always)]
-    fn full(geometry: &Geometry<'_>, depth: u32) -> bool {
-        depth >= geometry.tuning.stack_max()
+    fn full(geometry: &TraceContext<'_>, depth: u32) -> bool {
+        depth >= geometry.base.spec.tuning.stack_max()
     }
     #[inline(always)]
-    fn few(_: &Geometry<'_>, _: impl FnOnce() -> u32, _: impl FnOnce() -> u32) -> bool {
+    fn few(_: &TraceContext<'_>, _: impl FnOnce() -> u32, _: impl FnOnce() -> u32) -> bool {
         false
     }
 }
@@ -41,12 +41,12 @@ pub struct Cut;
 
 impl Switch for Cut {
     #[inline(always)]
-    fn full(_: &Geometry<'_>, _: u32) -> bool {
+    fn full(_: &TraceContext<'_>, _: u32) -> bool {
         false
     }
     #[inline(always)]
-    fn few(geometry: &Geometry<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool {
-        100 * wanting() < geometry.tuning.cut() * active()
+    fn few(geometry: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool {
+        100 * wanting() < geometry.base.spec.tuning.cut() * active()
     }
 }
 
@@ -80,7 +80,7 @@ struct Later<R: Real> {
 
 impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         let mut later = Later::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
@@ -117,7 +117,7 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
 #[cfg(not(target_arch = "spirv"))]
 impl<W: Warp, S: Switch, T: Turn> super::Together for Hybrid<W, S, T> {
     #[inline(always)]
-    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
         for (ray, hit) in rays.iter().zip(hits) {
             Self::traverse::<Q>(geometry, ray, hit);
         }
@@ -133,7 +133,7 @@ fn everyone<R: Real>() -> R::Mask {
 /// Does the packet go to a child together? If too few rays want it, they go by themselves, at once or later.
 #[inline(always)]
 fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     node: NodeRef,
     rays: R::Mask,
     ray: &Ray<R>,
@@ -157,7 +157,7 @@ fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
 
 /// Every ray of the mask follows a branch by itself.
 #[inline(always)]
-fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
+fn alone<Q: Query, R: Real>(geometry: &TraceContext<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
     R::lanes(ray, hit, rays, |ray, hit| {
         let mut stack = Stack::new();
@@ -168,7 +168,7 @@ fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mas
 
 /// Every ray goes on by itself with what the packet has left.
 #[inline(always)]
-fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
+fn part<Q: Query, R: Real>(geometry: &TraceContext<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
     R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
         let mut stack = Stack::new();

@@ -8,7 +8,7 @@ use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 
 /// See the module.
 pub struct IfIf;
@@ -24,7 +24,7 @@ impl<R: Scalar> Resumable<R> for IfIf {
 
     /// The two ifs.
     #[inline(always)]
-    fn step<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+    fn step<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
         if !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
         }
@@ -42,7 +42,7 @@ impl<R: Scalar> Resumable<R> for IfIf {
 
 impl<R: Scalar> Method<R> for IfIf {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
     }
 }

@@ -28,7 +28,7 @@ pub use wide::WideNodes;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 
 /// What a ray asks for.
 pub trait Query {
@@ -64,14 +64,14 @@ impl Query for Occlusion {
 /// A way through the hierarchy, for rays over the numbers that it can follow.
 pub trait Method<R: Real> {
     /// Follows a ray from the root and leaves what it finds in `hit`, which holds its limit before.
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
 /// A method that follows rays over any numbers: on a CPU, several lanes of several values at once.
 #[cfg(not(target_arch = "spirv"))]
 pub trait Together {
     /// Follows all rays from the root; as [`Method::traverse`] for each.
-    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
+    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use super::step::{children, leaf, occluded};
 use super::{Method, Query};
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::warp::Warp;
 
 /// See the module.
@@ -17,7 +17,7 @@ pub struct Packet<W>(PhantomData<W>);
 
 impl<R: Real, W: Warp> Method<R> for Packet<W> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
@@ -38,7 +38,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
 #[cfg(not(target_arch = "spirv"))]
 impl<W: Warp> super::Together for Packet<W> {
     #[inline(always)]
-    fn together<R: Real, Q: Query>(geometry: &Geometry<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
         for (ray, hit) in rays.iter().zip(hits) {
             Self::traverse::<Q>(geometry, ray, hit);
         }
@@ -58,7 +58,7 @@ pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
 /// All rays test the leaf at hand; those of an any-hit query are done when the last has found something.
 #[inline(always)]
 pub(super) fn visit_leaf<Q: Query, R: Real, W: Warp>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
     cursor: &mut Cursor,

@@ -3,7 +3,7 @@
 use super::Query;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 
 /// Where a traversal stands.
 pub trait Progress: Copy {
@@ -28,7 +28,7 @@ pub trait Resumable<R: Scalar> {
 
     /// One step of a traversal that is not done.
     fn step<Q: Query>(
-        geometry: &Geometry<'_>,
+        geometry: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Self::Cursor,
@@ -38,7 +38,7 @@ pub trait Resumable<R: Scalar> {
 
 /// From the root to the end.
 #[inline(always)]
-pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
     let mut stack = M::stack();
     finish::<Q, R, M>(geometry, ray, hit, M::Cursor::start(), &mut stack);
 }
@@ -46,7 +46,7 @@ pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &Geometry<'_>, ray
 /// From where a traversal stands to its end.
 #[inline(always)]
 pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
     mut cursor: M::Cursor,

@@ -10,7 +10,7 @@ use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::warp::Warp;
 
 /// See the module.
@@ -18,7 +18,7 @@ pub struct Speculative<W>(PhantomData<W>);
 
 impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         while !cursor.is_done() {

@@ -2,7 +2,7 @@
 
 use super::Query;
 use super::cursor::{Cursor, Stack};
-use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
+use crate::data::{CentredPair, Effects, Launch, NodeRef, Triangle, numbers};
 #[cfg(not(target_arch = "spirv"))]
 use crate::full::Block;
 use crate::intersect::{Crossing, Span, cross, moller, slab, spans};
@@ -10,7 +10,7 @@ use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
 use crate::real::{Mask, Real, Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use glam::UVec4;
 
 /// A limit that no box lies before: an any-hit ray that has found its triangle.
@@ -59,7 +59,7 @@ pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Sp
 /// A single ray's visit of the pair that its traversal stands at.
 #[inline(always)]
 pub fn pair<Q: Query, R: Scalar>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &Hit<R>,
     cursor: &mut Cursor,
@@ -73,7 +73,7 @@ pub fn pair<Q: Query, R: Scalar>(
 
 /// Tests every triangle of a leaf. Returns whether no ray of an any-hit query wants more.
 #[inline(always)]
-pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
+pub fn leaf<Q: Query, R: Real>(geometry: &TraceContext<'_>, mut leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
     while leaf.is_leaf() {
         triangle::<Q, R>(geometry, leaf, ray, hit);
         leaf = leaf.rest();
@@ -83,21 +83,21 @@ pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: 
 
 /// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
 #[inline(always)]
-pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn triangle<Q: Query, R: Real>(geometry: &TraceContext<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_triangle();
     let triangle = geometry.triangle(leaf.index());
     let crossing = single(geometry, &triangle, ray);
-    if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
+    if crossing.nearer(hit.t).any() && counts::<Q>(geometry.base.spec.effects, &triangle) {
         keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
     }
 }
 
 /// Crosses one triangle.
 #[inline(always)]
-fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
+fn single<R: Real>(geometry: &TraceContext<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
     let [a, b, c] = triangle.vertices();
     let (slopes, along) = (ray.slopes(), ray.along());
-    crossed::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
+    crossed::<R, R>(geometry.base.spec.launch, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
@@ -105,7 +105,7 @@ fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -
 /// A CPU has kept them with the hit. The fewer registers a ray takes of a GPU, the more rays it turns to while one
 /// waits for memory: there they are computed again, from the same numbers to the same bits.
 #[inline(always)]
-pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
+pub fn weights<R: Scalar>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
     if cfg!(not(target_arch = "spirv")) {
         return hit.weights();
     }
@@ -120,7 +120,7 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
 /// Tests the triangles of a block, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &TraceContext<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
     let origin = ray.shear.cycle(ray.origin);
     let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
     let along = F::all(ray.along());
@@ -130,14 +130,14 @@ pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &
         let a = vertex::<R, F>(block, 0, first, ray, origin);
         let b = vertex::<R, F>(block, 1, first, ray, origin);
         let c = vertex::<R, F>(block, 2, first, ray, origin);
-        let crossing = crossed::<R, F>(geometry.features, [a, b, c], shear, along);
+        let crossing = crossed::<R, F>(geometry.base.spec.launch, [a, b, c], shear, along);
         let mut inside = F::bits(crossing.nearer(F::all(hit.t)));
         while inside != 0 {
             let lane = inside.trailing_zeros() as usize;
             inside &= inside - 1;
             let slot = block.slots[(first + lane) & 3];
             let triangle = geometry.triangle(slot);
-            if counts::<Q>(geometry.features, &triangle) {
+            if counts::<Q>(geometry.base.spec.effects, &triangle) {
                 keep::<Q, R>(geometry, &triangle, slot, &crossing.lane(lane), ray, hit);
             }
         }
@@ -147,8 +147,8 @@ pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &
 
 /// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see [`cross`].
 #[inline(always)]
-fn crossed<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Crossing<F> {
-    if R::CHOOSES && features.has(Features::MOLLER) {
+fn crossed<R: Real, F: Real>(launch: Launch, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Crossing<F> {
+    if R::CHOOSES && launch.has(Launch::MOLLER) {
         moller(a, b, c, shear, along)
     } else {
         cross(a, b, c, shear, along)
@@ -174,8 +174,8 @@ const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
 /// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
 #[inline(always)]
-fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
-    !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
+fn counts<Q: Query>(effects: Effects, triangle: &Triangle) -> bool {
+    !(Q::ANY && effects.has(Effects::REFRACTION) && triangle.is_transparent())
 }
 
 /// Leaves out what is beside a triangle seen edge-on, divides, moves the hit behind the entry to the slot's box, and takes
@@ -185,17 +185,17 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 /// triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
 fn keep<Q: Query, R: Real>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     triangle: &Triangle,
     slot: u32,
     crossing: &Crossing<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
-    let (primitive, features, zero) = (triangle.primitive(), geometry.features, R::splat(0.0));
+    let (primitive, effects, zero) = (triangle.primitive(), geometry.base.spec.effects, R::splat(0.0));
     let mut inside = crossing.inside & !R::equals(primitive, ray.leaves);
     // The inside of glass is seen from behind.
-    if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
+    if effects.has(Effects::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & crossing.front;
     }
     // Seldom, so that turning the vertices again costs less than to keep them from the crossing.

@@ -9,7 +9,7 @@ use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Tri
 use crate::full::{Block, Full, FullNode, FullRef};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Lanes, Real, Scalar, V3, Wide};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::stage::{SHADOWED, Segment, shadow_together, trace_together};
 use crate::warp::Alone;
 use bytemuck::Zeroable;
@@ -122,7 +122,7 @@ impl World {
         World { triangles, nodes, wide, full, words, frame: Frame::zeroed(), features: Features(features) }
     }
 
-    fn geometry(&self) -> Geometry<'_> {
+    fn geometry(&self) -> TraceContext<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
         let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
         let full = Full { nodes: &self.full.0, blocks: &self.full.1 };

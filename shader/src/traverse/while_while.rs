@@ -13,7 +13,7 @@ use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use crate::warp::Warp;
 
 /// See the module. `W` is who waits for each other; [`Alone`](crate::warp::Alone) never breaks off.
@@ -30,14 +30,14 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 
     /// The two inner whiles.
     #[inline(always)]
-    fn step<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+    fn step<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
             // Turns of a loop cost a GPU, and votes more.
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
-            if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.tuning.cut() * all {
+            if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.base.spec.tuning.cut() * all {
                 break;
             }
         }
@@ -54,7 +54,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 /// A pair, unless the traversal stands at a leaf.
 #[inline(always)]
 fn inner<Q: Query, R: Scalar>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &Hit<R>,
     cursor: &mut Cursor,
@@ -67,7 +67,7 @@ fn inner<Q: Query, R: Scalar>(
 
 impl<R: Scalar, W: Warp> Method<R> for WhileWhile<W> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
     }
 }

@@ -17,7 +17,7 @@ use crate::buffer::read;
 use crate::data::{NodeRef, STACK, WideNode, numbers};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
-use crate::scene::Geometry;
+use crate::scene::TraceContext;
 use glam::{UVec4, Vec3};
 
 /// See the module.
@@ -132,7 +132,7 @@ impl<R: Scalar> Resumable<R> for WideNodes {
 
     #[inline(always)]
     fn step<Q: Query>(
-        geometry: &Geometry<'_>,
+        geometry: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Groups,
@@ -156,7 +156,7 @@ impl<R: Scalar> Resumable<R> for WideNodes {
 
 impl<R: Scalar> Method<R> for WideNodes {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
     }
 }

@@ -1,12 +1,12 @@
-//! The light of a slot's hit, added to the film, and the rays that go on from there.
+//! Whitted's shading: the light of a slot's hit, added to the slot's sum, and the rays that go on from there.
 
-use super::{FACES_AWAY, NON_FINITE, Path, REACHED};
+use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Features, Light};
+use crate::data::{Effects, Launch, Light};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::scene::{Geometry, Looks};
+use crate::scene::{LaunchContext, Looks};
 use crate::shade::{Contact, Incidence, Surface, background, fresnel, illuminate, reflect, refract};
 
 /// The records that the stages of a wave exchange.
@@ -15,10 +15,10 @@ pub struct Wave<'a, R: Scalar> {
     pub paths: &'a mut [R::Record],
     /// (t, u, v) and triangle by slot.
     pub hits: &'a [R::Record],
-    /// What [`super::shadow`] returned, by light and slot.
+    /// What [`crate::stage::shadow`] returned, by light and slot.
     pub shadows: &'a [u32],
-    /// Linear RGB by pixel of the region; the integer counts shadow rays and holds [`NON_FINITE`].
-    pub film: &'a mut [R::Record],
+    /// Linear RGB by slot; the integer counts shadow rays and holds [`NON_FINITE`].
+    pub sums: &'a mut [R::Record],
 }
 
 /// The rays that go on from a hit; a zero weight is none.
@@ -29,33 +29,33 @@ struct Branches<R: Real> {
 
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
-pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
-    let Wave { paths, hits, shadows, film } = wave;
-    let pixel = camera::pixel(geometry.frame, geometry.features, slot);
-    if !pixel.inside {
+pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
+    let Wave { paths, hits, shadows, sums } = wave;
+    if !camera::pixel(launch.frame, launch.spec.order, slot).inside {
         return false;
     }
-    let path = Path::<R>::current(geometry, slot, paths);
+    let effects = launch.spec.effects;
+    let path = Path::<R>::current(launch, slot, paths);
     let (hit, place) = R::load(read(hits, slot));
     if place == Hit::<R>::NOTHING {
-        add(geometry, film, pixel.index, &path, background(geometry.features, geometry.frame, path.direction), 0);
-        return pop(geometry, slot, &path, paths);
+        add(launch, sums, slot, &path, background(effects, launch.frame, path.direction), 0);
+        return pop(launch, slot, &path, paths);
     }
-    let triangle = geometry.triangle(place);
+    let triangle = launch.triangle(place);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
-    let surface = Surface::new(geometry.features, looks, place, &triangle, path.direction, &contact);
-    let (light, rays) = lit(geometry, looks.lights, slot, path.direction, (&contact, &surface), shadows);
-    add(geometry, film, pixel.index, &path, light, rays);
-    if !geometry.features.has(Features::REFLECTION) && !geometry.features.has(Features::REFRACTION) {
+    let surface = Surface::new(effects, looks, place, &triangle, path.direction, &contact);
+    let (light, rays) = lit(launch, looks.lights, slot, path.direction, (&contact, &surface), shadows);
+    add(launch, sums, slot, &path, light, rays);
+    if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return false;
     }
-    follow(geometry, slot, &path, branch(geometry, &path, triangle.primitive(), (&contact, &surface)), paths)
+    follow(launch, slot, &path, branch(launch, &path, triangle.primitive(), (&contact, &surface)), paths)
 }
 
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
 #[inline(always)]
 fn lit<R: Scalar>(
-    geometry: &Geometry<'_>,
+    launch: &LaunchContext<'_>,
     lights: &[Light],
     slot: u32,
     direction: V3<R>,
@@ -65,45 +65,49 @@ fn lit<R: Scalar>(
     let (contact, surface) = lit;
     let mut sum = surface.ambient;
     let mut rays = 0;
+    if !launch.spec.effects.has(Effects::LIT) {
+        return (sum, rays);
+    }
     let mut index = 0;
-    while index < geometry.light_count() {
-        let answer = read(shadows, index * geometry.slots() + slot);
+    while index < launch.frame.lights {
+        let answer = read(shadows, index * launch.frame.slots + slot);
         if answer != FACES_AWAY {
             rays += 1;
         }
         if answer == REACHED {
-            let incidence = Incidence::new(geometry.features, &read(lights, index), contact.position);
-            sum = sum + illuminate(geometry.features, surface, direction, &incidence);
+            let incidence = Incidence::new(launch.spec.effects, &read(lights, index), contact.position);
+            sum = sum + illuminate(launch.spec.effects, surface, direction, &incidence);
         }
         index += 1;
     }
     (sum, rays)
 }
 
-/// Adds a path's light to its pixel. What is not finite is left out and flagged, what is below 2^-100 is zero.
+/// Adds a path's light to its slot's sum, or starts it. What is not finite is left out and flagged, what is below 2^-100
+/// is zero.
 #[inline(always)]
 fn add<R: Scalar>(
-    geometry: &Geometry<'_>,
-    film: &mut [R::Record],
-    pixel: u32,
+    launch: &LaunchContext<'_>,
+    sums: &mut [R::Record],
+    slot: u32,
     path: &Path<R>,
     light: V3<R>,
     rays: u32,
 ) {
-    let share = R::splat(f32::from_bits(geometry.frame.limits.x));
-    let term = (light.times(path.weight) * share).map(|c| c.flush(FAINT));
+    let term = light.times(path.weight).map(|c| c.flush(FAINT));
     let finite = term.x.is_finite() && term.y.is_finite() && term.z.is_finite();
-    let (sum, word) = R::load(read(film, pixel));
+    let is_first = !launch.spec.launch.has(Launch::SECONDARY);
+    let (sum, word) = if is_first { (V3::zero(), 0) } else { R::load(read(sums, slot)) };
     let word = word.wrapping_add(rays);
     let record = if finite { R::store(sum + term, word) } else { R::store(sum, word | NON_FINITE) };
-    write(film, pixel, record);
+    write(sums, slot, record);
 }
 
 /// The reflected and the refracted ray with their weights (thesis 3.3): a mirror's colour, or
 /// Fresnel's shares of an interface.
 #[inline(always)]
 fn branch<R: Scalar>(
-    geometry: &Geometry<'_>,
+    launch: &LaunchContext<'_>,
     path: &Path<R>,
     leaves: u32,
     (contact, surface): (&Contact<R>, &Surface<R>),
@@ -113,7 +117,7 @@ fn branch<R: Scalar>(
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
     let none = path.on(leaves, contact.position, mirrored, V3::zero());
-    if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
+    if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.same(zero) {
         let reflected = path.on(leaves, contact.leave(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
@@ -148,9 +152,9 @@ impl<R: Scalar> Path<R> {
 
     /// Is it worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
     #[inline(always)]
-    fn counts(&self, geometry: &Geometry<'_>) -> bool {
-        let least = R::splat(f32::from_bits(geometry.frame.limits.y));
-        self.bounces <= geometry.frame.bottom.w
+    fn counts(&self, launch: &LaunchContext<'_>) -> bool {
+        let least = R::splat(launch.frame.min_contribution);
+        self.bounces <= launch.frame.bounces
             && least.le(self.weight.greatest())
             && R::splat(0.0).lt(self.weight.greatest())
     }
@@ -159,37 +163,37 @@ impl<R: Scalar> Path<R> {
 /// Depth first, reflection before refraction: takes one branch in hand and lets the other wait.
 #[inline(always)]
 fn follow<R: Scalar>(
-    geometry: &Geometry<'_>,
+    launch: &LaunchContext<'_>,
     slot: u32,
     path: &Path<R>,
     branches: Branches<R>,
     paths: &mut [R::Record],
 ) -> bool {
     let Branches { mut reflected, refracted } = branches;
-    let second = refracted.counts(geometry);
-    if reflected.counts(geometry) {
+    let second = refracted.counts(launch);
+    if reflected.counts(launch) {
         if second {
             reflected.pending += 1;
-            refracted.store(geometry.slots(), slot, reflected.pending, paths);
+            refracted.store(launch.frame.slots, slot, reflected.pending, paths);
         }
-        reflected.store(geometry.slots(), slot, 0, paths);
+        reflected.store(launch.frame.slots, slot, 0, paths);
         true
     } else if second {
-        refracted.store(geometry.slots(), slot, 0, paths);
+        refracted.store(launch.frame.slots, slot, 0, paths);
         true
     } else {
-        pop(geometry, slot, path, paths)
+        pop(launch, slot, path, paths)
     }
 }
 
 /// Takes the last ray that waits in hand.
 #[inline(always)]
-fn pop<R: Scalar>(geometry: &Geometry<'_>, slot: u32, path: &Path<R>, paths: &mut [R::Record]) -> bool {
-    if !geometry.features.has(Features::REFRACTION) || path.pending == 0 {
+fn pop<R: Scalar>(launch: &LaunchContext<'_>, slot: u32, path: &Path<R>, paths: &mut [R::Record]) -> bool {
+    if !launch.spec.effects.has(Effects::REFRACTION) || path.pending == 0 {
         return false;
     }
-    let mut next = Path::<R>::load(geometry.slots(), slot, path.pending, paths);
+    let mut next = Path::<R>::load(launch.frame.slots, slot, path.pending, paths);
     next.pending = path.pending - 1;
-    next.store(geometry.slots(), slot, 0, paths);
+    next.store(launch.frame.slots, slot, 0, paths);
     true
 }

@@ -1,0 +1,233 @@
+//! One launch on the GPU, and the queue of those that are under way.
+
+use std::cell::Cell;
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use eyerays_shader::data::{Frame, Launch as LaunchBits};
+use eyerays_shader::launch::{argument, counter};
+use eyerays_shader::resources::binding;
+
+use super::device::Gpu;
+use super::kernel::Kernel;
+use super::readback;
+use super::render::{Band, Memory};
+use super::timer::Timer;
+use crate::error::Result;
+use crate::integrator::Waves;
+use crate::plan::{Executor, Plan, Stage, Step};
+
+/// Waves that are submitted without looking whether any ray is left, where at most so many follow.
+const UNSEEN: u32 = 16;
+/// Waves that are submitted at first where rays branch; doubled each time.
+const FEW: u32 = 4;
+/// Waves at most in a submission, so that no watchdog takes it for hung.
+const MOST_WAVES: u32 = 64;
+/// Launches that wait on the GPU while the host makes the next.
+const UNDER_WAY: usize = 2;
+/// Passes whose times are kept until they are read.
+const PASSES: u32 = 256;
+/// Passes of a launch, at most: each of [`MOST_WAVES`] waves. A tree of more waves than those is not timed to its end.
+const MOST_PASSES: u32 = 64;
+
+/// What was submitted, and what of it is known to be done.
+pub(super) struct Queue<'a> {
+    gpu: &'a Gpu,
+    timer: Option<Timer>,
+    /// Passes since the times were read.
+    passes: u32,
+    time: Duration,
+    /// Submissions with the pixels that each finishes.
+    under_way: VecDeque<(wgpu::SubmissionIndex, u64)>,
+    done: u64,
+    /// The most waves that a launch of branching rays took so far.
+    waves: Cell<u32>,
+}
+
+/// What [`Queue::read`] brings.
+pub(super) struct Read {
+    pub counters: Vec<u8>,
+    pub films: Vec<Vec<u8>>,
+    /// Of all passes since [`Queue::restart`].
+    pub device_time: Option<Duration>,
+}
+
+impl<'a> Queue<'a> {
+    pub fn new(gpu: &'a Gpu) -> Self {
+        Queue {
+            gpu,
+            timer: Timer::new(gpu, PASSES),
+            passes: 0,
+            time: Duration::ZERO,
+            under_way: VecDeque::new(),
+            done: 0,
+            waves: Cell::new(0),
+        }
+    }
+
+    /// Does the device tell the time?
+    pub fn has_clock(&self) -> bool {
+        self.timer.is_some()
+    }
+
+    /// Counts rays and time from now on.
+    pub fn restart(&mut self, counters: &wgpu::Buffer) {
+        self.gpu.queue.write_buffer(counters, 0, bytemuck::bytes_of(&[0u32; counter::LENGTH as usize]));
+        (self.passes, self.time) = (0, Duration::ZERO);
+    }
+
+    /// Pixels that were finished since this was asked last. Waits while too many launches are under way.
+    pub fn finished(&mut self) -> Result<u64> {
+        while self.under_way.len() > UNDER_WAY {
+            let (submission, pixels) = self.under_way.pop_front().expect("there are some");
+            self.gpu.wait_for(submission)?;
+            self.done += pixels;
+        }
+        Ok(std::mem::take(&mut self.done))
+    }
+
+    /// The pixels of all launches that nothing waited for.
+    pub fn forget(&mut self) -> u64 {
+        std::mem::take(&mut self.done) + self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>()
+    }
+
+    /// Waits for everything, and reads buffers.
+    pub fn read<'b>(
+        &mut self,
+        counters: &wgpu::Buffer,
+        films: impl Iterator<Item = (&'b wgpu::Buffer, u64)>,
+    ) -> Result<Read> {
+        let mut buffers = vec![(counters, 4 * u64::from(counter::LENGTH))];
+        buffers.extend(films);
+        let timer = self.timer.as_ref().filter(|_| self.passes > 0);
+        if let Some(timer) = timer {
+            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+            timer.resolve(&mut encoder, self.passes);
+            self.gpu.queue.submit([encoder.finish()]);
+            buffers.push(timer.resolved(self.passes));
+        }
+        let mut read = readback::read_all(self.gpu, &buffers)?;
+        if let Some(timer) = timer {
+            self.time += timer.times(&read.pop().expect("the times")).into_iter().sum();
+            self.passes = 0;
+        }
+        self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
+        let device_time = self.has_clock().then_some(self.time);
+        Ok(Read { counters: read.remove(0), films: read, device_time })
+    }
+
+    /// Begins the pass of a submission.
+    fn pass(&mut self, encoder: &mut wgpu::CommandEncoder) -> wgpu::ComputePass<'static> {
+        let timestamp_writes =
+            self.timer.as_ref().filter(|_| self.passes < PASSES).map(|timer| timer.writes(self.passes));
+        self.passes = (self.passes + 1).min(PASSES);
+        encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: None, timestamp_writes }).forget_lifetime()
+    }
+
+    fn submit(&mut self, encoder: wgpu::CommandEncoder) -> wgpu::SubmissionIndex {
+        self.gpu.queue.submit([encoder.finish()])
+    }
+}
+
+/// A launch that is being recorded: samples of a band of the image.
+pub(super) struct Launch<'l, 'a> {
+    kernels: &'l [Kernel],
+    memory: &'l Memory,
+    band: &'l Band,
+    frame: &'l Frame,
+    queue: &'l mut Queue<'a>,
+    plan: &'l Plan,
+    // Before the encoder, since it must be dropped first.
+    pass: Option<wgpu::ComputePass<'static>>,
+    encoder: wgpu::CommandEncoder,
+    /// Is the queue of this wave the second?
+    is_second: bool,
+    /// Waves to be recorded before anyone looks whether a ray is left.
+    unseen: u32,
+    /// Waves that are looked for next.
+    next: u32,
+}
+
+impl<'l, 'a> Launch<'l, 'a> {
+    pub fn new(
+        plan: &'l Plan,
+        kernels: &'l [Kernel],
+        memory: &'l Memory,
+        band: &'l Band,
+        frame: &'l Frame,
+        queue: &'l mut Queue<'a>,
+    ) -> Result<Self> {
+        let gpu = queue.gpu;
+        if queue.passes + MOST_PASSES > PASSES && queue.has_clock() {
+            queue.read(memory.buffers.of(binding::COUNTERS), std::iter::empty())?;
+        }
+        gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
+        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        encoder.clear_buffer(memory.buffers.of(binding::COUNTERS), 0, Some(4 * u64::from(counter::LAUNCH)));
+        let unseen = match plan.waves {
+            Waves::AtMost(count) if count <= UNSEEN => count,
+            _ => queue.waves.get().max(FEW),
+        };
+        Ok(Launch { kernels, memory, band, frame, queue, plan, pass: None, encoder, is_second: false, unseen, next: unseen })
+    }
+
+    /// Ends the launch, which finishes so many pixels.
+    pub fn submit(mut self, pixels: u64) -> Result<()> {
+        drop(self.pass.take());
+        let submission = self.queue.submit(self.encoder);
+        self.queue.under_way.push_back((submission, pixels));
+        self.queue.gpu.check()
+    }
+
+    /// Submits what is recorded, waits, and tells whether any ray is left.
+    fn look(&mut self) -> Result<bool> {
+        drop(self.pass.take());
+        let gpu = self.queue.gpu;
+        let encoder = std::mem::replace(&mut self.encoder, gpu.device.create_command_encoder(&Default::default()));
+        self.queue.submit(encoder);
+        let bytes = readback::read(gpu, self.memory.buffers.of(binding::COUNTERS), 4 * u64::from(counter::LENGTH))?;
+        let counters: Vec<u32> = readback::words(&bytes).collect();
+        let waves = counters[counter::WAVES as usize];
+        self.queue.waves.set(self.queue.waves.get().max(waves));
+        Ok(counters[counter::NEXT as usize] > 0)
+    }
+}
+
+impl Executor for Launch<'_, '_> {
+    fn step(&mut self, index: usize, step: &Step) -> Result<()> {
+        if step.stage == Stage::Advance {
+            self.is_second = !self.is_second;
+        }
+        let kernel = &self.kernels[index];
+        let group = match &self.memory.groups[index] {
+            Some(groups) => &groups[usize::from(self.is_second)],
+            None => &self.band.group,
+        };
+        let pass = self.pass.get_or_insert_with(|| self.queue.pass(&mut self.encoder));
+        let rows = if step.stage == Stage::Shadow { self.frame.shadow_rays } else { 1 };
+        match step.stage {
+            Stage::Advance => kernel.run(pass, group, 1, 1),
+            Stage::Gather => kernel.run(pass, group, self.frame.pixel_slots, 1),
+            _ if step.spec.launch.has(LaunchBits::SECONDARY) => {
+                let arguments = self.memory.buffers.of(binding::ARGUMENTS);
+                let offset = if step.stage == Stage::Shadow { argument::SHADOWS } else { argument::SLOTS };
+                kernel.run_indirect(pass, group, arguments, offset);
+            }
+            _ => kernel.run(pass, group, self.frame.slots, rows),
+        }
+        Ok(())
+    }
+
+    fn goes_on(&mut self) -> Result<bool> {
+        if self.unseen == 0 {
+            let is_known = matches!(self.plan.waves, Waves::AtMost(count) if count <= UNSEEN);
+            if is_known || !self.look()? {
+                return Ok(false);
+            }
+            self.next = (2 * self.next).min(MOST_WAVES);
+            self.unseen = self.next;
+        }
+        self.unseen -= 1;
+        Ok(true)
+    }
+}

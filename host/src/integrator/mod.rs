@@ -1,0 +1,27 @@
+//! Which stages a picture asks of devices: a file an integrator. What they do at a hit is in the file of the same name in
+//! the shader.
+
+mod whitted;
+
+pub use whitted::whitted;
+
+/// What an integrator asks for: the order of the stages is the same for all, see [`crate::plan::Plan`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Needs {
+    /// Shadow rays of a hit: one a light, or one in all where a light is chosen at random. Their answers are kept for the
+    /// shading of the wave.
+    pub shadow_rays: u32,
+    /// Paths that a slot keeps: the one in hand and those that are followed later; none without further waves.
+    pub paths: u32,
+    /// How often rays go on.
+    pub waves: Waves,
+}
+
+/// How many waves follow that of the camera's rays.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Waves {
+    /// At most so many: a ray goes on as one ray.
+    AtMost(u32),
+    /// Until no ray is left: rays branch.
+    Branching,
+}

@@ -1,0 +1,108 @@
+//! The records of a scene's parts.
+
+use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Triangle, pack};
+use glam::Vec3;
+
+use super::normalisation::{Normalisation, flushed, flushed_number};
+use crate::error::{Error, Result};
+use crate::math;
+use crate::scene::{Background, Light, Material, Scene, Settings};
+
+/// A colour and an integer.
+pub(super) fn colour(c: Vec3, word: u32) -> glam::UVec4 {
+    pack(flushed(c), word)
+}
+
+/// The effects that a scene asks for.
+pub(super) fn effects(scene: &Scene, settings: &Settings) -> Effects {
+    let used = |m: &dyn Fn(&Material) -> bool| scene.materials.iter().any(m);
+    let lit = !scene.lights.is_empty();
+    let mut bits = 0;
+    let mut ask = |bit: u32, asked: bool| bits |= if asked { bit } else { 0 };
+    let bounces = settings.bounces > 0;
+    ask(Effects::SMOOTH, !scene.mesh.normals.is_empty());
+    ask(Effects::CHECKER, used(&|m| m.checker.is_some()));
+    ask(Effects::REFLECTION, bounces && used(&|m| m.reflection != Vec3::ZERO || is_transparent(m)));
+    ask(Effects::REFRACTION, used(&is_transparent));
+    ask(Effects::SPOT, scene.lights.iter().any(|l| matches!(l, Light::Spot { .. })));
+    ask(Effects::DIRECTIONAL, scene.lights.iter().any(|l| matches!(l, Light::Directional { .. })));
+    ask(Effects::SPECULAR, lit && used(&|m| m.specular != Vec3::ZERO));
+    ask(Effects::CULLING, settings.culling);
+    ask(Effects::LIT, lit);
+    ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
+    Effects(bits)
+}
+
+fn is_transparent(m: &Material) -> bool {
+    m.transmission != Vec3::ZERO
+}
+
+/// Its triangles in the normalised scene.
+pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation, effects: Effects) -> Vec<Triangle> {
+    let mesh = &scene.mesh;
+    let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
+    let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
+        let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
+        let passes = effects.has(Effects::REFRACTION) && clear[material as usize];
+        Triangle::new(vertices, primitive, material, if passes { Triangle::TRANSPARENT } else { 0 })
+    });
+    records.collect()
+}
+
+/// Its vertex normals by triangle.
+pub(super) fn normals(scene: &Scene) -> Vec<Normals> {
+    let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
+    scene.mesh.triangles.iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) }).collect()
+}
+
+/// A material's record.
+pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
+    let ior = if is_transparent(m) { m.ior } else { 0.0 };
+    // Cells much larger than the scene are one cell, whatever their exact size.
+    let cells = |size: f32| (1.0 / (f64::from(size) * scale)).clamp(1e-6, 1e30) as f32;
+    let (checker, checker_ambient) = match m.checker {
+        Some(c) => (colour(c.colour, cells(c.size).to_bits()), colour(c.ambient * ambient, 0)),
+        None => (colour(Vec3::ZERO, 0), colour(Vec3::ZERO, 0)),
+    };
+    MaterialRecord {
+        ambient: colour(m.ambient * ambient, 0),
+        diffuse: colour(m.diffuse, 0),
+        specular: colour(m.specular, flushed_number(m.shininess).to_bits()),
+        reflection: colour(m.reflection, ior.to_bits()),
+        transmission: colour(m.transmission, 0),
+        checker,
+        checker_ambient,
+    }
+}
+
+/// A light's record; `index` is for the message.
+pub(super) fn light(light: &Light, index: usize, normalisation: &Normalisation) -> Result<LightRecord> {
+    let far = || Error::new(format!("light {} is too far away: move it nearer to the scene", index + 1));
+    let at = |p: Vec3| -> Result<Vec3> {
+        normalisation.place_anywhere(p).ok_or_else(far)
+    };
+    let record = |position, kind, light: Vec3, axis: Vec3, (inner, outer): (f32, f32)| LightRecord {
+        position: pack(position, kind),
+        colour: colour(light, inner.to_bits()),
+        axis: pack(axis, outer.to_bits()),
+    };
+    Ok(match *light {
+        Light::Point { position, colour } => record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0)),
+        Light::Directional { direction, colour } => {
+            record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
+        }
+        Light::Spot { position, target, colour, outer, inner } => {
+            let cosine = |degrees: f32| flushed_number(math::cos(f64::from(degrees).to_radians()) as f32);
+            let axis = unit_between(position, target);
+            record(at(position)?, LightRecord::SPOT, colour, axis, (cosine(inner), cosine(outer)))
+        }
+    })
+}
+
+fn unit(v: Vec3) -> Vec3 {
+    flushed(v.as_dvec3().normalize_or_zero().as_vec3())
+}
+
+fn unit_between(from: Vec3, to: Vec3) -> Vec3 {
+    flushed((to.as_dvec3() - from.as_dvec3()).normalize_or_zero().as_vec3())
+}

@@ -1,0 +1,104 @@
+//! What changes from picture to picture of a scene: nothing here touches geometry, hierarchies or kernels.
+
+use eyerays_shader::camera;
+use eyerays_shader::data::{Frame, Lens, Order};
+use glam::DVec3;
+
+use crate::error::{Error, Result};
+use crate::film::Film;
+use crate::math;
+use crate::pack::{Packed, flushed};
+use crate::scene::{Camera, Settings};
+
+/// A rectangle of the image in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Region {
+    /// Left column.
+    pub x: u32,
+    /// Top row.
+    pub y: u32,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+}
+
+impl Region {
+    /// How many pixels there are.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.width) * u64::from(self.height)
+    }
+}
+
+/// A camera, the size of its image, and the samples of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct View {
+    /// Every launch's record but for its region and samples.
+    frame: Frame,
+}
+
+impl View {
+    /// A camera in a scene, with an image of the size and samples of the scene's settings.
+    ///
+    /// # Errors
+    /// There is no way to look so, or the camera is too far away for the scene's numbers.
+    pub fn new(packed: &Packed, camera: &Camera) -> Result<View> {
+        View::of(packed, camera, packed.settings().size, packed.settings().samples)
+    }
+
+    /// A camera in a scene, with an image of `width` x `height` pixels and `samples` x `samples` samples a pixel.
+    ///
+    /// # Errors
+    /// As [`View::new`]; or a size that [`Film::check_size`] refuses, or no sample or too many.
+    pub fn of(packed: &Packed, camera: &Camera, (width, height): (u32, u32), samples: u32) -> Result<View> {
+        Film::check_size(width, height)?;
+        crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
+        let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
+        let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
+        if right == DVec3::ZERO {
+            let message = format!("camera \"{}\" looks along its up vector or at itself", camera.name);
+            return Err(Error::new(format!("{message}: move its target or turn its up")));
+        }
+        let eye = packed.normalisation().place_anywhere(camera.eye).ok_or_else(|| {
+            Error::new(format!("camera \"{}\" is too far away: move it nearer to the scene", camera.name))
+        })?;
+        let half_height = math::tan(f64::from(camera.fov).to_radians() / 2.0);
+        // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
+        let step = half_height / f64::from(height * samples);
+        let vector = |v: DVec3| flushed(v.as_vec3());
+        let lens = Lens::new(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
+        Ok(View { frame: Frame { lens, width, height, samples, ..packed.frame() } })
+    }
+
+    /// The image's width and height in pixels.
+    pub fn size(&self) -> (u32, u32) {
+        (self.frame.width, self.frame.height)
+    }
+
+    /// The whole image.
+    pub fn region(&self) -> Region {
+        Region { x: 0, y: 0, width: self.frame.width, height: self.frame.height }
+    }
+
+    /// Samples of a pixel, in both directions together.
+    pub fn samples(&self) -> u32 {
+        self.frame.samples * self.frame.samples
+    }
+
+    /// The record of a launch of `count` samples of a region, from sample `first` on. The film is started anew by
+    /// sample 0.
+    pub fn launch(&self, region: Region, first: u32, count: u32, order: Order) -> Frame {
+        let pixel_slots = camera::slots(region.width, region.height, order);
+        Frame {
+            sample: first,
+            left: region.x,
+            top: region.y,
+            columns: region.width,
+            rows: region.height,
+            pixel_slots,
+            slots: count * pixel_slots,
+            restart: u32::from(first == 0),
+            ..self.frame
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What changes from launch to launch.
+
+use super::{numbers, pack};
+use crate::real::V3;
+use crate::real::Scalar;
+use bytemuck::{Pod, Zeroable};
+use glam::{UVec4, Vec3};
+
+/// What a launch renders: samples of every pixel of a region. Its uniform buffer.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Frame {
+    /// Where rays come from and how they spread over the image.
+    pub lens: Lens,
+    /// Background at the horizon and below, linear RGB.
+    pub horizon: UVec4,
+    /// Background straight up, linear RGB.
+    pub zenith: UVec4,
+    /// The image's width in pixels.
+    pub width: u32,
+    /// The image's height in pixels.
+    pub height: u32,
+    /// Samples along a pixel's edge.
+    pub samples: u32,
+    /// The launch's first sample within each pixel.
+    pub sample: u32,
+    /// The region's left column.
+    pub left: u32,
+    /// The region's top row.
+    pub top: u32,
+    /// The region's columns.
+    pub columns: u32,
+    /// The region's rows.
+    pub rows: u32,
+    /// Slots for one sample of every pixel of the region.
+    pub pixel_slots: u32,
+    /// Slots of the launch, which takes several samples at once: a multiple of `pixel_slots`. Of a stream, its rays.
+    pub slots: u32,
+    /// How often a ray is reflected or refracted at most.
+    pub bounces: u32,
+    /// The least share of its pixel that a ray is followed for.
+    pub min_contribution: f32,
+    /// How many lights there are.
+    pub lights: u32,
+    /// The word at which the vertices of indexed triangles start.
+    pub vertices: u32,
+    /// Not 0 if the film holds nothing yet that the launch's samples are added to.
+    pub restart: u32,
+    /// Shadow rays that a slot asks for in a wave.
+    pub shadow_rays: u32,
+}
+
+/// A pinhole camera for an image of some size: vectors in the normalised scene, whose last integers are unused.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Lens {
+    /// Where it is.
+    pub eye: UVec4,
+    /// Step to the right for half a sample's width on the image plane.
+    pub right: UVec4,
+    /// Step up for half a sample's height.
+    pub up: UVec4,
+    /// To the centre of the image plane, at distance one.
+    pub forward: UVec4,
+}
+
+impl Lens {
+    /// From vectors in the normalised scene.
+    pub fn new(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
+        Lens { eye: pack(eye, 0), right: pack(right, 0), up: pack(up, 0), forward: pack(forward, 0) }
+    }
+
+    /// The direction, of no certain length, through a place on the image plane: so many steps right and up.
+    #[inline(always)]
+    pub fn direction<R: Scalar>(&self, right: R, up: R) -> V3<R> {
+        V3::splat(numbers(self.forward)) + V3::splat(numbers(self.right)) * right + V3::splat(numbers(self.up)) * up
+    }
+}

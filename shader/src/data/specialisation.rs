@@ -1,0 +1,158 @@
+//! What a kernel is compiled for: constants, so that it holds no instruction for anything else.
+
+/// A set of bits of which a kernel knows each while it is compiled.
+macro_rules! bits {
+    ($(#[$doc:meta])* $name:ident { $($(#[$bit_doc:meta])* $bit:ident = $place:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+        pub struct $name(pub u32);
+
+        impl $name {
+            $($(#[$bit_doc])* pub const $bit: u32 = 1 << $place;)*
+
+            /// Is any of these bits set?
+            #[inline(always)]
+            pub fn has(self, bits: u32) -> bool {
+                self.0 & bits != 0
+            }
+
+            /// With more bits.
+            #[inline(always)]
+            pub fn with(self, bits: u32) -> Self {
+                $name(self.0 | bits)
+            }
+        }
+    };
+}
+
+bits! {
+    /// What a scene looks like; a kernel holds no instruction for effects that it does not have.
+    Effects {
+        /// Some mesh has vertex normals.
+        SMOOTH = 0;
+        /// Some material is a checker.
+        CHECKER = 1;
+        /// Some material is a mirror or reflects as glass, and bounces are allowed.
+        REFLECTION = 2;
+        /// Some material lets light pass.
+        REFRACTION = 3;
+        /// Some light is a spot.
+        SPOT = 4;
+        /// Some light is directional.
+        DIRECTIONAL = 5;
+        /// Some material has a Phong highlight.
+        SPECULAR = 6;
+        /// Triangles seen from behind are skipped.
+        CULLING = 7;
+        /// The background is a gradient.
+        GRADIENT = 8;
+        /// There are lights.
+        LIT = 9;
+    }
+}
+
+bits! {
+    /// Which rays a launch follows, and by which test it meets triangles.
+    Launch {
+        /// Secondary rays: the slots come from a queue.
+        SECONDARY = 0;
+        /// Rays that lie in memory as [`crate::stage::Segment`]s.
+        STREAM = 1;
+        /// Triangles are met by the test of Moeller and Trumbore, where [`Real::CHOOSES`](crate::real::Real::CHOOSES).
+        MOLLER = 2;
+    }
+}
+
+bits! {
+    /// How the hierarchy and its triangles lie in memory; without any bit, each triangle with its vertices.
+    Layout {
+        /// Triangles are given as indices of vertices, see [`crate::scene::TraceContext::triangle`].
+        INDEXED = 0;
+        /// Pairs of nodes are [`CompactPair`](super::CompactPair)s.
+        COMPACT = 1;
+        /// Triangles are split: a slot holds a part, whose bounds are given.
+        SPLIT = 2;
+    }
+}
+
+bits! {
+    /// Which pixels' rays lie beside each other; without any bit, those of blocks of 8x4 pixels.
+    Order {
+        /// Pixels are taken row by row.
+        LINEAR = 0;
+        /// Pixels are taken along a Morton curve.
+        MORTON = 1;
+    }
+}
+
+/// Thresholds of the hybrid methods (thesis 6.2.3) and of persistent subgroups.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub struct Tuning(pub u32);
+
+impl Tuning {
+    /// Parts a full stack of `stack_max` nodes, or a child that less than `cut` percent of a packet want.
+    pub const fn new(stack_max: u32, cut: u32) -> Self {
+        Tuning(stack_max | (cut << 8)).with_busy(Self::BUSY)
+    }
+
+    /// The default of [`Tuning::busy`], measured.
+    const BUSY: u32 = 40;
+
+    /// Lets the lanes of persistent subgroups take new rays when less than `busy` percent are at work.
+    pub const fn with_busy(self, busy: u32) -> Self {
+        Tuning((self.0 & 0xffff) | (busy << 16))
+    }
+
+    /// Percent of a persistent subgroup below which idle lanes take new rays. (Each time all wait for the
+    /// rays' preparation.)
+    #[inline(always)]
+    pub fn busy(self) -> u32 {
+        self.0 >> 16
+    }
+
+    /// Nodes that wait when a packet parts.
+    #[inline(always)]
+    pub fn stack_max(self) -> u32 {
+        self.0 & 0xff
+    }
+
+    /// Percent of a packet below which rays part.
+    #[inline(always)]
+    pub fn cut(self) -> u32 {
+        (self.0 >> 8) & 0xff
+    }
+}
+
+impl Default for Tuning {
+    fn default() -> Self {
+        Tuning::new(8, 25)
+    }
+}
+
+/// Everything that a kernel is compiled for.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
+pub struct Specialisation {
+    /// What the scene looks like.
+    pub effects: Effects,
+    /// Which rays are followed.
+    pub launch: Launch,
+    /// How the scene lies in memory.
+    pub layout: Layout,
+    /// Which pixels' rays lie beside each other.
+    pub order: Order,
+    /// When hybrid methods part.
+    pub tuning: Tuning,
+}
+
+impl Specialisation {
+    /// The same for other rays.
+    pub fn with_launch(self, bits: u32) -> Self {
+        Specialisation { launch: self.launch.with(bits), ..self }
+    }
+
+    /// The value of each specialisation constant by its number; the entry points declare them in this order.
+    pub fn constants(&self) -> [(u32, u32); 5] {
+        let Specialisation { effects, launch, layout, order, tuning } = *self;
+        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0)]
+    }
+}

@@ -1,0 +1,160 @@
+//! Every kernel, and what they share beside stages.
+
+use crate::buffer::{read, write};
+use crate::data::*;
+use crate::integrator::{self, Wave};
+use crate::launch::{ROW, WORKGROUP, argument, counter};
+use crate::real::Fast;
+use crate::resources::resources;
+use crate::scene::{LaunchContext, Looks, TraceContext};
+use crate::stage::{self, Asking};
+use crate::traverse::{
+    Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
+    WideNodes,
+};
+use crate::warp::{Alone, Subgroup, take};
+use glam::{UVec3, UVec4};
+use spirv_std::arch::{IndexUnchecked, atomic_i_add};
+use spirv_std::memory::{Scope, Semantics};
+use spirv_std::spirv;
+
+/// What a slot index beyond the wave stands for.
+const IDLE: u32 = u32::MAX;
+
+/// How many slots the wave has: those of the launch in the first wave, those of the queue later.
+#[inline(always)]
+fn slots(spec: Specialisation, frame: &Frame, counters: &[u32]) -> u32 {
+    if spec.launch.has(Launch::SECONDARY) { read(counters, counter::COUNT) } else { frame.slots }
+}
+
+/// The number of a thread that follows a ray: in a stream it may be in a further row.
+#[inline(always)]
+fn thread(spec: Specialisation, id: UVec3) -> u32 {
+    if spec.launch.has(Launch::STREAM) { id.y * ROW + id.x } else { id.x }
+}
+
+/// The slot of a thread: its own number in the first wave, an entry of the queue later.
+#[inline(always)]
+fn slot(spec: Specialisation, frame: &Frame, thread: u32, queue: &[u32], counters: &[u32]) -> u32 {
+    if thread < slots(spec, frame, counters) { queued(spec, thread, queue) } else { IDLE }
+}
+
+/// The slot of a wave's ray by its number.
+#[inline(always)]
+fn queued(spec: Specialisation, number: u32, queue: &[u32]) -> u32 {
+    if spec.launch.has(Launch::SECONDARY) { read(queue, number) } else { number }
+}
+
+/// Adds a slot to the next wave by an atomic of its own.
+#[inline(always)]
+fn enqueue(slot: u32, next: &mut [u32], counters: &mut [u32]) {
+    // SAFETY: the host sizes the counters and gives the next wave room for every slot.
+    let position = unsafe {
+        let count = counters.index_unchecked_mut(counter::NEXT as usize);
+        atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(count, 1)
+    };
+    write(next, position, slot);
+}
+
+/// The arguments of an indirect dispatch.
+#[inline(always)]
+fn dispatch(at: u32, groups_x: u32, groups_y: u32, arguments: &mut [u32]) {
+    write(arguments, at, groups_x);
+    write(arguments, at + 1, groups_y);
+    write(arguments, at + 2, 1);
+}
+
+/// Starts the next wave: its count, its dispatches, and the rays so far.
+#[inline(always)]
+fn advance_wave(shadow_rays: u32, counters: &mut [u32], arguments: &mut [u32]) {
+    let count = read(counters, counter::NEXT);
+    let groups = count.div_ceil(WORKGROUP);
+    dispatch(argument::SLOTS, groups, 1, arguments);
+    dispatch(argument::SHADOWS, groups, shadow_rays, arguments);
+    write(counters, counter::COUNT, count);
+    write(counters, counter::NEXT, 0);
+    write(counters, counter::TRACED, 0);
+    write(counters, counter::ASKED, 0);
+    let waves = read(counters, counter::WAVES);
+    write(counters, counter::WAVES, if count > 0 { waves + 1 } else { waves });
+    let rays = read(counters, counter::RAYS).wrapping_add(count);
+    write(counters, counter::RAYS, rays);
+    if rays < count {
+        write(counters, counter::RAYS + 1, read(counters, counter::RAYS + 1) + 1);
+    }
+}
+
+resources!(declare_entry $);
+
+/// The kernels of the methods of one precision: those whose lanes are alone, those whose lanes vote, or persistent ones.
+macro_rules! methods {
+    ([$only:ident $R:ty] $($(#[$doc:meta])* $variant:ident $module:ident $name:literal:
+        gpu($lanes:ident, $method:ty), persistent($($persistent:ty)?), cpu($($cpu:tt)*);)*) => {
+        $(methods! { @$only $lanes $R, $module, $method, $($persistent)? })*
+    };
+    (@alone alone $R:ty, $module:ident, $method:ty, $($persistent:ty)?) => {
+        /// A method.
+        pub mod $module {
+            use super::*;
+            tracing!($R, $method);
+        }
+    };
+    (@subgroup subgroup $R:ty, $module:ident, $method:ty,) => {
+        /// A method.
+        pub mod $module {
+            use super::*;
+            tracing!($R, $method);
+        }
+    };
+    (@persistent $lanes:ident $R:ty, $module:ident, $method:ty, $persistent:ty) => {
+        /// A method.
+        pub mod $module {
+            use super::*;
+            persistent_tracing!($R, $persistent);
+        }
+    };
+    (@$($other:tt)*) => {};
+}
+
+/// A precision's kernels, those that vote apart: a device without subgroups takes the others.
+macro_rules! precision {
+    ($R:ty, $alone:ident, $subgroup:ident) => {
+        /// Kernels whose lanes do not hear of each other.
+        pub mod $alone {
+            use super::*;
+            shading!($R);
+            crate::for_each_method!(methods alone $R);
+        }
+        /// Kernels whose lanes vote.
+        pub mod $subgroup {
+            use super::*;
+            voting_shading!($R);
+            crate::for_each_method!(methods subgroup $R);
+            /// Kernels of persistent subgroups.
+            pub mod persistent {
+                use super::*;
+                crate::for_each_method!(methods persistent $R);
+            }
+        }
+    };
+}
+
+precision!(f32, exact, subgroup_exact);
+precision!(Fast, fast, subgroup_fast);
+
+/// What tests run.
+pub mod numerics {
+    use super::*;
+
+    /// Evaluates functions of exact arithmetic, one a thread.
+    #[spirv(compute(threads(64)))]
+    pub fn evaluate(
+        #[spirv(global_invocation_id)] id: UVec3,
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 0)] operations: &[UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] values: &mut [u32],
+    ) {
+        if id.x < values.len() as u32 {
+            write(values, id.x, crate::numerics::evaluate(read(operations, id.x)));
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! The kernels: each binds what it names of the table of [resources](crate::resources), and hands it to a stage.
+//!
+//! A kernel's path is its precision (`exact` or `fast`, with `subgroup_` before it where its lanes vote), the method if
+//! it follows rays, and the stage: `exact::while_while::trace`. Compiled natively, the same lines are lists of what the
+//! stages bind, which tests compare with the modules.
+
+/// Declares `entry!`, which makes a kernel: a name with the threads of a workgroup, built-in parameters, a name for its
+/// [`Specialisation`](crate::data::Specialisation), the resources that it binds, and what it does.
+#[cfg(target_arch = "spirv")]
+macro_rules! declare_entry {
+    ($d:tt $($binding:tt $resource:ident $constant:ident: $access:ident $record:ty, $name:literal;)*) => {
+        macro_rules! entry {
+            ($d(#[$d doc:meta])* $d kernel:ident<$d threads:tt>($d($d built_in:tt)*) $d spec:ident
+                [$d($d bound:ident)*] $d body:block) => {
+                entry! { @bind ($d(#[$d doc])* $d kernel $d threads $d spec $d body) [$d($d built_in)*]
+                    [$d($d bound $d bound)*] }
+            };
+            $((@bind $d kernel:tt [$d($d have:tt)*] [$resource $d bound:ident $d($d rest:tt)*]) => {
+                entry! { @$access $d kernel [$d($d have)*] [$d($d rest)*] $binding $d bound $record }
+            };)*
+            (@Uniform $d kernel:tt [$d($d have:tt)*] $d rest:tt $d binding:tt $d bound:ident $d record:ty) => {
+                entry! { @bind $d kernel [$d($d have)*
+                    #[spirv(uniform, descriptor_set = 0, binding = $d binding)] $d bound: &$d record,] $d rest }
+            };
+            (@Read $d kernel:tt [$d($d have:tt)*] $d rest:tt $d binding:tt $d bound:ident $d record:ty) => {
+                entry! { @bind $d kernel [$d($d have)*
+                    #[spirv(storage_buffer, descriptor_set = 0, binding = $d binding)] $d bound: &[$d record],]
+                    $d rest }
+            };
+            (@Write $d kernel:tt [$d($d have:tt)*] $d rest:tt $d binding:tt $d bound:ident $d record:ty) => {
+                entry! { @bind $d kernel [$d($d have)*
+                    #[spirv(storage_buffer, descriptor_set = 0, binding = $d binding)] $d bound: &mut [$d record],]
+                    $d rest }
+            };
+            (@bind ($d(#[$d doc:meta])* $d kernel:ident $d threads:tt $d spec:ident $d body:block) [$d($d have:tt)*] []) => {
+                $d(#[$d doc])*
+                #[spirv(compute(threads($d threads)))]
+                pub fn $d kernel(
+                    #[spirv(spec_constant(id = 1, default = 0))] effects: u32,
+                    #[spirv(spec_constant(id = 2, default = 0))] tuning: u32,
+                    #[spirv(spec_constant(id = 3, default = 0))] launch: u32,
+                    #[spirv(spec_constant(id = 4, default = 0))] layout: u32,
+                    #[spirv(spec_constant(id = 5, default = 0))] order: u32,
+                    $d($d have)*
+                ) {
+                    let $d spec = Specialisation {
+                        effects: Effects(effects),
+                        tuning: Tuning(tuning),
+                        launch: Launch(launch),
+                        layout: Layout(layout),
+                        order: Order(order),
+                    };
+                    $d body
+                }
+            };
+        }
+    };
+}
+
+/// Natively, a list of what a stage binds.
+#[cfg(not(target_arch = "spirv"))]
+macro_rules! entry {
+    ($(#[$doc:meta])* $kernel:ident<$threads:tt>($($built_in:tt)*) $spec:ident [$($bound:ident)*] $body:block) => {
+        $(#[$doc])*
+        #[allow(non_upper_case_globals)]
+        pub const $kernel: &[&str] = &[$(stringify!($bound)),*];
+    };
+}
+
+/// The stages that follow no ray, over the numbers `R`.
+macro_rules! shading {
+    ($R:ty) => {
+        entry! {
+            /// Shades the slots of a wave.
+            shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame triangles normals materials lights paths hits shadows sums queue next counters] {
+                let slot = slot(spec, frame, id.x, queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let launch = LaunchContext { frame, spec, triangles };
+                let looks = Looks { normals, materials, lights };
+                if integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums }) {
+                    enqueue(slot, next, counters);
+                }
+            }
+        }
+
+        entry! {
+            /// Turns to the next wave.
+            advance<1>() _spec [frame counters arguments] {
+                advance_wave(frame.shadow_rays, counters, arguments);
+            }
+        }
+
+        entry! {
+            /// Folds the sums of slots into pixels.
+            gather<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame sums film] {
+                stage::gather::<$R>(frame, spec.order, id.x, sums, film);
+            }
+        }
+    };
+}
+
+/// The shading of a wave where lanes vote: a subgroup adds its slots to the next wave at once.
+macro_rules! voting_shading {
+    ($R:ty) => {
+        entry! {
+            /// Shades the slots of a wave.
+            shade<64>(
+                #[spirv(global_invocation_id)] id: UVec3,
+                #[spirv(subgroup_local_invocation_id)] lane: u32,
+            ) spec [frame triangles normals materials lights paths hits shadows sums queue next counters] {
+                let slot = slot(spec, frame, id.x, queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let launch = LaunchContext { frame, spec, triangles };
+                let looks = Looks { normals, materials, lights };
+                let goes_on = integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums });
+                if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
+                    let position = take(goes_on, lane, counters, counter::NEXT);
+                    if goes_on {
+                        write(next, position, slot);
+                    }
+                }
+            }
+        }
+    };
+}
+
+/// The stages that follow rays over the numbers `R` by a method, a thread a ray.
+macro_rules! tracing {
+    ($R:ty, $method:ty) => {
+        entry! {
+            /// Traces the rays of a wave.
+            trace<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame nodes triangles paths hits queue counters wide bounds] {
+                let slot = slot(spec, frame, thread(spec, id), queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+                write(hits, slot, stage::trace::<$R, $method>(&scene, slot, paths));
+            }
+        }
+
+        entry! {
+            /// Traces the shadow rays of a wave: one row of threads a light.
+            shadow<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
+                let slot = slot(spec, frame, thread(spec, id), queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+                let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
+                let answer = stage::shadow::<$R, $method>(&scene, Asking { lights, paths, hits }, slot, light);
+                write(shadows, light * frame.slots + slot, answer);
+            }
+        }
+    };
+}
+
+/// The same in persistent subgroups.
+macro_rules! persistent_tracing {
+    ($R:ty, $method:ty) => {
+        entry! {
+            /// Traces the rays of a wave.
+            trace<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
+            [frame nodes triangles paths hits queue counters wide bounds] {
+                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+                let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
+                stage::persistent::<$R, $method, Closest, Subgroup>(
+                    &scene,
+                    count,
+                    move |wants| take(wants, lane, counters, counter::TRACED),
+                    move |number| (stage::traced::<$R>(&scene, queued(spec, number, queue), paths), true),
+                    move |number, _, ray, hit| {
+                        write(hits, queued(spec, number, queue), stage::found(&scene, ray, hit));
+                    },
+                );
+            }
+        }
+
+        entry! {
+            /// Traces the shadow rays of a wave, light after light.
+            shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
+            [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
+                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+                let asking = Asking { lights, paths: &*paths, hits: &*hits };
+                let (count, queue) = (slots(spec, frame, counters), &*queue);
+                // A launch without slots takes no number; the guard spares the division's panic.
+                let row = if count == 0 { 1 } else { count };
+                let rows = if spec.launch.has(Launch::STREAM) { 1 } else { frame.shadow_rays };
+                stage::persistent::<$R, $method, Occlusion, Subgroup>(
+                    &scene,
+                    count * rows,
+                    move |wants| take(wants, lane, counters, counter::ASKED),
+                    move |number| stage::asked(&scene, asking, queued(spec, number % row, queue), number / row),
+                    move |number, traced, _, hit| {
+                        let answer = if traced { stage::answered(hit) } else { stage::FACES_AWAY };
+                        let slot = queued(spec, number % row, queue);
+                        write(shadows, number / row * frame.slots + slot, answer);
+                    },
+                );
+            }
+        }
+    };
+}
+
+/// What each stage binds, by its name and the names of [resources](crate::resources::RESOURCES).
+#[cfg(not(target_arch = "spirv"))]
+pub mod bound {
+    shading!(f32);
+
+    /// Of subgroups that vote.
+    pub mod voting {
+        voting_shading!(f32);
+    }
+
+    tracing!(f32, ());
+
+    /// Of persistent subgroups.
+    pub mod persistent {
+        persistent_tracing!(f32, ());
+    }
+}
+
+#[cfg(target_arch = "spirv")]
+pub mod kernels;

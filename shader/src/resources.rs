@@ -1,0 +1,65 @@
+//! The table of what kernels bind: each resource once.
+
+/// Who may do what with a resource.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Access {
+    /// A small record that all threads read.
+    Uniform,
+    /// A buffer that kernels read.
+    Read,
+    /// A buffer that some kernel writes, and every kernel declares writable: naga wants accesses to match.
+    Write,
+}
+
+/// A buffer that kernels bind, in descriptor set 0.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub struct Resource {
+    /// Its number in the modules, and its place in [`RESOURCES`].
+    pub binding: u32,
+    /// What people call it.
+    pub name: &'static str,
+    /// Who may do what with it.
+    pub access: Access,
+}
+
+/// Gives the table to a macro, after a dollar for macros that it declares: number, parameter, constant, access, record
+/// and name.
+macro_rules! resources {
+    ($then:ident $dollar:tt) => {
+        $then! { $dollar
+            0 frame FRAME: Uniform Frame, "frame";
+            1 nodes NODES: Read UVec4, "hierarchy";
+            2 triangles TRIANGLES: Read UVec4, "triangles";
+            3 normals NORMALS: Read Normals, "normals";
+            4 materials MATERIALS: Read Material, "materials";
+            5 lights LIGHTS: Read Light, "lights";
+            6 paths PATHS: Write UVec4, "paths";
+            7 hits HITS: Write UVec4, "hits";
+            8 shadows SHADOWS: Write u32, "shadows";
+            9 sums SUMS: Write UVec4, "sums";
+            10 queue QUEUE: Write u32, "queue";
+            11 next NEXT: Write u32, "next queue";
+            12 counters COUNTERS: Write u32, "counters";
+            13 wide WIDE: Read WideNode, "wide hierarchy";
+            14 bounds BOUNDS: Read Bounds, "bounds";
+            15 film FILM: Write UVec4, "film";
+            16 arguments ARGUMENTS: Write u32, "arguments";
+        }
+    };
+}
+#[cfg(target_arch = "spirv")]
+pub(crate) use resources;
+
+macro_rules! list {
+    ($d:tt $($binding:tt $parameter:ident $constant:ident: $access:ident $record:ty, $name:literal;)*) => {
+        /// The numbers of the resources.
+        pub mod binding {
+            $(#[doc = $name] pub const $constant: u32 = $binding;)*
+        }
+
+        /// Every resource, by its number.
+        pub const RESOURCES: &[Resource] =
+            &[$(Resource { binding: $binding, name: $name, access: Access::$access }),*];
+    };
+}
+resources!(list $);

@@ -81,7 +81,7 @@ impl<R: Real> Ray<R> {
 #[inline(always)]
 fn inverted<R: Real>(component: R) -> R {
     let least = R::select(component.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
-    R::select(component.same(R::splat(0.0)), least, component).reciprocal()
+    R::select(component.eq(R::splat(0.0)), least, component).reciprocal()
 }
 
 /// Far from a scene within [-1, 1], and no overflow when squared.
@@ -159,7 +159,7 @@ impl<R: Real> Shear<R> {
 }
 
 #[cfg(not(target_arch = "spirv"))]
-impl<const N: usize> Shear<crate::real::Wide<N>> {
+impl<const N: usize> Shear<crate::real::F32xN<N>> {
     /// One lane's shear.
     #[inline(always)]
     pub(crate) fn lane(&self, i: usize) -> Shear<f32> {

@@ -5,7 +5,7 @@ use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Scalar, V3, Wide, WideIndex};
+use eyerays_shader::real::{F32xN, Scalar, U32xN, V3};
 use eyerays_shader::traverse::{Closest, step};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -23,12 +23,12 @@ pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
     let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
     let found = starts.par_iter().flat_map_iter(|&start| {
         let ray = |i: usize| stream.ray((start + i).min(stream.len() - 1));
-        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<Wide<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
-        let leaves = WideIndex(std::array::from_fn(|i| ray(i).leaves));
+        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<F32xN<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
+        let leaves = U32xN(std::array::from_fn(|i| ray(i).leaves));
         let packet = Ray::leaving(leaves, vector(&|r| r.origin), vector(&|r| r.direction));
-        let mut hit = Hit::none(Wide(std::array::from_fn(|i| ray(i).limit)));
+        let mut hit = Hit::none(F32xN(std::array::from_fn(|i| ray(i).limit)));
         for slot in 0..packed.triangles.len() as u32 {
-            step::triangle::<Closest, Wide<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
+            step::triangle::<Closest, F32xN<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
         }
         (0..LANES.min(stream.len() - start)).map(move |i| {
             let hit = hit.lane(i);

@@ -73,7 +73,7 @@ impl Log<'_> {
                 story.events.push(cone(geometry.features, light, &contact));
             }
         }
-        if !surface.ior.same(R::splat(0.0)) {
+        if !surface.ior.eq(R::splat(0.0)) {
             let eta = if contact.front { R::splat(1.0).div(surface.ior) } else { surface.ior };
             let at = refract(path.direction, surface.normal, eta);
             story.events.push(u32::from(at.total));

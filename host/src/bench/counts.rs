@@ -6,7 +6,7 @@ use std::marker::PhantomData;
 use std::ops::{Add, Range};
 
 use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Real, V3, Wide, WideIndex};
+use eyerays_shader::real::{F32xN, Real, U32xN, V3};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{
@@ -186,7 +186,7 @@ fn single<M: traverse::Method<f32>>(
     })
 }
 
-fn packet<M: traverse::Method<Wide<PACKET>>>(
+fn packet<M: traverse::Method<F32xN<PACKET>>>(
     geometry: &Geometry<'_>,
     stream: &Stream,
     rays: Range<usize>,
@@ -200,9 +200,9 @@ fn packet<M: traverse::Method<Wide<PACKET>>>(
     });
     let origin = V3::of_lanes(|i| V3::splat(lanes[i].origin));
     let direction = V3::of_lanes(|i| V3::splat(lanes[i].direction));
-    let ray = Ray::leaving(WideIndex(lanes.map(|ray| ray.leaves)), origin, direction);
-    let hit = Hit::none(Wide(lanes.map(|ray| ray.limit)));
-    counted(rays.len(), || traverse::<Wide<PACKET>, M>(geometry, &ray, hit, question))
+    let ray = Ray::leaving(U32xN(lanes.map(|ray| ray.leaves)), origin, direction);
+    let hit = Hit::none(F32xN(lanes.map(|ray| ray.limit)));
+    counted(rays.len(), || traverse::<F32xN<PACKET>, M>(geometry, &ray, hit, question))
 }
 
 fn traverse<R: Real, M: traverse::Method<R>>(

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::real::{Native, Scalar, Vectors};
+use eyerays_shader::real::{Native, Scalar, SimdIsa};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
@@ -60,7 +60,7 @@ fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &Geometry<'_
 
 impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
+    fn run<V: SimdIsa<R>>(self) {
         one_by_one::<R, M>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
@@ -74,7 +74,7 @@ fn nodes<R: Scalar>(level: Level, geometry: &Geometry<'_>, slots: &[u32], job: J
 
 impl<R: Scalar> Task<R> for Nodes<'_, R> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
+    fn run<V: SimdIsa<R>>(self) {
         one_by_one::<R, FullNodes<V>>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
@@ -110,7 +110,7 @@ fn plainly<R: Scalar, M: Together>(_: Level, geometry: &Geometry<'_>, slots: &[u
 
 impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
+    fn run<V: SimdIsa<R>>(self) {
         let Slots { geometry, slots, job, .. } = self.0;
         let most = stage::most::<R, V::Packet>();
         let mut segments: Vec<Segment<R>> = Vec::with_capacity(most);

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use eyerays_shader::real::{Native, Scalar, Vectors};
+use eyerays_shader::real::{Native, Scalar, SimdIsa};
 
 /// A set of instructions. The kernels are compiled once for each; all give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum Level {
 pub trait Task<R: Scalar> {
     /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
     /// inlined is compiled for the level.
-    fn run<V: Vectors<R>>(self);
+    fn run<V: SimdIsa<R>>(self);
 }
 
 impl Level {

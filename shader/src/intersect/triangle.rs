@@ -13,7 +13,8 @@
 //!
 //! A triangle that is seen edge-on is a line, and an edge function of zero does not tell which part of its line the ray
 //! is at: with two of them zero by rounding, it may be far beside the triangle's ends. So where one is zero a hit
-//! counts only if the vertices lie around the ray on both axes ([`spans`]), as they do wherever it is inside.
+//! counts only if the vertices lie around the ray on both axes ([`straddles_origin`]), as they do wherever it is
+//! inside.
 //!
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
@@ -29,10 +30,11 @@ use crate::real::{FAINT, Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
 
-/// Where a ray crosses a triangle's plane, before its division. Beside the triangle nothing but `inside` is told.
+/// Where a ray crosses a triangle's plane, before the division. Only `inside` is valid where the ray misses the triangle.
 #[derive(Clone, Copy)]
-pub struct Crossing<R: Real> {
-    /// Does it cross inside the triangle, in front of the origin? Where it is [`Crossing::in_line`], [`spans`] must agree.
+pub struct Candidate<R: Real> {
+    /// Does it cross inside the triangle, in front of the origin? Where it is [`Candidate::in_line`],
+    /// [`straddles_origin`] must agree.
     pub inside: R::Mask,
     /// Is the front (counter-clockwise) side towards the ray? For back-face culling.
     pub front: R::Mask,
@@ -53,13 +55,13 @@ const SLIGHT: f32 = 1.0 / (1u128 << 96) as f32;
 /// not too faint.
 const ENLARGED: f32 = (1u64 << 48) as f32;
 
-/// Crosses a triangle, its vertices relative to the ray's origin, with a ray. Their axes are cycled
+/// Intersects a ray with a triangle, whose vertices are relative to the ray's origin. Their axes are cycled
 /// ([`Shear::cycle`](crate::ray::Shear::cycle)); `shear` is how far the first two move along the third, and `along` the
 /// inverse of the direction's major component.
 // A function of its own on the GPU: the build forbids contraction inside such functions.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Crossing<R> {
+pub fn intersect_watertight<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Candidate<R> {
     let (ax, ay) = sheared(a, shear);
     let (bx, by) = sheared(b, shear);
     let (cx, cy) = sheared(c, shear);
@@ -71,22 +73,23 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     let around = above | (wa.le(slight) & wb.le(slight) & wc.le(slight));
     // Most triangles that a ray comes to are beside it.
     if !around.any() {
-        return Crossing { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
+        return Candidate { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
-    let enlarged = |w: R| w.settle(SLIGHT) * R::splat(ENLARGED);
+    let enlarged = |w: R| w.flush_if_exact(SLIGHT) * R::splat(ENLARGED);
     let (wa, wb, wc) = (enlarged(wa), enlarged(wb), enlarged(wc));
     let area = wa + wb + wc;
-    let term = |w: R, z: R| (w * z).settle(FAINT);
+    let term = |w: R, z: R| (w * z).flush_if_exact(FAINT);
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
     let front = zero.lt(area * along);
-    Crossing { inside: around & ahead, front, depth, u: wb, v: wc, area }
+    Candidate { inside: around & ahead, front, depth, u: wb, v: wc, area }
 }
 
-/// Do a triangle's vertices, as [`cross`] takes them, lie around the ray on both axes? They do wherever it is inside.
+/// Do a triangle's vertices, as [`intersect_watertight`] takes them, lie around the ray on both axes? They do wherever
+/// it is inside.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn spans<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
+pub fn straddles_origin<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
     let (a, b, c, slight) = (sheared(a, shear), sheared(b, shear), sheared(c, shear), R::splat(SLIGHT));
     let below = a.0.lesser(b.0).lesser(c.0).le(slight) & a.1.lesser(b.1).lesser(c.1).le(slight);
     let above = (-slight).le(a.0.greater(b.0).greater(c.0)) & (-slight).le(a.1.greater(b.1).greater(c.1));
@@ -100,34 +103,35 @@ pub fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
 }
 
 #[cfg(not(target_arch = "spirv"))]
-impl<R: Real> Crossing<R> {
+impl<R: Real> Candidate<R> {
     /// One of the lanes that are inside.
     #[inline(always)]
-    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Crossing<S>
+    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Candidate<S>
     where
         R: Lanes<S>,
     {
         let front = (R::bits(self.front) >> i) & 1 == 1;
         let (depth, area) = (self.depth.lane(i), self.area.lane(i));
-        Crossing { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
+        Candidate { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
     }
 }
 
 /// What a product and a quotient may be off by, generously.
 const ABOUT: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 
-impl<R: Real> Crossing<R> {
-    /// Where the crossing is inside and may lie before `limit`: a cheap test, so that the division is for few.
+impl<R: Real> Candidate<R> {
+    /// Is it inside, and may it lie before `limit`? A cheap test, so that few are divided.
     #[inline(always)]
     pub fn nearer(&self, limit: R) -> R::Mask {
         self.inside & self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT))
     }
 
-    /// Is some edge function zero (or nearly, of the first vertex), so that only [`spans`] tells whether it is inside?
+    /// Is some edge function zero (or nearly, of the first vertex), so that only [`straddles_origin`] tells whether it is
+    /// inside?
     #[inline(always)]
     pub fn in_line(&self) -> R::Mask {
         let zero = R::splat(0.0);
-        self.u.same(zero) | self.v.same(zero) | self.area.same(self.u + self.v)
+        self.u.eq(zero) | self.v.eq(zero) | self.area.eq(self.u + self.v)
     }
 }
 
@@ -145,8 +149,8 @@ mod tests {
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
         let shear = ray.slopes();
-        let x = cross(a, b, c, shear, ray.along());
-        let inside = x.inside && (!x.in_line() || spans(a, b, c, shear));
+        let x = intersect_watertight(a, b, c, shear, ray.along());
+        let inside = x.inside && (!x.in_line() || straddles_origin(a, b, c, shear));
         inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
     }
 
@@ -193,14 +197,14 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_around_the_ray_on_one_axis_alone_does_not_span_it() {
+    fn straddling_the_ray_on_one_axis_alone_is_not_enough() {
         for (swapped, side) in [(false, 1.0), (true, 1.0), (false, -1.0), (true, -1.0)] {
             let at = |along: f32, off: f32| match swapped {
                 false => V::new(along, side * off, 0.5),
                 true => V::new(side * off, along, 0.5),
             };
-            let spanned = |off| spans(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
-            assert!(spanned(-1.0) && spanned(0.0) && !spanned(1.0), "{swapped} {side}");
+            let straddles = |off| straddles_origin(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
+            assert!(straddles(-1.0) && straddles(0.0) && !straddles(1.0), "{swapped} {side}");
         }
     }
 

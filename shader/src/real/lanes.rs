@@ -4,7 +4,7 @@ use super::{Fast, Real, Scalar};
 
 /// Lanes over the numbers of `S`: several on a CPU with vectors, or `S` itself.
 pub trait Lanes<S: Scalar>: Real {
-    /// How many; [`Wide`](super::Wide) has a power of two.
+    /// How many; [`F32xN`](super::F32xN) has a power of two.
     const COUNT: u32;
 
     /// A number in every lane.
@@ -26,7 +26,7 @@ pub trait Lanes<S: Scalar>: Real {
 }
 
 /// The vectors that a processor has for the numbers of `S`.
-pub trait Vectors<S: Scalar> {
+pub trait SimdIsa<S: Scalar> {
     /// What tests the boxes of a node of eight.
     type Eight: Lanes<S>;
     /// What tests the triangles of its leaves.
@@ -38,7 +38,7 @@ pub trait Vectors<S: Scalar> {
 /// What every processor of the target has.
 pub struct Native;
 
-impl<S: Scalar> Vectors<S> for Native {
+impl<S: Scalar> SimdIsa<S> for Native {
     type Eight = S::Eight;
     type Four = S::Four;
     type Packet = S::Packet;
@@ -49,10 +49,10 @@ impl<S: Scalar> Vectors<S> for Native {
 pub struct Avx512;
 
 #[cfg(target_arch = "x86_64")]
-impl Vectors<f32> for Avx512 {
-    type Eight = <super::Avx2 as Vectors<f32>>::Eight;
-    type Four = <super::Avx2 as Vectors<f32>>::Four;
-    type Packet = super::Wide<16>;
+impl SimdIsa<f32> for Avx512 {
+    type Eight = <super::Avx2 as SimdIsa<f32>>::Eight;
+    type Four = <super::Avx2 as SimdIsa<f32>>::Four;
+    type Packet = super::F32xN<16>;
 }
 
 /// Implements [`Lanes`] for a [`Scalar`]: it is one lane of itself.

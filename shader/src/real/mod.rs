@@ -4,7 +4,7 @@
 //! | --- | --- | --- |
 //! | `f32` | exact: a GPU lane or one ray on the CPU, the same bits on both | correctly rounded; stated error |
 //! | [`Fast`] | `f32` at the device's own speed | the device's |
-//! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
+//! | [`F32xN`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
 mod alone;
@@ -14,6 +14,8 @@ mod avx2;
 mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
+#[cfg(not(target_arch = "spirv"))]
+mod f32xn;
 mod fast;
 #[cfg(not(target_arch = "spirv"))]
 mod lanes;
@@ -23,19 +25,17 @@ pub mod soft;
 #[cfg(test)]
 mod tests;
 mod vector;
-#[cfg(not(target_arch = "spirv"))]
-mod wide;
 
 #[cfg(target_arch = "x86_64")]
 pub use avx2::Avx2;
+#[cfg(not(target_arch = "spirv"))]
+pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
 #[cfg(target_arch = "x86_64")]
 pub use lanes::Avx512;
 #[cfg(not(target_arch = "spirv"))]
-pub use lanes::{Lanes, Native, Vectors};
+pub use lanes::{Lanes, Native, SimdIsa};
 pub use vector::V3;
-#[cfg(not(target_arch = "spirv"))]
-pub use wide::{Wide, WideIndex, WideMask};
 
 #[cfg(doc)]
 use crate::data::Features;
@@ -96,7 +96,7 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// `self <= other`; false for NaN.
     fn le(self, other: Self) -> Self::Mask;
     /// Exact equality; zeros are equal.
-    fn same(self, other: Self) -> Self::Mask;
+    fn eq(self, other: Self) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
     /// Without its sign.
@@ -153,21 +153,21 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// The greatest component, or zero if none is positive: where a ray that enters a box's three pairs of planes
     /// there is inside all of them.
     #[inline(always)]
-    fn latest(enter: V3<Self>) -> Self {
+    fn max_entry(enter: V3<Self>) -> Self {
         enter.x.greater(enter.y).greater(enter.z.greater(Self::splat(0.0)))
     }
 
     /// The least component or the limit, whichever is less; if any is negative (-0 included), some negative number,
     /// or zero.
     #[inline(always)]
-    fn earliest(leave: V3<Self>, limit: Self) -> Self {
+    fn min_exit(leave: V3<Self>, limit: Self) -> Self {
         leave.x.lesser(leave.y).lesser(leave.z.lesser(limit))
     }
 
     /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
     /// device likes.
     #[inline(always)]
-    fn settle(self, least: f32) -> Self {
+    fn flush_if_exact(self, least: f32) -> Self {
         self.flush(least)
     }
 
@@ -192,10 +192,10 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     type Packet: Lanes<Self>;
     /// The vectors of a processor with AVX2, if these numbers have any use for them.
     #[cfg(target_arch = "x86_64")]
-    type Avx2: Vectors<Self>;
+    type Avx2: SimdIsa<Self>;
     /// The vectors of a processor with AVX-512.
     #[cfg(target_arch = "x86_64")]
-    type Avx512: Vectors<Self>;
+    type Avx512: SimdIsa<Self>;
     /// Are there other vectors than [`Native`] ones?
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = false;

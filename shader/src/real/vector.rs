@@ -124,7 +124,7 @@ impl<R: Real> V3<R> {
     pub fn normalised(self) -> (Self, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let scale = self.abs().greatest();
-        let none = scale.same(zero);
+        let none = scale.eq(zero);
         let inverse = one.div(R::select(none, one, scale));
         let v = (self * inverse).map(|c| c.flush(super::SMALL));
         let length = v.dot(v).sqrt();

@@ -39,7 +39,7 @@ impl<R: Scalar> Contact<R> {
         // Edges below 2^-40 are zero, so that the normal's products do not underflow.
         let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
         let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
-        let normal = V3::select(length.same(R::splat(0.0)), -direction, normal);
+        let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
         let front = normal.dot(direction).le(R::splat(0.0));
         Contact {
             position: position.map(|x| x.flush(TINY)),
@@ -82,7 +82,7 @@ impl<R: Scalar> Contact<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::intersect::cross;
+    use crate::intersect::intersect_watertight;
     use crate::ray::Ray;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -90,7 +90,7 @@ mod tests {
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
         let [a, b, c] = vertices.map(|p| ray.seen(p));
-        cross(a, b, c, ray.slopes(), ray.along()).inside
+        intersect_watertight(a, b, c, ray.slopes(), ray.along()).inside
     }
 
     /// From a place on `vertices` towards `d`, and every way that grazes the surface more.

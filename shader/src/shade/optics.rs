@@ -46,7 +46,7 @@ pub fn fresnel<R: Scalar>(at: &Refraction<R>, eta: R) -> R {
     let ratio = |a: R, b: R| {
         let sum = a + b;
         // Both cosines are zero at grazing incidence alone, where all is reflected.
-        if sum.same(R::splat(0.0)) { one } else { (a - b).div(sum) }
+        if sum.eq(R::splat(0.0)) { one } else { (a - b).div(sum) }
     };
     let across = ratio(eta * at.cos_in, at.cos_out);
     let along = ratio(at.cos_in, eta * at.cos_out);

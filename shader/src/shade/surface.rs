@@ -68,7 +68,7 @@ fn interpolated<R: Scalar>(looks: &Looks<'_>, slot: u32, direction: V3<R>, conta
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.normalised();
     let unit = V3::select(contact.faces(unit), unit, -unit);
-    let lost = length.same(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
+    let lost = length.eq(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
     V3::select(lost, contact.normal, unit)
 }
 

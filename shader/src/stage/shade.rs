@@ -113,7 +113,7 @@ fn branch<R: Scalar>(
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
     let none = path.on(leaves, contact.position, mirrored, V3::zero());
-    if !geometry.features.has(Features::REFRACTION) || surface.ior.same(zero) {
+    if !geometry.features.has(Features::REFRACTION) || surface.ior.eq(zero) {
         let reflected = path.on(leaves, contact.leave(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }

@@ -14,13 +14,13 @@ use super::step::{block, occluded};
 use super::{Method, Query};
 use crate::full::{FullNode, FullRef};
 use crate::ray::{Hit, Ray};
-use crate::real::{Lanes, Native, Scalar, V3, Vectors};
+use crate::real::{Lanes, Native, Scalar, SimdIsa, V3};
 use crate::scene::Geometry;
 
 /// See the module. `V` are the vectors that test boxes and triangles.
 pub struct FullNodes<V = Native>(PhantomData<V>);
 
-impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
+impl<R: Scalar, V: SimdIsa<R>> Method<R> for FullNodes<V> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let boxes = Boxes::<R, V::Eight>::new(ray);
@@ -81,8 +81,8 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
         while first < 8 {
             let enter = self.planes(node, [self.near[0], self.near[1], self.near[2]], first);
             let leave = self.planes(node, [self.near[0] ^ 1, self.near[1] ^ 1, self.near[2] ^ 1], first);
-            let entry = E::latest(enter);
-            met |= E::bits(entry.le(E::earliest(leave, E::all(limit)))) << first;
+            let entry = E::max_entry(enter);
+            met |= E::bits(entry.le(E::min_exit(leave, E::all(limit)))) << first;
             entry.put(&mut near[first..]);
             first += E::COUNT as usize;
         }

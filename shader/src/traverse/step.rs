@@ -5,7 +5,7 @@ use super::cursor::{Cursor, Stack};
 use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 #[cfg(not(target_arch = "spirv"))]
 use crate::full::Block;
-use crate::intersect::{Crossing, Span, cross, moller, slab, spans};
+use crate::intersect::{Candidate, Span, intersect_moller_trumbore, intersect_watertight, slab, straddles_origin};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -53,7 +53,7 @@ pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Want
 pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Span<R> {
     let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
     let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
-    Span { near: R::latest(half.fused(-reach, middle)), far: R::earliest(half.fused(reach, middle), limit) }
+    Span { near: R::max_entry(half.fused(-reach, middle)), far: R::min_exit(half.fused(reach, middle), limit) }
 }
 
 /// A single ray's visit of the pair that its traversal stands at.
@@ -81,23 +81,23 @@ pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: 
     Q::ANY && !(!occluded(hit)).any()
 }
 
-/// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
+/// Tests the first triangle of a leaf and takes the hit if it is the best so far.
 #[inline(always)]
 pub fn triangle<Q: Query, R: Real>(geometry: &Geometry<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_triangle();
     let triangle = geometry.triangle(leaf.index());
-    let crossing = single(geometry, &triangle, ray);
-    if crossing.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
-        keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
+    let candidate = single(geometry, &triangle, ray);
+    if candidate.nearer(hit.t).any() && counts::<Q>(geometry.features, &triangle) {
+        accept_hit::<Q, R>(geometry, &triangle, leaf.index(), &candidate, ray, hit);
     }
 }
 
-/// Crosses one triangle.
+/// Intersects one triangle.
 #[inline(always)]
-fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
+fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -> Candidate<R> {
     let [a, b, c] = triangle.vertices();
     let (slopes, along) = (ray.slopes(), ray.along());
-    crossed::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
+    intersect::<R, R>(geometry.features, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
@@ -112,9 +112,9 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
     if hit.slot == Hit::<R>::NOTHING {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let crossing = single(geometry, &geometry.triangle(hit.slot), ray);
-    let scale = crossing.area.reciprocal();
-    (crossing.u * scale, crossing.v * scale)
+    let candidate = single(geometry, &geometry.triangle(hit.slot), ray);
+    let scale = candidate.area.reciprocal();
+    (candidate.u * scale, candidate.v * scale)
 }
 
 /// Tests the triangles of a block, as many at once as there are lanes.
@@ -130,28 +130,29 @@ pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &
         let a = vertex::<R, F>(block, 0, first, ray, origin);
         let b = vertex::<R, F>(block, 1, first, ray, origin);
         let c = vertex::<R, F>(block, 2, first, ray, origin);
-        let crossing = crossed::<R, F>(geometry.features, [a, b, c], shear, along);
-        let mut inside = F::bits(crossing.nearer(F::all(hit.t)));
+        let candidate = intersect::<R, F>(geometry.features, [a, b, c], shear, along);
+        let mut inside = F::bits(candidate.nearer(F::all(hit.t)));
         while inside != 0 {
             let lane = inside.trailing_zeros() as usize;
             inside &= inside - 1;
             let slot = block.slots[(first + lane) & 3];
             let triangle = geometry.triangle(slot);
             if counts::<Q>(geometry.features, &triangle) {
-                keep::<Q, R>(geometry, &triangle, slot, &crossing.lane(lane), ray, hit);
+                accept_hit::<Q, R>(geometry, &triangle, slot, &candidate.lane(lane), ray, hit);
             }
         }
         first += F::COUNT as usize;
     }
 }
 
-/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see [`cross`].
+/// Intersects a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see
+/// [`intersect_watertight`].
 #[inline(always)]
-fn crossed<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Crossing<F> {
+fn intersect<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Candidate<F> {
     if R::CHOOSES && features.has(Features::MOLLER) {
-        moller(a, b, c, shear, along)
+        intersect_moller_trumbore(a, b, c, shear, along)
     } else {
-        cross(a, b, c, shear, along)
+        intersect_watertight(a, b, c, shear, along)
     }
 }
 
@@ -184,43 +185,43 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 /// The box lies in every box that leads here, so nothing that is kept can have been culled. A part of a split
 /// triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
-fn keep<Q: Query, R: Real>(
+fn accept_hit<Q: Query, R: Real>(
     geometry: &Geometry<'_>,
     triangle: &Triangle,
     slot: u32,
-    crossing: &Crossing<R>,
+    candidate: &Candidate<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
     let (primitive, features, zero) = (triangle.primitive(), geometry.features, R::splat(0.0));
-    let mut inside = crossing.inside & !R::equals(primitive, ray.leaves);
+    let mut inside = candidate.inside & !R::equals(primitive, ray.leaves);
     // The inside of glass is seen from behind.
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
-        inside = inside & crossing.front;
+        inside = inside & candidate.front;
     }
-    // Seldom, so that turning the vertices again costs less than to keep them from the crossing.
-    if (inside & crossing.in_line()).any() {
+    // This is rare, so transforming the vertices again costs less than keeping them since the intersection.
+    if (inside & candidate.in_line()).any() {
         let [a, b, c] = triangle.vertices();
-        inside = inside & spans(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
+        inside = inside & straddles_origin(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
     }
     let (least, greatest) = geometry.bounds(slot, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
-    let scale = R::select(inside, crossing.area, R::splat(1.0)).reciprocal();
+    let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
     let inside = inside & own.near.le(own.far);
     // A bound of zero may have either sign; of zeros `max` takes the second.
-    let t = (crossing.depth * scale).max(own.near.max(zero));
+    let t = (candidate.depth * scale).max(own.near.max(zero));
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;
     }
-    let tie = t.same(hit.t) & R::precedes(primitive, hit.primitive);
+    let tie = t.eq(hit.t) & R::precedes(primitive, hit.primitive);
     let better = inside & (t.lt(hit.t) | tie);
     if better.any() {
         hit.t = R::select(better, t, hit.t);
         if cfg!(not(target_arch = "spirv")) {
-            hit.u = R::select(better, crossing.u, hit.u);
-            hit.v = R::select(better, crossing.v, hit.v);
+            hit.u = R::select(better, candidate.u, hit.u);
+            hit.v = R::select(better, candidate.v, hit.v);
             hit.scale = R::select(better, scale, hit.scale);
         }
         hit.slot = R::select_index(better, R::index(slot), hit.slot);

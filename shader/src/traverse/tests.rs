@@ -8,7 +8,7 @@ use super::{
 use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
 use crate::full::{Block, Full, FullNode, FullRef};
 use crate::ray::{Hit, Ray};
-use crate::real::{Fast, Lanes, Real, Scalar, V3, Wide};
+use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
 use crate::scene::Geometry;
 use crate::stage::{SHADOWED, Segment, shadow_together, trace_together};
 use crate::warp::Alone;
@@ -212,12 +212,12 @@ proptest! {
 type End = ([f32; 3], [f32; 3]);
 
 /// Every lane of a packet, however incoherent, against the same ray by itself.
-fn check_packet<M: Method<Wide<N>>, const N: usize>(world: &World, rays: &[End]) {
-    let origins = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
-    let directions = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
+fn check_packet<M: Method<F32xN<N>>, const N: usize>(world: &World, rays: &[End]) {
+    let origins = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
+    let directions = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
     let packet = Ray::new(origins, directions);
-    let closest = world.trace::<M, Closest, Wide<N>>(&packet, f32::MAX);
-    let shadows = world.trace::<M, Occlusion, Wide<N>>(&packet, 0.5);
+    let closest = world.trace::<M, Closest, F32xN<N>>(&packet, f32::MAX);
+    let shadows = world.trace::<M, Occlusion, F32xN<N>>(&packet, 0.5);
     for (i, (origin, direction)) in rays[..N].iter().enumerate() {
         let alone = ray::<f32>(*origin, *direction);
         let (got, want) = (closest.lane(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
@@ -284,8 +284,8 @@ proptest! {
         check_packets::<8>(&world, &rays);
         check_packets::<16>(&world, &rays);
         check_packets::<32>(&world, &rays);
-        check_together::<Wide<8>>(&world, &rays, count);
-        check_together::<Wide<16>>(&world, &rays, count);
+        check_together::<F32xN<8>>(&world, &rays, count);
+        check_together::<F32xN<16>>(&world, &rays, count);
         check_together::<f32>(&world, &rays, count.min(4));
     }
 
@@ -295,8 +295,8 @@ proptest! {
     fn registers_find_what_brute_force_finds(
         triangles in soup(), ends in prop::array::uniform8((grid(), grid())), count in 1usize..=32,
     ) {
-        use crate::real::{Avx2, Vectors};
-        type Register = <Avx2 as Vectors<f32>>::Eight;
+        use crate::real::{Avx2, SimdIsa};
+        type Register = <Avx2 as SimdIsa<f32>>::Eight;
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
             let rays = rays_of(ends, false);
             let world = World::new(triangles, Features::REFRACTION);

@@ -239,7 +239,7 @@ impl<R: Scalar> Opening<R> {
         let start = self.start[if child & 1 == 1 { 0 } else { 1 }];
         let near = self.planes(&self.near, child).fused(self.extent, start);
         let far = self.planes(&self.far, child).fused(self.extent, start);
-        if R::latest(near).le(R::earliest(far, self.limit)) { (1 << (24 + child)) | (7 << (3 * child)) } else { 0 }
+        if R::max_entry(near).le(R::min_exit(far, self.limit)) { (1 << (24 + child)) | (7 << (3 * child)) } else { 0 }
     }
 
     /// A child's planes: in units of 256 steps and 1 too large for odd children, 256 too large for the others.

@@ -1,6 +1,6 @@
 //! From references to a hierarchy.
 
-use eyerays_shader::data::{BOX_PADDING, Bounds as Record, MAX_LEAF, NodePair, NodeRef, WideNode};
+use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, MAX_LEAF, NodePair, NodeRef};
 
 use crate::{
     BuildError, MAX_DEPTH, Quality, Reference, References,
@@ -20,7 +20,7 @@ pub struct Bvh {
     /// The node pairs, the root's first, then in depth-first order.
     pub nodes: Vec<NodePair>,
     /// The wide nodes, the root first.
-    pub wide: Vec<WideNode>,
+    pub wide: Vec<CwbvhNode>,
     /// The triangle at each slot that a leaf counts, as an index into the triangles of the references.
     pub order: Vec<u32>,
     /// The own box at each slot: that of the triangle, or of the part that the slot stands for.

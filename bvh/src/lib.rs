@@ -34,4 +34,4 @@ pub use quality::Quality;
 pub use reference::{Reference, References, split};
 pub use statistics::Statistics;
 pub use validate::validate;
-pub use wide::{FullBvh, MAX_WIDE_DEPTH, validate_wide};
+pub use wide::{Bvh8, MAX_WIDE_DEPTH, validate_wide};

@@ -4,15 +4,15 @@
 //! its accesses to match.
 
 use crate::buffer::{read, write};
-use crate::data::{Bounds, Features, Frame, Light, Material, Normals, Tuning, WideNode};
+use crate::data::{Bounds, CwbvhNode, Features, Frame, Light, Material, Normals, Tuning};
 use crate::launch::{ROW, WORKGROUP, counter};
 use crate::numerics;
 use crate::real::Fast;
 use crate::scene::{Geometry, Looks};
 use crate::stage::{self, Asking, Wave};
 use crate::traverse::{
-    Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
-    WideNodes,
+    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax,
+    WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, take};
 use glam::{UVec3, UVec4};
@@ -102,7 +102,7 @@ macro_rules! shading_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 11)] next: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[CwbvhNode],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
@@ -145,7 +145,7 @@ macro_rules! tracing_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[CwbvhNode],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
@@ -172,7 +172,7 @@ macro_rules! tracing_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[CwbvhNode],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
@@ -204,7 +204,7 @@ macro_rules! persistent_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 7)] hits: &mut [UVec4],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[CwbvhNode],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
@@ -236,7 +236,7 @@ macro_rules! persistent_entries {
             #[spirv(storage_buffer, descriptor_set = 0, binding = 8)] shadows: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 10)] queue: &mut [u32],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 12)] counters: &mut [u32],
-            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[WideNode],
+            #[spirv(storage_buffer, descriptor_set = 0, binding = 13)] wide: &[CwbvhNode],
             #[spirv(storage_buffer, descriptor_set = 0, binding = 14)] bounds: &[Bounds],
         ) {
             let features = Features(features);
@@ -299,7 +299,7 @@ macro_rules! persistent {
 grid! {
     IfIf: exact_trace_if_if exact_shadow_if_if fast_trace_if_if fast_shadow_if_if;
     WhileWhile<Alone>: exact_trace_while_while exact_shadow_while_while fast_trace_while_while fast_shadow_while_while;
-    WideNodes: exact_trace_wide exact_shadow_wide fast_trace_wide fast_shadow_wide;
+    CwbvhMethod: exact_trace_wide exact_shadow_wide fast_trace_wide fast_shadow_wide;
     Packet<Subgroup>:
         subgroup_exact_trace_packet subgroup_exact_shadow_packet
         subgroup_fast_trace_packet subgroup_fast_shadow_packet;
@@ -327,7 +327,7 @@ persistent! {
     WhileWhile<Subgroup>:
         subgroup_exact_trace_while_while_persistent subgroup_exact_shadow_while_while_persistent
         subgroup_fast_trace_while_while_persistent subgroup_fast_shadow_while_while_persistent;
-    WideNodes:
+    CwbvhMethod:
         subgroup_exact_trace_wide_persistent subgroup_exact_shadow_wide_persistent
         subgroup_fast_trace_wide_persistent subgroup_fast_shadow_wide_persistent;
 }

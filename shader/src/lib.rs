@@ -2,12 +2,12 @@
 //! Everything a ray of Eyerays meets, written once: rust-gpu compiles it to SPIR-V, rustc to native code.
 
 pub mod buffer;
+#[cfg(not(target_arch = "spirv"))]
+pub mod bvh8;
 pub mod camera;
 pub mod data;
 #[cfg(target_arch = "spirv")]
 pub mod entry;
-#[cfg(not(target_arch = "spirv"))]
-pub mod full;
 pub mod intersect;
 pub mod launch;
 #[cfg(not(target_arch = "spirv"))]

@@ -16,8 +16,8 @@ pub struct Ray<R: Real> {
     pub offset: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
-    /// The primitive that it leaves, which it can't meet again; [`Hit::NOTHING`] for none.
-    pub leaves: R::Index,
+    /// The primitive that it starts on, which it can't hit again; [`Hit::NOTHING`] for none.
+    pub source_primitive: R::Index,
 }
 
 /// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
@@ -43,7 +43,7 @@ impl<R: Real> Ray<R> {
 
     /// A ray that leaves a triangle.
     #[inline(always)]
-    pub fn leaving(leaves: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
+    pub fn leaving(source_primitive: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
         // NaN counts as zero too: its reciprocal is another on every device.
         let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
         let size = d.abs();
@@ -55,7 +55,7 @@ impl<R: Real> Ray<R> {
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
         let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
-        Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
+        Ray { origin, inverse, offset: origin.times(inverse), shear, source_primitive }
     }
 
     /// A vertex relative to the origin, its axes cycled.
@@ -117,20 +117,27 @@ pub struct Hit<R: Real> {
     /// What the weights are still to be multiplied by, see [`Hit::weights`].
     pub scale: R,
     /// Where the triangle lies in leaf order; [`Hit::NOTHING`] if there is none.
-    pub slot: R::Index,
+    pub triangle_index: R::Index,
     /// The triangle's number in the scene, which decides ties.
     pub primitive: R::Index,
 }
 
 impl<R: Real> Hit<R> {
-    /// The slot of a miss.
+    /// The triangle index of a miss.
     pub const NOTHING: u32 = u32::MAX;
 
     /// No hit up to `limit`.
     #[inline(always)]
     pub fn none(limit: R) -> Self {
         let nothing = R::index(Self::NOTHING);
-        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), scale: R::splat(1.0), slot: nothing, primitive: nothing }
+        Hit {
+            t: limit,
+            u: R::splat(0.0),
+            v: R::splat(0.0),
+            scale: R::splat(1.0),
+            triangle_index: nothing,
+            primitive: nothing,
+        }
     }
 
     /// Weights of the triangle's second and third vertex.

@@ -1,11 +1,11 @@
 //! What a launch sees of the scene in device memory.
 
 use crate::buffer::read;
-use crate::data::{
-    Bounds, CentredPair, CompactPair, Features, Frame, Light, Material, Normals, Triangle, Tuning, WideNode, numbers,
-};
 #[cfg(not(target_arch = "spirv"))]
-use crate::full::Full;
+use crate::bvh8::Bvh8View;
+use crate::data::{
+    Bounds, CentredPair, CompactPair, CwbvhNode, Features, Frame, Light, Material, Normals, Triangle, Tuning, numbers,
+};
 use glam::{UVec4, Vec3};
 
 /// The launch and what its rays meet.
@@ -20,10 +20,10 @@ pub struct Geometry<'a> {
     /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Features::COMPACT`]).
     pub nodes: &'a [UVec4],
     /// Nodes of eight children; the root is node 0. A dummy unless the method is `wide`.
-    pub wide: &'a [WideNode],
+    pub wide: &'a [CwbvhNode],
     /// The same for a CPU. Empty unless the method is `wide`.
     #[cfg(not(target_arch = "spirv"))]
-    pub full: Full<'a>,
+    pub bvh8: Bvh8View<'a>,
     /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Features::INDEXED`]).
     pub triangles: &'a [UVec4],
     /// Bounds by slot ([`Features::SPLIT`]).

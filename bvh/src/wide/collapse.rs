@@ -3,7 +3,7 @@
 //! Ylitie, Karras and Laine 2017, section 3.1: the cost of showing a subtree as at most `i` children of
 //! one wide node follows from that of its children's subtrees, from the leaves up.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use super::binary::{Binary, Kind, Node};
 use super::layout::MAX_WIDE_DEPTH;
@@ -23,8 +23,8 @@ pub(crate) struct Leaves {
 }
 
 impl Leaves {
-    /// Those of [`WideNode`]; a triangle's cost is the paper's.
-    pub const WIDE: Leaves = Leaves { most: WideNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
+    /// Those of [`CwbvhNode`]; a triangle's cost is the paper's.
+    pub const WIDE: Leaves = Leaves { most: CwbvhNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
 
     /// The cost of a leaf of all triangles below a node.
     fn cost(self, node: &Node) -> f32 {
@@ -36,7 +36,7 @@ impl Leaves {
 }
 
 /// Most children of a node, and most roots that a subtree can be shown as.
-const ARITY: usize = WideNode::ARITY;
+const ARITY: usize = CwbvhNode::ARITY;
 
 /// Choices for every node of a binary tree.
 pub(crate) struct Plan {
@@ -129,7 +129,7 @@ pub(crate) fn three_levels(tree: &Binary, number: u32, children: &mut Vec<(u32, 
 }
 
 /// Levels of the binary tree that fit into any wide node.
-pub(crate) const LEVELS: u32 = WideNode::ARITY.ilog2();
+pub(crate) const LEVELS: u32 = CwbvhNode::ARITY.ilog2();
 
 /// The best choices for an inner node, given its children's costs.
 fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices) {

@@ -6,7 +6,7 @@
 //! 2^-36 below 2^9: 45 bits, which double precision adds up without rounding. The coordinate that it is
 //! compared with is a single, which converts exactly.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use crate::bounds::Bounds;
 
@@ -30,8 +30,8 @@ pub(crate) const GREATEST_EXPONENT: i32 = 0;
 pub(crate) const FARTHEST: f32 = 2.0;
 
 const FINEST: f64 = 1.0 / (1u64 << -LEAST_EXPONENT) as f64;
-const MARGIN: f64 = WideNode::MARGIN as f64;
-const SLACK: f64 = WideNode::SLACK as f64;
+const MARGIN: f64 = CwbvhNode::MARGIN as f64;
+const SLACK: f64 = CwbvhNode::SLACK as f64;
 const PLANES: f64 = u8::MAX as f64;
 
 impl Grid {
@@ -168,7 +168,7 @@ mod tests {
         let point = Bounds { min: [1.0; 3], max: [1.0; 3] };
         let grid = Grid::around(point);
         assert_eq!(grid.exponent, [-25; 3]);
-        assert_eq!(grid.origin, [(1.0 - WideNode::MARGIN).next_down(); 3]);
+        assert_eq!(grid.origin, [(1.0 - CwbvhNode::MARGIN).next_down(); 3]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Wide nodes, and the order of triangles that both hierarchies share.
 
-use eyerays_shader::data::{NodePair, NodeRef, WideNode};
+use eyerays_shader::data::{CwbvhNode, NodePair, NodeRef};
 
 use super::{
     binary::{Binary, Node},
@@ -22,7 +22,7 @@ const _: () = assert!((MAX_DEPTH + 1).div_ceil(LEVELS) <= MAX_WIDE_DEPTH);
 
 /// The wide nodes, and what they do to slots.
 pub(crate) struct Wide {
-    pub nodes: Vec<WideNode>,
+    pub nodes: Vec<CwbvhNode>,
     /// The slot of depth-first order at each slot.
     slots: Vec<u32>,
 }
@@ -63,7 +63,7 @@ impl Wide {
             grid: Grid::around(Bounds::around((0..children.len()).map(|i| node(i).bounds))),
             first_child: self.nodes.len() as u32,
             first_triangle: self.slots.len() as u32,
-            children: [Record::NOWHERE; WideNode::ARITY],
+            children: [Record::NOWHERE; CwbvhNode::ARITY],
         };
         let boxes: Vec<Bounds> = (0..children.len()).map(|i| node(i).bounds).collect();
         for (slot, child) in octant::slots(&boxes, |i| children[i].1).into_iter().enumerate() {
@@ -106,6 +106,6 @@ fn run(node: &Node) -> std::ops::Range<u32> {
 }
 
 /// What stands for a node until it is made.
-fn nothing() -> WideNode {
+fn nothing() -> CwbvhNode {
     bytemuck::Zeroable::zeroed()
 }

@@ -5,15 +5,15 @@
 //! become wide), octant (which child sits where), grid and record (how a node is stored), layout.
 
 mod binary;
+mod bvh8;
 mod collapse;
-mod full;
 mod grid;
 mod layout;
 mod octant;
 mod record;
 mod validate;
 
-pub use full::FullBvh;
+pub use bvh8::Bvh8;
 pub use layout::MAX_WIDE_DEPTH;
 pub use validate::validate_wide;
 

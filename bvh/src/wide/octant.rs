@@ -4,11 +4,11 @@
 //! before far ones. Bit 0 of a slot or an octant stands for x, bit 1 for y, bit 2 for z; in a slot it
 //! is set on the side of the greater coordinate, in a ray's octant where the direction is negative.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use crate::bounds::Bounds;
 
-const ARITY: usize = WideNode::ARITY;
+const ARITY: usize = CwbvhNode::ARITY;
 
 /// The child at each slot, as a place in `boxes`; at most eight. Leaves are in their order, so that a large leaf
 /// of the pairs stays in one piece: a ray goes through the leaves of a node at once, whatever their slots.

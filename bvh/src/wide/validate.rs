@@ -1,6 +1,6 @@
 //! The proof that kernels may index a wide hierarchy without checks.
 
-use eyerays_shader::data::{Bounds as BoundsRecord, WideNode};
+use eyerays_shader::data::{Bounds as BoundsRecord, CwbvhNode};
 
 use super::{
     MAX_WIDE_DEPTH,
@@ -10,13 +10,13 @@ use crate::{BuildError, bounds::Bounds, validate::Once};
 
 /// Checks a wide hierarchy over the own boxes of slots: every node is well-formed and reached exactly
 /// once from the root, every slot lies in exactly one leaf, every child's planes lie around what is
-/// below it with [`WideNode::MARGIN`] and [`WideNode::SLACK`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
+/// below it with [`CwbvhNode::MARGIN`] and [`CwbvhNode::SLACK`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
 /// Takes linear time.
 ///
 /// # Errors
 ///
 /// The first rule broken on a walk in depth-first order; then what was never reached; then boxes.
-pub fn validate_wide(nodes: &[WideNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
+pub fn validate_wide(nodes: &[CwbvhNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
     if bounds.is_empty() {
         return Err(BuildError::NoTriangles);
     }
@@ -28,7 +28,7 @@ pub fn validate_wide(nodes: &[WideNode], bounds: &[BoundsRecord]) -> Result<(), 
 
 /// A walk through the tree and what it has met so far.
 struct Walk<'a> {
-    nodes: &'a [WideNode],
+    nodes: &'a [CwbvhNode],
     bounds: &'a [BoundsRecord],
     met: Once,
     slots: Once,

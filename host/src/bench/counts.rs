@@ -10,8 +10,8 @@ use eyerays_shader::real::{F32xN, Real, U32xN, V3};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{
-    self, Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative, StackMax,
-    WhileWhile, WideNodes,
+    self, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative,
+    StackMax, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
@@ -125,7 +125,7 @@ fn follower(method: Method) -> Follow {
         Method::WhileWhile => single::<WhileWhile<Alone>>,
         // Alone it never speculates: its counts are those of while-while.
         Method::Speculative => single::<Speculative<Alone>>,
-        Method::Wide => single::<WideNodes>,
+        Method::Wide => single::<CwbvhMethod>,
         Method::Packet => packet::<Packet<Alone>>,
         Method::SequentialStack => packet::<Hybrid<Alone, StackMax, Sequential>>,
         Method::SequentialCut => packet::<Hybrid<Alone, Cut, Sequential>>,
@@ -200,7 +200,7 @@ fn packet<M: traverse::Method<F32xN<PACKET>>>(
     });
     let origin = V3::of_lanes(|i| V3::splat(lanes[i].origin));
     let direction = V3::of_lanes(|i| V3::splat(lanes[i].direction));
-    let ray = Ray::leaving(U32xN(lanes.map(|ray| ray.leaves)), origin, direction);
+    let ray = Ray::leaving(U32xN(lanes.map(|ray| ray.source_primitive)), origin, direction);
     let hit = Hit::none(F32xN(lanes.map(|ray| ray.limit)));
     counted(rays.len(), || traverse::<F32xN<PACKET>, M>(geometry, &ray, hit, question))
 }
@@ -251,7 +251,8 @@ mod tests {
     }
 
     fn rays(directions: impl Fn(usize) -> Vec3, limit: f32) -> Stream {
-        let ray = |i| StreamRay { origin: Vec3::ZERO, direction: directions(i), limit, leaves: StreamRay::NOWHERE };
+        let ray =
+            |i| StreamRay { origin: Vec3::ZERO, direction: directions(i), limit, source_primitive: StreamRay::NOWHERE };
         Stream::new((0..32).map(ray).collect::<Vec<_>>().into_iter())
     }
 

@@ -6,7 +6,7 @@ use eyerays_shader::real::Scalar;
 use eyerays_shader::stage::{NON_FINITE, RECORDS};
 use rayon::prelude::*;
 
-use super::level::Level;
+use super::isa::Isa;
 use super::pool::pool;
 use super::tile::{Observer, render_tile_by};
 use crate::error::Result;
@@ -23,7 +23,7 @@ const TILE: u32 = 32;
 /// A scene laid out for the CPU, with the threads to render it: made once for any number of pictures.
 pub struct Renderer<'a> {
     laid: Laid<'a>,
-    level: Level,
+    isa: Isa,
     threads: rayon::ThreadPool,
 }
 
@@ -37,7 +37,7 @@ impl<'a> Renderer<'a> {
         let threads = pool(threads)?;
         let traversal = traversal.into();
         let laid = threads.install(|| Laid::new(packed, traversal));
-        Ok(Renderer { laid, level: Level::best(), threads })
+        Ok(Renderer { laid, isa: Isa::best(), threads })
     }
 
     /// Renders a picture in the arithmetic `R`. `done` hears of every finished share of the pixels, and `observer`
@@ -55,7 +55,7 @@ impl<'a> Renderer<'a> {
         self.threads.install(|| {
             // A tile a task: coarser splitting leaves threads idle at the end.
             tiles(packed).into_par_iter().with_max_len(1).for_each(|region| {
-                let (film, secondary) = render_tile_by(self.level, &self.laid, region, observer);
+                let (film, secondary) = render_tile_by(self.isa, &self.laid, region, observer);
                 let (image, rays) = &mut *result.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
                 keep::<R>(region, &film, image, rays);
                 rays.secondary += secondary;

@@ -7,7 +7,7 @@ use eyerays_shader::scene::{Geometry, Looks};
 use eyerays_shader::stage::{self, Asking, RECORDS, Wave};
 
 use super::follow::{Job, follow};
-use super::level::Level;
+use super::isa::Isa;
 use crate::method::{Coherence, Method, Processor, Traversal};
 use crate::pack::{Laid, Packed, Region};
 
@@ -42,7 +42,7 @@ pub fn render_tile<R: Scalar>(
     region: Region,
     observer: &dyn Observer<R>,
 ) -> (Vec<R::Record>, u64) {
-    render_tile_by(Level::best(), &Laid::new(packed, traversal.into()), region, observer)
+    render_tile_by(Isa::best(), &Laid::new(packed, traversal.into()), region, observer)
 }
 
 /// The method for the rays of a wave and for their shadow rays.
@@ -55,9 +55,9 @@ fn methods(traversal: Traversal, features: Features) -> (Method, Method) {
     }
 }
 
-/// [`render_tile`] with the instructions of a level.
+/// [`render_tile`] with the instructions of an ISA.
 pub fn render_tile_by<R: Scalar>(
-    level: Level,
+    isa: Isa,
     laid: &Laid<'_>,
     region: Region,
     observer: &dyn Observer<R>,
@@ -78,14 +78,7 @@ pub fn render_tile_by<R: Scalar>(
         let mut geometry = laid.geometry(&frame);
         let mut queue: Vec<u32> = (0..slots as u32).filter(|&s| camera::pixel(&frame, features, s).inside).collect();
         loop {
-            trace::<R>(
-                level,
-                methods(laid.traversal, geometry.features),
-                &geometry,
-                looks.lights,
-                &queue,
-                &mut records,
-            );
+            trace::<R>(isa, methods(laid.traversal, geometry.features), &geometry, looks.lights, &queue, &mut records);
             observer.wave(&geometry, &queue, &records);
             shade(&geometry, &looks, &mut queue, &mut records);
             if queue.is_empty() {
@@ -100,7 +93,7 @@ pub fn render_tile_by<R: Scalar>(
 
 /// The stages of a wave that follow rays.
 fn trace<R: Scalar>(
-    level: Level,
+    isa: Isa,
     (traced, asked): (Method, Method),
     geometry: &Geometry<'_>,
     lights: &[Light],
@@ -108,14 +101,14 @@ fn trace<R: Scalar>(
     records: &mut Records<R>,
 ) {
     let mut hits = vec![R::store(V3::zero(), 0); queue.len()];
-    follow::<R>(level, traced, geometry, queue, Job::Trace(&records.paths, &mut hits));
+    follow::<R>(isa, traced, geometry, queue, Job::Trace(&records.paths, &mut hits));
     for (&slot, hit) in queue.iter().zip(hits) {
         records.hits[slot as usize] = hit;
     }
     let mut answers = vec![0; queue.len()];
     for light in 0..geometry.light_count() {
         let asking = Asking { lights, paths: &records.paths, hits: &records.hits };
-        follow::<R>(level, asked, geometry, queue, Job::Shadow(asking, light, &mut answers));
+        follow::<R>(isa, asked, geometry, queue, Job::Shadow(asking, light, &mut answers));
         for (&slot, &answer) in queue.iter().zip(&answers) {
             records.shadows[(light * geometry.slots() + slot) as usize] = answer;
         }

@@ -1,7 +1,7 @@
 //! A scene as the kernels of a processor see it.
 
+use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::data::{Features, Frame};
-use eyerays_shader::full::Full;
 use eyerays_shader::scene::Geometry;
 
 use super::{NodeWords, Packed, TriangleWords};
@@ -15,18 +15,18 @@ pub struct Laid<'a> {
     pub traversal: Traversal,
     nodes: NodeWords<'a>,
     triangles: TriangleWords<'a>,
-    full: Full<'a>,
+    bvh8: Bvh8View<'a>,
 }
 
 impl<'a> Laid<'a> {
     /// Lays out what the traversal does not take as it is packed.
     pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
         let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
-        let full = match traversal.method {
-            Method::Auto | Method::Wide => packed.full().borrow(),
-            _ => Full::default(),
+        let bvh8 = match traversal.method {
+            Method::Auto | Method::Wide => packed.bvh8().borrow(),
+            _ => Bvh8View::default(),
         };
-        Laid { packed, traversal, nodes, triangles, full }
+        Laid { packed, traversal, nodes, triangles, bvh8 }
     }
 
     /// What the scene and the traversal ask of kernels.
@@ -42,7 +42,7 @@ impl<'a> Laid<'a> {
             tuning: self.traversal.tuning,
             nodes: &self.nodes.0,
             wide: &self.packed.wide,
-            full: self.full,
+            bvh8: self.bvh8,
             triangles: &self.triangles.0,
             bounds: &self.packed.bounds,
         }

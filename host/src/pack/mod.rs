@@ -3,11 +3,11 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{FullBvh, Quality, Statistics};
+use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::camera;
 use eyerays_shader::data::{
-    Bounds, CentredPair, Features, Frame, Light as LightRecord, Material as MaterialRecord, Normals, Triangle,
-    WideNode, pack,
+    Bounds, CentredPair, CwbvhNode, Features, Frame, Light as LightRecord, Material as MaterialRecord, Normals,
+    Triangle, pack,
 };
 use glam::{DVec3, Vec3};
 
@@ -34,7 +34,7 @@ pub struct Packed {
     /// Child pairs of the hierarchy.
     pub nodes: Vec<CentredPair>,
     /// The same hierarchy with nodes of eight children.
-    pub wide: Vec<WideNode>,
+    pub wide: Vec<CwbvhNode>,
     /// Triangles by slot, in the normalised scene; a split one has several slots.
     pub triangles: Vec<Triangle>,
     /// Bounds by slot; empty unless triangles are split.
@@ -57,7 +57,7 @@ pub struct Packed {
     pub build_time: Duration,
     /// Every launch's record but for its region and sample.
     frame: Frame,
-    full: OnceLock<FullBvh>,
+    bvh8: OnceLock<Bvh8>,
 }
 
 /// A rectangle of the image in pixels.
@@ -110,13 +110,13 @@ impl Packed {
             normalisation,
             statistics,
             build_time,
-            full: OnceLock::new(),
+            bvh8: OnceLock::new(),
         })
     }
 
     /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
-    pub fn full(&self) -> &FullBvh {
-        self.full.get_or_init(|| FullBvh::of(&self.nodes, &self.triangles, &self.bounds))
+    pub fn bvh8(&self) -> &Bvh8 {
+        self.bvh8.get_or_init(|| Bvh8::of(&self.nodes, &self.triangles, &self.bounds))
     }
 
     /// Can a primary ray's light come from further rays?

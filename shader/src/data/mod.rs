@@ -6,18 +6,18 @@
 //! a power of two so that every coordinate, cameras included, lies in [-1, 1].
 
 mod compact;
+mod cwbvh;
 mod launch;
 mod look;
 mod node;
 mod triangle;
-mod wide;
 
 pub use compact::CompactPair;
+pub use cwbvh::CwbvhNode;
 pub use launch::{Features, Frame, Tuning};
 pub use look::{Light, Material, Normals};
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use triangle::{Bounds, Triangle};
-pub use wide::WideNode;
 
 use glam::{UVec4, Vec3};
 

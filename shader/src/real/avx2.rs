@@ -188,14 +188,14 @@ macro_rules! registers {
                     inverse: ray.inverse.each($number::arrays),
                     offset: ray.offset.each($number::arrays),
                     shear: ray.shear.each($number::arrays, $mask::arrays),
-                    leaves: ray.leaves.arrays(),
+                    source_primitive: ray.source_primitive.arrays(),
                 };
                 let mut lanes = Hit {
                     t: hit.t.arrays(),
                     u: hit.u.arrays(),
                     v: hit.v.arrays(),
                     scale: hit.scale.arrays(),
-                    slot: hit.slot.arrays(),
+                    triangle_index: hit.triangle_index.arrays(),
                     primitive: hit.primitive.arrays(),
                 };
                 F32xN::<$count>::lanes(&arrays, &mut lanes, mask.arrays(), &mut f);
@@ -206,7 +206,7 @@ macro_rules! registers {
                     u: number(lanes.u),
                     v: number(lanes.v),
                     scale: number(lanes.scale),
-                    slot: index(lanes.slot),
+                    triangle_index: index(lanes.triangle_index),
                     primitive: index(lanes.primitive),
                 };
             }

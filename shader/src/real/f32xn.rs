@@ -208,7 +208,7 @@ impl<const N: usize> Ray<F32xN<N>> {
             inverse: self.inverse.lane(i),
             offset: self.offset.lane(i),
             shear: self.shear.lane(i),
-            leaves: self.leaves.0[i],
+            source_primitive: self.source_primitive.0[i],
         }
     }
 }
@@ -222,7 +222,7 @@ impl<const N: usize> Hit<F32xN<N>> {
             u: self.u.0[i],
             v: self.v.0[i],
             scale: self.scale.0[i],
-            slot: self.slot.0[i],
+            triangle_index: self.triangle_index.0[i],
             primitive: self.primitive.0[i],
         }
     }
@@ -233,7 +233,7 @@ impl<const N: usize> Hit<F32xN<N>> {
         self.u.0[i] = hit.u;
         self.v.0[i] = hit.v;
         self.scale.0[i] = hit.scale;
-        self.slot.0[i] = hit.slot;
+        self.triangle_index.0[i] = hit.triangle_index;
         self.primitive.0[i] = hit.primitive;
     }
 }

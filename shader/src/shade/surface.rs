@@ -28,12 +28,12 @@ pub struct Surface<R: Real> {
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of triangle `slot` at a contact, seen along `direction`.
+    /// The surface of triangle `triangle_index` at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
         features: Features,
         looks: &Looks<'_>,
-        slot: u32,
+        triangle_index: u32,
         triangle: &Triangle,
         direction: V3<R>,
         contact: &Contact<R>,
@@ -41,8 +41,11 @@ impl<R: Scalar> Surface<R> {
         let material: Material = read(looks.materials, triangle.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
-        let normal =
-            if features.has(Features::SMOOTH) { interpolated(looks, slot, direction, contact) } else { contact.normal };
+        let normal = if features.has(Features::SMOOTH) {
+            interpolated(looks, triangle_index, direction, contact)
+        } else {
+            contact.normal
+        };
         let other =
             features.has(Features::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
         Surface {
@@ -61,9 +64,9 @@ impl<R: Scalar> Surface<R> {
 /// The vertex normals' weighted sum, turned to the viewer's side of the triangle. Where that leaves
 /// no direction, or the normal turns away from the viewer, the triangle's own normal stands in.
 #[inline(always)]
-fn interpolated<R: Scalar>(looks: &Looks<'_>, slot: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
+fn interpolated<R: Scalar>(looks: &Looks<'_>, triangle_index: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
     let (u, v) = contact.weights;
-    let normals = read(looks.normals, slot);
+    let normals = read(looks.normals, triangle_index);
     let normal = |record| V3::<R>::splat(numbers(record));
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.normalised();

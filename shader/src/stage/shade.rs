@@ -36,14 +36,14 @@ pub fn shade<R: Scalar>(geometry: &Geometry<'_>, looks: &Looks<'_>, slot: u32, w
         return false;
     }
     let path = Path::<R>::current(geometry, slot, paths);
-    let (hit, place) = R::load(read(hits, slot));
-    if place == Hit::<R>::NOTHING {
+    let (hit, triangle_index) = R::load(read(hits, slot));
+    if triangle_index == Hit::<R>::NOTHING {
         add(geometry, film, pixel.index, &path, background(geometry.features, geometry.frame, path.direction), 0);
         return pop(geometry, slot, &path, paths);
     }
-    let triangle = geometry.triangle(place);
+    let triangle = geometry.triangle(triangle_index);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
-    let surface = Surface::new(geometry.features, looks, place, &triangle, path.direction, &contact);
+    let surface = Surface::new(geometry.features, looks, triangle_index, &triangle, path.direction, &contact);
     let (light, rays) = lit(geometry, looks.lights, slot, path.direction, (&contact, &surface), shadows);
     add(geometry, film, pixel.index, &path, light, rays);
     if !geometry.features.has(Features::REFLECTION) && !geometry.features.has(Features::REFRACTION) {
@@ -105,16 +105,16 @@ fn add<R: Scalar>(
 fn branch<R: Scalar>(
     geometry: &Geometry<'_>,
     path: &Path<R>,
-    leaves: u32,
+    source_primitive: u32,
     (contact, surface): (&Contact<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let none = path.on(leaves, contact.position, mirrored, V3::zero());
+    let none = path.on(source_primitive, contact.position, mirrored, V3::zero());
     if !geometry.features.has(Features::REFRACTION) || surface.ior.eq(zero) {
-        let reflected = path.on(leaves, contact.leave(mirrored), mirrored, surface.reflection);
+        let reflected = path.on(source_primitive, contact.leave(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
@@ -122,12 +122,13 @@ fn branch<R: Scalar>(
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
     // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
-    let reflected = path.on(leaves, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
+    let reflected = path.on(source_primitive, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(leaves, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
+    let refracted =
+        path.on(source_primitive, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }
@@ -135,14 +136,14 @@ fn branch<R: Scalar>(
 impl<R: Scalar> Path<R> {
     /// The path that goes on from a contact.
     #[inline(always)]
-    fn on(&self, leaves: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
+    fn on(&self, source_primitive: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
             origin,
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,
             pending: self.pending,
-            leaves,
+            source_primitive,
         }
     }
 

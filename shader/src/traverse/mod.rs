@@ -4,9 +4,10 @@
 //! meets, with t no less than the entry to that box. A node's box is wider than what it holds by more
 //! than the tests of both may err, so it is entered no later, and no order of visits can cull the winner.
 
-pub mod cursor;
 #[cfg(not(target_arch = "spirv"))]
-mod full;
+mod bvh8;
+pub mod cursor;
+mod cwbvh;
 mod hybrid;
 mod if_if;
 mod packet;
@@ -15,16 +16,15 @@ mod speculative;
 mod stack;
 pub mod step;
 mod while_while;
-mod wide;
 
 #[cfg(not(target_arch = "spirv"))]
-pub use full::FullNodes;
+pub use bvh8::Bvh8Method;
+pub use cwbvh::CwbvhMethod;
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;
-pub use wide::WideNodes;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Real;

@@ -2,9 +2,9 @@
 
 use super::Query;
 use super::cursor::{Cursor, Stack};
-use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 #[cfg(not(target_arch = "spirv"))]
-use crate::full::Block;
+use crate::bvh8::Triangle4;
+use crate::data::{CentredPair, Features, NodeRef, Triangle, numbers};
 use crate::intersect::{Candidate, Span, intersect_moller_trumbore, intersect_watertight, slab, straddles_origin};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
@@ -109,10 +109,10 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
     if cfg!(not(target_arch = "spirv")) {
         return hit.weights();
     }
-    if hit.slot == Hit::<R>::NOTHING {
+    if hit.triangle_index == Hit::<R>::NOTHING {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let candidate = single(geometry, &geometry.triangle(hit.slot), ray);
+    let candidate = single(geometry, &geometry.triangle(hit.triangle_index), ray);
     let scale = candidate.area.reciprocal();
     (candidate.u * scale, candidate.v * scale)
 }
@@ -120,25 +120,30 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
 /// Tests the triangles of a block, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &Geometry<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn triangle4<Q: Query, R: Scalar, F: Lanes<R>>(
+    geometry: &Geometry<'_>,
+    triangles: &Triangle4,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
     let origin = ray.shear.cycle(ray.origin);
     let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
     let along = F::all(ray.along());
     let mut first = 0;
-    while first < Block::TRIANGLES {
+    while first < Triangle4::TRIANGLES {
         Q::on_triangle();
-        let a = vertex::<R, F>(block, 0, first, ray, origin);
-        let b = vertex::<R, F>(block, 1, first, ray, origin);
-        let c = vertex::<R, F>(block, 2, first, ray, origin);
+        let a = vertex::<R, F>(triangles, 0, first, ray, origin);
+        let b = vertex::<R, F>(triangles, 1, first, ray, origin);
+        let c = vertex::<R, F>(triangles, 2, first, ray, origin);
         let candidate = intersect::<R, F>(geometry.features, [a, b, c], shear, along);
         let mut inside = F::bits(candidate.nearer(F::all(hit.t)));
         while inside != 0 {
             let lane = inside.trailing_zeros() as usize;
             inside &= inside - 1;
-            let slot = block.slots[(first + lane) & 3];
-            let triangle = geometry.triangle(slot);
+            let triangle_index = triangles.triangle_indices[(first + lane) & 3];
+            let triangle = geometry.triangle(triangle_index);
             if counts::<Q>(geometry.features, &triangle) {
-                accept_hit::<Q, R>(geometry, &triangle, slot, &candidate.lane(lane), ray, hit);
+                accept_hit::<Q, R>(geometry, &triangle, triangle_index, &candidate.lane(lane), ray, hit);
             }
         }
         first += F::COUNT as usize;
@@ -159,8 +164,14 @@ fn intersect<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear:
 /// A vertex of the block's triangles from `first` on, relative to the ray's origin, both with their axes cycled.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-fn vertex<R: Scalar, F: Lanes<R>>(block: &Block, vertex: usize, first: usize, ray: &Ray<R>, origin: V3<R>) -> V3<F> {
-    let numbers = &block.vertices[vertex];
+fn vertex<R: Scalar, F: Lanes<R>>(
+    triangles: &Triangle4,
+    vertex: usize,
+    first: usize,
+    ray: &Ray<R>,
+    origin: V3<R>,
+) -> V3<F> {
+    let numbers = &triangles.vertices[vertex];
     let axis = AXES[ray.shear.major()];
     V3::new(
         F::taken(&numbers[axis[0]][first..]) - F::all(origin.x),
@@ -188,13 +199,13 @@ fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
 fn accept_hit<Q: Query, R: Real>(
     geometry: &Geometry<'_>,
     triangle: &Triangle,
-    slot: u32,
+    triangle_index: u32,
     candidate: &Candidate<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
     let (primitive, features, zero) = (triangle.primitive(), geometry.features, R::splat(0.0));
-    let mut inside = candidate.inside & !R::equals(primitive, ray.leaves);
+    let mut inside = candidate.inside & !R::equals(primitive, ray.source_primitive);
     // The inside of glass is seen from behind.
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & candidate.front;
@@ -204,7 +215,7 @@ fn accept_hit<Q: Query, R: Real>(
         let [a, b, c] = triangle.vertices();
         inside = inside & straddles_origin(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
     }
-    let (least, greatest) = geometry.bounds(slot, triangle);
+    let (least, greatest) = geometry.bounds(triangle_index, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
     let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
@@ -224,7 +235,7 @@ fn accept_hit<Q: Query, R: Real>(
             hit.v = R::select(better, candidate.v, hit.v);
             hit.scale = R::select(better, scale, hit.scale);
         }
-        hit.slot = R::select_index(better, R::index(slot), hit.slot);
+        hit.triangle_index = R::select_index(better, R::index(triangle_index), hit.triangle_index);
         hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
     }
 }

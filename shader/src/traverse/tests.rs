@@ -2,11 +2,11 @@
 
 use super::step::{self, occluded};
 use super::{
-    Closest, Cut, FullNodes, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative,
-    StackMax, WhileWhile, WideNodes,
+    Bvh8Method, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential,
+    Speculative, StackMax, WhileWhile,
 };
-use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
-use crate::full::{Block, Full, FullNode, FullRef};
+use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
+use crate::data::{CentredPair, CwbvhNode, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning};
 use crate::ray::{Hit, Ray};
 use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
 use crate::scene::Geometry;
@@ -45,20 +45,20 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
 
 /// A wide hierarchy by eighths of the list, its nodes in the order in which they are found: every box the
 /// whole grid, so that all that is to be seen is whether nodes and triangles are followed.
-fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
+fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
     let all = 0..triangles.len() as u32;
     let mut open = vec![all];
     let mut nodes = Vec::new();
     while nodes.len() < open.len() {
         let range = open[nodes.len()].clone();
-        let step = range.len().div_ceil(WideNode::ARITY).max(3) as u32;
+        let step = range.len().div_ceil(CwbvhNode::ARITY).max(3) as u32;
         let (first_child, mut inner, mut all) = (open.len() as u32, 0, 0);
         // Leaves lie behind inner nodes: the last part alone may be shorter than the others.
         let last = range.start + (range.len() as u32 - 1) / step * step;
-        let leaves = if step <= WideNode::MAX_LEAF { range.start } else { last };
+        let leaves = if step <= CwbvhNode::MAX_LEAF { range.start } else { last };
         for (slot, first) in range.clone().step_by(step as usize).enumerate() {
             let part = first..(first + step).min(range.end);
-            if part.len() as u32 <= WideNode::MAX_LEAF {
+            if part.len() as u32 <= CwbvhNode::MAX_LEAF {
                 all |= ((1 << part.len()) - 1) << (3 * slot);
             } else {
                 inner |= 1 << slot;
@@ -66,7 +66,7 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
             }
         }
         let exponent = 127 + 2;
-        nodes.push(WideNode {
+        nodes.push(CwbvhNode {
             grid: crate::data::pack(Vec3::splat(-2.0), inner << 24 | exponent << 16 | exponent << 8 | exponent),
             children: UVec4::new(first_child, leaves, all, 0),
             low_x_low_y: UVec4::ZERO,
@@ -78,26 +78,26 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
 }
 
 /// The same in full precision, by eighths down to blocks, with the boxes that there must be.
-fn build_full(triangles: &[Triangle]) -> (Vec<FullNode>, Vec<Block>) {
-    let (mut nodes, mut blocks) = (vec![FullNode::EMPTY], Vec::new());
+fn build_bvh8(triangles: &[Triangle]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
+    let (mut nodes, mut blocks) = (vec![Bvh8Node::EMPTY], Vec::new());
     let mut open = vec![(0, 0..triangles.len())];
     while let Some((node, range)) = open.pop() {
-        let step = range.len().div_ceil(8).max(Block::TRIANGLES);
+        let step = range.len().div_ceil(8).max(Triangle4::TRIANGLES);
         for (child, first) in range.clone().step_by(step).enumerate() {
             let part = first..(first + step).min(range.end);
             let boxes = triangles[part.clone()].iter().map(Triangle::bounds);
             let (least, greatest) = boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).expect("a part has triangles");
-            let planes = [least - FullNode::MARGIN, greatest + FullNode::MARGIN];
+            let planes = [least - Bvh8Node::MARGIN, greatest + Bvh8Node::MARGIN];
             for (axis, side) in (0..6).map(|i| (i / 2, i % 2)) {
                 nodes[node].planes[axis][side][child] = planes[side][axis];
             }
-            nodes[node].children[child] = if part.len() <= Block::TRIANGLES {
-                blocks.push(Block::of(part.map(|slot| (slot as u32, &triangles[slot]))));
-                FullRef::leaf(blocks.len() as u32 - 1)
+            nodes[node].children[child] = if part.len() <= Triangle4::TRIANGLES {
+                blocks.push(Triangle4::of(part.map(|slot| (slot as u32, &triangles[slot]))));
+                Bvh8Ref::leaf(blocks.len() as u32 - 1)
             } else {
-                nodes.push(FullNode::EMPTY);
+                nodes.push(Bvh8Node::EMPTY);
                 open.push((nodes.len() - 1, part));
-                FullRef::inner(nodes.len() as u32 - 1)
+                Bvh8Ref::inner(nodes.len() as u32 - 1)
             };
         }
     }
@@ -107,8 +107,8 @@ fn build_full(triangles: &[Triangle]) -> (Vec<FullNode>, Vec<Block>) {
 struct World {
     triangles: Vec<Triangle>,
     nodes: Vec<CentredPair>,
-    wide: Vec<WideNode>,
-    full: (Vec<FullNode>, Vec<Block>),
+    wide: Vec<CwbvhNode>,
+    bvh8: (Vec<Bvh8Node>, Vec<Triangle4>),
     words: Vec<UVec4>,
     frame: Frame,
     features: Features,
@@ -118,15 +118,15 @@ impl World {
     fn new(triangles: Vec<Triangle>, features: u32) -> Self {
         let nodes = build(&triangles).iter().map(CentredPair::from).collect();
         let words = bytemuck::cast_slice(&triangles).to_vec();
-        let (wide, full) = (build_wide(&triangles), build_full(&triangles));
-        World { triangles, nodes, wide, full, words, frame: Frame::zeroed(), features: Features(features) }
+        let (wide, bvh8) = (build_cwbvh(&triangles), build_bvh8(&triangles));
+        World { triangles, nodes, wide, bvh8, words, frame: Frame::zeroed(), features: Features(features) }
     }
 
     fn geometry(&self) -> Geometry<'_> {
         let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
         let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
-        let full = Full { nodes: &self.full.0, blocks: &self.full.1 };
-        Geometry { frame, features: self.features, tuning, nodes, wide, full, triangles, bounds: &[] }
+        let bvh8 = Bvh8View { nodes: &self.bvh8.0, blocks: &self.bvh8.1 };
+        Geometry { frame, features: self.features, tuning, nodes, wide, bvh8, triangles, bounds: &[] }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
@@ -178,8 +178,8 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
 fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile<Alone>, R>(world, origin, direction);
-    check::<WideNodes, R>(world, origin, direction);
-    check::<FullNodes, R>(world, origin, direction);
+    check::<CwbvhMethod, R>(world, origin, direction);
+    check::<Bvh8Method, R>(world, origin, direction);
     check::<Speculative<Alone>, R>(world, origin, direction);
     check::<Packet<Alone>, R>(world, origin, direction);
     check::<Hybrid<Alone, StackMax, Sequential>, R>(world, origin, direction);
@@ -240,7 +240,12 @@ fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
     let vector = |v: [f32; 3]| V3::splat(Vec3::from(v));
     let segments: Vec<Segment<f32>> = rays[..count]
         .iter()
-        .map(|&(o, d)| Segment { origin: vector(o), direction: vector(d), limit: 0.5, leaves: Hit::<f32>::NOTHING })
+        .map(|&(o, d)| Segment {
+            origin: vector(o),
+            direction: vector(d),
+            limit: 0.5,
+            source_primitive: Hit::<f32>::NOTHING,
+        })
         .collect();
     let (mut hits, mut answers) = (vec![UVec4::ZERO; count], vec![u32::MAX; count]);
     let geometry = world.geometry();
@@ -253,7 +258,7 @@ fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
         let weights = want.weights();
         let got = crate::data::numbers(hits[i]);
         assert_eq!((got.x, got.y, got.z), (want.t, weights.0, weights.1), "ray {i} of {count}");
-        assert_eq!(primitive(hits[i].w), primitive(want.slot), "ray {i} of {count}");
+        assert_eq!(primitive(hits[i].w), primitive(want.triangle_index), "ray {i} of {count}");
         let want = occluded(&world.trace::<Packet<Alone>, Occlusion, f32>(&alone, 0.5));
         assert_eq!(answers[i] == SHADOWED, want, "ray {i} of {count}");
     }
@@ -301,7 +306,7 @@ proptest! {
             let rays = rays_of(ends, false);
             let world = World::new(triangles, Features::REFRACTION);
             for (origin, direction) in &rays {
-                check::<FullNodes<Avx2>, f32>(&world, *origin, *direction);
+                check::<Bvh8Method<Avx2>, f32>(&world, *origin, *direction);
             }
             check_together::<Register>(&world, &rays, count);
         }

@@ -14,14 +14,14 @@ use super::resumable::{Progress, Resumable, follow};
 use super::step::{occluded, triangle};
 use super::{Method, Query};
 use crate::buffer::read;
-use crate::data::{NodeRef, STACK, WideNode, numbers};
+use crate::data::{CwbvhNode, NodeRef, STACK, numbers};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::Geometry;
 use glam::{UVec4, Vec3};
 
 /// See the module.
-pub struct WideNodes;
+pub struct CwbvhMethod;
 
 /// Inner nodes of one parent that wait.
 #[derive(Clone, Copy)]
@@ -59,7 +59,7 @@ struct Triangles {
 impl Triangles {
     const NOTHING: Triangles = Triangles { first: 0, waiting: 0, all: 0 };
 
-    /// Takes one: its slot.
+    /// Takes one and returns its index.
     #[inline(always)]
     fn take(&mut self) -> u32 {
         let bit = 1 << (31 - self.waiting.leading_zeros());
@@ -121,7 +121,7 @@ impl Groups {
 /// Groups that wait, two words each.
 pub type Stack = super::stack::Stack<u32, { 2 * STACK }>;
 
-impl<R: Scalar> Resumable<R> for WideNodes {
+impl<R: Scalar> Resumable<R> for CwbvhMethod {
     type Cursor = Groups;
     type Stack = Stack;
 
@@ -141,12 +141,12 @@ impl<R: Scalar> Resumable<R> for WideNodes {
         if cursor.triangles.waiting == 0 {
             let node = cursor.take(inverted(ray), stack);
             let node = read(geometry.wide, node);
-            Q::on_boxes(WideNode::ARITY as u32);
+            Q::on_boxes(CwbvhNode::ARITY as u32);
             (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
         }
         if cursor.triangles.waiting != 0 {
-            let slot = cursor.triangles.take();
-            triangle::<Q, R>(geometry, NodeRef::leaf(slot, 1), ray, hit);
+            let triangle_index = cursor.triangles.take();
+            triangle::<Q, R>(geometry, NodeRef::leaf(triangle_index, 1), ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -154,7 +154,7 @@ impl<R: Scalar> Resumable<R> for WideNodes {
     }
 }
 
-impl<R: Scalar> Method<R> for WideNodes {
+impl<R: Scalar> Method<R> for CwbvhMethod {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
@@ -172,7 +172,7 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
 
 /// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
 #[inline(always)]
-fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
+fn open<R: Scalar>(node: &CwbvhNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
     let opening = Opening::<R>::new(node, ray, hit.t);
     // A loop is not always unrolled.
     let met = opening.met(0)
@@ -214,7 +214,7 @@ struct Opening<R: Scalar> {
 
 impl<R: Scalar> Opening<R> {
     #[inline(always)]
-    fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
+    fn new(node: &CwbvhNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
         let extent = V3::<R>::splat(Vec3::new(power(0), power(8), power(16))).times(ray.inverse);
         let start = (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse);

@@ -1,46 +1,46 @@
 //! The wide hierarchy as a CPU's vectors load it: boxes in full precision and triangles, number by number, with
-//! nothing to decode or to turn. The same triangles lie at the same slots as in the other hierarchies.
+//! nothing to decode or to turn. The same triangles have the same indices as in the other hierarchies.
 
 use crate::data::Triangle;
 
-/// Eight siblings. A box is wider than the own boxes below it by [`FullNode::MARGIN`] on every side.
+/// Eight siblings. A box is wider than the own boxes below it by [`Bvh8Node::MARGIN`] on every side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
-pub struct FullNode {
+pub struct Bvh8Node {
     /// By axis the lesser planes, then the greater ones, each a child's.
     pub planes: [[[f32; 8]; 2]; 3],
-    /// What the boxes hold; the larger come first, see `traverse::full`.
-    pub children: [FullRef; 8],
+    /// What the boxes hold; the larger come first, see `traverse::bvh8`.
+    pub children: [Bvh8Ref; 8],
 }
 
-impl FullNode {
+impl Bvh8Node {
     /// How much wider than what it holds a box is at least, but for one rounding of the plane.
     pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
     /// A pair of planes that no ray is between: the box of a child that is not there.
     pub const NOWHERE: [f32; 2] = [4.0, -4.0];
     /// No child, no triangle.
-    pub const EMPTY: FullNode =
-        FullNode { planes: [[[Self::NOWHERE[0]; 8], [Self::NOWHERE[1]; 8]]; 3], children: [FullRef(0); 8] };
+    pub const EMPTY: Bvh8Node =
+        Bvh8Node { planes: [[[Self::NOWHERE[0]; 8], [Self::NOWHERE[1]; 8]]; 3], children: [Bvh8Ref(0); 8] };
 }
 
 /// A node, or a leaf: a block of triangles.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
-pub struct FullRef(pub u32);
+pub struct Bvh8Ref(pub u32);
 
-impl FullRef {
+impl Bvh8Ref {
     const LEAF: u32 = 1 << 31;
     /// The node that a traversal starts with.
-    pub const ROOT: FullRef = FullRef(0);
+    pub const ROOT: Bvh8Ref = Bvh8Ref(0);
 
     /// The node of this number.
     pub fn inner(node: u32) -> Self {
-        FullRef(node)
+        Bvh8Ref(node)
     }
 
     /// The leaf of the block of this number.
     pub fn leaf(block: u32) -> Self {
-        FullRef(block | Self::LEAF)
+        Bvh8Ref(block | Self::LEAF)
     }
 
     /// Is this a block of triangles?
@@ -59,32 +59,32 @@ impl FullRef {
 /// Up to four triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
-pub struct Block {
+pub struct Triangle4 {
     /// By vertex and axis a coordinate of each triangle; NaN, which is inside nothing, where there is none.
     pub vertices: [[[f32; 4]; 3]; 3],
-    /// The slot of each.
-    pub slots: [u32; 4],
+    /// The index of each.
+    pub triangle_indices: [u32; 4],
 }
 
-impl Block {
+impl Triangle4 {
     /// Triangles of a block.
     pub const TRIANGLES: usize = 4;
     /// No triangle.
-    pub const EMPTY: Block = Block { vertices: [[[f32::NAN; 4]; 3]; 3], slots: [0; 4] };
+    pub const EMPTY: Triangle4 = Triangle4 { vertices: [[[f32::NAN; 4]; 3]; 3], triangle_indices: [0; 4] };
 
-    /// Triangles, each with its slot.
+    /// Triangles, each with its index.
     ///
     /// # Panics
-    /// If there are more than [`Block::TRIANGLES`].
+    /// If there are more than [`Triangle4::TRIANGLES`].
     pub fn of<'t>(triangles: impl Iterator<Item = (u32, &'t Triangle)>) -> Self {
-        let mut block = Block::EMPTY;
-        for (lane, (slot, triangle)) in triangles.enumerate() {
+        let mut block = Triangle4::EMPTY;
+        for (lane, (index, triangle)) in triangles.enumerate() {
             for (vertex, place) in triangle.vertices().iter().enumerate() {
                 for axis in 0..3 {
                     block.vertices[vertex][axis][lane] = place[axis];
                 }
             }
-            block.slots[lane] = slot;
+            block.triangle_indices[lane] = index;
         }
         block
     }
@@ -92,9 +92,9 @@ impl Block {
 
 /// A hierarchy. Empty unless the method asks for it.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Full<'a> {
+pub struct Bvh8View<'a> {
     /// Nodes, the root first.
-    pub nodes: &'a [FullNode],
+    pub nodes: &'a [Bvh8Node],
     /// The triangles of leaves.
-    pub blocks: &'a [Block],
+    pub blocks: &'a [Triangle4],
 }

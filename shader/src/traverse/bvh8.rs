@@ -1,35 +1,35 @@
-//! Traversal of eight children a node on a CPU: the same tree in other words, see [`crate::full`]. Every ray by
+//! Traversal of eight children a node on a CPU: the same tree in other words, see [`crate::bvh8`]. Every ray by
 //! itself, its boxes and triangles in the lanes.
 //!
 //! A plane `p` is met at `p * inverse - offset`, which errs by the rounding of the offset, of the product and of
 //! the difference: with coordinates in [-1, 1], by less than 4 * 2^-24 of a shift of the plane. A triangle's own
-//! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`FullNode::MARGIN`]
+//! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`Bvh8Node::MARGIN`]
 //! together, so that a box is met, and entered no later, wherever an own box in it is. That leaves room for what
 //! is entered where to be rounded to single precision.
 
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
-use super::step::{block, occluded};
+use super::step::{occluded, triangle4};
 use super::{Method, Query};
-use crate::full::{FullNode, FullRef};
+use crate::bvh8::{Bvh8Node, Bvh8Ref};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Native, Scalar, SimdIsa, V3};
 use crate::scene::Geometry;
 
 /// See the module. `V` are the vectors that test boxes and triangles.
-pub struct FullNodes<V = Native>(PhantomData<V>);
+pub struct Bvh8Method<V = Native>(PhantomData<V>);
 
-impl<R: Scalar, V: SimdIsa<R>> Method<R> for FullNodes<V> {
+impl<R: Scalar, V: SimdIsa<R>> Method<R> for Bvh8Method<V> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let boxes = Boxes::<R, V::Eight>::new(ray);
         let mut waiting = Waiting::new();
-        let mut at = FullRef::ROOT;
+        let mut at = Bvh8Ref::ROOT;
         loop {
             while !at.is_leaf() {
                 Q::on_boxes(8);
-                let node = &geometry.full.nodes[at.index()];
+                let node = &geometry.bvh8.nodes[at.index()];
                 let (met, near) = boxes.meet(node, hit.t);
                 let next =
                     if Q::ANY { first(node, met, &mut waiting) } else { nearest(node, met, &near, &mut waiting) };
@@ -38,7 +38,7 @@ impl<R: Scalar, V: SimdIsa<R>> Method<R> for FullNodes<V> {
                     None => return,
                 }
             }
-            block::<Q, R, V::Four>(geometry, &geometry.full.blocks[at.index()], ray, hit);
+            triangle4::<Q, R, V::Four>(geometry, &geometry.bvh8.blocks[at.index()], ray, hit);
             if Q::ANY && occluded(hit) {
                 return;
             }
@@ -75,7 +75,7 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
 
     /// A bit for every box that the ray meets up to a limit, and where it enters each.
     #[inline(always)]
-    fn meet(&self, node: &FullNode, limit: R) -> (u32, [f32; 8]) {
+    fn meet(&self, node: &Bvh8Node, limit: R) -> (u32, [f32; 8]) {
         let (mut met, mut near) = (0, [0.0; 8]);
         let mut first = 0;
         while first < 8 {
@@ -91,7 +91,7 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
 
     /// Where the ray meets planes, of the lanes' boxes from `first` on.
     #[inline(always)]
-    fn planes(&self, node: &FullNode, side: [usize; 3], first: usize) -> V3<E> {
+    fn planes(&self, node: &Bvh8Node, side: [usize; 3], first: usize) -> V3<E> {
         let plane = V3::new(
             E::taken(&node.planes[0][side[0] & 1][first..]),
             E::taken(&node.planes[1][side[1] & 1][first..]),
@@ -104,7 +104,7 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
 /// The first child that is met; the others wait, the first of them the last. Children are in the order of their
 /// size: a ray that asks for any hit is done the sooner in the larger, whichever is nearer.
 #[inline(always)]
-fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef> {
+fn first(node: &Bvh8Node, mut met: u32, waiting: &mut Waiting) -> Option<Bvh8Ref> {
     while met != 0 {
         let last = 31 - met.leading_zeros();
         met ^= 1 << last;
@@ -119,7 +119,7 @@ fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef
 
 /// The nearest child that is met; the others wait, the nearer the later.
 #[inline(always)]
-fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<FullRef> {
+fn nearest(node: &Bvh8Node, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<Bvh8Ref> {
     if met == 0 {
         return None;
     }
@@ -161,13 +161,13 @@ fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) ->
 
 /// Where a box is entered, and what it holds: in the order of distances, which are no less than +0.
 #[inline(always)]
-fn entry(near: f32, child: FullRef) -> u64 {
+fn entry(near: f32, child: Bvh8Ref) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child.0)
 }
 
 #[inline(always)]
-fn reference(entry: u64) -> FullRef {
-    FullRef(entry as u32)
+fn reference(entry: u64) -> Bvh8Ref {
+    Bvh8Ref(entry as u32)
 }
 
 #[inline(always)]
@@ -217,7 +217,7 @@ impl Waiting {
 
     /// The last that is entered before `limit`.
     #[inline(always)]
-    fn take(&mut self, limit: f32) -> Option<FullRef> {
+    fn take(&mut self, limit: f32) -> Option<Bvh8Ref> {
         while self.count > 0 {
             self.count -= 1;
             let entry = self.get(self.count);

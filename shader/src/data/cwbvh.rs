@@ -6,11 +6,11 @@ use glam::UVec4;
 /// Eight siblings in 80 bytes, their boxes quantised to a grid (Ylitie, Karras and Laine 2017: CWBVH).
 ///
 /// A box of child `i` lies between `origin + low[i] * step` and `origin + high[i] * step` on each axis.
-/// Quantised boxes are wider than what they hold by at least [`WideNode::MARGIN`] and [`WideNode::SLACK`] of a
-/// step, which cover the rounding of a box test that scales the grid instead of the box; see `traverse::wide`.
+/// Quantised boxes are wider than what they hold by at least [`CwbvhNode::MARGIN`] and [`CwbvhNode::SLACK`] of a
+/// step, which cover the rounding of a box test that scales the grid instead of the box; see `traverse::cwbvh`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
-pub struct WideNode {
+pub struct CwbvhNode {
     /// The grid's origin; a byte an axis is the biased exponent of 256 steps, x in the lowest; bit
     /// 24 + `i` tells that child `i` is an inner node.
     pub grid: UVec4,
@@ -18,7 +18,7 @@ pub struct WideNode {
     /// triangle; as many of bits 3 `i` to 3 `i` + 2 as child `i` is triangles, which follow each other in the
     /// order of their bits; nothing.
     pub children: UVec4,
-    /// Planes of four children a word, see [`WideNode::TURN`]: low x in the first two words, low y in the last two.
+    /// Planes of four children a word, see [`CwbvhNode::TURN`]: low x in the first two words, low y in the last two.
     pub low_x_low_y: UVec4,
     /// Low z, high x.
     pub low_z_high_x: UVec4,
@@ -26,7 +26,7 @@ pub struct WideNode {
     pub high_y_high_z: UVec4,
 }
 
-impl WideNode {
+impl CwbvhNode {
     /// Children of a node.
     pub const ARITY: usize = 8;
     /// The most triangles of a child.

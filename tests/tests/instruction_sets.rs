@@ -48,7 +48,7 @@ fn settled(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
 }
 
 #[test]
-fn every_level_and_method_answers_alike() {
+fn every_isa_and_method_answers_alike() {
     let stream = stream();
     for name in SHIPPED {
         let scene = shipped(name);
@@ -73,7 +73,7 @@ fn every_level_and_method_answers_alike() {
 }
 
 #[test]
-fn every_level_renders_the_same_tile() {
+fn every_isa_renders_the_same_tile() {
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));

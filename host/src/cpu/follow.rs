@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::real::{Native, Scalar, SimdIsa};
+use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
@@ -10,7 +10,7 @@ use eyerays_shader::traverse::{
 };
 use eyerays_shader::warp::Alone;
 
-use super::isa::{Isa, Task};
+use super::isa::Isa;
 use crate::method::Method;
 
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.

@@ -2,7 +2,7 @@
 
 use std::sync::LazyLock;
 
-use eyerays_shader::real::{Native, Scalar, SimdIsa};
+use eyerays_shader::real::{Native, Scalar, Task};
 
 /// A set of instructions. The kernels are compiled once for each; all give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,13 +15,6 @@ pub enum Isa {
     /// Vectors of sixteen numbers.
     #[cfg(target_arch = "x86_64")]
     Avx512,
-}
-
-/// What is to be compiled for every ISA.
-pub trait Task<R: Scalar> {
-    /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
-    /// inlined is compiled for the ISA.
-    fn run<V: SimdIsa<R>>(self);
 }
 
 impl Isa {
@@ -80,11 +73,13 @@ impl Isa {
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2<R: Scalar>(task: impl Task<R>) {
-    task.run::<R::Avx2>();
+    // SAFETY: this function runs on no processor without its target features.
+    unsafe { R::run_avx2(task) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn avx512<R: Scalar>(task: impl Task<R>) {
-    task.run::<R::Avx512>();
+    // SAFETY: as above.
+    unsafe { R::run_avx512(task) }
 }

@@ -9,8 +9,10 @@ use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 use super::{F32xN, Lanes, Mask, MaskxN, Real, SimdIsa, U32xN};
 use crate::ray::{Hit, Ray};
 
-/// A processor with AVX2 and FMA. Nobody else may follow rays over these vectors.
-pub struct Avx2;
+/// A processor with AVX2 and FMA. Not public: its vectors' safe functions are instructions that other processors lack, so
+/// [`Scalar::run_avx2`](super::Scalar::run_avx2) and [`run_avx512`](super::Scalar::run_avx512), which are unsafe, must stay
+/// the only ways to them.
+pub(crate) enum Avx2 {}
 
 impl SimdIsa<f32> for Avx2 {
     type Eight = Eight;
@@ -23,7 +25,7 @@ macro_rules! instruction {
     ($(fn $name:ident($($arg:tt $(: $type:ty)?),*) -> $result:ty { $body:expr })*) => {$(
         #[inline(always)]
         fn $name($($arg $(: $type)?),*) -> $result {
-            // SAFETY: plain arithmetic, on a processor that has the instruction: who names `Avx2` promises that.
+            // SAFETY: plain arithmetic, on a processor that has the instruction: see `Avx2`.
             unsafe { $body }
         }
     )*};

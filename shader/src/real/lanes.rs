@@ -35,6 +35,13 @@ pub trait SimdIsa<S: Scalar> {
     type Packet: Lanes<S>;
 }
 
+/// What is to be compiled for every instruction set.
+pub trait Task<S: Scalar> {
+    /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
+    /// inlined is compiled for the instruction set.
+    fn run<V: SimdIsa<S>>(self);
+}
+
 /// What every processor of the target has.
 pub struct Native;
 
@@ -44,9 +51,9 @@ impl<S: Scalar> SimdIsa<S> for Native {
     type Packet = S::Packet;
 }
 
-/// A processor with AVX-512.
+/// A processor with AVX-512; not public, as [`Avx2`](super::Avx2).
 #[cfg(target_arch = "x86_64")]
-pub struct Avx512;
+pub(super) enum Avx512 {}
 
 #[cfg(target_arch = "x86_64")]
 impl SimdIsa<f32> for Avx512 {

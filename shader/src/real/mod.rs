@@ -27,14 +27,14 @@ mod tests;
 mod vector;
 
 #[cfg(target_arch = "x86_64")]
-pub use avx2::Avx2;
+pub(crate) use avx2::Avx2;
 #[cfg(not(target_arch = "spirv"))]
 pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
 #[cfg(target_arch = "x86_64")]
-pub use lanes::Avx512;
+use lanes::Avx512;
 #[cfg(not(target_arch = "spirv"))]
-pub use lanes::{Lanes, Native, SimdIsa};
+pub use lanes::{Lanes, Native, SimdIsa, Task};
 pub use vector::V3;
 
 #[cfg(doc)]
@@ -190,17 +190,31 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     /// What follows rays together.
     #[cfg(not(target_arch = "spirv"))]
     type Packet: Lanes<Self>;
-    /// The vectors of a processor with AVX2, if these numbers have any use for them.
-    #[cfg(target_arch = "x86_64")]
-    type Avx2: SimdIsa<Self>;
-    /// The vectors of a processor with AVX-512.
-    #[cfg(target_arch = "x86_64")]
-    type Avx512: SimdIsa<Self>;
     /// Are there other vectors than [`Native`] ones?
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = false;
     /// Three numbers and an integer in device memory.
     type Record: Copy + Default;
+
+    /// Runs a task with the vectors of a processor with AVX2, if these numbers have any use for them.
+    ///
+    /// # Safety
+    /// The processor has AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx2(task: impl Task<Self>) {
+        task.run::<Native>();
+    }
+
+    /// Likewise with the vectors of a processor with AVX-512.
+    ///
+    /// # Safety
+    /// The processor has AVX-512, AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx512(task: impl Task<Self>) {
+        task.run::<Native>();
+    }
 
     /// Packs three numbers and an integer.
     fn store(v: V3<Self>, word: u32) -> Self::Record;

@@ -141,14 +141,22 @@ impl Scalar for f32 {
     type Four = super::F32xN<4>;
     #[cfg(not(target_arch = "spirv"))]
     type Packet = super::F32xN<8>;
-    #[cfg(target_arch = "x86_64")]
-    type Avx2 = super::Avx2;
-    #[cfg(target_arch = "x86_64")]
-    type Avx512 = super::Avx512;
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = true;
 
     records!(id, id);
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx2(task: impl super::Task<f32>) {
+        task.run::<super::Avx2>();
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx512(task: impl super::Task<f32>) {
+        task.run::<super::Avx512>();
+    }
 
     #[inline(always)]
     fn pow(self, exponent: f32) -> f32 {

@@ -1,29 +1,29 @@
-//! The wide hierarchy as a CPU's vectors load it: boxes in full precision and triangles, number by number, with
-//! nothing to decode or to turn. The same triangles have the same indices as in the other hierarchies.
+//! The wide hierarchy as a CPU's vectors load it: boxes in full precision and triangles, as structures of arrays, with
+//! nothing to decode or to shuffle. The same triangles have the same indices as in the other hierarchies.
 
 use crate::data::Triangle;
 
-/// Eight siblings. A box is wider than the own boxes below it by [`Bvh8Node::MARGIN`] on every side.
+/// Eight siblings. A box is wider than the triangles' own boxes below it by [`Bvh8Node::MARGIN`] on every side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Bvh8Node {
-    /// By axis the lesser planes, then the greater ones, each a child's.
+    /// For each axis the lower planes of all children, then the upper ones.
     pub planes: [[[f32; 8]; 2]; 3],
-    /// What the boxes hold; the larger come first, see `traverse::bvh8`.
+    /// The children, the larger first, see `traverse::bvh8`.
     pub children: [Bvh8Ref; 8],
 }
 
 impl Bvh8Node {
-    /// How much wider than what it holds a box is at least, but for one rounding of the plane.
+    /// How much wider than its contents a box is at least, except for one rounding of the plane.
     pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
-    /// A pair of planes that no ray is between: the box of a child that is not there.
+    /// A pair of planes that no ray is between: the box of a missing child.
     pub const NOWHERE: [f32; 2] = [4.0, -4.0];
     /// No child, no triangle.
     pub const EMPTY: Bvh8Node =
         Bvh8Node { planes: [[[Self::NOWHERE[0]; 8], [Self::NOWHERE[1]; 8]]; 3], children: [Bvh8Ref(0); 8] };
 }
 
-/// A node, or a leaf: a block of triangles.
+/// A reference to a node, or to a leaf: up to four triangles.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub struct Bvh8Ref(pub u32);
@@ -38,18 +38,18 @@ impl Bvh8Ref {
         Bvh8Ref(node)
     }
 
-    /// The leaf of the block of this number.
+    /// The leaf of the [`Triangle4`] of this number.
     pub fn leaf(block: u32) -> Self {
         Bvh8Ref(block | Self::LEAF)
     }
 
-    /// Is this a block of triangles?
+    /// Is this a leaf?
     #[inline(always)]
     pub fn is_leaf(self) -> bool {
         self.0 & Self::LEAF != 0
     }
 
-    /// The number of the node or of the block.
+    /// The number of the node or of the [`Triangle4`].
     #[inline(always)]
     pub fn index(self) -> usize {
         (self.0 & !Self::LEAF) as usize
@@ -60,14 +60,14 @@ impl Bvh8Ref {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct Triangle4 {
-    /// By vertex and axis a coordinate of each triangle; NaN, which is inside nothing, where there is none.
+    /// By vertex and axis a coordinate of each triangle; NaN, which is never hit, where there is none.
     pub vertices: [[[f32; 4]; 3]; 3],
-    /// The index of each.
+    /// The index of each triangle.
     pub triangle_indices: [u32; 4],
 }
 
 impl Triangle4 {
-    /// Triangles of a block.
+    /// The most triangles.
     pub const TRIANGLES: usize = 4;
     /// No triangle.
     pub const EMPTY: Triangle4 = Triangle4 { vertices: [[[f32::NAN; 4]; 3]; 3], triangle_indices: [0; 4] };
@@ -90,7 +90,7 @@ impl Triangle4 {
     }
 }
 
-/// A hierarchy. Empty unless the method asks for it.
+/// A borrowed hierarchy. Empty unless the traversal method needs it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bvh8View<'a> {
     /// Nodes, the root first.

@@ -10,10 +10,10 @@ use super::{
 };
 use crate::bounds::Bounds;
 
-/// The cost of a block beside that of a node, which tests eight boxes.
-const BLOCK: f32 = 0.6;
+/// The cost of a [`Triangle4`] relative to that of a node, which tests eight boxes.
+const TRIANGLE4: f32 = 0.6;
 
-/// Nodes and blocks, owned.
+/// Nodes and triangles, owned.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh8 {
     /// Nodes, the root first, a parent before its children.
@@ -23,14 +23,14 @@ pub struct Bvh8 {
 }
 
 impl Bvh8 {
-    /// Makes them of a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
+    /// Converts a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
     /// unless triangles are split.
     pub fn of(pairs: &[CentredPair], triangles: &[Triangle], bounds: &[Record]) -> Self {
         let bounds: Vec<Bounds> = match bounds {
             [] => triangles.iter().map(Bounds::of).collect(),
             split => split.iter().map(Bounds::read).collect(),
         };
-        let leaves = Leaves { most: Triangle4::TRIANGLES as u32, fixed: BLOCK, triangle: 0.0 };
+        let leaves = Leaves { most: Triangle4::TRIANGLES as u32, fixed: TRIANGLE4, triangle: 0.0 };
         let (tree, order) = binary(pairs, &bounds, leaves.most);
         let plan = Plan::of(&tree, leaves);
         let mut bvh8 = Bvh8 { nodes: vec![Bvh8Node::EMPTY], blocks: Vec::new() };
@@ -56,7 +56,7 @@ impl Bvh8 {
         bvh8
     }
 
-    /// Adds the block of a leaf's slots.
+    /// Adds the triangles of a leaf's slots.
     fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> Bvh8Ref {
         self.blocks.push(Triangle4::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
         Bvh8Ref::leaf(self.blocks.len() as u32 - 1)
@@ -68,7 +68,7 @@ impl Bvh8 {
     }
 }
 
-/// The binary tree with leaves of at most `most` triangles, and the slot at each of its places.
+/// The binary tree with leaves of at most `most` triangles, and the slots in its order.
 fn binary(pairs: &[CentredPair], bounds: &[Bounds], most: u32) -> (Binary, Vec<u32>) {
     let (references, mut order) = depth_first(pairs, bounds.len());
     let boxed = |reference: NodeRef| {

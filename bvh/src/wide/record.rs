@@ -8,12 +8,12 @@ use super::grid::{Grid, Planes};
 const ARITY: usize = CwbvhNode::ARITY;
 /// The bias of a single's exponent.
 const BIAS: i32 = 127;
-/// 256 steps beside one.
+/// The exponent of 256 steps over that of one.
 const EXTENT: i32 = 8;
 /// Bits of a child's triangles.
 const LEAF: u32 = (1 << CwbvhNode::MAX_LEAF) - 1;
 
-/// What sits in a slot.
+/// The child in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Child {
     /// Nothing.
@@ -24,7 +24,7 @@ pub(crate) enum Child {
     Leaf { count: u32 },
 }
 
-/// A node, spelt out.
+/// A node, decoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Record {
     pub grid: Grid,
@@ -55,7 +55,7 @@ impl Record {
         }
     }
 
-    /// What a node says; none if a child is both, or a leaf with a gap among its bits.
+    /// The node's record; `None` if a child is both inner node and leaf, or if a leaf's bits have a gap.
     pub fn decode(node: &CwbvhNode) -> Option<Self> {
         let [x, y, z, mask] = node.grid.w.to_le_bytes();
         let CwbvhNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, .. } = *node;
@@ -92,7 +92,7 @@ fn leaf(child: Child) -> u32 {
     }
 }
 
-/// What a child's bits say; none if they contradict each other.
+/// A child by its bits; `None` if they contradict each other.
 fn what(is_inner: bool, triangles: u32) -> Option<Child> {
     match (is_inner, triangles.trailing_ones()) {
         (true, 0) if triangles == 0 => Some(Child::Inner),

@@ -15,7 +15,7 @@ use crate::{BuildError, bounds::Bounds, validate::Once};
 ///
 /// # Errors
 ///
-/// The first rule broken on a walk in depth-first order; then what was never reached; then boxes.
+/// The first rule broken in depth-first order; then nodes and slots that are never reached; then boxes.
 pub fn validate_wide(nodes: &[CwbvhNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
     if bounds.is_empty() {
         return Err(BuildError::NoTriangles);
@@ -26,7 +26,7 @@ pub fn validate_wide(nodes: &[CwbvhNode], bounds: &[BoundsRecord]) -> Result<(),
     walk.boxes()
 }
 
-/// A walk through the tree and what it has met so far.
+/// A walk through the tree and what it has reached so far.
 struct Walk<'a> {
     nodes: &'a [CwbvhNode],
     bounds: &'a [BoundsRecord],
@@ -37,7 +37,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Meets every node and every slot.
+    /// Visits every node and every slot.
     fn all(&mut self) -> Result<(), BuildError> {
         let mut open = vec![(0, 0, 0)];
         while let Some((parent, node, level)) = open.pop() {
@@ -66,7 +66,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Meets the node that `parent` refers to.
+    /// Visits the node that `parent` refers to.
     fn enter(&mut self, parent: u32, node: u32, level: u32) -> Result<Record, BuildError> {
         let Some(found) = self.nodes.get(node as usize) else {
             return Err(BuildError::WideNodeOutOfRange { node: parent, child: node, nodes: self.nodes.len() });
@@ -83,7 +83,7 @@ impl Walk<'_> {
         Ok(record)
     }
 
-    /// Meets the slots of a leaf.
+    /// Marks the slots of a leaf.
     fn leaf(&mut self, node: u32, first: u64, count: u32) -> Result<(), BuildError> {
         let triangles = self.bounds.len();
         if first + u64::from(count) > triangles as u64 {

@@ -1,4 +1,4 @@
-//! Rays against boxes and triangles.
+//! Intersection of rays with boxes and triangles.
 
 mod moller_trumbore;
 mod slab;

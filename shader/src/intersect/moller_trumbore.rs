@@ -1,8 +1,8 @@
 //! The triangle test of Moeller and Trumbore (1997): cheaper than the watertight one, and not watertight.
 //!
-//! Weights are triple products over a triangle's own edges from its first vertex. Two neighbours have other
-//! first vertices and edges, round otherwise, and a ray at what they share may be outside of both. Contraction is
-//! allowed: there is nothing that it could break.
+//! Weights are triple products over a triangle's own edges from its first vertex. Two neighbours have different
+//! first vertices and edges, so they round differently, and a ray at their common edge may miss both. Contraction is
+//! allowed: there is no guarantee that it could break.
 
 use super::Candidate;
 use crate::real::{Real, V3};

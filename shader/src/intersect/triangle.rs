@@ -1,14 +1,14 @@
 //! The watertight triangle test (Woop, Benthin and Wald 2013).
 //!
 //! The vertices are moved to the ray's origin and sheared so that the ray is the third axis; the ray
-//! meets the triangle where the origin of the plane lies on no outer side of an edge. The two ways
-//! around are both accepted, and so is an edge itself.
+//! hits the triangle where the plane's origin is not outside any edge. Both windings are accepted, and so is a point on
+//! an edge.
 //!
 //! Why no ray slips between two triangles of an edge or a vertex: a sheared vertex depends on that
 //! vertex and the ray alone, so neighbours see the same points. An edge function is the difference of
 //! two rounded products; rounding is monotone, so its sign is the exact one or it is zero, and zero
 //! counts as inside for both. Thus the sheared points, taken as exact, are covered without a gap, and
-//! no wider arithmetic is needed. A contraction to fused multiply-add would break this, which is why
+//! no higher precision is needed. A contraction to fused multiply-add would break this, which is why
 //! it is forbidden in every precision.
 //!
 //! A triangle that is seen edge-on is a line, and an edge function of zero does not tell which part of its line the ray
@@ -19,9 +19,9 @@
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
 //! product above 2^-97, whose neighbours are 2^-121 away: it is the same with them and without. One below counts
-//! as zero. So all devices agree, and only candidates are made zero for good.
+//! as zero. So all devices agree, and values are flushed to zero only in candidates.
 //!
-//! How far the sheared points are from true: with coordinates in [-1, 1], a difference to the origin
+//! The error of the sheared points: with coordinates in [-1, 1], a difference to the origin
 //! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all, which
 //! [`BOX_PADDING`](crate::data::BOX_PADDING) = 2^-20 covers, so a triangle's own box does not reject
 //! what the test accepts.
@@ -48,11 +48,11 @@ pub struct Candidate<R: Real> {
     pub area: R,
 }
 
-/// An edge function of no greater magnitude is zero; see the module.
+/// An edge function of this magnitude or less counts as zero; see the module.
 const SLIGHT: f32 = 1.0 / (1u128 << 96) as f32;
 
-/// What edge functions that count are multiplied by, so that weighted depths of triangles far smaller than the scene are
-/// not too faint.
+/// A scale for edge functions that are not zero, so that the weighted depths of triangles far smaller than the scene do
+/// not underflow.
 const ENLARGED: f32 = (1u64 << 48) as f32;
 
 /// Intersects a ray with a triangle, whose vertices are relative to the ray's origin. Their axes are cycled
@@ -71,7 +71,7 @@ pub fn intersect_watertight<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)
     let (zero, slight) = (R::splat(0.0), R::splat(SLIGHT));
     let above = (-slight).le(wa) & (-slight).le(wb) & (-slight).le(wc);
     let around = above | (wa.le(slight) & wb.le(slight) & wc.le(slight));
-    // Most triangles that a ray comes to are beside it.
+    // A ray misses most triangles that it is tested against.
     if !around.any() {
         return Candidate { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
@@ -116,7 +116,7 @@ impl<R: Real> Candidate<R> {
     }
 }
 
-/// What a product and a quotient may be off by, generously.
+/// A generous bound on the relative error of a product and a quotient.
 const ABOUT: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 
 impl<R: Real> Candidate<R> {
@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_and_vertices_are_inside_either_way_around() {
+    fn edges_and_vertices_are_inside_for_both_windings() {
         let [a, b, c] = FLAT;
         for triangle in [[a, b, c], [a, c, b]] {
             for (x, y) in [(0.25, 0.0), (0.0, 0.25), (0.25, 0.25), (0.0, 0.0), (0.5, 0.0), (0.0, 0.5)] {
@@ -243,14 +243,14 @@ mod tests {
         ) {
             let [o, d, e] = [origin, direction, across].map(|v| Vec3::from(v).as_dvec3());
             prop_assume!(d.length() > 0.25 && d.cross(e).length() > 0.25 * d.length());
-            // All on one side of the ray, in a plane with it.
+            // All vertices lie on one side of the ray, in a plane with it.
             let corner = |i: usize| (o + f64::from(t[i]) * d + f64::from(s[i]) * e).as_vec3().to_array();
             prop_assert!(hit([corner(0), corner(1), corner(2)], origin, direction).is_none());
         }
 
-        /// The distance is that of the plane in double precision, within the sheared points' error.
+        /// The distance equals that of the plane in double precision, within the sheared points' error.
         #[test]
-        fn distance_is_the_planes(
+        fn distance_is_that_of_the_plane(
             t in prop::array::uniform9(-1f32..1.0), w in prop::array::uniform2(0.0625f32..0.45),
             origin in prop::array::uniform3(-1f32..1.0),
         ) {

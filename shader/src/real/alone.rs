@@ -1,6 +1,6 @@
-//! What numbers of one lane have in common.
+//! What the implementations for one lane share.
 
-/// What every [`Real`] of one lane has in common: its mask and its indices stand for themselves.
+/// What every [`Real`] of one lane has in common: its mask is a `bool`, its indices are `u32`.
 #[macro_export]
 macro_rules! alone {
     () => {

@@ -1,5 +1,5 @@
-//! Numbers in registers: [`F32xN<8>`](super::F32xN) and [`F32xN<4>`](super::F32xN) where the compiler must not miss an
-//! instruction.
+//! AVX2 registers: as [`F32xN<8>`](super::F32xN) and [`F32xN<4>`](super::F32xN), with intrinsics where the compiler's
+//! vectorisation is not to be relied on.
 
 use core::arch::x86_64::*;
 use core::array::from_fn;
@@ -20,7 +20,7 @@ impl SimdIsa<f32> for Avx2 {
     type Packet = F32xN<16>;
 }
 
-/// An operation by one instruction or two.
+/// Operations of one or two instructions.
 macro_rules! instruction {
     ($(fn $name:ident($($arg:tt $(: $type:ty)?),*) -> $result:ty { $body:expr })*) => {$(
         #[inline(always)]
@@ -130,7 +130,7 @@ macro_rules! registers {
                 fn by_sign(self) -> Self { $number($and(self.0, $all(-0.0))) }
             }
 
-            /// Subnormals become zeros of their sign.
+            /// Flushes subnormals to zeros of their sign.
             #[inline(always)]
             fn normal(self) -> Self {
                 Self::select(self.abs().lt(Self::splat(f32::MIN_POSITIVE)), self.by_sign(), self)
@@ -153,7 +153,7 @@ macro_rules! registers {
                 fn eq(self, other: Self) -> $mask { $mask($compare::<_CMP_EQ_OQ>(self.0, other.0)) }
                 fn select(mask: $mask, a: Self, b: Self) -> Self { $number($blend(b.0, a.0, mask.0)) }
                 fn abs(self) -> Self { $number($without($all(-0.0), self.0)) }
-                // The instructions return the second operand for NaN and for two zeros, as compare and select do.
+                // For NaN and for two zeros these instructions return the second operand, as compare and select do.
                 fn min(self, other: Self) -> Self { $number($min(self.0, other.0)) }
                 fn max(self, other: Self) -> Self { $number($max(self.0, other.0)) }
                 fn fused(self, a: Self, b: Self) -> Self { $number($fused(self.0, a.0, b.0)) }
@@ -164,7 +164,7 @@ macro_rules! registers {
                 fn equals(i: u32, other: $index) -> $mask {
                     $mask($as_floats($equal($all_integers(i as i32), other.0)))
                 }
-                // Only signed integers compare: both move by the same step.
+                // There is only a signed comparison, so both operands are offset by 2^31.
                 fn precedes(i: u32, other: $index) -> $mask {
                     $mask($as_floats($greater(
                         $xor_integers(other.0, $all_integers(i32::MIN)),

@@ -187,7 +187,7 @@ lanes!(f32, core::convert::identity, core::convert::identity);
 lanes!(Fast, Fast, |x: Fast| x.0);
 
 impl<const N: usize> V3<F32xN<N>> {
-    /// SimdIsa of `N` lanes.
+    /// Vectors of `N` lanes.
     #[inline(always)]
     pub fn of_lanes(lane: impl Fn(usize) -> V3<f32>) -> Self {
         V3::new(F32xN(from_fn(|i| lane(i).x)), F32xN(from_fn(|i| lane(i).y)), F32xN(from_fn(|i| lane(i).z)))

@@ -1,10 +1,10 @@
-//! Several numbers side by side, as the vectors of a CPU hold them. A GPU has none: other rays fill its lanes.
+//! Several numbers side by side, in the vectors of a CPU. Not for GPUs, whose lanes are filled by other rays.
 
 use super::{Fast, Real, Scalar};
 
 /// Lanes over the numbers of `S`: several on a CPU with vectors, or `S` itself.
 pub trait Lanes<S: Scalar>: Real {
-    /// How many; [`F32xN`](super::F32xN) has a power of two.
+    /// How many lanes; a power of two.
     const COUNT: u32;
 
     /// A number in every lane.
@@ -17,9 +17,9 @@ pub trait Lanes<S: Scalar>: Real {
     fn lane(&self, i: usize) -> S;
     /// The integer of lane `i`.
     fn index_of(index: Self::Index, i: usize) -> u32;
-    /// The first numbers of a slice, as many as there are lanes.
+    /// Loads the first numbers of a slice, as many as there are lanes.
     fn taken(numbers: &[f32]) -> Self;
-    /// Puts the lanes' numbers, in single precision, first into a slice.
+    /// Stores the lanes' numbers, in single precision, at the start of a slice.
     fn put(self, numbers: &mut [f32]);
     /// A bit a lane, the first in the lowest.
     fn bits(mask: Self::Mask) -> u32;
@@ -27,11 +27,11 @@ pub trait Lanes<S: Scalar>: Real {
 
 /// The vectors that a processor has for the numbers of `S`.
 pub trait SimdIsa<S: Scalar> {
-    /// What tests the boxes of a node of eight.
+    /// Vectors that test the boxes of a node of eight children.
     type Eight: Lanes<S>;
-    /// What tests the triangles of its leaves.
+    /// Vectors that test the triangles of its leaves.
     type Four: Lanes<S>;
-    /// What follows rays together.
+    /// Vectors that trace several rays together.
     type Packet: Lanes<S>;
 }
 

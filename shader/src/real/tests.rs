@@ -1,4 +1,4 @@
-//! What every number promises, asked of each.
+//! The guarantees of every implementation.
 
 use super::{F32xN, FAINT, Fast, Lanes, Mask, Real, SMALL, Scalar, TINY, V3};
 use core::array::from_fn;

@@ -1,4 +1,4 @@
-//! Three numbers, with every sum from left to right.
+//! Vectors of three numbers; every sum is from left to right.
 
 use super::Real;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -62,7 +62,7 @@ impl<R: Real> V3<R> {
         V3::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// Applies a function to every component that makes other numbers of them.
+    /// Applies a function to every component that changes its type.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(crate) fn each<T>(self, f: fn(R) -> T) -> V3<T> {

@@ -1,4 +1,4 @@
-//! What a surface is made of at a place, and what lies behind everything.
+//! The material of a surface at a point, and the background.
 
 use super::Contact;
 use crate::buffer::read;
@@ -11,9 +11,9 @@ use crate::scene::Looks;
 pub struct Surface<R: Real> {
     /// Unit shading normal on the viewer's side: the vertices' normals interpolated, or the triangle's.
     pub normal: V3<R>,
-    /// Answer to ambient light, that light included.
+    /// Reflected ambient light: the material's colour times the scene's ambient light.
     pub ambient: V3<R>,
-    /// Lambert's colour, the checker's choice made.
+    /// Lambert's colour, that of the checker's cell included.
     pub diffuse: V3<R>,
     /// Phong's colour.
     pub specular: V3<R>,
@@ -21,14 +21,14 @@ pub struct Surface<R: Real> {
     pub shininess: R,
     /// Mirror colour of an opaque surface.
     pub reflection: V3<R>,
-    /// Colour of what passes.
+    /// Colour of the transmitted light.
     pub transmission: V3<R>,
     /// Index of refraction, 0 for an opaque surface.
     pub ior: R,
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of triangle `triangle_index` at a contact, seen along `direction`.
+    /// The surface of a triangle at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
         features: Features,
@@ -61,8 +61,8 @@ impl<R: Scalar> Surface<R> {
     }
 }
 
-/// The vertex normals' weighted sum, turned to the viewer's side of the triangle. Where that leaves
-/// no direction, or the normal turns away from the viewer, the triangle's own normal stands in.
+/// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,
+/// or faces away from the viewer, the triangle's own normal replaces it.
 #[inline(always)]
 fn interpolated<R: Scalar>(looks: &Looks<'_>, triangle_index: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
     let (u, v) = contact.weights;
@@ -90,7 +90,7 @@ fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
     ((a * cells).floor_index() ^ (b * cells).floor_index()) & 1 != 0
 }
 
-/// What a ray sees that leaves the scene: one colour, or a gradient over the height of its direction.
+/// The colour of a ray that hits nothing: constant, or a gradient over the height of its direction.
 #[inline(always)]
 pub fn background<R: Scalar>(features: Features, frame: &Frame, direction: V3<R>) -> V3<R> {
     let bottom = V3::splat(numbers(frame.bottom));

@@ -1,5 +1,5 @@
-//! Hybrid traversals (thesis 6.2.3 and 6.2.4): together as a packet as long as that pays, then every
-//! ray by itself. They differ in when rays part ([`SplitPolicy`]) and in whether they meet again ([`Turn`]).
+//! Hybrid traversals (thesis 6.2.3 and 6.2.4): as a packet as long as that pays, then ray by ray.
+//! They differ in when the packet splits ([`SplitPolicy`]) and in whether it rejoins ([`Turn`]).
 
 use core::marker::PhantomData;
 
@@ -14,15 +14,15 @@ use crate::real::{Mask, Real};
 use crate::scene::Geometry;
 use crate::warp::Warp;
 
-/// When a packet parts.
+/// When a packet splits.
 pub trait SplitPolicy {
-    /// Does it part for good, `depth` nodes waiting?
+    /// With `depth` nodes on the stack, does the whole packet split?
     fn full(geometry: &Geometry<'_>, depth: u32) -> bool;
-    /// Do those who want a child part from the `active` rays of the packet?
+    /// Do the rays that hit a child leave the packet, which has `active` rays, to visit it alone?
     fn few(geometry: &Geometry<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
 }
 
-/// Parts when a small stack is full (thesis: stack max).
+/// Splits when a small stack is full (thesis: stack max).
 pub struct StackMax;
 
 impl SplitPolicy for StackMax {
@@ -36,7 +36,7 @@ impl SplitPolicy for StackMax {
     }
 }
 
-/// Parts from a child that too few rays want (thesis: cut).
+/// Splits at a child that too few rays hit (thesis: cut).
 pub struct Cut;
 
 impl SplitPolicy for Cut {
@@ -50,19 +50,19 @@ impl SplitPolicy for Cut {
     }
 }
 
-/// What parted rays do in the end.
+/// When split rays are traced.
 pub trait Turn {
-    /// Do they meet again once their branch is done (interleaved), or never (sequential)?
+    /// Do they rejoin the packet once their branch is done (interleaved), or never (sequential)?
     const REJOINS: bool;
 }
 
-/// The packet ends first, then every ray goes on by itself (thesis 6.2.3).
+/// The packet finishes first, then every ray continues alone (thesis 6.2.3).
 pub struct Sequential;
 impl Turn for Sequential {
     const REJOINS: bool = false;
 }
 
-/// Every branch is ended before the packet goes on (thesis 6.2.4).
+/// Every branch is finished before the packet continues (thesis 6.2.4).
 pub struct Interleaved;
 impl Turn for Interleaved {
     const REJOINS: bool = true;
@@ -71,7 +71,7 @@ impl Turn for Interleaved {
 /// See the module.
 pub struct Hybrid<W, S, T>(PhantomData<(W, S, T)>);
 
-/// Nodes that some rays visit at the end, and which rays.
+/// Nodes to visit ray by ray after the packet, and by which rays.
 struct DeferredStack<R: Real> {
     nodes: Stack,
     rays: [R::Mask; STACK],
@@ -107,7 +107,7 @@ impl<R: Real, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
         }
         while deferred.count > 0 {
             deferred.count -= 1;
-            // SAFETY: below the count all has been put.
+            // SAFETY: every index below the count has been set.
             let node = unsafe { deferred.nodes.get(deferred.count) };
             alone::<Q, R>(geometry, node, deferred.rays[deferred.count as usize & (STACK - 1)], ray, hit);
         }
@@ -130,7 +130,7 @@ fn everyone<R: Real>() -> R::Mask {
     R::splat(0.0).le(R::splat(0.0))
 }
 
-/// Does the packet go to a child together? If too few rays want it, they go by themselves, at once or later.
+/// Does the packet visit a child? If too few rays hit it, they visit it one by one, now or later.
 #[inline(always)]
 fn together<Q: Query, R: Real, W: Warp, S: SplitPolicy, T: Turn>(
     geometry: &Geometry<'_>,
@@ -155,7 +155,7 @@ fn together<Q: Query, R: Real, W: Warp, S: SplitPolicy, T: Turn>(
     false
 }
 
-/// Every ray of the mask follows a branch by itself.
+/// Traces every ray of the mask through a branch by itself.
 #[inline(always)]
 fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
@@ -166,7 +166,7 @@ fn alone<Q: Query, R: Real>(geometry: &Geometry<'_>, node: NodeRef, rays: R::Mas
     Q::on_parted(false);
 }
 
-/// Every ray goes on by itself with what the packet has left.
+/// Traces every ray by itself through what the packet has left to visit.
 #[inline(always)]
 fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
@@ -174,7 +174,7 @@ fn part<Q: Query, R: Real>(geometry: &Geometry<'_>, cursor: &Cursor, shared: &St
         let mut stack = Stack::new();
         let mut i = 0;
         while i < cursor.depth() {
-            // SAFETY: below the depth all has been put.
+            // SAFETY: every index below the depth has been set.
             stack.put(i, unsafe { shared.get(i) });
             i += 1;
         }

@@ -1,4 +1,4 @@
-//! The steps that every method is made of: two boxes, or one triangle.
+//! The steps that all methods share: testing two boxes, or one triangle.
 
 use super::Query;
 use super::cursor::{Cursor, Stack};
@@ -13,7 +13,7 @@ use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::Geometry;
 use glam::UVec4;
 
-/// A limit that no box lies before: an any-hit ray that has found its triangle.
+/// The limit of an any-hit ray that has found its triangle: no box lies before it.
 const FOUND: f32 = -1.0;
 
 /// Has an any-hit ray found something opaque?
@@ -22,12 +22,12 @@ pub fn occluded<R: Real>(hit: &Hit<R>) -> R::Mask {
     hit.t.lt(R::splat(0.0))
 }
 
-/// Which children of a pair a ray meets before its limit.
+/// Which children of a pair a ray hits before its limit.
 #[derive(Clone, Copy)]
 pub struct Wanted<R: Real> {
-    /// Is the left box met?
+    /// Is the left box hit?
     pub left: R::Mask,
-    /// Is the right box met?
+    /// Is the right box hit?
     pub right: R::Mask,
     /// Is the right box the nearer?
     pub right_first: R::Mask,
@@ -35,9 +35,9 @@ pub struct Wanted<R: Real> {
 
 /// Tests both boxes of a pair.
 ///
-/// With coordinates in [-1, 1] the rounding of a plane's distance is worth less than 7 * 2^-24 of a shift
-/// of the plane, that of a triangle's own box 4 * 2^-24, and its wider exit 17 * 2^-24: below
-/// [`CentredPair::MARGIN`] together, so that a box is met, and entered no later, wherever an own box in it is.
+/// With coordinates in [-1, 1] the rounding of a plane's distance amounts to shifting the plane by less than 7 * 2^-24,
+/// that of a triangle's own box to 4 * 2^-24, and its widened exit to 17 * 2^-24: together less than
+/// [`CentredPair::MARGIN`], so a box is hit, and entered no later, wherever a triangle's own box inside it is.
 #[inline(always)]
 pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
     let left = inside(pair.left_centre, pair.left_half, ray, hit.t);
@@ -46,7 +46,7 @@ pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Want
 }
 
 /// Where a ray is inside a box given by centre and half its extent, before its limit; see [`children`]. The far end is
-/// right where it is not negative.
+/// valid where it is not negative.
 // A function, since closures are not always inlined, and what is not inlined is not compiled for the
 // processor's vectors.
 #[inline(always)]
@@ -56,7 +56,7 @@ pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Sp
     Span { near: R::max_entry(half.fused(-reach, middle)), far: R::min_exit(half.fused(reach, middle), limit) }
 }
 
-/// A single ray's visit of the pair that its traversal stands at.
+/// A single ray's visit of its current pair.
 #[inline(always)]
 pub fn pair<Q: Query, R: Scalar>(
     geometry: &Geometry<'_>,
@@ -71,7 +71,7 @@ pub fn pair<Q: Query, R: Scalar>(
     cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
 }
 
-/// Tests every triangle of a leaf. Returns whether no ray of an any-hit query wants more.
+/// Tests every triangle of a leaf. Returns whether this is an any-hit query all of whose rays have found something.
 #[inline(always)]
 pub fn leaf<Q: Query, R: Real>(geometry: &Geometry<'_>, mut leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
     while leaf.is_leaf() {
@@ -102,8 +102,8 @@ fn single<R: Real>(geometry: &Geometry<'_>, triangle: &Triangle, ray: &Ray<R>) -
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
 ///
-/// A CPU has kept them with the hit. The fewer registers a ray takes of a GPU, the more rays it turns to while one
-/// waits for memory: there they are computed again, from the same numbers to the same bits.
+/// A CPU keeps them with the hit. A GPU recomputes them, from the same numbers to the same bits: the fewer registers a
+/// ray takes, the more rays it can switch to while one waits for memory.
 #[inline(always)]
 pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
     if cfg!(not(target_arch = "spirv")) {
@@ -117,7 +117,7 @@ pub fn weights<R: Scalar>(geometry: &Geometry<'_>, ray: &Ray<R>, hit: &Hit<R>) -
     (candidate.u * scale, candidate.v * scale)
 }
 
-/// Tests the triangles of a block, as many at once as there are lanes.
+/// Tests up to four triangles, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
 pub fn triangle4<Q: Query, R: Scalar, F: Lanes<R>>(
@@ -161,7 +161,7 @@ fn intersect<R: Real, F: Real>(features: Features, [a, b, c]: [V3<F>; 3], shear:
     }
 }
 
-/// A vertex of the block's triangles from `first` on, relative to the ray's origin, both with their axes cycled.
+/// A vertex of the triangles from `first` on, relative to the ray's origin, both with their axes cycled.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
 fn vertex<R: Scalar, F: Lanes<R>>(
@@ -184,16 +184,16 @@ fn vertex<R: Scalar, F: Lanes<R>>(
 #[cfg(not(target_arch = "spirv"))]
 const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
+/// Does the query consider this triangle? Only opaque objects cast shadows (thesis 3.2).
 #[inline(always)]
 fn counts<Q: Query>(features: Features, triangle: &Triangle) -> bool {
     !(Q::ANY && features.has(Features::REFRACTION) && triangle.is_transparent())
 }
 
-/// Leaves out what is beside a triangle seen edge-on, divides, moves the hit behind the entry to the slot's box, and takes
-/// the lesser (t, primitive).
+/// Rejects misses of triangles seen edge-on, divides, moves the hit behind the entry to the triangle's own box, and
+/// takes the lesser (t, primitive).
 ///
-/// The box lies in every box that leads here, so nothing that is kept can have been culled. A part of a split
+/// That box lies in every box that leads here, so no hit that is accepted can have been culled. A part of a split
 /// triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
 fn accept_hit<Q: Query, R: Real>(
@@ -206,7 +206,7 @@ fn accept_hit<Q: Query, R: Real>(
 ) {
     let (primitive, features, zero) = (triangle.primitive(), geometry.features, R::splat(0.0));
     let mut inside = candidate.inside & !R::equals(primitive, ray.source_primitive);
-    // The inside of glass is seen from behind.
+    // The inside of glass is seen from its back side.
     if features.has(Features::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & candidate.front;
     }

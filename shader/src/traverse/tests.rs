@@ -16,7 +16,7 @@ use bytemuck::Zeroable;
 use glam::{UVec4, Vec3};
 use proptest::prelude::*;
 
-/// A hierarchy by halves of the list: bad trees find the same hits.
+/// A hierarchy made by halving the list: bad trees must find the same hits.
 fn build(triangles: &[Triangle]) -> Vec<NodePair> {
     fn child(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> (Vec3, Vec3, NodeRef) {
         let (least, greatest) = triangles
@@ -43,8 +43,8 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
     nodes
 }
 
-/// A wide hierarchy by eighths of the list, its nodes in the order in which they are found: every box the
-/// whole grid, so that all that is to be seen is whether nodes and triangles are followed.
+/// A wide hierarchy made by splitting the list in eighths, its nodes in breadth-first order. Every box is the whole
+/// grid, so it tests only whether all nodes and triangles are visited.
 fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
     let all = 0..triangles.len() as u32;
     let mut open = vec![all];
@@ -77,7 +77,7 @@ fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
     nodes
 }
 
-/// The same in full precision, by eighths down to blocks, with the boxes that there must be.
+/// The same in full precision, by eighths down to four triangles, with the boxes' real bounds.
 fn build_bvh8(triangles: &[Triangle]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
     let (mut nodes, mut blocks) = (vec![Bvh8Node::EMPTY], Vec::new());
     let mut open = vec![(0, 0..triangles.len())];
@@ -211,7 +211,7 @@ proptest! {
 
 type End = ([f32; 3], [f32; 3]);
 
-/// Every lane of a packet, however incoherent, against the same ray by itself.
+/// Compares every lane of a packet, coherent or not, with the same ray traced alone.
 fn check_packet<M: Method<F32xN<N>>, const N: usize>(world: &World, rays: &[End]) {
     let origins = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
     let directions = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
@@ -235,7 +235,7 @@ fn check_packets<const N: usize>(world: &World, rays: &[End]) {
     check_packet::<Hybrid<Alone, Cut, Interleaved>, N>(world, rays);
 }
 
-/// The first `count` rays as a launch follows them together, whatever lanes that leaves without one.
+/// The first `count` rays as a launch traces them together, also where some lanes have none.
 fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
     let vector = |v: [f32; 3]| V3::splat(Vec3::from(v));
     let segments: Vec<Segment<f32>> = rays[..count]
@@ -264,7 +264,7 @@ fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
     }
 }
 
-/// 32 rays of eight; their directions' components are zero now and then.
+/// 32 rays from eight; some components of their directions are zero.
 fn rays_of(ends: [([f32; 3], [f32; 3]); 8], same_origin: bool) -> Vec<End> {
     (0..32)
         .map(|i| {
@@ -294,7 +294,7 @@ proptest! {
         check_together::<f32>(&world, &rays, count.min(4));
     }
 
-    /// The registers of a processor's own vectors.
+    /// The AVX2 registers.
     #[cfg(target_arch = "x86_64")]
     #[test]
     fn registers_find_what_brute_force_finds(

@@ -1,4 +1,4 @@
-//! The instructions of a processor that the kernels are compiled for.
+//! The instruction sets that the kernels are compiled for.
 
 use std::sync::LazyLock;
 

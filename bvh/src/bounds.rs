@@ -1,4 +1,4 @@
-//! Axis-aligned boxes that are unions and nothing else, so that containment is exact.
+//! Axis-aligned boxes, made by exact operations only, so that containment is exact.
 
 use eyerays_shader::data::{Bounds as Record, NodeRef, Triangle, numbers, pack};
 use glam::Vec3;
@@ -20,7 +20,7 @@ impl Bounds {
         Bounds::new(min, max)
     }
 
-    /// The box that a record holds.
+    /// The box of a record.
     pub fn read(record: &Record) -> Self {
         Bounds::new(numbers(record.least), numbers(record.greatest))
     }
@@ -43,7 +43,7 @@ impl Bounds {
         }
     }
 
-    /// What lies in both; perhaps [`Bounds::is_empty`].
+    /// The intersection, which may be empty ([`Bounds::is_empty`]).
     pub fn intersection(self, other: Self) -> Self {
         Bounds {
             min: zip(self.min, other.min, |a, b| if a > b { a } else { b }),

@@ -1,6 +1,6 @@
 //! From references to a hierarchy.
 
-use eyerays_shader::data::{BOX_PADDING, Bounds as Record, MAX_LEAF, NodePair, NodeRef, WideNode};
+use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, MAX_LEAF, NodePair, NodeRef};
 
 use crate::{
     BuildError, MAX_DEPTH, Quality, Reference, References,
@@ -13,22 +13,21 @@ use crate::{
     wide::{validate_wide, wide},
 };
 
-/// A validated hierarchy, as pairs and as wide nodes. Both have the same leaves' triangles at the same
-/// slots.
+/// A validated hierarchy, as pairs and as wide nodes. Both have the same triangles at the same slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     /// The node pairs, the root's first, then in depth-first order.
     pub nodes: Vec<NodePair>,
     /// The wide nodes, the root first.
-    pub wide: Vec<WideNode>,
-    /// The triangle at each slot that a leaf counts, as an index into the triangles of the references.
+    pub wide: Vec<CwbvhNode>,
+    /// The triangle at each slot of a leaf, as an index into the triangles of the references.
     pub order: Vec<u32>,
     /// The own box at each slot: that of the triangle, or of the part that the slot stands for.
     pub bounds: Vec<Record>,
 }
 
 impl Bvh {
-    /// Brings what belongs to the triangles, or the triangles themselves, into the order of slots.
+    /// Brings the triangles, or one item a triangle, into the order of slots.
     ///
     /// # Panics
     ///
@@ -47,7 +46,7 @@ impl Bvh {
 /// # Errors
 ///
 /// [`BuildError::NoTriangles`], [`BuildError::TooManyTriangles`], and [`BuildError::Reference`] if a
-/// box is none, or not in [-1, 1] but for its padding. Any other error is a defect of the builder that
+/// box is empty, or not in [-1, 1] except for its padding. Any other error is a defect of the builder that
 /// its validation found.
 pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
     let list = &references.list;
@@ -101,7 +100,7 @@ fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topolog
     Topology::of(&found, &clusters)
 }
 
-/// A number of references that a node's can count.
+/// The number of references, if a node reference can index so many.
 pub(crate) fn check_count(count: usize) -> Result<u32, BuildError> {
     match u32::try_from(count) {
         Ok(0) => Err(BuildError::NoTriangles),
@@ -110,7 +109,7 @@ pub(crate) fn check_count(count: usize) -> Result<u32, BuildError> {
     }
 }
 
-/// obvhs must not see a NaN, nor areas that overflow.
+/// obvhs can handle neither NaN nor areas that overflow.
 fn check_boxes(references: &[Reference]) -> Result<(), BuildError> {
     const MOST: f32 = 1.0 + BOX_PADDING;
     let normalised = |reference: &Reference| {

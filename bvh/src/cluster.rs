@@ -1,19 +1,19 @@
-//! Which triangles obvhs meets as one primitive.
+//! Which triangles are grouped into one primitive for obvhs.
 //!
 //! PLOC merges two neighbours when each is the other's best partner. Among duplicates, evenly
 //! spaced rows and boxes nested in one another all prefer the same side, so that one pair merges a
 //! pass: the time is quadratic and the depth linear (100,000 duplicates: minutes, and 99,996
-//! levels). A cheap rehearsal finds such runs; each becomes one primitive for obvhs and is split at
+//! levels). A cheap trial clustering finds such runs; each becomes one primitive for obvhs and is split at
 //! medians later.
 
 use std::ops::Range;
 
 use crate::{bounds::Bounds, morton};
 
-/// Neighbours along the Morton curve that are judged together.
+/// How many neighbours along the Morton curve are checked together for stalling.
 const RUN: usize = 256;
-/// A run of [`RUN`] that merges fewer pairs than this in a pass has stalled. Scattered boxes merge
-/// a third of themselves.
+/// A run of [`RUN`] that merges fewer pairs than this in a pass has stalled. Of scattered boxes a third
+/// merge.
 const FEW: usize = 8;
 
 /// Triangles in groups. A group is a primitive of the search.
@@ -25,13 +25,12 @@ pub(crate) struct Clusters {
 }
 
 impl Clusters {
-    /// Groups triangles by their boxes. Most groups are of one.
+    /// Groups triangles by their boxes. Most groups have one triangle.
     pub fn of(bounds: &[Bounds]) -> Self {
         let order = morton::sorted(bounds);
         let mut glued = vec![false; order.len()];
         let mut nodes: Vec<Node> = (0..).zip(&order).map(|(i, &t)| (bounds[t as usize], i..i + 1)).collect();
-        // A pass removes nodes from every full run. Fewer than a run are no burden, however slowly
-        // they merge.
+        // A pass removes nodes from every full run. Fewer nodes than a run may merge slowly without harm.
         while nodes.len() > RUN {
             nodes = pass(&nodes, &mut glued);
         }
@@ -66,7 +65,7 @@ type Node = (Bounds, Range<u32>);
 /// and are glued together.
 fn pass(nodes: &[Node], glued: &mut [bool]) -> Vec<Node> {
     let costs: Vec<f32> = nodes.windows(2).map(|w| w[0].0.union(w[1].0).half_area()).collect();
-    // Ties go to the right, as in obvhs: they are what makes a row of equals stall.
+    // Ties go to the right, as in obvhs: that is why a row of equal boxes stalls.
     let merges = |i: usize| {
         i < costs.len() && (i == 0 || costs[i - 1] >= costs[i]) && (i + 1 == costs.len() || costs[i] < costs[i + 1])
     };

@@ -1,4 +1,4 @@
-//! The bound on depth.
+//! Limiting the depth.
 
 use eyerays_shader::data::{NodeRef, STACK};
 
@@ -18,12 +18,12 @@ const _: () = assert!((NodeRef::MAX_INDEX).ilog2() < MAX_DEPTH);
 
 impl Topology {
     /// Turns subtrees into runs until no path is longer than `most` pairs, once runs are split at
-    /// medians. What is near the root and what is shallow stays as it was.
+    /// medians. Nodes near the root and shallow subtrees stay as they are.
     ///
     /// `most` must be enough for median splits of the whole tree.
     pub(crate) fn limit_depth(&mut self, most: u32) {
         let heights = self.heights();
-        // Each open node fits at its level if it is split at medians; its tree may not fit.
+        // Each open node fits at its level if split at medians; as it is, it may be too deep.
         let mut open = vec![(0u32, 0u32)];
         while let Some((number, level)) = open.pop() {
             let node = &mut self.nodes[number as usize];

@@ -1,4 +1,4 @@
-//! Why there is no hierarchy.
+//! Errors of building and validating hierarchies.
 
 use eyerays_shader::data::{MAX_LEAF, NodeRef};
 
@@ -9,7 +9,7 @@ use crate::{MAX_DEPTH, MAX_WIDE_DEPTH};
 /// others mean that a hierarchy must not be traversed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
-    /// There is nothing to build a tree of.
+    /// There are no triangles to build a tree over.
     #[error("the scene has no triangles: add a mesh, or skip tracing and draw the background")]
     NoTriangles,
     /// A node reference cannot number so many triangles.
@@ -29,7 +29,7 @@ pub enum BuildError {
         /// The primitive's number in the scene.
         primitive: u32,
     },
-    /// A reference's box is none or does not lie in the normalised scene.
+    /// A reference's box is empty or does not lie in the normalised scene.
     #[error("reference {reference} has a box that does not lie in [-1, 1]: split the normalised scene's triangles")]
     Reference {
         /// The reference's place among those given.
@@ -96,7 +96,7 @@ pub enum BuildError {
         /// The first such pair on the way down.
         pair: u32,
     },
-    /// A wide node's bytes make no sense: its grid, a child's byte, or the mask of inner children.
+    /// A wide node's bytes are invalid: its grid, a child's byte, or the mask of inner children.
     #[error("wide node {node} is malformed: rebuild the hierarchy")]
     WideNodeMalformed {
         /// The node.

@@ -70,8 +70,8 @@ fn resolve(subtree: Subtree, topology: &Topology) -> (u32, u32, Option<[Subtree;
     }
 }
 
-/// The pairs with their boxes. Children come after their parents, so one sweep from the end meets
-/// them first.
+/// The pairs with their boxes. Children come after their parents, so one sweep from the end computes
+/// theirs first.
 fn boxes(references: &[[NodeRef; 2]], order: &[u32], bounds: &[Bounds]) -> Vec<NodePair> {
     let mut around = vec![Bounds::EMPTY; references.len()];
     let mut pairs = vec![NodePair::new(NodePair::EMPTY, NodePair::EMPTY); references.len()];

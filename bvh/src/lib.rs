@@ -2,8 +2,8 @@
 //!
 //! [`split`] turns triangles into references, once a scene; [`build`] turns references into the node
 //! pairs that most traversal methods walk and the wide nodes that one walks, over one order of slots.
-//! obvhs searches the topology by surface area; this crate keeps input that obvhs cannot digest away
-//! from it, bounds the depth, computes every box itself and validates the result, because the kernels
+//! obvhs searches the topology by surface area; this crate keeps away from it input that it cannot
+//! handle, bounds the depth, computes every box itself and validates the result, because the kernels
 //! index without checks and cull without tolerance.
 //!
 //! The stages run one way, a file each: bounds, reference, spatial, cluster (with morton), search (with
@@ -34,4 +34,4 @@ pub use quality::Quality;
 pub use reference::{Reference, References, split};
 pub use statistics::Statistics;
 pub use validate::validate;
-pub use wide::{FullBvh, MAX_WIDE_DEPTH, validate_wide};
+pub use wide::{Bvh8, MAX_WIDE_DEPTH, validate_wide};

@@ -1,4 +1,4 @@
-//! The split that always halves.
+//! Median splits, which always halve.
 
 use eyerays_shader::data::MAX_LEAF;
 
@@ -28,7 +28,7 @@ pub(crate) fn split(triangles: &mut [u32], bounds: &[Bounds]) -> usize {
     middle
 }
 
-/// Puts the `middle` triangles of least key first.
+/// Moves the `middle` triangles of least key to the front.
 fn halve(triangles: &mut [u32], middle: usize, key: impl Fn(u32) -> f32) {
     triangles.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
 }

@@ -11,10 +11,9 @@ use crate::{
 
 /// A triangle, or a part of one.
 ///
-/// Rays meet a part's box and leave it before they meet the triangle in another part. So the box says from
-/// where on a hit may count, which keeps culling exact, and not up to where: a distance clamped to its
-/// end would be too short (measured: 5 of 1000 rays in Conference). That is for the triangle's own box
-/// to say.
+/// A ray may enter and leave a part's box before it hits the triangle in another part. So the box bounds the
+/// distance of a hit from below, which keeps culling exact, but not from above: a distance clamped to its end
+/// would be too short (measured: 5 of 1000 rays in Conference). The triangle's own box bounds it from above.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// The triangle's index.
@@ -28,9 +27,9 @@ pub struct Reference {
 /// built over the same, and no builder can change what a ray meets.
 #[derive(Clone, Debug, PartialEq)]
 pub struct References {
-    /// The references, those of a triangle anywhere.
+    /// The references; those of one triangle may be anywhere.
     pub list: Vec<Reference>,
-    /// The tree whose planes split them, if any did. It is where builds start from.
+    /// The tree whose planes split them, if any did. Builds start from it.
     pub(crate) tree: Option<Tree>,
 }
 
@@ -41,8 +40,8 @@ impl From<Vec<Reference>> for References {
     }
 }
 
-/// Refers to triangles of the normalised scene, splitting those whose boxes would overlap others in
-/// vain. `budget` is how many references there may be beside one a triangle, as a share of the
+/// Makes references to the triangles of the normalised scene, splitting those whose boxes would overlap others
+/// needlessly. `budget` is how many references there may be beyond one a triangle, as a share of the
 /// triangles; 0 splits none.
 ///
 /// The same triangles give the same references, whatever the number of rayon's threads. The own boxes of
@@ -55,7 +54,7 @@ impl From<Vec<Reference>> for References {
 pub fn split(triangles: &[Triangle], budget: f32) -> Result<References, BuildError> {
     let count = check_count(triangles.len())?;
     check_coordinates(triangles)?;
-    // What is no number is converted to 0.
+    // NaN is converted to 0.
     let room = (f64::from(budget) * f64::from(count)) as usize;
     if room > 0 {
         return Ok(spatial::references(triangles, room));
@@ -65,7 +64,7 @@ pub fn split(triangles: &[Triangle], budget: f32) -> Result<References, BuildErr
     Ok(list.into())
 }
 
-/// Neither areas nor clipping may meet a NaN.
+/// Neither areas nor clipping can handle NaN.
 fn check_coordinates(triangles: &[Triangle]) -> Result<(), BuildError> {
     let normalised = |t: &Triangle| {
         let coordinates = t.vertices().map(|v| v.to_array());

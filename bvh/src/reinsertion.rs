@@ -1,11 +1,11 @@
-//! Which nodes obvhs shall try elsewhere in the tree.
+//! Which nodes obvhs tries to reinsert elsewhere in the tree.
 //!
 //! obvhs can choose by itself, but has no bound on its work, and where there are millions of nodes
 //! its radix sort leaves equal ones in an order that depends on the number of threads.
 
 use obvhs::bvh2::{Bvh2, node::Bvh2Node, reinsertion::ReinsertionOptimizer};
 
-/// The most comparisons that the first pass is worth, which take seconds. Trying every node of a
+/// The most comparisons that the first pass may make; they take seconds. Trying every node of a
 /// million scattered triangles takes 8e8; where all triangles overlap, the work would be quadratic
 /// (100,000 that span the scene: 1.3e10, and 17 s).
 const WORK: f32 = 2e9;

@@ -26,7 +26,7 @@ pub(crate) fn search(primitives: &[Bounds], parameters: &BvhBuildParams) -> Bvh2
     polish(tree, parameters)
 }
 
-/// A tree over primitives that starts from one whose leaves they are.
+/// A tree over primitives, improved from a given tree whose leaves they are.
 pub(crate) fn improve(start: &Tree, primitives: &[Bounds], parameters: &BvhBuildParams) -> Bvh2 {
     let mut tree = Bvh2::zeroed(primitives.len());
     tree.primitive_indices = (0..primitives.len() as u32).collect();

@@ -33,7 +33,7 @@ pub struct Statistics {
     /// The most wide nodes on a path from the root.
     pub wide_depth: u32,
     /// As [`Statistics::sah_cost`], of the wide nodes: for each node [`Statistics::TRAVERSAL`], for each
-    /// triangle [`Statistics::INTERSECTION`]. Quantised boxes are what counts.
+    /// triangle [`Statistics::INTERSECTION`], with the areas of the quantised boxes.
     pub wide_sah_cost: f64,
     /// Bytes of the wide nodes.
     pub wide_bytes: usize,
@@ -113,7 +113,7 @@ impl Statistics {
     }
 }
 
-/// The children of a pair but for [`NodePair::EMPTY`].
+/// The children of a pair without [`NodePair::EMPTY`].
 fn real_children(pair: &NodePair) -> impl Iterator<Item = (Bounds, NodeRef)> {
     children(pair).into_iter().filter(|&(bounds, reference)| !is_empty(bounds, reference))
 }

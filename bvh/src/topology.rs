@@ -1,4 +1,4 @@
-//! A tree over triangles before it has boxes.
+//! A tree over triangles, without boxes.
 
 use obvhs::bvh2::Bvh2;
 

@@ -10,7 +10,7 @@ use crate::{BuildError, MAX_DEPTH, bounds::Bounds};
 ///
 /// # Errors
 ///
-/// The first rule broken on a walk in depth-first order; what was never reached comes last.
+/// The first rule broken in depth-first order; pairs and slots that are never reached come last.
 pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError> {
     let triangles = bounds.len();
     if triangles == 0 {
@@ -63,7 +63,7 @@ pub(crate) fn is_empty(bounds: Bounds, reference: NodeRef) -> bool {
     reference == empty && bounds == Bounds::new(min, max)
 }
 
-/// A walk through the tree and what it has met so far.
+/// A walk through the tree and what it has reached so far.
 struct Walk<'a> {
     nodes: &'a [NodePair],
     bounds: &'a [Record],
@@ -86,7 +86,7 @@ impl Walk<'_> {
         if bounds.contains(below) { Ok(()) } else { Err(BuildError::BoxTooSmall { pair }) }
     }
 
-    /// Opens the pair that `parent` refers to.
+    /// Visits the pair that `parent` refers to.
     fn enter(&mut self, parent: u32, reference: NodeRef, level: u32) -> Result<(), BuildError> {
         let pair = reference.index();
         if pair as usize >= self.nodes.len() {
@@ -102,7 +102,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Meets the slots of a leaf and returns the box around their triangles.
+    /// Marks the slots of a leaf and returns the box around their triangles.
     fn leaf(&mut self, pair: u32, leaf: NodeRef) -> Result<Bounds, BuildError> {
         let (first, count) = (leaf.index(), leaf.count());
         let slots = first..first + count;
@@ -117,16 +117,16 @@ impl Walk<'_> {
     }
 }
 
-/// Numbers that may be met once each.
+/// Numbers that may each be marked once.
 pub(crate) struct Once(Vec<bool>);
 
 impl Once {
-    /// Numbers below `count`, none met.
+    /// Numbers below `count`, none marked.
     pub fn new(count: usize) -> Self {
         Once(vec![false; count])
     }
 
-    /// Marks a number; false if it is out of range or was met before.
+    /// Marks a number; false if it is out of range or was marked before.
     pub fn meet(&mut self, number: u32) -> bool {
         match self.0.get_mut(number as usize) {
             Some(met) => !std::mem::replace(met, true),
@@ -134,7 +134,7 @@ impl Once {
         }
     }
 
-    /// The least number not met.
+    /// The least number not marked.
     pub fn missing(&self) -> Option<u32> {
         self.0.iter().position(|met| !met).map(|i| i as u32)
     }

@@ -4,11 +4,11 @@ mod common;
 
 use common::*;
 use eyerays_bvh::{BuildError, MAX_WIDE_DEPTH, Quality, build, validate_wide};
-use eyerays_shader::data::{Bounds, WideNode, pack};
+use eyerays_shader::data::{Bounds, CwbvhNode, pack};
 use glam::{UVec4, Vec3};
 
 /// A valid tree, and the own boxes of its slots.
-fn valid() -> (Vec<WideNode>, Vec<Bounds>) {
+fn valid() -> (Vec<CwbvhNode>, Vec<Bounds>) {
     let bvh = build(&whole(&mixed()), Quality::Medium).unwrap();
     assert_eq!(validate_wide(&bvh.wide, &bvh.bounds), Ok(()));
     assert!(bvh.wide.len() > 10);
@@ -16,32 +16,32 @@ fn valid() -> (Vec<WideNode>, Vec<Bounds>) {
 }
 
 /// What validation says after a change.
-fn after(change: impl FnOnce(&mut Vec<WideNode>, &mut Vec<Bounds>)) -> BuildError {
+fn after(change: impl FnOnce(&mut Vec<CwbvhNode>, &mut Vec<Bounds>)) -> BuildError {
     let (mut nodes, mut bounds) = valid();
     change(&mut nodes, &mut bounds);
     validate_wide(&nodes, &bounds).expect_err("a corrupted tree")
 }
 
 /// Bits of a child's triangles.
-fn leaf(node: &WideNode, slot: usize) -> u32 {
+fn leaf(node: &CwbvhNode, slot: usize) -> u32 {
     node.children.z >> (3 * slot) & 7
 }
 
-fn set_leaf(node: &mut WideNode, slot: usize, bits: u32) {
+fn set_leaf(node: &mut CwbvhNode, slot: usize, bits: u32) {
     node.children.z = node.children.z & !(7 << (3 * slot)) | bits << (3 * slot);
 }
 
-fn is_inner(node: &WideNode, slot: usize) -> bool {
+fn is_inner(node: &CwbvhNode, slot: usize) -> bool {
     node.grid.w >> (24 + slot) & 1 == 1
 }
 
 /// The first node and slot with a child that is asked for.
-fn find(nodes: &[WideNode], wanted: impl Fn(&WideNode, usize) -> bool) -> (usize, usize) {
+fn find(nodes: &[CwbvhNode], wanted: impl Fn(&CwbvhNode, usize) -> bool) -> (usize, usize) {
     let all = (0..nodes.len()).flat_map(|node| (0..8).map(move |slot| (node, slot)));
     all.into_iter().find(|&(node, slot)| wanted(&nodes[node], slot)).expect("hundreds of triangles have all kinds")
 }
 
-fn is_leaf(node: &WideNode, slot: usize) -> bool {
+fn is_leaf(node: &CwbvhNode, slot: usize) -> bool {
     leaf(node, slot) != 0
 }
 
@@ -168,7 +168,7 @@ fn grid_that_no_box_test_can_scale() {
 }
 
 /// The word and the byte of a plane: six of eight bytes each.
-fn plane(node: &mut WideNode, side: usize, slot: usize) -> (&mut u32, usize) {
+fn plane(node: &mut CwbvhNode, side: usize, slot: usize) -> (&mut u32, usize) {
     let words = [&mut node.low_x_low_y, &mut node.low_z_high_x, &mut node.high_y_high_z];
     let place = side * 2 + slot / 4;
     let [a, b, c] = words;
@@ -191,9 +191,9 @@ fn any_plane_of_any_child_one_step_inwards() {
             }
             let mut nodes = nodes.clone();
             let (word, byte) = plane(&mut nodes[node], side, slot);
-            let mut planes = word.rotate_right(WideNode::TURN).to_le_bytes();
+            let mut planes = word.rotate_right(CwbvhNode::TURN).to_le_bytes();
             planes[byte] = if side < 3 { planes[byte].wrapping_add(1) } else { planes[byte].wrapping_sub(1) };
-            *word = u32::from_le_bytes(planes).rotate_left(WideNode::TURN);
+            *word = u32::from_le_bytes(planes).rotate_left(CwbvhNode::TURN);
             let error = BuildError::WideBoxTooSmall { node: node as u32 };
             assert_eq!(validate_wide(&nodes, &bounds), Err(error), "side {side}");
             moved += 1;
@@ -212,13 +212,13 @@ fn own_box_larger_than_the_margin_lets_it_be() {
 }
 
 /// A path of nodes, each with a leaf of one triangle in slot 0 and the next node in slot 1.
-fn chain(length: u32) -> (Vec<WideNode>, Vec<Bounds>) {
+fn chain(length: u32) -> (Vec<CwbvhNode>, Vec<Bounds>) {
     let (least, greatest) = duplicates(1)[0].bounds();
     let own = Bounds { least: pack(least, 0), greatest: pack(greatest, 0) };
     let node = |i: u32| {
         let last = i + 1 == length;
         let (mask, other) = if last { (0, 1) } else { (2, 0) };
-        WideNode {
+        CwbvhNode {
             grid: pack(Vec3::NEG_ONE, 129 << 16 | 129 << 8 | 129 | mask << 24),
             children: UVec4::new(i + 1, i, 1 | other << 3, 0),
             low_x_low_y: UVec4::ZERO,

@@ -22,7 +22,7 @@ impl Room {
         let root = Path::new("/");
         let limits = [address_space(root).map(Room::less_threads), group(root), machine()];
         let least = limits.into_iter().flatten().min_by_key(|room| room.bytes);
-        // A system that does not tell is not second-guessed.
+        // Where the system does not say, no limit is assumed.
         least.unwrap_or(Room { bytes: u64::MAX, limit: "this system" })
     }
 
@@ -107,7 +107,7 @@ const SECOND: Version =
     Version { most: "memory.max", taken: "memory.current", cached: ["inactive_file", "active_file"] };
 
 /// What the group at `path` and each of those around it leave. A container may see its own group as the outermost,
-/// at another path than it is told, so those that are not there are passed over.
+/// at another path than the one reported, so paths that do not exist are skipped.
 fn around(outermost: &Path, path: &str, version: &Version) -> Vec<u64> {
     let names = Path::new(path).components().filter(|part| matches!(part, Component::Normal(_)));
     let inside: PathBuf = names.collect();

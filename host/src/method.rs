@@ -1,4 +1,4 @@
-//! Ways through the hierarchy, by name, and the switches around them.
+//! Traversal methods by name, and their options.
 
 use eyerays_shader::data::{Launch, Layout as LayoutBits, Order as OrderBits, Tuning};
 
@@ -151,9 +151,9 @@ impl TriangleTest {
 pub struct Traversal {
     /// How rays are followed.
     pub method: Method,
-    /// When a hybrid's packet parts.
+    /// When a hybrid's packet splits.
     pub tuning: Tuning,
-    /// How subgroups come by their rays; a CPU has none.
+    /// How rays are distributed to subgroups; a CPU has none.
     pub scheduling: Scheduling,
     /// Which pixels' rays lie beside each other.
     pub order: Order,

@@ -163,7 +163,7 @@ impl Chosen {
         (self.choice.precision, self.choice.traversal) = (precision, traversal);
     }
 
-    /// Renders `repeat` times, at least once. `done` hears of finished shares of the pixels.
+    /// Renders `repeat` times, at least once. `done` is called with finished shares of the pixels.
     ///
     /// # Errors
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.

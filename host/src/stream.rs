@@ -15,12 +15,12 @@ pub struct StreamRay {
     pub direction: Vec3,
     /// Nothing beyond this many lengths of the direction counts.
     pub limit: f32,
-    /// The primitive that it leaves and can't meet, or [`StreamRay::NOWHERE`].
-    pub leaves: u32,
+    /// The primitive that it starts on and can't hit, or [`StreamRay::NOWHERE`].
+    pub source_primitive: u32,
 }
 
 impl StreamRay {
-    /// It leaves no primitive.
+    /// It starts on no primitive.
     pub const NOWHERE: u32 = Hit::<f32>::NOTHING;
 }
 
@@ -44,7 +44,7 @@ impl Stream {
     fn filled(count: usize, rays: impl Iterator<Item = StreamRay>) -> Self {
         let mut words = vec![UVec4::ZERO; 2 * count];
         for (i, ray) in rays.enumerate() {
-            words[i] = pack(ray.origin, ray.leaves);
+            words[i] = pack(ray.origin, ray.source_primitive);
             words[count + i] = pack(ray.direction, ray.limit.to_bits());
         }
         Stream { words }
@@ -79,11 +79,11 @@ impl Stream {
             origin: numbers(first),
             direction: numbers(second),
             limit: f32::from_bits(second.w),
-            leaves: first.w,
+            source_primitive: first.w,
         }
     }
 
-    /// Every ray's origin and the primitive it leaves, then every ray's direction and limit.
+    /// Every ray's origin and source primitive, then every ray's direction and limit.
     pub fn words(&self) -> &[UVec4] {
         &self.words
     }

@@ -6,7 +6,7 @@ pub mod camera;
 pub mod data;
 pub mod entry;
 #[cfg(not(target_arch = "spirv"))]
-pub mod full;
+pub mod bvh8;
 pub mod integrator;
 pub mod intersect;
 pub mod launch;

@@ -19,7 +19,7 @@ macro_rules! for_each_method {
             Speculative speculative "speculative":
                 gpu(subgroup, Speculative<Subgroup>), persistent(), cpu(alone, Speculative<Alone>);
             /// Every ray by itself, through nodes of eight boxes: on a GPU quantised ones (CWBVH)
-            Wide wide "wide": gpu(alone, WideNodes), persistent(WideNodes), cpu(nodes);
+            Wide wide "wide": gpu(alone, CwbvhMethod), persistent(CwbvhMethod), cpu(nodes);
             /// The rays of a subgroup together, by votes
             Packet packet "packet": gpu(subgroup, Packet<Subgroup>), persistent(), cpu(together, Packet<Alone>);
             /// Together until a small stack is full, then each ray by itself

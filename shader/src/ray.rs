@@ -1,11 +1,11 @@
-//! A ray, ready for boxes and triangles, and what it has hit.
+//! A ray, prepared for box and triangle tests, and its hit.
 
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Scalar;
 use crate::real::{Real, SMALL, TINY, V3};
 use glam::Vec3;
 
-/// A ray (or one a lane) with what its box and triangle tests share.
+/// A ray (or one a lane) with the values that its box and triangle tests share.
 #[derive(Clone, Copy)]
 pub struct Ray<R: Real> {
     /// Where it starts, in the normalised scene.
@@ -16,8 +16,8 @@ pub struct Ray<R: Real> {
     pub offset: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
-    /// The primitive that it leaves, which it can't meet again; [`Hit::NOTHING`] for none.
-    pub leaves: R::Index,
+    /// The primitive that it starts on, which it can't hit again; [`Hit::NOTHING`] for none.
+    pub source_primitive: R::Index,
 }
 
 /// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
@@ -34,17 +34,17 @@ pub struct Shear<R: Real> {
 }
 
 impl<R: Real> Ray<R> {
-    /// A ray from anywhere; `direction` needs no unit length (t counts in its lengths), but must not be
+    /// A ray that starts on no triangle; `direction` needs no unit length (t counts in its lengths), but must not be
     /// zero.
     #[inline(always)]
     pub fn new(origin: V3<R>, direction: V3<R>) -> Self {
         Self::leaving(R::index(Hit::<R>::NOTHING), origin, direction)
     }
 
-    /// A ray that leaves a triangle.
+    /// A ray that starts on a triangle.
     #[inline(always)]
-    pub fn leaving(leaves: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
-        // NaN counts as zero too: its reciprocal is another on every device.
+    pub fn leaving(source_primitive: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
+        // NaN counts as zero too, since its reciprocal differs between devices.
         let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);
@@ -55,7 +55,7 @@ impl<R: Real> Ray<R> {
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
         let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
-        Ray { origin, inverse, offset: origin.times(inverse), shear, leaves }
+        Ray { origin, inverse, offset: origin.times(inverse), shear, source_primitive }
     }
 
     /// A vertex relative to the origin, its axes cycled.
@@ -64,7 +64,7 @@ impl<R: Real> Ray<R> {
         self.shear.cycle(V3::splat(vertex) - self.origin)
     }
 
-    /// How far its first two axes move along the third, with its axes cycled.
+    /// How far the first two axes move along the third, with the axes cycled.
     #[inline(always)]
     pub fn slopes(&self) -> (R, R) {
         (self.shear.x, self.shear.y)
@@ -81,14 +81,14 @@ impl<R: Real> Ray<R> {
 #[inline(always)]
 fn inverted<R: Real>(component: R) -> R {
     let least = R::select(component.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
-    R::select(component.same(R::splat(0.0)), least, component).reciprocal()
+    R::select(component.eq(R::splat(0.0)), least, component).reciprocal()
 }
 
-/// Far from a scene within [-1, 1], and no overflow when squared.
+/// Far outside of a scene within [-1, 1], without overflow when squared.
 const BEYOND: f32 = 1.0 / SMALL;
 
-/// A coordinate of a ray's origin; where it is no number, or infinite, one from where the ray leaves the scene behind, so
-/// that it meets no box on any device.
+/// A coordinate of a ray's origin; where it is NaN or infinite, one beyond the scene, from where the ray leads away, so
+/// that it hits no box on any device.
 #[inline(always)]
 fn started<R: Real>(origin: R, direction: R) -> R {
     let beyond = R::select(direction.lt(R::splat(0.0)), R::splat(-BEYOND), R::splat(BEYOND));
@@ -109,28 +109,35 @@ impl<R: Real> Shear<R> {
 pub struct Hit<R: Real> {
     /// Distance in lengths of the ray's direction. Nothing beyond counts.
     pub t: R,
-    /// Weight of the triangle's second vertex, but for its scale. As the others kept on a CPU alone, see
-    /// [`step::weights`](crate::traverse::step::weights).
+    /// Weight of the triangle's second vertex, to be multiplied by `scale`. Both weights and the scale are kept on a
+    /// CPU only, see [`step::weights`](crate::traverse::step::weights).
     pub u: R,
     /// Weight of the third, likewise.
     pub v: R,
-    /// What the weights are still to be multiplied by, see [`Hit::weights`].
+    /// The factor of the weights, see [`Hit::weights`].
     pub scale: R,
-    /// Where the triangle lies in leaf order; [`Hit::NOTHING`] if there is none.
-    pub slot: R::Index,
+    /// The triangle's index in leaf order; [`Hit::NOTHING`] if there is no hit.
+    pub triangle_index: R::Index,
     /// The triangle's number in the scene, which decides ties.
     pub primitive: R::Index,
 }
 
 impl<R: Real> Hit<R> {
-    /// The slot of a miss.
+    /// The triangle index of a miss.
     pub const NOTHING: u32 = u32::MAX;
 
     /// No hit up to `limit`.
     #[inline(always)]
     pub fn none(limit: R) -> Self {
         let nothing = R::index(Self::NOTHING);
-        Hit { t: limit, u: R::splat(0.0), v: R::splat(0.0), scale: R::splat(1.0), slot: nothing, primitive: nothing }
+        Hit {
+            t: limit,
+            u: R::splat(0.0),
+            v: R::splat(0.0),
+            scale: R::splat(1.0),
+            triangle_index: nothing,
+            primitive: nothing,
+        }
     }
 
     /// Weights of the triangle's second and third vertex.
@@ -159,7 +166,7 @@ impl<R: Real> Shear<R> {
 }
 
 #[cfg(not(target_arch = "spirv"))]
-impl<const N: usize> Shear<crate::real::Wide<N>> {
+impl<const N: usize> Shear<crate::real::F32xN<N>> {
     /// One lane's shear.
     #[inline(always)]
     pub(crate) fn lane(&self, i: usize) -> Shear<f32> {

@@ -40,7 +40,7 @@ macro_rules! resources {
             10 queue QUEUE: Write u32, "queue";
             11 next NEXT: Write u32, "next queue";
             12 counters COUNTERS: Write u32, "counters";
-            13 wide WIDE: Read WideNode, "wide hierarchy";
+            13 wide WIDE: Read CwbvhNode, "wide hierarchy";
             14 bounds BOUNDS: Read Bounds, "bounds";
             15 film FILM: Write UVec4, "film";
             16 arguments ARGUMENTS: Write u32, "arguments";

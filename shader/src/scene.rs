@@ -2,10 +2,10 @@
 
 use crate::buffer::read;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, Frame, Layout, Light, Material, Normals, Specialisation, Triangle, WideNode, numbers,
+    Bounds, CentredPair, CompactPair, Frame, Layout, Light, Material, Normals, Specialisation, Triangle, CwbvhNode, numbers,
 };
 #[cfg(not(target_arch = "spirv"))]
-use crate::full::Full;
+use crate::bvh8::Bvh8View;
 use glam::{UVec4, Vec3};
 
 /// A launch, and the triangles of its scene.
@@ -45,10 +45,10 @@ pub struct TraceContext<'a> {
     /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Layout::COMPACT`]).
     pub nodes: &'a [UVec4],
     /// Nodes of eight children; the root is node 0. Of the method `wide` alone.
-    pub wide: &'a [WideNode],
+    pub wide: &'a [CwbvhNode],
     /// The same for a CPU. Empty unless the method is `wide`.
     #[cfg(not(target_arch = "spirv"))]
-    pub full: Full<'a>,
+    pub bvh8: Bvh8View<'a>,
     /// Bounds by slot ([`Layout::SPLIT`]).
     pub bounds: &'a [Bounds],
 }

@@ -5,7 +5,7 @@ use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Scalar, V3, Wide, WideIndex};
+use eyerays_shader::real::{F32xN, Scalar, U32xN, V3};
 use eyerays_shader::traverse::{Closest, step};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -23,12 +23,12 @@ pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
     let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
     let found = starts.par_iter().flat_map_iter(|&start| {
         let ray = |i: usize| stream.ray((start + i).min(stream.len() - 1));
-        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<Wide<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
-        let leaves = WideIndex(std::array::from_fn(|i| ray(i).leaves));
-        let packet = Ray::leaving(leaves, vector(&|r| r.origin), vector(&|r| r.direction));
-        let mut hit = Hit::none(Wide(std::array::from_fn(|i| ray(i).limit)));
+        let vector = |of: &dyn Fn(StreamRay) -> Vec3| V3::<F32xN<LANES>>::of_lanes(|i| V3::splat(of(ray(i))));
+        let source_primitive = U32xN(std::array::from_fn(|i| ray(i).source_primitive));
+        let packet = Ray::leaving(source_primitive, vector(&|r| r.origin), vector(&|r| r.direction));
+        let mut hit = Hit::none(F32xN(std::array::from_fn(|i| ray(i).limit)));
         for slot in 0..packed.triangles.len() as u32 {
-            step::triangle::<Closest, Wide<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
+            step::triangle::<Closest, F32xN<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
         }
         (0..LANES.min(stream.len() - start)).map(move |i| {
             let hit = hit.lane(i);
@@ -44,8 +44,8 @@ pub fn brute_force_of<R: Scalar>(packed: &Packed, stream: &Stream) -> Vec<Found>
     let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let found = (0..stream.len()).into_par_iter().map(|i| {
-        let StreamRay { origin, direction, limit, leaves } = stream.ray(i);
-        let ray = Ray::<R>::leaving(R::index(leaves), V3::splat(origin), V3::splat(direction));
+        let StreamRay { origin, direction, limit, source_primitive } = stream.ray(i);
+        let ray = Ray::<R>::leaving(R::index(source_primitive), V3::splat(origin), V3::splat(direction));
         let mut hit = Hit::none(R::splat(limit));
         for slot in 0..packed.triangles.len() as u32 {
             step::triangle::<Closest, R>(&geometry, NodeRef::leaf(slot, 1), &ray, &mut hit);

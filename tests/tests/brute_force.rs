@@ -57,7 +57,7 @@ fn rays(packed: &Packed) -> Stream {
             _ => place(3),
         };
         let direction = if target == origin { Vec3::X } else { target - origin };
-        StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+        StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
     };
     Stream::new((0..count).map(ray))
 }

@@ -53,15 +53,15 @@ impl Log<'_> {
     fn tell<R: Scalar>(&self, geometry: &Geometry<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
         let path = Path::<R>::current(geometry, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
-        let (hit, place) = R::load(records.hits[slot as usize]);
-        if place == Hit::<R>::NOTHING {
-            return story.events.push(place);
+        let (hit, triangle_index) = R::load(records.hits[slot as usize]);
+        if triangle_index == Hit::<R>::NOTHING {
+            return story.events.push(triangle_index);
         }
         let packed = self.packed;
         let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
-        let triangle = &geometry.triangle(place);
+        let triangle = &geometry.triangle(triangle_index);
         let contact = Contact::new(triangle, hit.y, hit.z, path.direction);
-        let surface = Surface::new(geometry.features, &looks, place, triangle, path.direction, &contact);
+        let surface = Surface::new(geometry.features, &looks, triangle_index, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.primitive(), u32::from(contact.front)]);
@@ -73,7 +73,7 @@ impl Log<'_> {
                 story.events.push(cone(geometry.features, light, &contact));
             }
         }
-        if !surface.ior.same(R::splat(0.0)) {
+        if !surface.ior.eq(R::splat(0.0)) {
             let eta = if contact.front { R::splat(1.0).div(surface.ior) } else { surface.ior };
             let at = refract(path.direction, surface.normal, eta);
             story.events.push(u32::from(at.total));

@@ -1,4 +1,4 @@
-//! The cheapest plane, among those that binning tells apart.
+//! The cheapest plane, among those between bins.
 
 use eyerays_shader::data::{BOX_PADDING, Triangle};
 
@@ -8,7 +8,7 @@ use crate::bounds::Bounds;
 /// Bins an axis. With 16, Conference's rays visit a quarter more nodes.
 const BINS: usize = 32;
 
-/// A way to part a node, and what its children cost: the sum of area times references.
+/// A way to split a node, and its cost: the sum of the children's areas times references.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Split {
     pub cost: f32,
@@ -123,7 +123,7 @@ impl Objects {
 /// The cheapest split through parts within `bounds`, and its plane.
 pub(super) fn through(triangles: &[Triangle], parts: &[Part], bounds: Bounds) -> Option<(Split, f32)> {
     let along = |axis: usize| -> Option<(Split, f32)> {
-        // Slabs thinner than padding would part nothing.
+        // Slabs thinner than padding would separate nothing.
         let extent = bounds.extent()[axis];
         let along = Axis::between(bounds.min[axis], bounds.max[axis]).filter(|_| extent > 8.0 * BOX_PADDING)?;
         let mut bins = [NOTHING; BINS];
@@ -139,7 +139,7 @@ pub(super) fn through(triangles: &[Triangle], parts: &[Part], bounds: Bounds) ->
     (0..3).filter_map(along).fold(None, better)
 }
 
-/// Puts a part into all bins that it reaches, cut at their planes.
+/// Puts a part into all bins that it overlaps, cut at their planes.
 fn chop(triangle: &Triangle, part: Part, axis: usize, along: Axis, bins: &mut [Bin; BINS]) {
     let first = along.bin(part.bounds.min[axis]);
     let last = along.bin(part.bounds.max[axis]).max(first);

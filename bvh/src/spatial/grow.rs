@@ -13,12 +13,12 @@ use crate::bounds::Bounds;
 /// than this share of the scene's surface area (Stich et al.: 1e-5, which on Conference and Sibenik makes
 /// three times the references and saves no visits).
 const OVERLAP: f32 = 1e-4;
-/// Levels after which what is left is split at medians.
+/// Levels after which the rest is split at medians.
 const LEVELS: u32 = 56;
-/// Parts from which on two threads grow a node's children.
+/// From this many parts on, two threads grow a node's children.
 const MANY: usize = 2048;
 
-/// Grows a tree over parts, which may become `room` more.
+/// Grows a tree over parts; splits may add `room` parts.
 pub(super) fn grow(triangles: &[Triangle], parts: Vec<Part>, room: usize) -> Branch {
     let scene = area(around(&parts));
     Grower { triangles, least_overlap: OVERLAP * scene }.branch(parts, room, 0)
@@ -46,7 +46,7 @@ impl Grower<'_> {
         Branch::Inner(Box::new([left, right]))
     }
 
-    /// Parts a node in two, neither of which is empty.
+    /// Splits a node in two, neither of which is empty.
     fn children(&self, mut parts: Vec<Part>, room: usize) -> [Vec<Part>; 2] {
         let objects = Objects::of(&parts);
         let between = objects.cheapest(&parts);
@@ -79,7 +79,7 @@ impl Grower<'_> {
         children.iter().all(|child| !child.is_empty()).then_some(children)
     }
 
-    /// Sorts parts to the sides of a plane. Those that it meets are cut, unless it costs less to have
+    /// Sorts parts to the sides of a plane. Those that it crosses are cut, unless it costs less to keep
     /// them whole on one side, or there is no room.
     fn cut(&self, parts: &[Part], mut room: usize, axis: usize, plane: f32) -> [Vec<Part>; 2] {
         let (mut sides, mut met) = ([Vec::new(), Vec::new()], Vec::new());
@@ -111,8 +111,8 @@ impl Grower<'_> {
     }
 }
 
-/// To which sides a part goes that a plane meets, given what is there: to both, cut, or whole to one.
-/// `counts` takes each part to be on both sides that was not yet asked for.
+/// To which sides a part goes that a plane crosses, given what is there: to both, cut, or whole to one.
+/// `counts` counts each part that is not yet sorted on both sides.
 fn goes(part: &Part, cut: &[Option<Part>; 2], boxes: &[Bounds; 2], counts: &[f32; 2], may_cut: bool) -> [bool; 2] {
     let cost = |left: Bounds, fewer_left: f32, right: Bounds, fewer_right: f32| {
         area(left) * (counts[0] - fewer_left) + area(right) * (counts[1] - fewer_right)

@@ -3,8 +3,8 @@
 //!
 //! A tree is grown from the root down. Each node takes the cheapest of binned planes by the surface area
 //! heuristic, among those between triangles and those through them. The leaves' parts become the scene's
-//! references, and the tree is where builds start from: a bottom-up builder over the same references
-//! makes little of them (on Conference and Sibenik it visits as many nodes as over whole triangles), and
+//! references, and builds start from the tree: a bottom-up builder over the same references gains
+//! little from them (on Conference and Sibenik it visits as many nodes as over whole triangles), and
 //! splits chosen without a tree (Karras and Aila, Fast Parallel Construction of High-Quality Bounding
 //! Volume Hierarchies, 2013) even cost it visits.
 

@@ -5,7 +5,7 @@ use glam::Vec3;
 
 use crate::bounds::Bounds;
 
-/// What of a triangle lies in a box, which is as small as cutting has shown it can be.
+/// The part of a triangle inside a box, which is as tight as the cuts so far allow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     pub triangle: u32,
@@ -13,7 +13,7 @@ pub(super) struct Part {
     pub bounds: Bounds,
 }
 
-/// More than a cut errs by, and less than padding: in [-1, 1] its double precision errs by less than
+/// More than the error of a cut, and less than padding: in [-1, 1] its double precision errs by less than
 /// 2^-50, the conversion by 2^-25 and the slack's sum by 2^-24.
 const SLACK: f32 = 1.0 / (1u64 << 23) as f32;
 
@@ -24,7 +24,7 @@ impl Part {
         Part { triangle: number, bounds: Bounds::around(corners) }
     }
 
-    /// What lies on either side of a plane across `axis`; nothing, if no point does.
+    /// The parts on either side of a plane across `axis`; `None` for a side without a point.
     pub fn cut(self, triangle: &Triangle, axis: usize, plane: f32) -> [Option<Part>; 2] {
         let mut sides = [Bounds::EMPTY; 2];
         let vertices = triangle.vertices();
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_plane_does_not_reach_stays_whole() {
+    fn a_part_beside_the_plane_stays_whole() {
         let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
         let [left, right] = Part::whole(0, &triangle).cut(&triangle, 1, 2.0);
         assert!(right.is_none());

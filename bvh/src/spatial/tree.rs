@@ -1,4 +1,4 @@
-//! The tree that splits were made for.
+//! The tree whose planes split triangles.
 
 use std::collections::VecDeque;
 

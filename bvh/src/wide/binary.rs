@@ -1,4 +1,4 @@
-//! The binary tree as the collapse sees it: one kind of node, and leaves as small as wide ones.
+//! The binary tree as input of the collapse, with leaves as small as those of wide nodes.
 
 use eyerays_shader::data::NodeRef;
 
@@ -56,7 +56,7 @@ impl Binary {
         tree
     }
 
-    /// Parts a leaf where that costs least.
+    /// Splits a leaf where that costs least.
     fn part(&mut self, number: usize, order: &mut [u32], bounds: &[Bounds], most: u32) {
         let Node { first, count, .. } = self.nodes[number];
         let slots = &mut order[first as usize..(first + count) as usize];
@@ -69,7 +69,7 @@ impl Binary {
         }
     }
 
-    /// Fills in what inner nodes sum up.
+    /// Fills in the totals of inner nodes.
     fn sum(&mut self) {
         for i in (0..self.nodes.len()).rev() {
             if let Kind::Inner(left, right) = self.nodes[i].kind {
@@ -108,7 +108,7 @@ fn best_part(triangles: &mut [u32], bounds: &[Bounds], most: u32) -> u32 {
         set.count_ones() as f32 * around.half_area()
     };
     let fits = |set: &u32| [*set, all & !set].iter().all(|s| s.count_ones() <= most);
-    // The last triangle is always in the second part, so that no parting is met twice.
+    // The last triangle is always in the second part, so that no split is tried twice.
     let sets = (1..=all / 2).filter(fits).map(|set| (cost(set) + cost(all & !set), set));
     let (_, set) = sets.min_by(|a, b| a.0.total_cmp(&b.0)).expect("some parting fits");
     let parts: Vec<u32> = members(set).chain(members(all & !set)).map(|i| triangles[i]).collect();
@@ -125,7 +125,7 @@ mod tests {
     }
 
     #[test]
-    fn a_large_leaf_is_parted_where_the_gap_is() {
+    fn a_large_leaf_is_split_at_the_gap() {
         let bounds: Vec<Bounds> = [0.0, 9.0, 1.0, 10.0, 2.0].map(cube).into();
         let mut triangles = [0, 1, 2, 3, 4];
         assert_eq!(best_part(&mut triangles, &bounds, 3), 2);

@@ -1,9 +1,9 @@
-//! Which nodes of the binary tree become wide nodes, at the least cost there is.
+//! Which nodes of the binary tree become wide nodes, at the least cost.
 //!
 //! Ylitie, Karras and Laine 2017, section 3.1: the cost of showing a subtree as at most `i` children of
 //! one wide node follows from that of its children's subtrees, from the leaves up.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use super::binary::{Binary, Kind, Node};
 use super::layout::MAX_WIDE_DEPTH;
@@ -11,7 +11,7 @@ use super::layout::MAX_WIDE_DEPTH;
 /// Cost of a step through a wide node, which tests eight boxes.
 pub(crate) const NODE: f32 = 1.0;
 
-/// What leaves of wide nodes hold and cost.
+/// Size and cost of the leaves of wide nodes.
 #[derive(Clone, Copy)]
 pub(crate) struct Leaves {
     /// The most triangles.
@@ -23,8 +23,8 @@ pub(crate) struct Leaves {
 }
 
 impl Leaves {
-    /// Those of [`WideNode`]; a triangle's cost is the paper's.
-    pub const WIDE: Leaves = Leaves { most: WideNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
+    /// The leaves of [`CwbvhNode`]; a triangle's cost is the paper's.
+    pub const WIDE: Leaves = Leaves { most: CwbvhNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
 
     /// The cost of a leaf of all triangles below a node.
     fn cost(self, node: &Node) -> f32 {
@@ -35,8 +35,8 @@ impl Leaves {
     }
 }
 
-/// Most children of a node, and most roots that a subtree can be shown as.
-const ARITY: usize = WideNode::ARITY;
+/// The most children of a node, and the most roots that a subtree can be shown as.
+const ARITY: usize = CwbvhNode::ARITY;
 
 /// Choices for every node of a binary tree.
 pub(crate) struct Plan {
@@ -86,9 +86,9 @@ impl Plan {
     }
 
     /// The children of the wide node that binary node `number` becomes, `level` wide nodes above it: the
-    /// plan's, or if the tree became deeper than [`MAX_WIDE_DEPTH`] by them, [`three_levels`].
+    /// plan's, or [`three_levels`] if they would make the tree deeper than [`MAX_WIDE_DEPTH`].
     pub fn children_at(&self, tree: &Binary, number: u32, level: u32, children: &mut Vec<(u32, bool)>) {
-        // With the plan's children, what is left may be one level of pairs lower only.
+        // With the plan's children, the remaining tree may be only one level lower.
         let rest = tree.nodes[number as usize].height.saturating_sub(1).div_ceil(LEVELS);
         if level + 1 + rest <= MAX_WIDE_DEPTH {
             self.children(tree, number, children);
@@ -97,7 +97,7 @@ impl Plan {
         }
     }
 
-    /// Shows a subtree as at most `most` children; as all of them, not as itself.
+    /// Shows a subtree as at most `most` children, never as its own root.
     fn show(&self, tree: &Binary, number: u32, most: usize, children: &mut Vec<(u32, bool)>) {
         let Choices(choices) = self.choices[number as usize];
         let place = (1..most).rev().find(|&place| choices[place] > 0);
@@ -129,7 +129,7 @@ pub(crate) fn three_levels(tree: &Binary, number: u32, children: &mut Vec<(u32, 
 }
 
 /// Levels of the binary tree that fit into any wide node.
-pub(crate) const LEVELS: u32 = WideNode::ARITY.ilog2();
+pub(crate) const LEVELS: u32 = CwbvhNode::ARITY.ilog2();
 
 /// The best choices for an inner node, given its children's costs.
 fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices) {
@@ -193,7 +193,7 @@ mod tests {
         (0..count).map(|i| cube(i as f32 * step)).collect()
     }
 
-    /// Least costs met so far, by node and most children.
+    /// Least costs found so far, by node and most children.
     type Memory = std::collections::HashMap<(u32, usize), f32>;
 
     /// The least cost of showing a subtree as at most `most` children, by trying everything.
@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn the_plan_costs_the_least_there_is() {
+    fn no_plan_costs_less() {
         for (count, step) in [(2, 2.0), (5, 0.1), (9, 3.0), (40, 0.5), (100, 1.5)] {
             for halve in [|n: usize| n / 2, |_: usize| 1, |n: usize| n.div_ceil(3)] {
                 let tree = tree(&cubes(count, step), halve);

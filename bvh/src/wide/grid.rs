@@ -6,11 +6,11 @@
 //! 2^-36 below 2^9: 45 bits, which double precision adds up without rounding. The coordinate that it is
 //! compared with is a single, which converts exactly.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use crate::bounds::Bounds;
 
-/// The planes' numbers a box has: least and greatest, an axis each.
+/// The numbers of a box's planes, least and greatest, for each axis.
 pub(crate) type Planes = [[u8; 3]; 2];
 
 /// Where planes 0 to 255 lie, on each axis.
@@ -30,8 +30,8 @@ pub(crate) const GREATEST_EXPONENT: i32 = 0;
 pub(crate) const FARTHEST: f32 = 2.0;
 
 const FINEST: f64 = 1.0 / (1u64 << -LEAST_EXPONENT) as f64;
-const MARGIN: f64 = WideNode::MARGIN as f64;
-const SLACK: f64 = WideNode::SLACK as f64;
+const MARGIN: f64 = CwbvhNode::MARGIN as f64;
+const SLACK: f64 = CwbvhNode::SLACK as f64;
 const PLANES: f64 = u8::MAX as f64;
 
 impl Grid {
@@ -58,7 +58,7 @@ impl Grid {
         ]
     }
 
-    /// Do planes lie around a box, with the margin? Exact if the grid [`Grid::is_sound`].
+    /// Do the planes enclose a box, with the margin? Exact if the grid [`Grid::is_sound`].
     pub fn contains(&self, planes: Planes, bounds: Bounds) -> bool {
         let place = |side: usize, axis: usize| {
             f64::from(self.origin[axis]) + f64::from(planes[side][axis]) * step(self.exponent[axis])
@@ -70,7 +70,7 @@ impl Grid {
         })
     }
 
-    /// The box between planes, about.
+    /// The box between planes, approximately.
     pub fn bounds(&self, planes: Planes) -> Bounds {
         let place = |side: usize, axis: usize| {
             (f64::from(self.origin[axis]) + f64::from(planes[side][axis]) * step(self.exponent[axis])) as f32
@@ -78,7 +78,7 @@ impl Grid {
         Bounds { min: std::array::from_fn(|axis| place(0, axis)), max: std::array::from_fn(|axis| place(1, axis)) }
     }
 
-    /// Are origin and steps such as the module's proof takes them to be?
+    /// Are origin and steps as the module's proof assumes?
     pub fn is_sound(&self) -> bool {
         let origin = |o: &f32| o.abs() <= FARTHEST && (f64::from(*o) / FINEST).fract() == 0.0;
         let exponent = |e: &i32| (LEAST_EXPONENT..=GREATEST_EXPONENT).contains(e);
@@ -101,7 +101,7 @@ fn above(coordinate: f32) -> f64 {
     (f64::from(coordinate) / FINEST).ceil() * FINEST + MARGIN
 }
 
-/// The greatest single up to a place among the multiples of [`FINEST`]: one below 2^-6 holds every such
+/// The greatest single at or below a coordinate that is a multiple of [`FINEST`]: one below 2^-6 holds every such
 /// multiple as it is, and larger ones are spaced by [`FINEST`] or more.
 fn origin(place: f64) -> f32 {
     let place = (place / FINEST).floor() * FINEST;
@@ -168,7 +168,7 @@ mod tests {
         let point = Bounds { min: [1.0; 3], max: [1.0; 3] };
         let grid = Grid::around(point);
         assert_eq!(grid.exponent, [-25; 3]);
-        assert_eq!(grid.origin, [(1.0 - WideNode::MARGIN).next_down(); 3]);
+        assert_eq!(grid.origin, [(1.0 - CwbvhNode::MARGIN).next_down(); 3]);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Wide nodes, and the order of triangles that both hierarchies share.
 
-use eyerays_shader::data::{NodePair, NodeRef, WideNode};
+use eyerays_shader::data::{CwbvhNode, NodePair, NodeRef};
 
 use super::{
     binary::{Binary, Node},
@@ -13,17 +13,17 @@ use crate::{MAX_DEPTH, bounds::Bounds, validate::children};
 
 /// The most wide nodes on a path from the root.
 ///
-/// A traversal keeps the siblings that wait on a level in one entry, so it never holds more entries
-/// than this.
+/// A traversal keeps the siblings still to visit on a level in one entry, so its stack never holds more
+/// entries than this.
 pub const MAX_WIDE_DEPTH: u32 = 32;
 
-// A leaf of the binary tree may be one level more, and three levels always make one.
+// Splitting a leaf may add a level to the binary tree; three binary levels always fit into one wide node.
 const _: () = assert!((MAX_DEPTH + 1).div_ceil(LEVELS) <= MAX_WIDE_DEPTH);
 
-/// The wide nodes, and what they do to slots.
+/// The wide nodes, and the new order of slots.
 pub(crate) struct Wide {
-    pub nodes: Vec<WideNode>,
-    /// The slot of depth-first order at each slot.
+    pub nodes: Vec<CwbvhNode>,
+    /// At each new slot, the slot in depth-first order.
     slots: Vec<u32>,
 }
 
@@ -63,7 +63,7 @@ impl Wide {
             grid: Grid::around(Bounds::around((0..children.len()).map(|i| node(i).bounds))),
             first_child: self.nodes.len() as u32,
             first_triangle: self.slots.len() as u32,
-            children: [Record::NOWHERE; WideNode::ARITY],
+            children: [Record::NOWHERE; CwbvhNode::ARITY],
         };
         let boxes: Vec<Bounds> = (0..children.len()).map(|i| node(i).bounds).collect();
         for (slot, child) in octant::slots(&boxes, |i| children[i].1).into_iter().enumerate() {
@@ -105,7 +105,7 @@ fn run(node: &Node) -> std::ops::Range<u32> {
     node.first..node.first + node.count
 }
 
-/// What stands for a node until it is made.
-fn nothing() -> WideNode {
+/// A placeholder for a node until it is made.
+fn nothing() -> CwbvhNode {
     bytemuck::Zeroable::zeroed()
 }

@@ -1,19 +1,19 @@
 //! The hierarchy of eight children a node (Ylitie, Karras and Laine, Efficient Incoherent Ray
 //! Traversal on GPUs Through Compressed Wide BVHs, 2017), made of the binary one.
 //!
-//! The stages run one way, a file each: binary (the tree in question), collapse (which of its nodes
+//! The stages run one way, a file each: binary (the tree that is collapsed), collapse (which of its nodes
 //! become wide), octant (which child sits where), grid and record (how a node is stored), layout.
 
 mod binary;
+mod bvh8;
 mod collapse;
-mod full;
 mod grid;
 mod layout;
 mod octant;
 mod record;
 mod validate;
 
-pub use full::FullBvh;
+pub use bvh8::Bvh8;
 pub use layout::MAX_WIDE_DEPTH;
 pub use validate::validate_wide;
 

@@ -1,22 +1,22 @@
 //! Which child sits in which slot.
 //!
-//! A ray that looks at slots in the order of their number XOR its octant shall meet near children
+//! A ray that visits slots in the order of their number XOR its octant should visit near children
 //! before far ones. Bit 0 of a slot or an octant stands for x, bit 1 for y, bit 2 for z; in a slot it
 //! is set on the side of the greater coordinate, in a ray's octant where the direction is negative.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 
 use crate::bounds::Bounds;
 
-const ARITY: usize = WideNode::ARITY;
+const ARITY: usize = CwbvhNode::ARITY;
 
 /// The child at each slot, as a place in `boxes`; at most eight. Leaves are in their order, so that a large leaf
 /// of the pairs stays in one piece: a ray goes through the leaves of a node at once, whatever their slots.
 ///
 /// Ylitie et al. 2017, section 3.2: slots are the octants' diagonals, and the sum of the distances that
-/// children lie along the diagonals of their slots is to be as large as possible. Theirs is an auction;
-/// here each child is swapped with others for as long as that helps. (The order of two children hangs on
-/// the highest bit alone in which their slots differ; a sum over pairs along that bit's axis says so
+/// children lie along the diagonals of their slots is to be as large as possible. They use an auction;
+/// here each child is swapped with others for as long as that helps. (The order of two children depends only
+/// on the highest bit in which their slots differ; a sum over pairs along that bit's axis models this
 /// better, but on Conference and Sibenik rays visit as many nodes with it.)
 pub(crate) fn slots(boxes: &[Bounds], is_leaf: impl Fn(usize) -> bool) -> [Option<usize>; ARITY] {
     let middle = Bounds::around(boxes.iter().copied()).centre();
@@ -29,7 +29,7 @@ pub(crate) fn slots(boxes: &[Bounds], is_leaf: impl Fn(usize) -> bool) -> [Optio
     };
     let gains: [[f32; ARITY]; ARITY] = std::array::from_fn(|child| std::array::from_fn(|slot| along(child, slot)));
     let mut children: [usize; ARITY] = std::array::from_fn(|slot| slot);
-    // Each swap that is made raises the sum, so that there is an end; rounding must not prevent it.
+    // Each swap raises the sum, so the loop ends by itself; the bound covers rounding.
     for _ in 0..PASSES {
         if !improve(&mut children, &gains) {
             break;

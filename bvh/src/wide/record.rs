@@ -1,19 +1,19 @@
 //! A wide node's bytes.
 
-use eyerays_shader::data::WideNode;
+use eyerays_shader::data::CwbvhNode;
 use glam::UVec4;
 
 use super::grid::{Grid, Planes};
 
-const ARITY: usize = WideNode::ARITY;
+const ARITY: usize = CwbvhNode::ARITY;
 /// The bias of a single's exponent.
 const BIAS: i32 = 127;
-/// 256 steps beside one.
+/// The exponent of 256 steps over that of one.
 const EXTENT: i32 = 8;
 /// Bits of a child's triangles.
-const LEAF: u32 = (1 << WideNode::MAX_LEAF) - 1;
+const LEAF: u32 = (1 << CwbvhNode::MAX_LEAF) - 1;
 
-/// What sits in a slot.
+/// The child in a slot.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Child {
     /// Nothing.
@@ -24,7 +24,7 @@ pub(crate) enum Child {
     Leaf { count: u32 },
 }
 
-/// A node, spelt out.
+/// A node, decoded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Record {
     pub grid: Grid,
@@ -38,15 +38,15 @@ pub(crate) struct Record {
 
 impl Record {
     /// The node's 80 bytes.
-    pub fn encode(&self) -> WideNode {
+    pub fn encode(&self) -> CwbvhNode {
         let inner = |slot: usize| u32::from(self.children[slot].0 == Child::Inner) << slot;
-        let triangles = |slot: usize| leaf(self.children[slot].0) << (WideNode::MAX_LEAF as usize * slot);
+        let triangles = |slot: usize| leaf(self.children[slot].0) << (CwbvhNode::MAX_LEAF as usize * slot);
         let mask: u32 = (0..ARITY).map(inner).sum();
         let [x, y, z] = self.grid.exponent.map(|e| (e + EXTENT + BIAS) as u8);
         let [ox, oy, oz] = self.grid.origin.map(f32::to_bits);
         let planes = |side: usize, axis: usize| words(|slot| self.children[slot].1[side][axis]);
         let join = |[a, b]: [u32; 2], [c, d]: [u32; 2]| UVec4::new(a, b, c, d);
-        WideNode {
+        CwbvhNode {
             grid: UVec4::new(ox, oy, oz, u32::from_le_bytes([x, y, z, mask as u8])),
             children: UVec4::new(self.first_child, self.first_triangle, (0..ARITY).map(triangles).sum(), 0),
             low_x_low_y: join(planes(0, 0), planes(0, 1)),
@@ -55,20 +55,20 @@ impl Record {
         }
     }
 
-    /// What a node says; none if a child is both, or a leaf with a gap among its bits.
-    pub fn decode(node: &WideNode) -> Option<Self> {
+    /// The node's record; `None` if a child is both inner node and leaf, or if a leaf's bits have a gap.
+    pub fn decode(node: &CwbvhNode) -> Option<Self> {
         let [x, y, z, mask] = node.grid.w.to_le_bytes();
-        let WideNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, .. } = *node;
+        let CwbvhNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, .. } = *node;
         let planes = [
             [bytes([a.x, a.y]), bytes([a.z, a.w]), bytes([b.x, b.y])],
             [bytes([b.z, b.w]), bytes([c.x, c.y]), bytes([c.z, c.w])],
         ];
-        if node.children.z >> (WideNode::MAX_LEAF as usize * ARITY) != 0 {
+        if node.children.z >> (CwbvhNode::MAX_LEAF as usize * ARITY) != 0 {
             return None;
         }
         let mut children = [(Child::None, [[0; 3]; 2]); ARITY];
         for (slot, (child, its)) in children.iter_mut().enumerate() {
-            let triangles = node.children.z >> (WideNode::MAX_LEAF as usize * slot) & LEAF;
+            let triangles = node.children.z >> (CwbvhNode::MAX_LEAF as usize * slot) & LEAF;
             *child = what(mask >> slot & 1 == 1, triangles)?;
             *its = planes.map(|side| side.map(|axis| axis[slot]));
         }
@@ -92,7 +92,7 @@ fn leaf(child: Child) -> u32 {
     }
 }
 
-/// What a child's bits say; none if they contradict each other.
+/// A child by its bits; `None` if they contradict each other.
 fn what(is_inner: bool, triangles: u32) -> Option<Child> {
     match (is_inner, triangles.trailing_ones()) {
         (true, 0) if triangles == 0 => Some(Child::Inner),
@@ -104,11 +104,11 @@ fn what(is_inner: bool, triangles: u32) -> Option<Child> {
 
 /// Eight bytes as two words of planes.
 fn words(byte: impl Fn(usize) -> u8) -> [u32; 2] {
-    [0, 4].map(|first| u32::from_le_bytes(std::array::from_fn(|i| byte(first + i))).rotate_left(WideNode::TURN))
+    [0, 4].map(|first| u32::from_le_bytes(std::array::from_fn(|i| byte(first + i))).rotate_left(CwbvhNode::TURN))
 }
 
 fn bytes(words: [u32; 2]) -> [u8; ARITY] {
-    std::array::from_fn(|i| words[i / 4].rotate_right(WideNode::TURN).to_le_bytes()[i % 4])
+    std::array::from_fn(|i| words[i / 4].rotate_right(CwbvhNode::TURN).to_le_bytes()[i % 4])
 }
 
 #[cfg(test)]

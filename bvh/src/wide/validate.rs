@@ -1,6 +1,6 @@
 //! The proof that kernels may index a wide hierarchy without checks.
 
-use eyerays_shader::data::{Bounds as BoundsRecord, WideNode};
+use eyerays_shader::data::{Bounds as BoundsRecord, CwbvhNode};
 
 use super::{
     MAX_WIDE_DEPTH,
@@ -10,13 +10,13 @@ use crate::{BuildError, bounds::Bounds, validate::Once};
 
 /// Checks a wide hierarchy over the own boxes of slots: every node is well-formed and reached exactly
 /// once from the root, every slot lies in exactly one leaf, every child's planes lie around what is
-/// below it with [`WideNode::MARGIN`] and [`WideNode::SLACK`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
+/// below it with [`CwbvhNode::MARGIN`] and [`CwbvhNode::SLACK`] to spare, and no path has more than [`MAX_WIDE_DEPTH`] nodes.
 /// Takes linear time.
 ///
 /// # Errors
 ///
-/// The first rule broken on a walk in depth-first order; then what was never reached; then boxes.
-pub fn validate_wide(nodes: &[WideNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
+/// The first rule broken in depth-first order; then nodes and slots that are never reached; then boxes.
+pub fn validate_wide(nodes: &[CwbvhNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
     if bounds.is_empty() {
         return Err(BuildError::NoTriangles);
     }
@@ -26,9 +26,9 @@ pub fn validate_wide(nodes: &[WideNode], bounds: &[BoundsRecord]) -> Result<(), 
     walk.boxes()
 }
 
-/// A walk through the tree and what it has met so far.
+/// A walk through the tree and what it has reached so far.
 struct Walk<'a> {
-    nodes: &'a [WideNode],
+    nodes: &'a [CwbvhNode],
     bounds: &'a [BoundsRecord],
     met: Once,
     slots: Once,
@@ -37,7 +37,7 @@ struct Walk<'a> {
 }
 
 impl Walk<'_> {
-    /// Meets every node and every slot.
+    /// Visits every node and every slot.
     fn all(&mut self) -> Result<(), BuildError> {
         let mut open = vec![(0, 0, 0)];
         while let Some((parent, node, level)) = open.pop() {
@@ -66,7 +66,7 @@ impl Walk<'_> {
         }
     }
 
-    /// Meets the node that `parent` refers to.
+    /// Visits the node that `parent` refers to.
     fn enter(&mut self, parent: u32, node: u32, level: u32) -> Result<Record, BuildError> {
         let Some(found) = self.nodes.get(node as usize) else {
             return Err(BuildError::WideNodeOutOfRange { node: parent, child: node, nodes: self.nodes.len() });
@@ -83,7 +83,7 @@ impl Walk<'_> {
         Ok(record)
     }
 
-    /// Meets the slots of a leaf.
+    /// Marks the slots of a leaf.
     fn leaf(&mut self, node: u32, first: u64, count: u32) -> Result<(), BuildError> {
         let triangles = self.bounds.len();
         if first + u64::from(count) > triangles as u64 {

@@ -2,10 +2,10 @@
 
 #![allow(dead_code, reason = "each test program uses a part")]
 
-mod full;
+mod bvh8;
 
 use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, References, build, split};
-use eyerays_shader::data::{Bounds, MAX_LEAF, NodePair, NodeRef, Triangle, WideNode, numbers};
+use eyerays_shader::data::{Bounds, CwbvhNode, MAX_LEAF, NodePair, NodeRef, Triangle, numbers};
 use glam::{Vec3, vec3};
 
 pub const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Medium, Quality::High];
@@ -130,7 +130,7 @@ pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
     walk.node(0, 1);
     assert_eq!(walk.met as usize, bvh.wide.len(), "wide nodes");
     assert_eq!(walk.next as usize, references.list.len(), "slots of wide nodes");
-    full::check(&bvh);
+    bvh8::check(&bvh);
     bvh
 }
 
@@ -186,7 +186,7 @@ impl Walk<'_> {
 
 /// A walk over wide nodes, whose slots must come in the order of the walk.
 struct WideWalk<'a> {
-    nodes: &'a [WideNode],
+    nodes: &'a [CwbvhNode],
     bounds: &'a [Bounds],
     /// The next slot.
     next: u32,
@@ -233,19 +233,19 @@ impl WideWalk<'_> {
 
 /// Planes of eight children.
 fn planes(words: [u32; 2]) -> [u8; 8] {
-    std::array::from_fn(|i| (words[i / 4].rotate_right(WideNode::TURN) >> (8 * (i % 4))) as u8)
+    std::array::from_fn(|i| (words[i / 4].rotate_right(CwbvhNode::TURN) >> (8 * (i % 4))) as u8)
 }
 
 /// Triangles of a child.
-fn triangles(node: &WideNode, slot: usize) -> u32 {
+fn triangles(node: &CwbvhNode, slot: usize) -> u32 {
     let bits = node.children.z >> (3 * slot) & 7;
     assert_eq!(bits, (1 << bits.count_ones()) - 1, "a child's bits");
     bits.count_ones()
 }
 
 /// Checks a child's planes against what is below it, in whole multiples of 2^-80.
-fn keeps_margin(node: &WideNode, slot: usize, (least, greatest): Corners) {
-    let WideNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, grid, .. } = *node;
+fn keeps_margin(node: &CwbvhNode, slot: usize, (least, greatest): Corners) {
+    let CwbvhNode { low_x_low_y: a, low_z_high_x: b, high_y_high_z: c, grid, .. } = *node;
     let low = [[a.x, a.y], [a.z, a.w], [b.x, b.y]].map(|w| i128::from(planes(w)[slot]));
     let high = [[b.z, b.w], [c.x, c.y], [c.z, c.w]].map(|w| i128::from(planes(w)[slot]));
     for axis in 0..3 {
@@ -254,7 +254,7 @@ fn keeps_margin(node: &WideNode, slot: usize, (least, greatest): Corners) {
         let origin = f32::from_bits(grid[axis]);
         assert!(origin.abs() <= 1.01);
         let plane = |number: i128| fixed(origin) + (number << (80 + exponent));
-        let margin = fixed(WideNode::MARGIN) + (1 << (80 + exponent - 6));
+        let margin = fixed(CwbvhNode::MARGIN) + (1 << (80 + exponent - 6));
         assert!(plane(low[axis]) <= fixed(least[axis]) - margin);
         assert!(plane(high[axis]) >= fixed(greatest[axis]) + margin);
     }

@@ -1,4 +1,4 @@
-//! What methods do for a ray: the kernels' own hooks, counted on the CPU over a sample of a stream.
+//! The work of a method for a ray: calls of the kernels' own hooks, counted on the CPU over a sample of a stream.
 
 use std::cell::Cell;
 use std::iter::Sum;
@@ -6,12 +6,12 @@ use std::marker::PhantomData;
 use std::ops::{Add, Range};
 
 use eyerays_shader::ray::{Hit, Ray};
-use eyerays_shader::real::{Real, V3, Wide, WideIndex};
+use eyerays_shader::real::{F32xN, Real, U32xN, V3};
 use eyerays_shader::scene::Geometry;
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{
-    self, Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative, StackMax,
-    WhileWhile, WideNodes,
+    self, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative,
+    StackMax, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
@@ -34,7 +34,7 @@ struct Calls {
     visits: u64,
     boxes: u64,
     triangles: u64,
-    /// Children that packets went to, and how many rays wanted them.
+    /// Children that packets visited, and how many of their rays hit them.
     children: u64,
     lanes: u64,
 }
@@ -60,11 +60,11 @@ impl Sum for Calls {
 }
 
 thread_local! {
-    /// What this thread has counted of the rays at hand.
+    /// What this thread has counted for the current rays.
     static CALLS: Cell<Calls> = Cell::default();
-    /// Rays that go together: what they do is charged to each.
+    /// Rays that are traced together: their work is charged to each.
     static TOGETHER: Cell<u64> = const { Cell::new(1) };
-    /// Rays that the next call is charged to: those, or the one that has parted.
+    /// Rays that the next call is charged to: those, or the single one that has left the packet.
     static CHARGED: Cell<u64> = const { Cell::new(1) };
 }
 
@@ -101,8 +101,8 @@ impl<Q: Query> Query for Counted<Q> {
     }
 }
 
-/// What a ray takes on average. What a packet does is charged to each of its rays; what one does that has
-/// parted, to itself.
+/// The average work of a ray. A packet's work is charged to each of its rays; that of a ray that has left its packet,
+/// to that ray only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Counts {
     /// Pairs of boxes visited, or wide nodes.
@@ -111,7 +111,7 @@ pub struct Counts {
     pub boxes: f64,
     /// Triangles tested.
     pub triangles: f64,
-    /// Of the rays of a packet that goes to a child, the share that wants it; none for single rays.
+    /// The share of a packet's rays that hit a child it visits; `None` for single rays.
     pub simd_efficiency: Option<f64>,
 }
 
@@ -125,7 +125,7 @@ fn follower(method: Method) -> Follow {
         Method::WhileWhile => single::<WhileWhile<Alone>>,
         // Alone it never speculates: its counts are those of while-while.
         Method::Speculative => single::<Speculative<Alone>>,
-        Method::Wide => single::<WideNodes>,
+        Method::Wide => single::<CwbvhMethod>,
         Method::Packet => packet::<Packet<Alone>>,
         Method::SequentialStack => packet::<Hybrid<Alone, StackMax, Sequential>>,
         Method::SequentialCut => packet::<Hybrid<Alone, Cut, Sequential>>,
@@ -146,7 +146,7 @@ pub fn counts(
     stream: &Stream,
     question: Question,
 ) -> Result<Counts> {
-    // Where triangles lie makes no difference to what is tested; what boxes are made of does.
+    // The layout of triangles does not change which tests are made; the format of boxes does.
     let layout = if traversal.layout == Layout::Compact { Layout::Compact } else { Layout::Gathered };
     let laid = Laid::new(packed, Traversal { layout, ..traversal });
     let frame = packed.stream_frame(stream.len());
@@ -166,7 +166,8 @@ pub fn counts(
     })
 }
 
-/// The groups of 32 rays that are counted. Their distance is odd, so that it beats with no width of an image.
+/// The groups of 32 rays that are counted. Their distance is odd, so that it shares no period with
+/// the width of an image.
 fn groups(rays: usize) -> Vec<Range<usize>> {
     let step = rays.div_ceil(PACKET).div_ceil(SAMPLE) | 1;
     (0..rays).step_by(PACKET * step).map(|first| first..rays.min(first + PACKET)).collect()
@@ -186,7 +187,7 @@ fn single<M: traverse::Method<f32>>(
     })
 }
 
-fn packet<M: traverse::Method<Wide<PACKET>>>(
+fn packet<M: traverse::Method<F32xN<PACKET>>>(
     geometry: &Geometry<'_>,
     stream: &Stream,
     rays: Range<usize>,
@@ -200,9 +201,9 @@ fn packet<M: traverse::Method<Wide<PACKET>>>(
     });
     let origin = V3::of_lanes(|i| V3::splat(lanes[i].origin));
     let direction = V3::of_lanes(|i| V3::splat(lanes[i].direction));
-    let ray = Ray::leaving(WideIndex(lanes.map(|ray| ray.leaves)), origin, direction);
-    let hit = Hit::none(Wide(lanes.map(|ray| ray.limit)));
-    counted(rays.len(), || traverse::<Wide<PACKET>, M>(geometry, &ray, hit, question))
+    let ray = Ray::leaving(U32xN(lanes.map(|ray| ray.source_primitive)), origin, direction);
+    let hit = Hit::none(F32xN(lanes.map(|ray| ray.limit)));
+    counted(rays.len(), || traverse::<F32xN<PACKET>, M>(geometry, &ray, hit, question))
 }
 
 fn traverse<R: Real, M: traverse::Method<R>>(
@@ -251,7 +252,8 @@ mod tests {
     }
 
     fn rays(directions: impl Fn(usize) -> Vec3, limit: f32) -> Stream {
-        let ray = |i| StreamRay { origin: Vec3::ZERO, direction: directions(i), limit, leaves: StreamRay::NOWHERE };
+        let ray =
+            |i| StreamRay { origin: Vec3::ZERO, direction: directions(i), limit, source_primitive: StreamRay::NOWHERE };
         Stream::new((0..32).map(ray).collect::<Vec<_>>().into_iter())
     }
 
@@ -259,7 +261,7 @@ mod tests {
         counts(&row(), method.into(), 1, stream, question).unwrap()
     }
 
-    /// Every second ray sees nothing.
+    /// Every second ray hits nothing.
     fn halves() -> Stream {
         rays(|i| if i % 2 == 0 { Vec3::X } else { -Vec3::X }, 10.0)
     }
@@ -293,7 +295,7 @@ mod tests {
 
     #[test]
     fn parted_rays_are_charged_to_themselves() {
-        // The packet parts at the pair on the left, while the leaf on the right waits for all.
+        // The packet splits at the pair on the left, while the leaf on the right is still to visit for all.
         let traversal = Traversal { tuning: Tuning::new(1, 0), ..Method::SequentialStack.into() };
         let counts = counts(&row(), traversal, 1, &halves(), Question::Closest).unwrap();
         assert_eq!((counts.visits, counts.triangles, counts.simd_efficiency), (2.0, 3.0, Some(0.5)));

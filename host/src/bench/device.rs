@@ -82,7 +82,7 @@ impl<'a> OnGpu<'a> {
         repeat: u32,
     ) -> Result<Vec<Duration>> {
         let report = &self.gpu.report;
-        // Software has no clocks of its own to raise, which would take minutes.
+        // A software device has no clocks to raise, and warming up would take minutes.
         if report.timestamps && !report.is_software() {
             return caster.measure(cast, exact, how, ask, repeat);
         }

@@ -25,7 +25,7 @@ pub struct Plan {
     pub layouts: Vec<Layout>,
     /// Triangle tests of fast precision; exact precision has one.
     pub triangles: Vec<TriangleTest>,
-    /// When a hybrid's packet parts.
+    /// When a hybrid's packet splits.
     pub tuning: Tuning,
     /// Does a GPU trace in exact precision?
     pub exact: bool,
@@ -70,7 +70,7 @@ pub(super) struct Trial {
 }
 
 impl Plan {
-    /// Every way to trace rays of a kind, each once; tells `note` of those that are left out.
+    /// Every way to trace rays of a kind, each once; calls `note` for those that are left out.
     pub(super) fn trials(&self, packed: &Packed, kind: Kind, order: Order, note: &mut dyn FnMut(String)) -> Vec<Trial> {
         let mut trials: Vec<Trial> = Vec::new();
         for (processor, exact) in self.processors() {
@@ -109,7 +109,7 @@ impl Plan {
         all
     }
 
-    /// What a wish stands for, and whether `auto` is the same; or why it can't be measured.
+    /// What a request resolves to, and whether `auto` is the same; or why it can't be measured.
     fn resolved(
         &self,
         packed: &Packed,
@@ -119,7 +119,7 @@ impl Plan {
     ) -> Result<(Traversal, bool), String> {
         let resolved = |wanted: Traversal| match (&self.gpu, processor) {
             (Some(gpu), Processor::Gpu) => gpu.resolved(wanted, coherence).map_err(|e| e.to_string()),
-            // A CPU's threads share the rays one way only.
+            // On a CPU there is only one way to distribute rays to threads.
             _ => Ok(Traversal { scheduling: Scheduling::Grid, ..wanted.resolved(processor, coherence) }),
         };
         let traversal = resolved(wanted)?;

@@ -81,7 +81,7 @@ struct Place {
 
 impl Place {
     fn ray(&self, origin: V3<f32>, direction: V3<f32>, limit: f32) -> StreamRay {
-        StreamRay { origin: vector(origin), direction: vector(direction), limit, leaves: self.primitive }
+        StreamRay { origin: vector(origin), direction: vector(direction), limit, source_primitive: self.primitive }
     }
 
     fn reflected(&self) -> StreamRay {
@@ -119,7 +119,7 @@ impl<'a> Sight<'a> {
             .map(|&pixel| {
                 let (origin, direction) = camera::ray::<f32>(&view.frame, pixel);
                 let (origin, direction) = (vector(origin), vector(direction));
-                StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+                StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })
             .collect();
         let primary = Stream::new(rays.into_iter());

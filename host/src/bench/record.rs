@@ -61,7 +61,7 @@ pub struct Record {
     pub boxes: f64,
     /// Triangle tests a ray.
     pub triangle_tests: f64,
-    /// Share of a packet's lanes that want the children it goes to.
+    /// Share of a packet's lanes that hit the children it visits.
     pub simd_efficiency: Option<f64>,
     /// Of the answers.
     pub hash: String,

@@ -1,4 +1,4 @@
-//! Every scene, view and kind of rays, every way.
+//! Measures every scene, view and kind of rays in every way.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -17,11 +17,11 @@ use crate::preset::name;
 use crate::scene::{Camera, Settings};
 use crate::stream::{Answers, Question, Stream};
 
-/// Measures all that is planned. `begins` hears of every stream before it is traced.
+/// Measures all that is planned. `begins` is called with every stream before it is traced.
 ///
 /// # Errors
-/// A scene that can't be packed or that no device holds, unless another one was measured before: what was
-/// measured is worth more, and the fault is in the report.
+/// A scene that can't be packed or that no device holds, unless another one was measured before: then
+/// the measurements are kept, and the report holds the fault.
 pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<Report> {
     let mut report = Report { setup: plan.setup(), ..Report::default() };
     for subject in subjects {
@@ -48,7 +48,7 @@ fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&s
     views.into_iter().try_for_each(|(camera, order, view)| bench.view(camera, order, &view, report, begins))
 }
 
-/// How many streams [`run`] tells of.
+/// How many streams [`run`] calls `begins` for.
 pub fn streams(plan: &Plan, subjects: &[Subject]) -> usize {
     let views: usize = subjects.iter().map(|subject| subject.cameras.len()).sum();
     views * plan.orders.len() * plan.kinds.len()

@@ -63,7 +63,7 @@ impl Plan {
     }
 }
 
-/// The processor's name where the system tells it.
+/// The processor's name where the system reports it.
 pub(crate) fn cpu_model() -> String {
     let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = information.lines().find_map(|line| line.strip_prefix("model name")?.split_once(": "));

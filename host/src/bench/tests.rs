@@ -67,7 +67,7 @@ fn rays_are_unit_and_leave_what_they_start_from() {
     for kind in Kind::ALL {
         for ray in rays(&sight, kind) {
             assert!((ray.direction.length() - 1.0).abs() < 1e-6, "{kind:?}: {ray:?}");
-            assert_eq!(ray.leaves == StreamRay::NOWHERE, kind == Kind::Primary);
+            assert_eq!(ray.source_primitive == StreamRay::NOWHERE, kind == Kind::Primary);
             assert!(ray.origin.is_finite() && ray.limit > 0.0);
         }
     }
@@ -84,7 +84,11 @@ fn every_hit_has_its_rays() {
     assert_eq!(count(Kind::Ao), AO_RAYS as usize * hits);
     assert!(count(Kind::Refraction) <= hits && count(Kind::Shadow) <= packed.lights.len() * hits);
     assert!(rays(&sight, Kind::Ao).iter().all(|ray| ray.limit == 0.125));
-    assert!(rays(&sight, Kind::Ao).chunks(4).all(|four| four.iter().all(|ray| ray.leaves == four[0].leaves)));
+    assert!(
+        rays(&sight, Kind::Ao)
+            .chunks(4)
+            .all(|four| four.iter().all(|ray| ray.source_primitive == four[0].source_primitive))
+    );
 }
 
 /// Mirrored and sampled rays go on the viewer's side, refracted ones on the other.
@@ -100,7 +104,7 @@ fn rays_go_to_their_side() {
         let of = rays(&sight, kind);
         assert_eq!(of.len(), primary.len(), "all is seen from its front, so that nothing is totally reflected");
         for (from, ray) in primary.iter().zip(of) {
-            let [a, b, c] = by_primitive[&ray.leaves];
+            let [a, b, c] = by_primitive[&ray.source_primitive];
             let normal = (b - a).cross(c - a);
             let same_side = normal.dot(from.direction) * normal.dot(ray.direction) > 0.0;
             assert_eq!(same_side, kind == Kind::Refraction, "{kind:?}: {ray:?}");

@@ -10,7 +10,7 @@ use glam::UVec4;
 use rayon::prelude::*;
 
 use super::follow::{Job, follow};
-use super::level::Level;
+use super::isa::Isa;
 use super::pool::pool;
 use crate::error::Result;
 use crate::method::{Method, Traversal};
@@ -32,15 +32,15 @@ pub fn cast(
     stream: &Stream,
     question: Question,
 ) -> Result<(Answers, Duration)> {
-    cast_by(Level::best(), packed, traversal, threads, stream, question)
+    cast_by(Isa::best(), packed, traversal, threads, stream, question)
 }
 
-/// [`cast`] with the instructions of a level.
+/// [`cast`] with the instructions of an ISA.
 ///
 /// # Errors
 /// As [`cast`].
 pub fn cast_by(
-    level: Level,
+    isa: Isa,
     packed: &Packed,
     traversal: Traversal,
     threads: usize,
@@ -58,9 +58,9 @@ pub fn cast_by(
     let time = pool(threads)?.install(|| {
         let start = Instant::now();
         match &mut answers {
-            Answers::Closest(hits) => trace::<f32>(level, traversal.method, &geometry, &slots, stream.words(), hits),
+            Answers::Closest(hits) => trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), hits),
             Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
-                follow::<f32>(level, traversal.method, &geometry, slots, Job::Shadow(asking, 0, shadows));
+                follow::<f32>(isa, traversal.method, &geometry, slots, Job::Shadow(asking, 0, shadows));
             }),
         }
         start.elapsed()
@@ -82,12 +82,12 @@ where
     let rays: Vec<R::Record> = stream.words().iter().map(|&word| R::store(V3::splat(numbers(word)), word.w)).collect();
     let mut hits = vec![R::Record::default(); stream.len()];
     let (method, geometry) = (traversal.method, laid.stream(&frame));
-    pool(threads)?.install(|| trace::<R>(Level::best(), method, &geometry, &slots, &rays, &mut hits));
+    pool(threads)?.install(|| trace::<R>(Isa::best(), method, &geometry, &slots, &rays, &mut hits));
     Ok(hits)
 }
 
 fn trace<R>(
-    level: Level,
+    isa: Isa,
     method: Method,
     geometry: &TraceContext<'_>,
     slots: &[u32],
@@ -96,7 +96,7 @@ fn trace<R>(
 ) where
     R: Scalar<Record: Send + Sync>,
 {
-    tasks(slots, hits, |slots, hits| follow::<R>(level, method, geometry, slots, Job::Trace(rays, hits)));
+    tasks(slots, hits, |slots, hits| follow::<R>(isa, method, geometry, slots, Job::Trace(rays, hits)));
 }
 
 /// Neighbours a task, so that no thread waits long for the last.

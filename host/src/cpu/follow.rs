@@ -2,15 +2,15 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::real::{Native, Scalar, Vectors};
+use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
 use eyerays_shader::traverse::{
-    self, Cut, FullNodes, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
+    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 
-use super::level::{Level, Task};
+use super::isa::Isa;
 use crate::method::Method;
 
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.
@@ -21,8 +21,8 @@ pub enum Job<'a, R: Scalar> {
     Shadow(Asking<'a, R>, u32, &'a mut [u32]),
 }
 
-/// Follows the rays of slots by a method, with the instructions of a level.
-pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+/// Follows the rays of slots by a method, with the instructions of an ISA.
+pub fn follow<R: Scalar>(isa: Isa, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     let follow = match method {
         Method::Auto | Method::IfIf => alone::<R, IfIf>,
         Method::Wide => nodes::<R>,
@@ -34,7 +34,7 @@ pub fn follow<R: Scalar>(level: Level, method: Method, geometry: &TraceContext<'
         Method::InterleavedStack => plainly::<R, Hybrid<Alone, StackMax, Interleaved>>,
         Method::InterleavedCut => plainly::<R, Hybrid<Alone, Cut, Interleaved>>,
     };
-    follow(level, geometry, slots, job);
+    follow(isa, geometry, slots, job);
 }
 
 /// The slots of a task.
@@ -54,13 +54,13 @@ impl<'a, R: Scalar, M> Slots<'a, R, M> {
 /// Every ray by itself.
 struct EachAlone<'a, R: Scalar, M>(Slots<'a, R, M>);
 
-fn alone<R: Scalar, M: traverse::Method<R>>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    level.run::<R>(EachAlone::<R, M>(Slots::new(geometry, slots, job)));
+fn alone<R: Scalar, M: traverse::Method<R>>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    isa.run::<R>(EachAlone::<R, M>(Slots::new(geometry, slots, job)));
 }
 
 impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
+    fn run<V: SimdIsa<R>>(self) {
         one_by_one::<R, M>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
@@ -68,14 +68,14 @@ impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
 /// Every ray by itself through nodes of eight children, whose boxes and triangles take all lanes.
 struct Nodes<'a, R: Scalar>(Slots<'a, R, ()>);
 
-fn nodes<R: Scalar>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    level.run::<R>(Nodes::<R>(Slots::new(geometry, slots, job)));
+fn nodes<R: Scalar>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    isa.run::<R>(Nodes::<R>(Slots::new(geometry, slots, job)));
 }
 
 impl<R: Scalar> Task<R> for Nodes<'_, R> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
-        one_by_one::<R, FullNodes<V>>(&self.0.geometry, self.0.slots, self.0.job);
+    fn run<V: SimdIsa<R>>(self) {
+        one_by_one::<R, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
 
@@ -98,19 +98,19 @@ fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &TraceContext<'_>, sl
 /// Neighbours together.
 struct Neighbours<'a, R: Scalar, M>(Slots<'a, R, M>);
 
-fn together<R: Scalar, M: Together>(level: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    level.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
+fn together<R: Scalar, M: Together>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    isa.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
 }
 
 /// As [`together`], with the instructions that every processor has: the hybrids are there to be compared, and to
-/// compile them for every level would take as long as all else.
-fn plainly<R: Scalar, M: Together>(_: Level, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+/// compile them for every ISA would take as long as all else.
+fn plainly<R: Scalar, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     Neighbours::<R, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }
 
 impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
     #[inline(always)]
-    fn run<V: Vectors<R>>(self) {
+    fn run<V: SimdIsa<R>>(self) {
         let Slots { geometry, slots, job, .. } = self.0;
         let most = stage::most::<R, V::Packet>();
         let mut segments: Vec<Segment<R>> = Vec::with_capacity(most);

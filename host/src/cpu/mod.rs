@@ -2,13 +2,13 @@
 
 mod cast;
 mod follow;
-mod level;
+mod isa;
 mod pool;
 mod render;
 mod tile;
 
 pub use cast::{cast, cast_by, closest};
-pub use level::Level;
+pub use isa::Isa;
 pub(crate) use pool::pool;
 pub use render::{Picture, Renderer, render};
 pub use tile::{Observer, Planned, Records};

@@ -7,7 +7,7 @@ use eyerays_shader::real::Scalar;
 use eyerays_shader::resources::binding;
 use rayon::prelude::*;
 
-use super::level::Level;
+use super::isa::Isa;
 use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::error::Result;
@@ -52,7 +52,7 @@ impl<'a> Renderer<'a> {
         let threads = pool(threads)?;
         let traversal = traversal.into();
         let laid = threads.install(|| Laid::new(packed, traversal));
-        Ok(Renderer { planned: Planned::new(laid, Level::best()), threads })
+        Ok(Renderer { planned: Planned::new(laid, Isa::best()), threads })
     }
 
     /// Goes on with other lights: as many as the scene's, of the same kinds.

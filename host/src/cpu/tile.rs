@@ -11,7 +11,7 @@ use eyerays_shader::scene::{Looks, TraceContext};
 use eyerays_shader::stage::{self, Asking};
 
 use super::follow::{Job, follow};
-use super::level::Level;
+use super::isa::Isa;
 use crate::error::Result;
 use crate::method::{Method, Processor};
 use crate::pack::Laid;
@@ -60,15 +60,15 @@ pub struct Planned<'a> {
     /// The scene.
     pub laid: Laid<'a>,
     pub(super) plan: Plan,
-    pub(super) level: Level,
+    pub(super) isa: Isa,
 }
 
 impl<'a> Planned<'a> {
-    /// Plans pictures of a scene, with the instructions of a level.
-    pub fn new(laid: Laid<'a>, level: Level) -> Self {
+    /// Plans pictures of a scene, with the instructions of an Isa.
+    pub fn new(laid: Laid<'a>, isa: Isa) -> Self {
         let traversal = laid.traversal;
         let plan = Plan::new(laid.packed, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
-        Planned { laid, plan: plan.expect("a CPU has every method"), level }
+        Planned { laid, plan: plan.expect("a CPU has every method"), isa }
     }
 
     /// An empty film for a region.
@@ -141,7 +141,7 @@ impl<R: Scalar> Launch<'_, '_, R> {
     fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
         let mut hits = vec![R::store(V3::zero(), 0); self.queue.len()];
         let job = Job::Trace(&self.records.paths, &mut hits);
-        follow::<R>(self.planned.level, method, scene, &self.queue, job);
+        follow::<R>(self.planned.isa, method, scene, &self.queue, job);
         for (&slot, hit) in self.queue.iter().zip(hits) {
             self.records.hits[slot as usize] = hit;
         }
@@ -153,7 +153,7 @@ impl<R: Scalar> Launch<'_, '_, R> {
         for light in 0..self.frame.shadow_rays {
             let asking = Asking { lights: self.planned.laid.lights(), paths, hits };
             let job = Job::Shadow(asking, light, &mut answers);
-            follow::<R>(self.planned.level, method, scene, &self.queue, job);
+            follow::<R>(self.planned.isa, method, scene, &self.queue, job);
             for (&slot, &answer) in self.queue.iter().zip(&answers) {
                 shadows[(light * self.frame.slots + slot) as usize] = answer;
             }

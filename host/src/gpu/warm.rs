@@ -1,4 +1,4 @@
-//! Bringing a GPU to its own clocks.
+//! Raising a GPU's clocks before measurements.
 
 use std::time::{Duration, Instant};
 
@@ -6,11 +6,11 @@ use crate::error::Result;
 
 /// A run has settled once it takes more than this share of the best before.
 const NOISE: f64 = 0.97;
-/// Who has not settled by then never will.
+/// Gives up waiting for steady times after this long.
 const MOST: Duration = Duration::from_secs(2);
 
 /// Runs until the time that `run` returns has settled, for `least` at least: an idle GPU has slow clocks (an H200 a
-/// sixth of its own), and takes some tenths of a second of work to raise them, more with pauses in it.
+/// sixth of its full ones), and takes some tenths of a second of work to raise them, more if the work pauses.
 ///
 /// # Errors
 /// What a run reports.

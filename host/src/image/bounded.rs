@@ -4,7 +4,7 @@ use std::cell::Cell;
 use std::io::{self, BufRead, ErrorKind, Read, Seek, SeekFrom};
 use std::rc::Rc;
 
-/// How many bytes may still be read, for whoever learns in between how many there should be.
+/// How many bytes may still be read; shared, so that it can grow once the image's size is known.
 #[derive(Clone)]
 pub struct Allowance(Rc<Cell<u64>>);
 

@@ -1,8 +1,8 @@
 //! Files under temporary names. None outlives its process for long: it is removed when it is dropped, when a signal
 //! ends the process ([`discard`]), and else by the next process that writes in its folder ([`clear`]).
 //!
-//! That one tells what a living process writes by its advisory lock. Only who holds the lock of a file removes or
-//! renames it, and after locking looks whether the name is still that file's: between opening and locking, another
+//! That process recognises files still being written by their advisory locks. Only the holder of a file's lock removes
+//! or renames it, after checking that the name is still that file's: between opening and locking, another
 //! process may have removed it.
 
 use std::ffi::OsStr;
@@ -17,7 +17,7 @@ use same_file::Handle;
 use super::write_error;
 use crate::error::{Error, Result};
 
-/// The temporaries of this process. Who makes, renames or removes one holds the list meanwhile.
+/// The temporaries of this process. The list is locked while one is made, renamed or removed.
 static OPEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn open_ones() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -34,7 +34,7 @@ pub struct Discarded {
 pub fn discard() -> Discarded {
     let mut open = open_ones();
     for path in open.drain(..) {
-        // The process is at its end: nobody is left to tell.
+        // The process is ending, so errors can't be reported.
         let _ = fs::remove_file(path);
     }
     Discarded { _open: open }
@@ -83,7 +83,7 @@ impl Drop for Temporary {
         // Not there if it was renamed.
         if let Some(i) = open.iter().position(|path| *path == self.path) {
             open.swap_remove(i);
-            // There is an earlier error to tell, or none to tell it to.
+            // There is an earlier error to report, or nobody to report to.
             let _ = fs::remove_file(&self.path);
         }
     }
@@ -92,7 +92,7 @@ impl Drop for Temporary {
 /// Locks a new file. Another process that clears the folder may have been faster: it removes the file then.
 fn is_taken(file: &File, path: &Path) -> bool {
     match file.try_lock() {
-        // Where the system cannot tell, nobody took it.
+        // Where the system can't say, assume that nobody took it.
         Ok(()) => is_at(file, path).map_or_else(|error| error.kind() == ErrorKind::NotFound, |here| !here),
         Err(TryLockError::WouldBlock) => true,
         // A file system without locks, where nobody else can lock it either.

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
-use eyerays_shader::full::Full;
+use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::scene::{LaunchContext, TraceContext};
 
 use super::{NodeWords, Packed, TriangleWords};
@@ -19,7 +19,7 @@ pub struct Laid<'a> {
     pub traversal: Traversal,
     nodes: NodeWords<'a>,
     triangles: TriangleWords<'a>,
-    full: Full<'a>,
+    bvh8: Bvh8View<'a>,
     lights: Cow<'a, [LightRecord]>,
 }
 
@@ -27,11 +27,11 @@ impl<'a> Laid<'a> {
     /// Lays out what the traversal does not take as it is packed.
     pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
         let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
-        let full = match traversal.method {
-            Method::Auto | Method::Wide => packed.full().borrow(),
-            _ => Full::default(),
+        let bvh8 = match traversal.method {
+            Method::Auto | Method::Wide => packed.bvh8().borrow(),
+            _ => Bvh8View::default(),
         };
-        Laid { packed, traversal, nodes, triangles, full, lights: Cow::Borrowed(packed.lights()) }
+        Laid { packed, traversal, nodes, triangles, bvh8, lights: Cow::Borrowed(packed.lights()) }
     }
 
     /// Lights in file order.
@@ -59,7 +59,7 @@ impl<'a> Laid<'a> {
             base: LaunchContext { frame, spec, triangles: &self.triangles.0 },
             nodes: &self.nodes.0,
             wide: self.packed.wide(),
-            full: self.full,
+            bvh8: self.bvh8,
             bounds: self.packed.bounds(),
         }
     }

@@ -3,10 +3,10 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{FullBvh, Quality, Statistics};
+use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord, Normals,
-    Specialisation, Triangle, WideNode,
+    Specialisation, Triangle, CwbvhNode,
 };
 
 mod check;
@@ -31,7 +31,7 @@ const SPLIT_BUDGET: f32 = 0.3;
 /// kernels read through its numbers without checking them.
 pub struct Packed {
     nodes: Vec<CentredPair>,
-    wide: Vec<WideNode>,
+    wide: Vec<CwbvhNode>,
     triangles: Vec<Triangle>,
     bounds: Vec<Bounds>,
     normals: Vec<Normals>,
@@ -43,7 +43,7 @@ pub struct Packed {
     normalisation: Normalisation,
     statistics: Statistics,
     build_time: Duration,
-    full: OnceLock<FullBvh>,
+    bvh8: OnceLock<Bvh8>,
 }
 
 impl Packed {
@@ -81,7 +81,7 @@ impl Packed {
             settings,
             normalisation,
             build_time,
-            full: OnceLock::new(),
+            bvh8: OnceLock::new(),
         })
     }
 
@@ -91,13 +91,13 @@ impl Packed {
     }
 
     /// The same hierarchy with nodes of eight children.
-    pub fn wide(&self) -> &[WideNode] {
+    pub fn wide(&self) -> &[CwbvhNode] {
         &self.wide
     }
 
     /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
-    pub fn full(&self) -> &FullBvh {
-        self.full.get_or_init(|| FullBvh::of(&self.nodes, &self.triangles, &self.bounds))
+    pub fn bvh8(&self) -> &Bvh8 {
+        self.bvh8.get_or_init(|| Bvh8::of(&self.nodes, &self.triangles, &self.bounds))
     }
 
     /// Triangles by slot, in the normalised scene; a split one has several slots.

@@ -1,4 +1,4 @@
-//! Counted lines of a Wavefront file that nobody vouches for.
+//! Numbered lines of an untrusted Wavefront file.
 
 use std::borrow::Cow;
 use std::io::{BufRead, Read};
@@ -100,7 +100,7 @@ pub fn words(rest: &str) -> impl Iterator<Item = &str> {
 /// A finite number.
 ///
 /// # Errors
-/// The word is no number, or one that single precision cannot hold.
+/// The word is not a number, or one that single precision can't hold.
 pub fn number(key: &str, word: &str) -> Unplaced<f32> {
     match word.parse::<f32>() {
         Ok(number) if number.is_finite() => Ok(number),

@@ -32,7 +32,7 @@ pub fn smooth(mesh: &mut Mesh) {
     }
 }
 
-/// The bits of a place; adding zero makes both zeros one.
+/// The bits of a position; adding zero makes -0 and 0 equal.
 fn place(position: Vec3) -> [u32; 3] {
     (position + Vec3::ZERO).to_array().map(f32::to_bits)
 }

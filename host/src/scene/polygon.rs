@@ -34,7 +34,7 @@ pub fn cut(corners: &[DVec3]) -> Cut {
     let area: DVec3 = spokes.windows(2).map(|pair| pair[0].cross(pair[1])).sum();
     let face = Face { spokes, normal: area.normalize_or_zero(), slack };
     if area.length() <= slack * extent {
-        // Nothing is seen of a line, but a face that covers itself from both sides is none.
+        // A line is invisible however it is cut, but a face that folds back onto itself is not a line.
         return if face.is_line() { Cut::Fan } else { Cut::Impossible };
     }
     if face.is_fan() { Cut::Fan } else { face.ears(area.length(), slack * extent) }

@@ -43,13 +43,13 @@ pub struct Subject {
     pub settings: Settings,
 }
 
-/// How many steps [`run`] tells of at most.
+/// The most steps that [`run`] reports.
 pub fn steps(plan: &Plan) -> usize {
     plan.axes.samples.len() + plan.trials
 }
 
 /// Renders a scene with settings of a plan, as [`search`] chooses them, on a device, and compares each picture with
-/// one in double precision. `begins` hears of every step.
+/// one in double precision. `begins` is called with every step.
 ///
 /// # Errors
 /// A scene that can't be packed, or the base, which all is compared with, fails on the device. Other settings that

@@ -6,7 +6,7 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 
 use crate::math;
 
-/// Fewer marks tell too little.
+/// The fewest marks that make an axis readable.
 const FEWEST: usize = 4;
 
 /// What an axis spans, above 0.

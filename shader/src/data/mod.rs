@@ -11,7 +11,7 @@ mod look;
 mod node;
 mod specialisation;
 mod triangle;
-mod wide;
+mod cwbvh;
 
 pub use compact::CompactPair;
 pub use frame::{Frame, Lens};
@@ -19,7 +19,7 @@ pub use look::{Light, Material, Normals};
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
 pub use triangle::{Bounds, Triangle};
-pub use wide::WideNode;
+pub use cwbvh::CwbvhNode;
 
 use glam::{UVec4, Vec3};
 

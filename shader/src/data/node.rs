@@ -16,7 +16,7 @@ impl NodeRef {
     pub const MAX_INDEX: u32 = (1 << 29) - 1;
     /// The pair that traversal starts with.
     pub const ROOT: NodeRef = NodeRef(0);
-    /// No node. It looks like a leaf, so that a search for leaves ends there.
+    /// No node. It counts as a leaf, so that loops until a leaf end there.
     pub const NONE: NodeRef = NodeRef(u32::MAX);
 
     /// The inner node whose children are pair `pair`.
@@ -75,7 +75,7 @@ pub struct NodePair {
 
 impl NodePair {
     /// The right child of a tree of one triangle: a point outside the scene. Its reference is the
-    /// first triangle, so that a ray that does meet it finds nothing new.
+    /// first triangle, so that a ray that does hit it finds nothing new.
     pub const EMPTY: (Vec3, Vec3, NodeRef) = (Vec3::splat(2.0), Vec3::splat(2.0), NodeRef(1));
 
     /// A pair of (least corner, greatest corner, reference).
@@ -101,11 +101,11 @@ impl NodePair {
     }
 }
 
-/// The boxes of two siblings as kernels test them: by centre and half their extent, which spares a minimum
-/// and a maximum an axis, each as dear on a GPU as two sums.
+/// The boxes of two siblings as kernels test them: by centre and half their extent, which saves a minimum
+/// and a maximum an axis, each as expensive on a GPU as two additions.
 ///
-/// Such a test rounds otherwise than that of a triangle's own box, so these boxes are wider than what
-/// they hold by [`CentredPair::MARGIN`]; see `traverse::step`.
+/// This test rounds differently from that of a triangle's own box, so these boxes are wider than their
+/// contents by [`CentredPair::MARGIN`]; see `traverse::step`.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct CentredPair {
@@ -120,7 +120,7 @@ pub struct CentredPair {
 }
 
 impl CentredPair {
-    /// How much wider than what it holds a box is at least, on every side.
+    /// How much wider than its contents a box is at least, on every side.
     pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
 
     /// The left child's reference.
@@ -153,7 +153,7 @@ fn centred(least: UVec4, greatest: UVec4) -> (UVec4, UVec4) {
     let half = |low: f32, high: f32, centre: f32| {
         let centre = f64::from(centre);
         let reach = (f64::from(high) - centre).max(centre - f64::from(low)) + f64::from(CentredPair::MARGIN);
-        // A roundoff more than the conversion takes off.
+        // Adds more than the conversion may round off.
         (reach as f32) * (1.0 + f32::EPSILON)
     };
     let half = Vec3::new(half(low.x, high.x, centre.x), half(low.y, high.y, centre.y), half(low.z, high.z, centre.z));

@@ -10,7 +10,7 @@ use crate::scene::{LaunchContext, Looks, TraceContext};
 use crate::stage::{self, Asking};
 use crate::traverse::{
     Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
-    WideNodes,
+    CwbvhMethod,
 };
 use crate::warp::{Alone, Subgroup, take};
 use glam::{UVec3, UVec4};

@@ -36,14 +36,14 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &Looks<'_>, slot: u32
     }
     let effects = launch.spec.effects;
     let path = Path::<R>::current(launch, slot, paths);
-    let (hit, place) = R::load(read(hits, slot));
-    if place == Hit::<R>::NOTHING {
+    let (hit, triangle_index) = R::load(read(hits, slot));
+    if triangle_index == Hit::<R>::NOTHING {
         add(launch, sums, slot, &path, background(effects, launch.frame, path.direction), 0);
         return pop(launch, slot, &path, paths);
     }
-    let triangle = launch.triangle(place);
+    let triangle = launch.triangle(triangle_index);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
-    let surface = Surface::new(effects, looks, place, &triangle, path.direction, &contact);
+    let surface = Surface::new(effects, looks, triangle_index, &triangle, path.direction, &contact);
     let (light, rays) = lit(launch, looks.lights, slot, path.direction, (&contact, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
@@ -52,7 +52,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &Looks<'_>, slot: u32
     follow(launch, slot, &path, branch(launch, &path, triangle.primitive(), (&contact, &surface)), paths)
 }
 
-/// Ambient light and every light that reaches the place, in file order; and how many were asked.
+/// Ambient light and every light that reaches the triangle_index, in file order; and how many were asked.
 #[inline(always)]
 fn lit<R: Scalar>(
     launch: &LaunchContext<'_>,
@@ -109,16 +109,16 @@ fn add<R: Scalar>(
 fn branch<R: Scalar>(
     launch: &LaunchContext<'_>,
     path: &Path<R>,
-    leaves: u32,
+    source_primitive: u32,
     (contact, surface): (&Contact<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let none = path.on(leaves, contact.position, mirrored, V3::zero());
-    if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.same(zero) {
-        let reflected = path.on(leaves, contact.leave(mirrored), mirrored, surface.reflection);
+    let none = path.on(source_primitive, contact.position, mirrored, V3::zero());
+    if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.eq(zero) {
+        let reflected = path.on(source_primitive, contact.leave(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
@@ -126,12 +126,12 @@ fn branch<R: Scalar>(
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
     // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
-    let reflected = path.on(leaves, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
+    let reflected = path.on(source_primitive, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(leaves, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
+    let refracted = path.on(source_primitive, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }
@@ -139,14 +139,14 @@ fn branch<R: Scalar>(
 impl<R: Scalar> Path<R> {
     /// The path that goes on from a contact.
     #[inline(always)]
-    fn on(&self, leaves: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
+    fn on(&self, source_primitive: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
             origin,
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,
             pending: self.pending,
-            leaves,
+            source_primitive,
         }
     }
 

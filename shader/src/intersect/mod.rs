@@ -1,9 +1,9 @@
-//! Rays against boxes and triangles.
+//! Intersection of rays with boxes and triangles.
 
-mod moller;
+mod moller_trumbore;
 mod slab;
 mod triangle;
 
-pub use moller::moller;
+pub use moller_trumbore::intersect_moller_trumbore;
 pub use slab::{Span, slab};
-pub use triangle::{Crossing, cross, sheared, spans};
+pub use triangle::{Candidate, intersect_watertight, sheared, straddles_origin};

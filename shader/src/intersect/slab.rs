@@ -1,4 +1,4 @@
-//! The box test (slabs), never wrong by rounding.
+//! The box test (slabs): conservative, so rounding never loses a box.
 
 use crate::ray::Ray;
 use crate::real::{Real, V3};
@@ -6,19 +6,19 @@ use crate::real::{Real, V3};
 /// Where a ray is inside a box.
 #[derive(Clone, Copy, Debug)]
 pub struct Span<R: Real> {
-    /// Where it enters, at least 0. Zeros may have either sign.
+    /// Where it enters, at least 0. A zero may have either sign.
     pub near: R,
     /// Where it leaves.
     pub far: R,
 }
 
-/// Crosses a box, given by its corners, with a ray. The ray meets it up to `limit` where
+/// Intersects a ray with a box, given by its corners. The ray hits it before `limit` where
 /// `near <= far` and `near <= limit`.
 ///
 /// Ize, Robust BVH Ray Traversal (2013): with a correctly rounded reciprocal each bound errs by less
 /// than gamma(3), so a far bound widened by 1 + 2 gamma(3) loses no box; 8 roundoffs cover it.
 /// Every step is monotone in the box: a larger box never gives a later near or an earlier far.
-/// The far bound that is returned is the wider one.
+/// The far bound that is returned is the widened one.
 #[inline(always)]
 pub fn slab<R: Real>(least: V3<R>, greatest: V3<R>, ray: &Ray<R>) -> Span<R> {
     let a = (least - ray.origin).times(ray.inverse);
@@ -73,7 +73,7 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(100_000))]
 
-        /// A ray aimed at a point of the box, most of all at corners and faces, never misses it.
+        /// A ray aimed at a point of the box, often at corners and faces, never misses it.
         #[test]
         fn aimed_rays_never_miss(
             a in prop::array::uniform3(-1f32..1.0), b in prop::array::uniform3(-1f32..1.0),
@@ -93,7 +93,7 @@ mod tests {
             prop_assert!(meets(least.map(|c| c - pad), greatest.map(|c| c + pad), from, direction));
         }
 
-        /// The order that culling relies on: a larger box is entered no later and left no sooner.
+        /// Culling relies on this: a larger box is entered no later and left no sooner.
         #[test]
         fn monotone_in_the_box(
             a in prop::array::uniform6(-1f32..1.0), grow in prop::array::uniform6(0f32..0.1),

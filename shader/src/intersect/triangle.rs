@@ -1,26 +1,27 @@
 //! The watertight triangle test (Woop, Benthin and Wald 2013).
 //!
 //! The vertices are moved to the ray's origin and sheared so that the ray is the third axis; the ray
-//! meets the triangle where the origin of the plane lies on no outer side of an edge. The two ways
-//! around are both accepted, and so is an edge itself.
+//! hits the triangle where the plane's origin is not outside any edge. Both windings are accepted, and so is a point on
+//! an edge.
 //!
 //! Why no ray slips between two triangles of an edge or a vertex: a sheared vertex depends on that
 //! vertex and the ray alone, so neighbours see the same points. An edge function is the difference of
 //! two rounded products; rounding is monotone, so its sign is the exact one or it is zero, and zero
 //! counts as inside for both. Thus the sheared points, taken as exact, are covered without a gap, and
-//! no wider arithmetic is needed. A contraction to fused multiply-add would break this, which is why
+//! no higher precision is needed. A contraction to fused multiply-add would break this, which is why
 //! it is forbidden in every precision.
 //!
 //! A triangle that is seen edge-on is a line, and an edge function of zero does not tell which part of its line the ray
 //! is at: with two of them zero by rounding, it may be far beside the triangle's ends. So where one is zero a hit
-//! counts only if the vertices lie around the ray on both axes ([`spans`]), as they do wherever it is inside.
+//! counts only if the vertices lie around the ray on both axes ([`straddles_origin`]), as they do wherever it is
+//! inside.
 //!
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
 //! product above 2^-97, whose neighbours are 2^-121 away: it is the same with them and without. One below counts
-//! as zero. So all devices agree, and only candidates are made zero for good.
+//! as zero. So all devices agree, and values are flushed to zero only in candidates.
 //!
-//! How far the sheared points are from true: with coordinates in [-1, 1], a difference to the origin
+//! The error of the sheared points: with coordinates in [-1, 1], a difference to the origin
 //! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all, which
 //! [`BOX_PADDING`](crate::data::BOX_PADDING) = 2^-20 covers, so a triangle's own box does not reject
 //! what the test accepts.
@@ -29,10 +30,11 @@ use crate::real::{FAINT, Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
 
-/// Where a ray crosses a triangle's plane, before its division. Beside the triangle nothing but `inside` is told.
+/// Where a ray crosses a triangle's plane, before the division. Only `inside` is valid where the ray misses the triangle.
 #[derive(Clone, Copy)]
-pub struct Crossing<R: Real> {
-    /// Does it cross inside the triangle, in front of the origin? Where it is [`Crossing::in_line`], [`spans`] must agree.
+pub struct Candidate<R: Real> {
+    /// Does it cross inside the triangle, in front of the origin? Where it is [`Candidate::in_line`],
+    /// [`straddles_origin`] must agree.
     pub inside: R::Mask,
     /// Is the front (counter-clockwise) side towards the ray? For back-face culling.
     pub front: R::Mask,
@@ -46,20 +48,20 @@ pub struct Crossing<R: Real> {
     pub area: R,
 }
 
-/// An edge function of no greater magnitude is zero; see the module.
+/// An edge function of this magnitude or less counts as zero; see the module.
 const SLIGHT: f32 = 1.0 / (1u128 << 96) as f32;
 
-/// What edge functions that count are multiplied by, so that weighted depths of triangles far smaller than the scene are
-/// not too faint.
+/// A scale for edge functions that are not zero, so that the weighted depths of triangles far smaller than the scene do
+/// not underflow.
 const ENLARGED: f32 = (1u64 << 48) as f32;
 
-/// Crosses a triangle, its vertices relative to the ray's origin, with a ray. Their axes are cycled
+/// Intersects a ray with a triangle, whose vertices are relative to the ray's origin. Their axes are cycled
 /// ([`Shear::cycle`](crate::ray::Shear::cycle)); `shear` is how far the first two move along the third, and `along` the
 /// inverse of the direction's major component.
 // A function of its own on the GPU: the build forbids contraction inside such functions.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Crossing<R> {
+pub fn intersect_watertight<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> Candidate<R> {
     let (ax, ay) = sheared(a, shear);
     let (bx, by) = sheared(b, shear);
     let (cx, cy) = sheared(c, shear);
@@ -69,24 +71,25 @@ pub fn cross<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R), along: R) -> 
     let (zero, slight) = (R::splat(0.0), R::splat(SLIGHT));
     let above = (-slight).le(wa) & (-slight).le(wb) & (-slight).le(wc);
     let around = above | (wa.le(slight) & wb.le(slight) & wc.le(slight));
-    // Most triangles that a ray comes to are beside it.
+    // A ray misses most triangles that it is tested against.
     if !around.any() {
-        return Crossing { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
+        return Candidate { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
-    let enlarged = |w: R| w.settle(SLIGHT) * R::splat(ENLARGED);
+    let enlarged = |w: R| w.flush_if_exact(SLIGHT) * R::splat(ENLARGED);
     let (wa, wb, wc) = (enlarged(wa), enlarged(wb), enlarged(wc));
     let area = wa + wb + wc;
-    let term = |w: R, z: R| (w * z).settle(FAINT);
+    let term = |w: R, z: R| (w * z).flush_if_exact(FAINT);
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
     let front = zero.lt(area * along);
-    Crossing { inside: around & ahead, front, depth, u: wb, v: wc, area }
+    Candidate { inside: around & ahead, front, depth, u: wb, v: wc, area }
 }
 
-/// Do a triangle's vertices, as [`cross`] takes them, lie around the ray on both axes? They do wherever it is inside.
+/// Do a triangle's vertices, as [`intersect_watertight`] takes them, lie around the ray on both axes? They do wherever
+/// it is inside.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn spans<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
+pub fn straddles_origin<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
     let (a, b, c, slight) = (sheared(a, shear), sheared(b, shear), sheared(c, shear), R::splat(SLIGHT));
     let below = a.0.lesser(b.0).lesser(c.0).le(slight) & a.1.lesser(b.1).lesser(c.1).le(slight);
     let above = (-slight).le(a.0.greater(b.0).greater(c.0)) & (-slight).le(a.1.greater(b.1).greater(c.1));
@@ -100,34 +103,35 @@ pub fn sheared<R: Real>(p: V3<R>, (x, y): (R, R)) -> (R, R) {
 }
 
 #[cfg(not(target_arch = "spirv"))]
-impl<R: Real> Crossing<R> {
+impl<R: Real> Candidate<R> {
     /// One of the lanes that are inside.
     #[inline(always)]
-    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Crossing<S>
+    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Candidate<S>
     where
         R: Lanes<S>,
     {
         let front = (R::bits(self.front) >> i) & 1 == 1;
         let (depth, area) = (self.depth.lane(i), self.area.lane(i));
-        Crossing { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
+        Candidate { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
     }
 }
 
-/// What a product and a quotient may be off by, generously.
+/// A generous bound on the relative error of a product and a quotient.
 const ABOUT: f32 = 1.0 + 1.0 / (1 << 20) as f32;
 
-impl<R: Real> Crossing<R> {
-    /// Where the crossing is inside and may lie before `limit`: a cheap test, so that the division is for few.
+impl<R: Real> Candidate<R> {
+    /// Is it inside, and may it lie before `limit`? A cheap test, so that few are divided.
     #[inline(always)]
     pub fn nearer(&self, limit: R) -> R::Mask {
         self.inside & self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT))
     }
 
-    /// Is some edge function zero (or nearly, of the first vertex), so that only [`spans`] tells whether it is inside?
+    /// Is some edge function zero (or nearly, of the first vertex), so that only [`straddles_origin`] tells whether it is
+    /// inside?
     #[inline(always)]
     pub fn in_line(&self) -> R::Mask {
         let zero = R::splat(0.0);
-        self.u.same(zero) | self.v.same(zero) | self.area.same(self.u + self.v)
+        self.u.eq(zero) | self.v.eq(zero) | self.area.eq(self.u + self.v)
     }
 }
 
@@ -145,8 +149,8 @@ mod tests {
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
         let shear = ray.slopes();
-        let x = cross(a, b, c, shear, ray.along());
-        let inside = x.inside && (!x.in_line() || spans(a, b, c, shear));
+        let x = intersect_watertight(a, b, c, shear, ray.along());
+        let inside = x.inside && (!x.in_line() || straddles_origin(a, b, c, shear));
         inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
     }
 
@@ -181,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_and_vertices_are_inside_either_way_around() {
+    fn edges_and_vertices_are_inside_for_both_windings() {
         let [a, b, c] = FLAT;
         for triangle in [[a, b, c], [a, c, b]] {
             for (x, y) in [(0.25, 0.0), (0.0, 0.25), (0.25, 0.25), (0.0, 0.0), (0.5, 0.0), (0.0, 0.5)] {
@@ -193,14 +197,14 @@ mod tests {
     }
 
     #[test]
-    fn what_lies_around_the_ray_on_one_axis_alone_does_not_span_it() {
+    fn straddling_the_ray_on_one_axis_alone_is_not_enough() {
         for (swapped, side) in [(false, 1.0), (true, 1.0), (false, -1.0), (true, -1.0)] {
             let at = |along: f32, off: f32| match swapped {
                 false => V::new(along, side * off, 0.5),
                 true => V::new(side * off, along, 0.5),
             };
-            let spanned = |off| spans(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
-            assert!(spanned(-1.0) && spanned(0.0) && !spanned(1.0), "{swapped} {side}");
+            let straddles = |off| straddles_origin(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
+            assert!(straddles(-1.0) && straddles(0.0) && !straddles(1.0), "{swapped} {side}");
         }
     }
 
@@ -239,14 +243,14 @@ mod tests {
         ) {
             let [o, d, e] = [origin, direction, across].map(|v| Vec3::from(v).as_dvec3());
             prop_assume!(d.length() > 0.25 && d.cross(e).length() > 0.25 * d.length());
-            // All on one side of the ray, in a plane with it.
+            // All vertices lie on one side of the ray, in a plane with it.
             let corner = |i: usize| (o + f64::from(t[i]) * d + f64::from(s[i]) * e).as_vec3().to_array();
             prop_assert!(hit([corner(0), corner(1), corner(2)], origin, direction).is_none());
         }
 
-        /// The distance is that of the plane in double precision, within the sheared points' error.
+        /// The distance equals that of the plane in double precision, within the sheared points' error.
         #[test]
-        fn distance_is_the_planes(
+        fn distance_is_that_of_the_plane(
             t in prop::array::uniform9(-1f32..1.0), w in prop::array::uniform2(0.0625f32..0.45),
             origin in prop::array::uniform3(-1f32..1.0),
         ) {

@@ -1,6 +1,6 @@
-//! What numbers of one lane have in common.
+//! What the implementations for one lane share.
 
-/// What every [`Real`] of one lane has in common: its mask and its indices stand for themselves.
+/// What every [`Real`] of one lane has in common: its mask is a `bool`, its indices are `u32`.
 #[macro_export]
 macro_rules! alone {
     () => {
@@ -42,8 +42,8 @@ macro_rules! alone {
     };
 }
 
-/// What every [`Scalar`] has in common for which there are no registers: packets of one lane, the plain instructions,
-/// and the given lanes for the boxes and triangles of wide nodes.
+/// What every [`Scalar`] has in common for which there are no registers: packets of one lane, and the given lanes for the
+/// boxes and triangles of wide nodes.
 #[macro_export]
 macro_rules! no_registers {
     ($eight:ty, $four:ty) => {
@@ -53,9 +53,5 @@ macro_rules! no_registers {
         type Four = $four;
         #[cfg(not(target_arch = "spirv"))]
         type Packet = Self;
-        #[cfg(target_arch = "x86_64")]
-        type Avx2 = $crate::real::Native;
-        #[cfg(target_arch = "x86_64")]
-        type Avx512 = $crate::real::Native;
     };
 }

@@ -1,29 +1,31 @@
-//! Numbers in registers: [`Wide<8>`](super::Wide) and [`Wide<4>`](super::Wide) where the compiler must not miss an
-//! instruction.
+//! AVX2 registers: as [`F32xN<8>`](super::F32xN) and [`F32xN<4>`](super::F32xN), with intrinsics where the compiler's
+//! vectorisation is not to be relied on.
 
 use core::arch::x86_64::*;
 use core::array::from_fn;
 use core::mem::transmute;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
-use super::{Lanes, Mask, Real, Vectors, Wide, WideIndex, WideMask};
+use super::{F32xN, Lanes, Mask, MaskxN, Real, SimdIsa, U32xN};
 use crate::ray::{Hit, Ray};
 
-/// A processor with AVX2 and FMA. Nobody else may follow rays over these vectors.
-pub struct Avx2;
+/// A processor with AVX2 and FMA. Not public: its vectors' safe functions are instructions that other processors lack, so
+/// [`Scalar::run_avx2`](super::Scalar::run_avx2) and [`run_avx512`](super::Scalar::run_avx512), which are unsafe, must stay
+/// the only ways to them.
+pub(crate) enum Avx2 {}
 
-impl Vectors<f32> for Avx2 {
+impl SimdIsa<f32> for Avx2 {
     type Eight = Eight;
     type Four = Four;
-    type Packet = Wide<16>;
+    type Packet = F32xN<16>;
 }
 
-/// An operation by one instruction or two.
+/// Operations of one or two instructions.
 macro_rules! instruction {
     ($(fn $name:ident($($arg:tt $(: $type:ty)?),*) -> $result:ty { $body:expr })*) => {$(
         #[inline(always)]
         fn $name($($arg $(: $type)?),*) -> $result {
-            // SAFETY: plain arithmetic, on a processor that has the instruction: who names `Avx2` promises that.
+            // SAFETY: plain arithmetic, on a processor that has the instruction: see `Avx2`.
             unsafe { $body }
         }
     )*};
@@ -103,32 +105,32 @@ macro_rules! registers {
 
         impl $mask {
             #[inline(always)]
-            fn wide(self) -> WideMask<$count> {
+            fn arrays(self) -> MaskxN<$count> {
                 // SAFETY: as many words either way.
-                WideMask(unsafe { transmute::<$floats, [u32; $count]>(self.0) })
+                MaskxN(unsafe { transmute::<$floats, [u32; $count]>(self.0) })
             }
         }
 
         impl $index {
             #[inline(always)]
-            fn wide(self) -> WideIndex<$count> {
+            fn arrays(self) -> U32xN<$count> {
                 // SAFETY: as many words either way.
-                WideIndex(unsafe { transmute::<$integers, [u32; $count]>(self.0) })
+                U32xN(unsafe { transmute::<$integers, [u32; $count]>(self.0) })
             }
         }
 
         impl $number {
             #[inline(always)]
-            fn wide(self) -> Wide<$count> {
+            fn arrays(self) -> F32xN<$count> {
                 // SAFETY: as many numbers either way.
-                Wide(unsafe { transmute::<$floats, [f32; $count]>(self.0) })
+                F32xN(unsafe { transmute::<$floats, [f32; $count]>(self.0) })
             }
 
             instruction! {
                 fn by_sign(self) -> Self { $number($and(self.0, $all(-0.0))) }
             }
 
-            /// Subnormals become zeros of their sign.
+            /// Flushes subnormals to zeros of their sign.
             #[inline(always)]
             fn normal(self) -> Self {
                 Self::select(self.abs().lt(Self::splat(f32::MIN_POSITIVE)), self.by_sign(), self)
@@ -148,10 +150,10 @@ macro_rules! registers {
                 fn splat(x: f32) -> Self { $number($all(x)) }
                 fn lt(self, other: Self) -> $mask { $mask($compare::<_CMP_LT_OQ>(self.0, other.0)) }
                 fn le(self, other: Self) -> $mask { $mask($compare::<_CMP_LE_OQ>(self.0, other.0)) }
-                fn same(self, other: Self) -> $mask { $mask($compare::<_CMP_EQ_OQ>(self.0, other.0)) }
+                fn eq(self, other: Self) -> $mask { $mask($compare::<_CMP_EQ_OQ>(self.0, other.0)) }
                 fn select(mask: $mask, a: Self, b: Self) -> Self { $number($blend(b.0, a.0, mask.0)) }
                 fn abs(self) -> Self { $number($without($all(-0.0), self.0)) }
-                // The instructions return the second operand for NaN and for two zeros, as compare and select do.
+                // For NaN and for two zeros these instructions return the second operand, as compare and select do.
                 fn min(self, other: Self) -> Self { $number($min(self.0, other.0)) }
                 fn max(self, other: Self) -> Self { $number($max(self.0, other.0)) }
                 fn fused(self, a: Self, b: Self) -> Self { $number($fused(self.0, a.0, b.0)) }
@@ -162,7 +164,7 @@ macro_rules! registers {
                 fn equals(i: u32, other: $index) -> $mask {
                     $mask($as_floats($equal($all_integers(i as i32), other.0)))
                 }
-                // Only signed integers compare: both move by the same step.
+                // There is only a signed comparison, so both operands are offset by 2^31.
                 fn precedes(i: u32, other: $index) -> $mask {
                     $mask($as_floats($greater(
                         $xor_integers(other.0, $all_integers(i32::MIN)),
@@ -183,30 +185,30 @@ macro_rules! registers {
 
             #[inline(always)]
             fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: $mask, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
-                let wide = Ray {
-                    origin: ray.origin.each($number::wide),
-                    inverse: ray.inverse.each($number::wide),
-                    offset: ray.offset.each($number::wide),
-                    shear: ray.shear.each($number::wide, $mask::wide),
-                    leaves: ray.leaves.wide(),
+                let arrays = Ray {
+                    origin: ray.origin.each($number::arrays),
+                    inverse: ray.inverse.each($number::arrays),
+                    offset: ray.offset.each($number::arrays),
+                    shear: ray.shear.each($number::arrays, $mask::arrays),
+                    source_primitive: ray.source_primitive.arrays(),
                 };
                 let mut lanes = Hit {
-                    t: hit.t.wide(),
-                    u: hit.u.wide(),
-                    v: hit.v.wide(),
-                    scale: hit.scale.wide(),
-                    slot: hit.slot.wide(),
-                    primitive: hit.primitive.wide(),
+                    t: hit.t.arrays(),
+                    u: hit.u.arrays(),
+                    v: hit.v.arrays(),
+                    scale: hit.scale.arrays(),
+                    triangle_index: hit.triangle_index.arrays(),
+                    primitive: hit.primitive.arrays(),
                 };
-                Wide::<$count>::lanes(&wide, &mut lanes, mask.wide(), &mut f);
-                let number = |w: Wide<$count>| Self::taken(&w.0);
-                let index = |w: WideIndex<$count>| Self::indices(|i| w.0[i]);
+                F32xN::<$count>::lanes(&arrays, &mut lanes, mask.arrays(), &mut f);
+                let number = |w: F32xN<$count>| Self::taken(&w.0);
+                let index = |w: U32xN<$count>| Self::indices(|i| w.0[i]);
                 *hit = Hit {
                     t: number(lanes.t),
                     u: number(lanes.u),
                     v: number(lanes.v),
                     scale: number(lanes.scale),
-                    slot: index(lanes.slot),
+                    triangle_index: index(lanes.triangle_index),
                     primitive: index(lanes.primitive),
                 };
             }
@@ -230,11 +232,11 @@ macro_rules! registers {
             }
             #[inline(always)]
             fn lane(&self, i: usize) -> f32 {
-                self.wide().0[i & ($count - 1)]
+                self.arrays().0[i & ($count - 1)]
             }
             #[inline(always)]
             fn index_of(index: $index, i: usize) -> u32 {
-                index.wide().0[i & ($count - 1)]
+                index.arrays().0[i & ($count - 1)]
             }
             #[inline(always)]
             fn taken(numbers: &[f32]) -> Self {

@@ -1,4 +1,4 @@
-//! Single instructions of the device that the compiler has no other way to.
+//! Single instructions of the device that the compiler can't emit otherwise.
 
 use core::arch::asm;
 
@@ -45,7 +45,7 @@ of_integers!(greater_integer, "42", "SMax.");
 
 /// The greatest, if it is not negative; else some negative number.
 ///
-/// By integers, since the bits of numbers that are not negative have their order, and those of negative ones
+/// As integers: the bits of numbers that are not negative have the same order, and those of negative ones
 /// are less. A GPU may have an instruction for three of them (NVIDIA from Hopper on: 5 to 10 % of a traversal).
 #[inline(always)]
 pub fn greatest(a: f32, b: f32, c: f32, d: f32) -> f32 {

@@ -21,17 +21,17 @@ impl Real for f64 {
     fn le(self, other: f64) -> bool {
         self <= other
     }
-    fn same(self, other: f64) -> bool {
+    fn eq(self, other: f64) -> bool {
         self == other
     }
     fn abs(self) -> f64 {
         f64::abs(self)
     }
-    /// Never on a device that flushes.
-    fn settle(self, _least: f32) -> f64 {
+    /// Never runs on a device that flushes.
+    fn flush_if_exact(self, _least: f32) -> f64 {
         self
     }
-    /// Products of numbers of 2^-60 are far from subnormal, so nothing above that has to be zero.
+    /// Products of numbers of 2^-60 are far from subnormal, so nothing above that must be flushed.
     fn flush(self, least: f32) -> f64 {
         if f64::abs(self) < f64::from(least.min(TINY)) { 0.0 } else { self }
     }

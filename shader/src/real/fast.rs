@@ -52,7 +52,7 @@ impl Real for Fast {
     }
 
     #[inline(always)]
-    fn settle(self, _least: f32) -> Fast {
+    fn flush_if_exact(self, _least: f32) -> Fast {
         self
     }
 
@@ -63,7 +63,7 @@ impl Real for Fast {
 }
 
 impl Scalar for Fast {
-    crate::no_registers!(super::Wide<8>, super::Wide<4>);
+    crate::no_registers!(super::F32xN<8>, super::F32xN<4>);
     records!(Fast, inner);
 
     #[inline(always)]

@@ -1,10 +1,10 @@
-//! Several numbers side by side, as the vectors of a CPU hold them. A GPU has none: other rays fill its lanes.
+//! Several numbers side by side, in the vectors of a CPU. Not for GPUs, whose lanes are filled by other rays.
 
 use super::{Fast, Real, Scalar};
 
 /// Lanes over the numbers of `S`: several on a CPU with vectors, or `S` itself.
 pub trait Lanes<S: Scalar>: Real {
-    /// How many; [`Wide`](super::Wide) has a power of two.
+    /// How many lanes; a power of two.
     const COUNT: u32;
 
     /// A number in every lane.
@@ -17,42 +17,49 @@ pub trait Lanes<S: Scalar>: Real {
     fn lane(&self, i: usize) -> S;
     /// The integer of lane `i`.
     fn index_of(index: Self::Index, i: usize) -> u32;
-    /// The first numbers of a slice, as many as there are lanes.
+    /// Loads the first numbers of a slice, as many as there are lanes.
     fn taken(numbers: &[f32]) -> Self;
-    /// Puts the lanes' numbers, in single precision, first into a slice.
+    /// Stores the lanes' numbers, in single precision, at the start of a slice.
     fn put(self, numbers: &mut [f32]);
     /// A bit a lane, the first in the lowest.
     fn bits(mask: Self::Mask) -> u32;
 }
 
 /// The vectors that a processor has for the numbers of `S`.
-pub trait Vectors<S: Scalar> {
-    /// What tests the boxes of a node of eight.
+pub trait SimdIsa<S: Scalar> {
+    /// Vectors that test the boxes of a node of eight children.
     type Eight: Lanes<S>;
-    /// What tests the triangles of its leaves.
+    /// Vectors that test the triangles of its leaves.
     type Four: Lanes<S>;
-    /// What follows rays together.
+    /// Vectors that trace several rays together.
     type Packet: Lanes<S>;
+}
+
+/// What is to be compiled for every instruction set.
+pub trait Task<S: Scalar> {
+    /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
+    /// inlined is compiled for the instruction set.
+    fn run<V: SimdIsa<S>>(self);
 }
 
 /// What every processor of the target has.
 pub struct Native;
 
-impl<S: Scalar> Vectors<S> for Native {
+impl<S: Scalar> SimdIsa<S> for Native {
     type Eight = S::Eight;
     type Four = S::Four;
     type Packet = S::Packet;
 }
 
-/// A processor with AVX-512.
+/// A processor with AVX-512; not public, as [`Avx2`](super::Avx2).
 #[cfg(target_arch = "x86_64")]
-pub struct Avx512;
+pub(super) enum Avx512 {}
 
 #[cfg(target_arch = "x86_64")]
-impl Vectors<f32> for Avx512 {
-    type Eight = <super::Avx2 as Vectors<f32>>::Eight;
-    type Four = <super::Avx2 as Vectors<f32>>::Four;
-    type Packet = super::Wide<16>;
+impl SimdIsa<f32> for Avx512 {
+    type Eight = <super::Avx2 as SimdIsa<f32>>::Eight;
+    type Four = <super::Avx2 as SimdIsa<f32>>::Four;
+    type Packet = super::F32xN<16>;
 }
 
 /// Implements [`Lanes`] for a [`Scalar`]: it is one lane of itself.

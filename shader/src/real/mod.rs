@@ -1,10 +1,10 @@
-//! The one numeric trait of the kernels, and its machines.
+//! The one numeric trait of the kernels, and its implementations.
 //!
-//! | machine | is | `div`, `sqrt`, `pow` |
+//! | type | is | `div`, `sqrt`, `pow` |
 //! | --- | --- | --- |
 //! | `f32` | exact: a GPU lane or one ray on the CPU, the same bits on both | correctly rounded; stated error |
 //! | [`Fast`] | `f32` at the device's own speed | the device's |
-//! | [`Wide`] | a CPU packet, `f32` in every lane | as `f32` |
+//! | [`F32xN`] | a CPU packet, `f32` in every lane | as `f32` |
 //! | `f64` | the reference picture, on the CPU | the standard library's |
 
 mod alone;
@@ -14,6 +14,8 @@ mod avx2;
 mod device;
 #[cfg(not(target_arch = "spirv"))]
 mod double;
+#[cfg(not(target_arch = "spirv"))]
+mod f32xn;
 mod fast;
 #[cfg(not(target_arch = "spirv"))]
 mod lanes;
@@ -23,19 +25,17 @@ pub mod soft;
 #[cfg(test)]
 mod tests;
 mod vector;
-#[cfg(not(target_arch = "spirv"))]
-mod wide;
 
 #[cfg(target_arch = "x86_64")]
-pub use avx2::Avx2;
+pub(crate) use avx2::Avx2;
+#[cfg(not(target_arch = "spirv"))]
+pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
 #[cfg(target_arch = "x86_64")]
-pub use lanes::Avx512;
+use lanes::Avx512;
 #[cfg(not(target_arch = "spirv"))]
-pub use lanes::{Lanes, Native, Vectors};
+pub use lanes::{Lanes, Native, SimdIsa, Task};
 pub use vector::V3;
-#[cfg(not(target_arch = "spirv"))]
-pub use wide::{Wide, WideIndex, WideMask};
 
 #[cfg(doc)]
 use crate::data::Launch;
@@ -61,23 +61,23 @@ impl Mask for bool {
     }
 }
 
-/// A number, or one a lane: all that traversal and intersection ask of arithmetic.
+/// A number, or one a lane: the arithmetic that traversal and intersection need.
 ///
-/// Exact implementations use `+ - *`, comparisons and bit operations alone, since Vulkan promises
-/// correct rounding for nothing else; `div` and `sqrt` decide every operand themselves.
+/// Exact implementations use only `+ - *`, comparisons and bit operations, since Vulkan promises
+/// correct rounding for nothing else; their `div` and `sqrt` handle every operand themselves.
 pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> {
     /// What a comparison returns.
     type Mask: Mask;
-    /// An unsigned 32-bit integer a lane: ids and counts are no floats.
+    /// An unsigned 32-bit integer a lane, for ids and counts.
     type Index: Copy;
 
-    /// A lane by itself.
+    /// One lane.
     type Lane: Scalar;
 
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
 
-    /// May a launch choose how triangles are met ([`Launch::MOLLER`])? Other numbers know the watertight test alone.
+    /// May a launch choose the triangle test ([`Launch::MOLLER`])? Else it is always the watertight one.
     const CHOOSES: bool = false;
 
     /// The same number in every lane.
@@ -96,22 +96,22 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// `self <= other`; false for NaN.
     fn le(self, other: Self) -> Self::Mask;
     /// Exact equality; zeros are equal.
-    fn same(self, other: Self) -> Self::Mask;
+    fn eq(self, other: Self) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select(mask: Self::Mask, a: Self, b: Self) -> Self;
-    /// Without its sign.
+    /// The magnitude.
     fn abs(self) -> Self;
 
     /// The same integer in every lane.
     fn index(i: u32) -> Self::Index;
     /// Is the integer `i` less than the lane's?
     fn precedes(i: u32, other: Self::Index) -> Self::Mask;
-    /// Is the integer `i` the lane's?
+    /// Is the integer `i` equal to the lane's?
     fn equals(i: u32, other: Self::Index) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
 
-    /// Runs `f` for every lane of the mask by itself.
+    /// Calls `f` for each lane of the mask, one after the other.
     fn lanes(
         ray: &Ray<Self>,
         hit: &mut Hit<Self>,
@@ -131,80 +131,93 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         Self::select(other.lt(self), self, other)
     }
 
-    /// `self * a + b`, rounded once or twice, as suits the device: for tests that leave room for either, so that
-    /// only what they lead to has the same bits everywhere.
+    /// `self * a + b`, rounded once or twice, as the device prefers. Only for conservative tests, which allow for
+    /// either, so that the results still have the same bits everywhere.
     #[inline(always)]
     fn fused(self, a: Self, b: Self) -> Self {
         self * a + b
     }
 
-    /// As [`Real::min`], but of two zeros the device may take either: for what is only compared.
+    /// As [`Real::min`], but of two zeros the device may return either: for values that are only compared.
     #[inline(always)]
     fn lesser(self, other: Self) -> Self {
         self.min(other)
     }
 
-    /// As [`Real::max`], with the licence of [`Real::lesser`].
+    /// As [`Real::max`], but of two zeros the device may return either.
     #[inline(always)]
     fn greater(self, other: Self) -> Self {
         self.max(other)
     }
 
-    /// The greatest component, or zero if none is positive: where a ray that enters a box's three pairs of planes
-    /// there is inside all of them.
+    /// The greatest component, or zero if none is positive: where a ray enters a box, given where it enters each of its
+    /// three pairs of planes.
     #[inline(always)]
-    fn latest(enter: V3<Self>) -> Self {
+    fn max_entry(enter: V3<Self>) -> Self {
         enter.x.greater(enter.y).greater(enter.z.greater(Self::splat(0.0)))
     }
 
-    /// The least component or the limit, whichever is less; if any is negative (-0 included), some negative number,
-    /// or zero.
+    /// The least of the components and the limit: where a ray leaves a box. If any is negative (-0 included), the
+    /// result is some negative number or zero.
     #[inline(always)]
-    fn earliest(leave: V3<Self>, limit: Self) -> Self {
+    fn min_exit(leave: V3<Self>, limit: Self) -> Self {
         leave.x.lesser(leave.y).lesser(leave.z.lesser(limit))
     }
 
-    /// As [`Real::flush`], where the same bits are promised; else a subnormal may stay, or be flushed, as the
-    /// device likes.
+    /// As [`Real::flush`] in exact precision; otherwise the device decides whether to keep or flush a subnormal.
     #[inline(always)]
-    fn settle(self, least: f32) -> Self {
+    fn flush_if_exact(self, least: f32) -> Self {
         self.flush(least)
     }
 
-    /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so what could
-    /// become one is made zero at a named point, on every device alike.
+    /// Zero where the magnitude is less than `least`. Devices may flush subnormals, so a value that could
+    /// become one is made zero explicitly, on every device alike.
     #[inline(always)]
     fn flush(self, least: f32) -> Self {
         Self::select(self.abs().lt(Self::splat(least)), Self::splat(0.0), self)
     }
 }
 
-/// A single lane, as shading takes it.
+/// A number of a single lane, as shading uses it.
 pub trait Scalar: Real<Mask = bool, Index = u32> {
-    /// What tests the boxes of a node of eight.
+    /// Vectors that test the boxes of a node of eight children.
     #[cfg(not(target_arch = "spirv"))]
     type Eight: Lanes<Self>;
-    /// What tests the triangles of its leaves.
+    /// Vectors that test the triangles of its leaves.
     #[cfg(not(target_arch = "spirv"))]
     type Four: Lanes<Self>;
-    /// What follows rays together.
+    /// Vectors that trace several rays together.
     #[cfg(not(target_arch = "spirv"))]
     type Packet: Lanes<Self>;
-    /// The vectors of a processor with AVX2, if these numbers have any use for them.
-    #[cfg(target_arch = "x86_64")]
-    type Avx2: Vectors<Self>;
-    /// The vectors of a processor with AVX-512.
-    #[cfg(target_arch = "x86_64")]
-    type Avx512: Vectors<Self>;
-    /// Are there other vectors than [`Native`] ones?
+    /// Are there vectors other than the [`Native`] ones?
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = false;
     /// Three numbers and an integer in device memory.
     type Record: Copy + Default;
 
+    /// Runs a task with the vectors of a processor with AVX2, if these numbers have any use for them.
+    ///
+    /// # Safety
+    /// The processor has AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx2(task: impl Task<Self>) {
+        task.run::<Native>();
+    }
+
+    /// Likewise with the vectors of a processor with AVX-512.
+    ///
+    /// # Safety
+    /// The processor has AVX-512, AVX2 and FMA.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx512(task: impl Task<Self>) {
+        task.run::<Native>();
+    }
+
     /// Packs three numbers and an integer.
     fn store(v: V3<Self>, word: u32) -> Self::Record;
-    /// What [`Scalar::store`] packed.
+    /// Unpacks what [`Scalar::store`] packed.
     fn load(record: Self::Record) -> (V3<Self>, u32);
     /// `self` to the power of `exponent`, both at least 0; zero below 2^-100.
     fn pow(self, exponent: Self) -> Self;
@@ -212,7 +225,7 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     fn floor_index(self) -> i32;
     /// Rounded to single precision, as a film holds it.
     fn to_f32(self) -> f32;
-    /// Neither NaN nor infinite?
+    /// Is it neither NaN nor infinite?
     fn is_finite(self) -> bool;
 }
 

@@ -22,7 +22,7 @@ macro_rules! comparisons {
             $inner(self) <= $inner(other)
         }
         #[inline(always)]
-        fn same(self, other: Self) -> bool {
+        fn eq(self, other: Self) -> bool {
             $inner(self) == $inner(other)
         }
         #[inline(always)]
@@ -36,13 +36,13 @@ macro_rules! comparisons {
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
-        fn latest(enter: V3<Self>) -> Self {
+        fn max_entry(enter: V3<Self>) -> Self {
             let [x, y, z] = [$inner(enter.x), $inner(enter.y), $inner(enter.z)];
             $wrap(super::device::greatest(x, y, z, 0.0))
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
-        fn earliest(leave: V3<Self>, limit: Self) -> Self {
+        fn min_exit(leave: V3<Self>, limit: Self) -> Self {
             let [x, y, z] = [$inner(leave.x), $inner(leave.y), $inner(leave.z)];
             $wrap(super::device::least(x, y, z, $inner(limit)))
         }
@@ -136,19 +136,27 @@ impl Real for f32 {
 
 impl Scalar for f32 {
     #[cfg(not(target_arch = "spirv"))]
-    type Eight = super::Wide<8>;
+    type Eight = super::F32xN<8>;
     #[cfg(not(target_arch = "spirv"))]
-    type Four = super::Wide<4>;
+    type Four = super::F32xN<4>;
     #[cfg(not(target_arch = "spirv"))]
-    type Packet = super::Wide<8>;
-    #[cfg(target_arch = "x86_64")]
-    type Avx2 = super::Avx2;
-    #[cfg(target_arch = "x86_64")]
-    type Avx512 = super::Avx512;
+    type Packet = super::F32xN<8>;
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = true;
 
     records!(id, id);
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx2(task: impl super::Task<f32>) {
+        task.run::<super::Avx2>();
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    unsafe fn run_avx512(task: impl super::Task<f32>) {
+        task.run::<super::Avx512>();
+    }
 
     #[inline(always)]
     fn pow(self, exponent: f32) -> f32 {

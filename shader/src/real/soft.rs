@@ -65,7 +65,7 @@ fn special_quotient(a: u32, b: u32, sign: u32) -> u32 {
     }
 }
 
-/// The quotient of two mantissas, the first not less, in 25 bits from an estimate of it; and whether anything is left.
+/// The quotient of two mantissas, the first not less, in 25 bits from an estimate; and whether there is a remainder.
 #[inline(always)]
 fn quotient(ma: u32, mb: u32, estimate: f32) -> (u32, bool) {
     let mut q = mantissa_of_estimate(estimate);
@@ -108,12 +108,12 @@ pub fn div(a: f32, b: f32) -> f32 {
 /// 2^47 over a mantissa, rounded, from an estimate of the reciprocal of the mantissa in [1, 2).
 #[inline(always)]
 fn inverse(m: u32, estimate: f32) -> u32 {
-    // In units of 2^-24, from 1/2 to 1; what an estimate is beyond is made up for below.
+    // In units of 2^-24, from 1/2 to 1; an estimate out of this range is corrected below.
     let mut q = estimate.to_bits().wrapping_sub(HALF - HIDDEN);
     let (m, twice) = (m as i32, 2 * m as i32);
-    // Twice what is left, its low 32 bits; no quotient lies halfway.
+    // The low 32 bits of twice the remainder; no quotient lies halfway.
     let mut rest = 0i32.wrapping_sub((q as i32).wrapping_mul(twice));
-    // Most estimates are off by one at most. Selections for these, since some lane of a subgroup needs them.
+    // Most estimates are off by one at most. Selections correct those, since some lane of a subgroup needs them anyway.
     let (more, less) = (rest > m, rest < -m);
     q = if more { q + 1 } else { q };
     q = if less { q - 1 } else { q };
@@ -137,11 +137,12 @@ pub fn reciprocal(b: f32) -> f32 {
     let bits = b.to_bits();
     let fraction = bits & FRACTION;
     let q = inverse(fraction | HIDDEN, 1.0 / f32::from_bits(ONE | fraction));
-    // The mantissa's highest bit counts once more in the exponent, and twice the reciprocal of a power of two.
+    // The mantissa's highest bit adds one to the exponent, and that of a power of two's reciprocal adds two.
     f32::from_bits((bits & SIGN) | (252u32.wrapping_sub(exponent(bits)) << 23).wrapping_add(q))
 }
 
-/// The root of a mantissa in 25 bits, from the low 32 bits of its square and an estimate; and whether anything is left.
+/// The root of a mantissa in 25 bits, from the low 32 bits of its square and an estimate; and whether there is a
+/// remainder.
 #[inline(always)]
 fn root(square: u32, estimate: f32) -> (u32, bool) {
     let mut s = mantissa_of_estimate(estimate);
@@ -183,7 +184,7 @@ pub fn sqrt(a: f32) -> f32 {
 /// The same functions from a CPU's correctly rounded instructions.
 #[cfg(not(target_arch = "spirv"))]
 pub mod native {
-    /// Subnormals become zeros of their sign.
+    /// Flushes subnormals to zeros of their sign.
     #[inline(always)]
     fn flush(x: f32) -> f32 {
         if x.abs() < f32::MIN_POSITIVE { f32::from_bits(x.to_bits() & super::SIGN) } else { x }
@@ -207,7 +208,7 @@ mod tests {
     use super::{FRACTION, HALF, HIDDEN, ONE, div, inverse, native, quotient, reciprocal, root, round, sqrt};
     use proptest::prelude::*;
 
-    /// Operands whose quotients lie on ties, at the range's ends, and every special.
+    /// Operands whose quotients lie on ties or at the ends of the range, and every special value.
     const CORNERS: [u32; 24] = [
         0,
         1,
@@ -251,7 +252,7 @@ mod tests {
 
     /// Every mantissa, and every exponent that has a normal reciprocal.
     #[test]
-    fn reciprocals_are_the_processors() {
+    fn reciprocals_equal_the_processors() {
         for bits in 0x3f80_0000..=0x4000_0000u32 {
             let x = f32::from_bits(bits);
             assert_eq!(reciprocal(x).to_bits(), (1.0 / x).to_bits(), "{bits:08x}");
@@ -266,16 +267,16 @@ mod tests {
     }
 
     #[test]
-    fn roots_of_corners_are_the_processors() {
+    fn roots_of_corners_equal_the_processors() {
         for a in CORNERS.iter().flat_map(|&a| [a, a | super::SIGN]) {
             let x = f32::from_bits(a);
             assert!(agree(sqrt(x), native::sqrt(x)), "sqrt {a:08x}: {:?}", sqrt(x));
         }
     }
 
-    /// Every mantissa of both parities: the whole of the root's rounding.
+    /// Every mantissa with both parities of the exponent, which covers all of the root's rounding.
     #[test]
-    fn roots_of_all_mantissas_are_the_processors() {
+    fn roots_of_all_mantissas_equal_the_processors() {
         for bits in 0x3f80_0000..0x4080_0000u32 {
             let x = f32::from_bits(bits);
             assert_eq!(sqrt(x).to_bits(), x.sqrt().to_bits(), "{bits:08x}");

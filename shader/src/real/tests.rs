@@ -1,6 +1,6 @@
-//! What every number promises, asked of each.
+//! The guarantees of every implementation.
 
-use super::{FAINT, Fast, Lanes, Mask, Real, SMALL, Scalar, TINY, V3, Wide};
+use super::{F32xN, FAINT, Fast, Lanes, Mask, Real, SMALL, Scalar, TINY, V3};
 use core::array::from_fn;
 
 const SAMPLES: [f32; 9] = [-3.0, -1.0, -0.5, -0.0, 0.0, 0.25, 1.0, 2.0, 8.0];
@@ -14,20 +14,20 @@ fn arithmetic_and_order<R: Scalar>() {
     for (x, y) in pairs() {
         let (a, b) = (R::splat(x), R::splat(y));
         assert_eq!(((a + b).to_f32(), (a - b).to_f32(), (a * b).to_f32()), (x + y, x - y, x * y), "{x} {y}");
-        assert_eq!((a.lt(b), a.le(b), a.same(b)), (x < y, x <= y, x == y), "{x} {y}");
+        assert_eq!((a.lt(b), a.le(b), a.eq(b)), (x < y, x <= y, x == y), "{x} {y}");
         assert_eq!((a.min(b).to_f32(), a.max(b).to_f32()), (x.min(y), x.max(y)), "{x} {y}");
         assert_eq!((a.lesser(b).to_f32(), a.greater(b).to_f32()), (x.min(y), x.max(y)), "{x} {y}");
         assert_eq!((a.fused(b, R::splat(0.5))).to_f32(), x * y + 0.5, "{x} {y}");
         assert_eq!(((-a).to_f32(), a.abs().to_f32()), (-x, x.abs()));
         assert_eq!(R::select(x < y, a, b).to_f32(), if x < y { x } else { y });
         let (v, limit) = (V3::new(a, b, R::splat(1.0)), R::splat(4.0));
-        assert_eq!(R::latest(v).to_f32(), x.max(y).max(1.0));
-        assert_eq!(R::earliest(v, limit).to_f32(), x.min(y).min(1.0));
+        assert_eq!(R::max_entry(v).to_f32(), x.max(y).max(1.0));
+        assert_eq!(R::min_exit(v, limit).to_f32(), x.min(y).min(1.0));
     }
     assert_eq!(R::splat(3.0).div(R::splat(2.0)).to_f32(), 1.5);
     assert_eq!((R::splat(-4.0).reciprocal().to_f32(), R::splat(6.25).sqrt().to_f32()), (-0.25, 2.5));
     let (one, roundoff) = (R::splat(1.0), R::ROUNDOFF);
-    assert!((one + roundoff).same(one) && one.lt(one + (roundoff + roundoff)), "half the distance to the next number");
+    assert!((one + roundoff).eq(one) && one.lt(one + (roundoff + roundoff)), "half the distance to the next number");
 }
 
 fn powers_and_whole_numbers<R: Scalar>() {
@@ -43,7 +43,7 @@ fn powers_and_whole_numbers<R: Scalar>() {
 fn small_numbers_and_records<R: Scalar>() {
     let flushed = |x: f32| R::splat(x).flush(TINY).to_f32();
     assert_eq!((flushed(TINY), flushed(-TINY), flushed(0.75 * TINY), flushed(-0.75 * TINY)), (TINY, -TINY, 0.0, 0.0));
-    assert_eq!(R::splat(2.0).settle(1.0).to_f32(), 2.0);
+    assert_eq!(R::splat(2.0).flush_if_exact(1.0).to_f32(), 2.0);
     let (v, word) = R::load(R::store(V3::new(R::splat(1.0), R::splat(-2.0), R::splat(0.5)), 77));
     assert_eq!((v.x.to_f32(), v.y.to_f32(), v.z.to_f32(), word), (1.0, -2.0, 0.5, 77));
 }
@@ -82,13 +82,13 @@ fn exact_numbers_keep_their_promises() {
 #[test]
 fn fast_numbers_keep_their_promises() {
     promises::<Fast>();
-    assert_eq!(Fast(0.5).settle(1.0), Fast(0.5), "a device may do as it likes");
+    assert_eq!(Fast(0.5).flush_if_exact(1.0), Fast(0.5), "a device may do as it likes");
 }
 
 #[test]
 fn doubles_keep_their_promises() {
     promises::<f64>();
-    assert_eq!(0.5f64.settle(1.0), 0.5);
+    assert_eq!(0.5f64.flush_if_exact(1.0), 0.5);
     assert_eq!(1e-15f64.flush(SMALL), 1e-15, "there is room below");
 }
 
@@ -102,8 +102,8 @@ fn lanes_are_as_alone<const N: usize>() {
     for (first, second) in pairs() {
         let at = |x: f32, i: usize| if i % 3 == 2 { 1.0 - x } else { x + i as f32 };
         let [x, y]: [[f32; N]; 2] = [from_fn(|i| at(first, i)), from_fn(|i| at(second, N - i))];
-        let (a, b) = (Wide(x), Wide(y));
-        let same = |got: Wide<N>, want: &dyn Fn(f32, f32) -> f32| {
+        let (a, b) = (F32xN(x), F32xN(y));
+        let same = |got: F32xN<N>, want: &dyn Fn(f32, f32) -> f32| {
             (0..N).for_each(|i| assert_eq!(got.0[i].to_bits(), want(x[i], y[i]).to_bits(), "{} {}", x[i], y[i]));
         };
         same(a + b, &|x, y| x + y);
@@ -117,14 +117,14 @@ fn lanes_are_as_alone<const N: usize>() {
         same(Real::min(a, b), &|x, y| Real::min(x, y));
         same(Real::max(a, b), &|x, y| Real::max(x, y));
         same(a.flush(1.0), &|x, _| x.flush(1.0));
-        same(Wide::select(a.lt(b), a, b), &|x, y| if x < y { x } else { y });
-        same(Wide::select(!a.le(b), a, b), &|x, y| if x <= y { y } else { x });
-        same(Wide::select(a.same(b), a, b), &|x, y| if x == y { x } else { y });
-        same(Wide::select(a.lt(b) | a.same(b), a, b), &|x, y| if x <= y { x } else { y });
-        same(Wide::select(a.le(b) & !a.same(b), a, b), &|x, y| if x < y { x } else { y });
+        same(F32xN::select(a.lt(b), a, b), &|x, y| if x < y { x } else { y });
+        same(F32xN::select(!a.le(b), a, b), &|x, y| if x <= y { y } else { x });
+        same(F32xN::select(a.eq(b), a, b), &|x, y| if x == y { x } else { y });
+        same(F32xN::select(a.lt(b) | a.eq(b), a, b), &|x, y| if x <= y { x } else { y });
+        same(F32xN::select(a.le(b) & !a.eq(b), a, b), &|x, y| if x < y { x } else { y });
         let below = (0..N).filter(|&i| x[i] < y[i]);
         assert_eq!((a.lt(b).any(), a.lt(b).count()), (below.clone().count() > 0, below.clone().count() as u32));
-        assert_eq!(<Wide<N> as Lanes<f32>>::bits(a.lt(b)), below.map(|i| 1 << i).sum::<u32>());
+        assert_eq!(<F32xN<N> as Lanes<f32>>::bits(a.lt(b)), below.map(|i| 1 << i).sum::<u32>());
     }
 }
 
@@ -150,9 +150,9 @@ fn packets_are_as_their_rays_alone() {
     lanes_are_as_alone::<4>();
     lanes_are_as_alone::<8>();
     lanes_are_as_alone::<16>();
-    lanes_hold_indices::<Wide<4>>();
-    lanes_hold_indices::<Wide<8>>();
-    lanes_hold_indices::<Wide<16>>();
+    lanes_hold_indices::<F32xN<4>>();
+    lanes_hold_indices::<F32xN<8>>();
+    lanes_hold_indices::<F32xN<16>>();
 }
 
 #[test]

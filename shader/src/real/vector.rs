@@ -1,4 +1,4 @@
-//! Three numbers, with every sum from left to right.
+//! Vectors of three numbers; every sum is from left to right.
 
 use super::Real;
 use core::ops::{Add, Mul, Neg, Sub};
@@ -62,7 +62,7 @@ impl<R: Real> V3<R> {
         V3::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// Applies a function to every component that makes other numbers of them.
+    /// Applies a function to every component that changes its type.
     #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(crate) fn each<T>(self, f: fn(R) -> T) -> V3<T> {
@@ -124,7 +124,7 @@ impl<R: Real> V3<R> {
     pub fn normalised(self) -> (Self, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let scale = self.abs().greatest();
-        let none = scale.same(zero);
+        let none = scale.eq(zero);
         let inverse = one.div(R::select(none, one, scale));
         let v = (self * inverse).map(|c| c.flush(super::SMALL));
         let length = v.dot(v).sqrt();

@@ -1,12 +1,12 @@
-//! Where a ray touches a triangle, and how well that place is known.
+//! The point where a ray hits a triangle, and its error bound.
 
 use crate::data::Triangle;
 use crate::real::{Real, SMALL, Scalar, TINY, V3};
 
-/// A place on a surface.
+/// A point on a surface.
 #[derive(Clone, Copy)]
 pub struct Contact<R: Real> {
-    /// The place, from the triangle's vertices (nearer to the surface than along the ray).
+    /// The point, computed from the triangle's vertices (nearer to the surface than a point along the ray).
     pub position: V3<R>,
     /// How far a ray must start from the surface to be on the right side of it, see [`Contact::leave`].
     pub clearance: R,
@@ -18,17 +18,16 @@ pub struct Contact<R: Real> {
     pub weights: (R, R),
 }
 
-/// Roundoffs, times the coordinates that enter, by which a place and the triangle test that a leaving
-/// ray meets may be off: gamma(7) for the weighted sum (PBRT-v4 6.8.4), and for the depth of a triangle
-/// no thinner than a fifth of its length the error of its vertices (4) and edge functions (9) times
-/// that shape.
+/// Bounds the error of a point and of the triangle test of a ray that starts there, in roundoffs times the
+/// coordinates involved: gamma(7) for the weighted sum (PBRT-v4 6.8.4), and for the depth of a triangle no
+/// thinner than a fifth of its length the error of its vertices (4) and edge functions (9) times that shape.
 const ROUNDOFFS: f32 = 64.0;
 
-/// A ray whose cosine is less than this would go too far before it has its clearance.
+/// A ray whose cosine is less than this would have to go too far along its direction to reach its clearance.
 const GRAZING: f32 = 1.0 / 32.0;
 
 impl<R: Scalar> Contact<R> {
-    /// The place with weights `u` and `v` of the second and third vertex, seen along `direction`.
+    /// The point with weights `u` and `v` of the second and third vertex, seen along `direction`.
     #[inline(always)]
     pub fn new(triangle: &Triangle, u: R, v: R, direction: V3<R>) -> Self {
         let [a, b, c] = triangle.vertices();
@@ -39,12 +38,12 @@ impl<R: Scalar> Contact<R> {
         // Edges below 2^-40 are zero, so that the normal's products do not underflow.
         let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
         let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
-        let normal = V3::select(length.same(R::splat(0.0)), -direction, normal);
+        let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
         let front = normal.dot(direction).le(R::splat(0.0));
         Contact {
             position: position.map(|x| x.flush(TINY)),
-            // The position errs across the surface by its coordinates along the normal; the triangle
-            // test errs by the triangle's extent every way.
+            // The position's error across the surface grows with its coordinates along the normal; the triangle
+            // test's error grows with the triangle's extent in every direction.
             clearance: (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF),
             normal: V3::select(front, normal, -normal),
             front,
@@ -58,17 +57,17 @@ impl<R: Scalar> Contact<R> {
         R::splat(0.0).lt(self.normal.dot(direction))
     }
 
-    /// A start for a ray that leaves towards `direction`: off the surface along the normal (PBRT-v4
-    /// 6.8.6), so that it can't meet a neighbour in the same plane. The triangle itself is skipped by
-    /// its number, since a plane is never met twice.
+    /// The origin of a ray that leaves towards `direction`: off the surface along the normal (PBRT-v4
+    /// 6.8.6), so that it can't hit a neighbour in the same plane. The triangle itself is skipped by
+    /// its number, since a ray can't hit a plane twice.
     #[inline(always)]
     pub fn leave(&self, direction: V3<R>) -> V3<R> {
         let side = R::select(self.faces(direction), self.clearance, -self.clearance);
         (self.position + self.normal * side).map(|x| x.flush(TINY))
     }
 
-    /// [`Contact::leave`] along a unit direction itself, unless that grazes the surface: a ray beside its
-    /// own line sees another place, which lenses magnify.
+    /// As [`Contact::leave`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
+    /// offset sideways sees another point, which lenses magnify.
     #[inline(always)]
     pub fn leave_along(&self, direction: V3<R>) -> V3<R> {
         let cosine = self.normal.dot(direction).abs();
@@ -82,7 +81,7 @@ impl<R: Scalar> Contact<R> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::intersect::cross;
+    use crate::intersect::intersect_watertight;
     use crate::ray::Ray;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -90,10 +89,10 @@ mod tests {
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
         let [a, b, c] = vertices.map(|p| ray.seen(p));
-        cross(a, b, c, ray.slopes(), ray.along()).inside
+        intersect_watertight(a, b, c, ray.slopes(), ray.along()).inside
     }
 
-    /// From a place on `vertices` towards `d`, and every way that grazes the surface more.
+    /// Rays from a point on `vertices` towards `d` and towards directions that graze the surface more.
     fn leave_every_way(
         vertices: [Vec3; 3],
         (u, v): (f32, f32),
@@ -134,7 +133,7 @@ mod tests {
         }
     }
 
-    /// By so steep a direction along itself, by a flatter one along the normal.
+    /// A steep direction offsets along itself, a flatter one along the normal.
     #[test]
     fn leaves_along_its_direction_unless_that_grazes() {
         let contact = flat_seen_along(V3::splat(-Vec3::Z));
@@ -149,8 +148,8 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig { max_global_rejects: 1 << 20, ..ProptestConfig::with_cases(200_000) })]
 
-        /// A ray that leaves a quad meets neither half again, whatever its size and place; the plane
-        /// lies on a coordinate (often 0), where the place itself has no error across it.
+        /// A ray that leaves a quad hits neither half again, whatever its size and position; the plane
+        /// lies on a coordinate (often 0), where the point itself has no error across it.
         #[test]
         fn leaving_rays_do_not_meet_coplanar_neighbours(
             corner in prop::array::uniform2(-1f32..1.0), size in prop::array::uniform2(0.0625f32..1.0),

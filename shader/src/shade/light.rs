@@ -1,4 +1,4 @@
-//! Lights without extent, and what a surface makes of them: Lambert and Phong (thesis 3.1).
+//! Lights without extent, and their reflection: Lambert and Phong (thesis 3.1).
 
 use super::{Contact, Surface, reflect};
 use crate::data::{Effects, Light, numbers};
@@ -26,7 +26,7 @@ pub fn shadow_ray<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<
     }
 }
 
-/// How a light reaches a place that nothing shadows.
+/// The light that reaches a point that nothing shadows.
 #[derive(Clone, Copy)]
 pub struct Incidence<R: Real> {
     /// Unit direction towards the light.
@@ -183,7 +183,7 @@ mod tests {
         let (origin, direction, _) =
             shadow_ray(ALL, &light(Light::POINT, Vec3::new(3.0, 4.0, 0.0)), &Contact { position: beside, ..contact });
         assert!((origin - beside).dot(origin - beside) < 1e-11 && (direction.y - 1.0).abs() < 1e-12);
-        // Between place and light's origin the sides differ: the light is below the surface, behind it.
+        // The light lies below the surface, so the ray must leave towards that side.
         let (origin, ..) = shadow_ray(
             ALL,
             &light(Light::POINT, Vec3::Y),

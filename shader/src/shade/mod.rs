@@ -1,4 +1,4 @@
-//! What a ray brings back: the illumination model of thesis chapters 3.1 to 3.3.
+//! The illumination model of thesis chapters 3.1 to 3.3.
 
 mod contact;
 mod light;

@@ -10,10 +10,10 @@ pub fn reflect<R: Scalar>(d: V3<R>, n: V3<R>) -> V3<R> {
     d + n * (R::splat(-2.0) * d.dot(n))
 }
 
-/// What passes an interface.
+/// Light that passes an interface.
 #[derive(Clone, Copy)]
 pub struct Refraction<R: Real> {
-    /// Does nothing pass (total internal reflection)?
+    /// Is there no refraction (total internal reflection)?
     pub total: bool,
     /// The direction inside, of unit length up to rounding.
     pub direction: V3<R>,
@@ -45,8 +45,8 @@ pub fn fresnel<R: Scalar>(at: &Refraction<R>, eta: R) -> R {
     }
     let ratio = |a: R, b: R| {
         let sum = a + b;
-        // Both cosines are zero at grazing incidence alone, where all is reflected.
-        if sum.same(R::splat(0.0)) { one } else { (a - b).div(sum) }
+        // Both cosines are zero only at grazing incidence, where everything is reflected.
+        if sum.eq(R::splat(0.0)) { one } else { (a - b).div(sum) }
     };
     let across = ratio(eta * at.cos_in, at.cos_out);
     let along = ratio(at.cos_in, eta * at.cos_out);

@@ -1,4 +1,4 @@
-//! What a surface is made of at a place, and what lies behind everything.
+//! The material of a surface at a point, and the background.
 
 use super::Contact;
 use crate::buffer::read;
@@ -11,9 +11,9 @@ use crate::scene::Looks;
 pub struct Surface<R: Real> {
     /// Unit shading normal on the viewer's side: the vertices' normals interpolated, or the triangle's.
     pub normal: V3<R>,
-    /// Answer to ambient light, that light included.
+    /// Reflected ambient light: the material's colour times the scene's ambient light.
     pub ambient: V3<R>,
-    /// Lambert's colour, the checker's choice made.
+    /// Lambert's colour, that of the checker's cell included.
     pub diffuse: V3<R>,
     /// Phong's colour.
     pub specular: V3<R>,
@@ -21,19 +21,19 @@ pub struct Surface<R: Real> {
     pub shininess: R,
     /// Mirror colour of an opaque surface.
     pub reflection: V3<R>,
-    /// Colour of what passes.
+    /// Colour of the transmitted light.
     pub transmission: V3<R>,
     /// Index of refraction, 0 for an opaque surface.
     pub ior: R,
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of triangle `slot` at a contact, seen along `direction`.
+    /// The surface of a triangle at a contact, seen along `direction`.
     #[inline(always)]
     pub fn new(
         effects: Effects,
         looks: &Looks<'_>,
-        slot: u32,
+        triangle_index: u32,
         triangle: &Triangle,
         direction: V3<R>,
         contact: &Contact<R>,
@@ -41,8 +41,11 @@ impl<R: Scalar> Surface<R> {
         let material: Material = read(looks.materials, triangle.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
-        let normal =
-            if effects.has(Effects::SMOOTH) { interpolated(looks, slot, direction, contact) } else { contact.normal };
+        let normal = if effects.has(Effects::SMOOTH) {
+            interpolated(looks, triangle_index, direction, contact)
+        } else {
+            contact.normal
+        };
         let other =
             effects.has(Effects::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
         Surface {
@@ -58,17 +61,17 @@ impl<R: Scalar> Surface<R> {
     }
 }
 
-/// The vertex normals' weighted sum, turned to the viewer's side of the triangle. Where that leaves
-/// no direction, or the normal turns away from the viewer, the triangle's own normal stands in.
+/// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,
+/// or faces away from the viewer, the triangle's own normal replaces it.
 #[inline(always)]
-fn interpolated<R: Scalar>(looks: &Looks<'_>, slot: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
+fn interpolated<R: Scalar>(looks: &Looks<'_>, triangle_index: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
     let (u, v) = contact.weights;
-    let normals = read(looks.normals, slot);
+    let normals = read(looks.normals, triangle_index);
     let normal = |record| V3::<R>::splat(numbers(record));
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.normalised();
     let unit = V3::select(contact.faces(unit), unit, -unit);
-    let lost = length.same(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
+    let lost = length.eq(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
     V3::select(lost, contact.normal, unit)
 }
 
@@ -87,7 +90,7 @@ fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
     ((a * cells).floor_index() ^ (b * cells).floor_index()) & 1 != 0
 }
 
-/// What a ray sees that leaves the scene: one colour, or a gradient over the height of its direction.
+/// The colour of a ray that hits nothing: constant, or a gradient over the height of its direction.
 #[inline(always)]
 pub fn background<R: Scalar>(effects: Effects, frame: &Frame, direction: V3<R>) -> V3<R> {
     let bottom = V3::splat(numbers(frame.horizon));

@@ -24,8 +24,8 @@ pub struct Path<R: Real> {
     pub bounces: u32,
     /// Rays that wait in this slot.
     pub pending: u32,
-    /// The primitive that it leaves, or [`Hit::NOTHING`].
-    pub leaves: u32,
+    /// The primitive that it starts on, or [`Hit::NOTHING`].
+    pub source_primitive: u32,
 }
 
 impl<R: Scalar> Path<R> {
@@ -43,7 +43,7 @@ impl<R: Scalar> Path<R> {
             weight: V3::splat(glam::Vec3::ONE),
             bounces: 0,
             pending: 0,
-            leaves: Hit::<R>::NOTHING,
+            source_primitive: Hit::<R>::NOTHING,
         }
     }
 
@@ -51,8 +51,8 @@ impl<R: Scalar> Path<R> {
     #[inline(always)]
     pub fn load(slots: u32, slot: u32, level: u32, paths: &[R::Record]) -> Self {
         let at = |k| R::load(read(paths, (level * RECORDS + k) * slots + slot));
-        let ((origin, bounces), (direction, pending), (weight, leaves)) = (at(0), at(1), at(2));
-        Path { origin, direction, weight, bounces, pending, leaves }
+        let ((origin, bounces), (direction, pending), (weight, source_primitive)) = (at(0), at(1), at(2));
+        Path { origin, direction, weight, bounces, pending, source_primitive }
     }
 
     /// Keeps the path at a level of a slot.
@@ -61,6 +61,6 @@ impl<R: Scalar> Path<R> {
         let at = |k| (level * RECORDS + k) * slots + slot;
         write(paths, at(0), R::store(self.origin, self.bounces));
         write(paths, at(1), R::store(self.direction, self.pending));
-        write(paths, at(2), R::store(self.weight, self.leaves));
+        write(paths, at(2), R::store(self.weight, self.source_primitive));
     }
 }

@@ -14,8 +14,8 @@ pub struct Segment<R> {
     pub direction: V3<R>,
     /// Nothing beyond this many lengths of the direction counts.
     pub limit: R,
-    /// The primitive that it leaves, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
-    pub leaves: u32,
+    /// The primitive that it starts on, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
+    pub source_primitive: u32,
 }
 
 impl<R: Scalar> Segment<R> {
@@ -23,14 +23,14 @@ impl<R: Scalar> Segment<R> {
     /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
     #[inline(always)]
     pub fn load(geometry: &TraceContext<'_>, index: u32, stream: &[R::Record]) -> Self {
-        let (origin, leaves) = R::load(read(stream, index));
+        let (origin, source_primitive) = R::load(read(stream, index));
         let (direction, limit) = R::load(read(stream, geometry.base.frame.slots + index));
-        Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), leaves }
+        Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), source_primitive }
     }
 
     /// The ray, ready for boxes and triangles.
     #[inline(always)]
     pub fn ray(&self) -> Ray<R> {
-        Ray::leaving(self.leaves, self.origin, self.direction)
+        Ray::leaving(self.source_primitive, self.origin, self.direction)
     }
 }

@@ -34,16 +34,21 @@ pub fn asked<R: Scalar>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot
         return (Segment::load(geometry, slot, asking.paths), true);
     }
     let path = Path::<R>::current(&geometry.base, slot, asking.paths);
-    let (hit, place) = R::load(read(asking.hits, slot));
-    if place == Hit::<R>::NOTHING {
-        let nowhere = Segment { origin: path.origin, direction: path.direction, limit: hit.x, leaves: path.leaves };
+    let (hit, triangle_index) = R::load(read(asking.hits, slot));
+    if triangle_index == Hit::<R>::NOTHING {
+        let nowhere = Segment {
+            origin: path.origin,
+            direction: path.direction,
+            limit: hit.x,
+            source_primitive: path.source_primitive,
+        };
         return (nowhere, false);
     }
-    let triangle = geometry.triangle(place);
+    let triangle = geometry.triangle(triangle_index);
     let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
     let light = read(asking.lights, index);
     let (origin, direction, limit) = shadow_ray(geometry.base.spec.effects, &light, &contact);
-    (Segment { origin, direction, limit, leaves: triangle.primitive() }, contact.faces(direction))
+    (Segment { origin, direction, limit, source_primitive: triangle.primitive() }, contact.faces(direction))
 }
 
 /// Traces the shadow ray from a slot's hit to light `index`.

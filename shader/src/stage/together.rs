@@ -33,7 +33,7 @@ pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
         let mut i = 0;
         while i < lanes && value * lanes + i < segments.len() {
             let place = V3::new(hit.t.lane(i), u.lane(i), v.lane(i));
-            keep(value * lanes + i, trace::record(place, P::index_of(hit.slot, i)));
+            keep(value * lanes + i, trace::record(place, P::index_of(hit.triangle_index, i)));
             i += 1;
         }
     }
@@ -66,7 +66,7 @@ fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
         let vector = |of: fn(&Segment<S>) -> V3<S>| {
             V3::new(P::of(|i| of(at(first + i)).x), P::of(|i| of(at(first + i)).y), P::of(|i| of(at(first + i)).z))
         };
-        Ray::leaving(P::indices(|i| at(first + i).leaves), vector(|s| s.origin), vector(|s| s.direction))
+        Ray::leaving(P::indices(|i| at(first + i).source_primitive), vector(|s| s.origin), vector(|s| s.direction))
     });
     let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOTHING) };
     let mut hits: [Hit<P>; VALUES] = from_fn(|value| Hit::none(P::of(|i| limit(value * lanes + i))));

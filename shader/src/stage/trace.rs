@@ -16,21 +16,25 @@ pub fn traced<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Rec
     }
     let path = Path::<R>::current(&geometry.base, slot, paths);
     let is_secondary = geometry.base.spec.launch.has(Launch::SECONDARY);
-    let origin = if is_secondary { path.origin } else { camera::approach(path.origin, path.direction) };
-    Segment { origin, direction: path.direction, limit: R::splat(f32::MAX), leaves: path.leaves }
+    Segment {
+        origin: if is_secondary { path.origin } else { camera::approach(path.origin, path.direction) },
+        direction: path.direction,
+        limit: R::splat(f32::MAX),
+        source_primitive: path.source_primitive,
+    }
 }
 
-/// What is kept of a ray's hit: (t, u, v) and the slot of the triangle, or [`Hit::NOTHING`].
+/// What is kept of a ray's hit: (t, u, v) and the triangle index, or [`Hit::NOTHING`].
 #[inline(always)]
 pub fn found<R: Scalar>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
     let (u, v) = step::weights(geometry, ray, hit);
-    record(V3::new(hit.t, u, v), hit.slot)
+    record(V3::new(hit.t, u, v), hit.triangle_index)
 }
 
-/// (t, u, v) and the slot of the triangle, as they lie in memory.
+/// (t, u, v) and the triangle index, as they lie in memory.
 #[inline(always)]
-pub(super) fn record<R: Scalar>(place: V3<R>, slot: u32) -> R::Record {
-    R::store(place, slot)
+pub(super) fn record<R: Scalar>(place: V3<R>, triangle_index: u32) -> R::Record {
+    R::store(place, triangle_index)
 }
 
 /// Traces a slot's ray; returns what [`found`] does.

@@ -1,17 +1,17 @@
-//! Where a traversal stands.
+//! The state of a traversal over node pairs.
 
 use super::resumable::Progress;
 use crate::data::{CentredPair, NodeRef, STACK};
 
-/// Nodes that wait. It is kept beside its [`Cursor`], since rust-gpu lets no pointer live in a struct
-/// that crosses a loop. A packet's is replicated in every lane, which makes its hits right even where
-/// a driver lets lanes part.
+/// Nodes still to visit. Kept beside its [`Cursor`], since rust-gpu allows no pointer in a struct that
+/// lives across a loop. A packet's stack is replicated in every lane, so its hits are right even where a
+/// driver lets the lanes diverge.
 pub type Stack = super::stack::Stack<NodeRef, STACK>;
 
-/// The node in hand.
+/// The current node.
 #[derive(Clone, Copy)]
 pub struct Cursor {
-    /// Visited next; [`NodeRef::NONE`] if nothing is left to visit.
+    /// The node to visit next; [`NodeRef::NONE`] if nothing is left to visit.
     pub node: NodeRef,
     depth: u32,
 }
@@ -23,35 +23,35 @@ impl Cursor {
         Self::at(NodeRef::ROOT)
     }
 
-    /// At a node, with nothing waiting.
+    /// At a node, with an empty stack.
     #[inline(always)]
     pub fn at(node: NodeRef) -> Self {
         Cursor { node, depth: 0 }
     }
 
-    /// How many nodes wait.
+    /// How many nodes are on the stack.
     #[inline(always)]
     pub fn depth(&self) -> u32 {
         self.depth
     }
 
-    /// Nothing is to be visited any more.
+    /// Ends the traversal.
     #[inline(always)]
     pub fn finish(&mut self) {
         *self = Self::at(NodeRef::NONE);
     }
 
-    /// Goes on to the nearer wanted child and lets the other wait, or pops if none is wanted.
+    /// Goes to the nearer child that is hit and pushes the other if it is hit too; pops if none is hit.
     #[inline(always)]
     pub fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
         let (left_child, right_child) = (pair.left(), pair.right());
         if cfg!(target_arch = "spirv") {
-            // Few and short branches: lanes of a subgroup that take different ones wait for each other.
+            // Few and short branches, since lanes of a subgroup that take different ones wait for each other.
             let turned = right & (right_first | !left);
             let near = if turned { right_child } else { left_child };
             let far = if turned { left_child } else { right_child };
             if left & right {
-                self.wait(far, stack);
+                self.push(far, stack);
             }
             if left | right {
                 self.node = near;
@@ -59,9 +59,9 @@ impl Cursor {
                 self.pop(stack);
             }
         } else if left && right {
-            // A CPU foresees branches, and goes on before it knows the boxes.
+            // A CPU predicts branches, and continues before the box tests are done.
             let (near, far) = if right_first { (right_child, left_child) } else { (left_child, right_child) };
-            self.wait(far, stack);
+            self.push(far, stack);
             self.node = near;
         } else if left {
             self.node = left_child;
@@ -72,21 +72,21 @@ impl Cursor {
         }
     }
 
-    /// Lets a node wait.
+    /// Pushes a node.
     #[inline(always)]
-    fn wait(&mut self, node: NodeRef, stack: &mut Stack) {
+    fn push(&mut self, node: NodeRef, stack: &mut Stack) {
         stack.put(self.depth, node);
         self.depth += 1;
     }
 
-    /// Takes the node that waits on top, or is done.
+    /// Pops the next node; ends the traversal if there is none.
     #[inline(always)]
     pub fn pop(&mut self, stack: &Stack) {
         if self.depth == 0 {
             self.node = NodeRef::NONE;
         } else {
             self.depth -= 1;
-            // SAFETY: below the depth all has been put.
+            // SAFETY: every index below the depth has been set.
             self.node = unsafe { stack.get(self.depth) };
         }
     }

@@ -1,5 +1,5 @@
-//! Hybrid traversals (thesis 6.2.3 and 6.2.4): together as a packet as long as that pays, then every
-//! ray by itself. They differ in when rays part ([`Switch`]) and in whether they meet again ([`Turn`]).
+//! Hybrid traversals (thesis 6.2.3 and 6.2.4): as a packet as long as that pays, then ray by ray.
+//! They differ in when the packet splits ([`SplitPolicy`]) and in whether it rejoins ([`Turn`]).
 
 use core::marker::PhantomData;
 
@@ -14,18 +14,18 @@ use crate::real::{Mask, Real};
 use crate::scene::TraceContext;
 use crate::warp::Warp;
 
-/// When a packet parts.
-pub trait Switch {
-    /// Does it part for good, `depth` nodes waiting?
+/// When a packet splits.
+pub trait SplitPolicy {
+    /// With `depth` nodes on the stack, does the whole packet split?
     fn full(geometry: &TraceContext<'_>, depth: u32) -> bool;
-    /// Do those who want a child part from the `active` rays of the packet?
+    /// Do the rays that hit a child leave the packet, which has `active` rays, to visit it alone?
     fn few(geometry: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
 }
 
-/// Parts when a small stack is full (thesis: stack max).
+/// Splits when a small stack is full (thesis: stack max).
 pub struct StackMax;
 
-impl Switch for StackMax {
+impl SplitPolicy for StackMax {
     #[inline(always)]
     fn full(geometry: &TraceContext<'_>, depth: u32) -> bool {
         depth >= geometry.base.spec.tuning.stack_max()
@@ -36,10 +36,10 @@ impl Switch for StackMax {
     }
 }
 
-/// Parts from a child that too few rays want (thesis: cut).
+/// Splits at a child that too few rays hit (thesis: cut).
 pub struct Cut;
 
-impl Switch for Cut {
+impl SplitPolicy for Cut {
     #[inline(always)]
     fn full(_: &TraceContext<'_>, _: u32) -> bool {
         false
@@ -50,43 +50,43 @@ impl Switch for Cut {
     }
 }
 
-/// What parted rays do in the end.
+/// When split rays are traced.
 pub trait Turn {
-    /// Do they meet again once their branch is done (interleaved), or never (sequential)?
-    const MEETS: bool;
+    /// Do they rejoin the packet once their branch is done (interleaved), or never (sequential)?
+    const REJOINS: bool;
 }
 
-/// The packet ends first, then every ray goes on by itself (thesis 6.2.3).
+/// The packet finishes first, then every ray continues alone (thesis 6.2.3).
 pub struct Sequential;
 impl Turn for Sequential {
-    const MEETS: bool = false;
+    const REJOINS: bool = false;
 }
 
-/// Every branch is ended before the packet goes on (thesis 6.2.4).
+/// Every branch is finished before the packet continues (thesis 6.2.4).
 pub struct Interleaved;
 impl Turn for Interleaved {
-    const MEETS: bool = true;
+    const REJOINS: bool = true;
 }
 
 /// See the module.
 pub struct Hybrid<W, S, T>(PhantomData<(W, S, T)>);
 
-/// Nodes that some rays left for later, and which rays.
-struct Later<R: Real> {
+/// Nodes to visit ray by ray after the packet, and by which rays.
+struct DeferredStack<R: Real> {
     nodes: Stack,
     rays: [R::Mask; STACK],
     count: u32,
 }
 
-impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
+impl<R: Real, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
-        let mut later = Later::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
+        let mut deferred = DeferredStack::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
         while !cursor.is_done() {
             if S::full(geometry, cursor.depth()) {
-                if T::MEETS {
+                if T::REJOINS {
                     alone::<Q, R>(geometry, cursor.node, everyone::<R>(), ray, hit);
                     cursor.pop(&stack);
                 } else {
@@ -99,23 +99,23 @@ impl<R: Real, W: Warp, S: Switch, T: Turn> Method<R> for Hybrid<W, S, T> {
                 let pair = geometry.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
-                let left = together::<Q, R, W, S, T>(geometry, pair.left(), wanted.left, ray, (hit, &mut later));
-                let right = together::<Q, R, W, S, T>(geometry, pair.right(), wanted.right, ray, (hit, &mut later));
+                let left = together::<Q, R, W, S, T>(geometry, pair.left(), wanted.left, ray, (hit, &mut deferred));
+                let right = together::<Q, R, W, S, T>(geometry, pair.right(), wanted.right, ray, (hit, &mut deferred));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
         }
-        while later.count > 0 {
-            later.count -= 1;
-            // SAFETY: below the count all has been put.
-            let node = unsafe { later.nodes.get(later.count) };
-            alone::<Q, R>(geometry, node, later.rays[later.count as usize & (STACK - 1)], ray, hit);
+        while deferred.count > 0 {
+            deferred.count -= 1;
+            // SAFETY: every index below the count has been set.
+            let node = unsafe { deferred.nodes.get(deferred.count) };
+            alone::<Q, R>(geometry, node, deferred.rays[deferred.count as usize & (STACK - 1)], ray, hit);
         }
     }
 }
 
 #[cfg(not(target_arch = "spirv"))]
-impl<W: Warp, S: Switch, T: Turn> super::Together for Hybrid<W, S, T> {
+impl<W: Warp, S: SplitPolicy, T: Turn> super::Together for Hybrid<W, S, T> {
     #[inline(always)]
     fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
         for (ray, hit) in rays.iter().zip(hits) {
@@ -130,14 +130,14 @@ fn everyone<R: Real>() -> R::Mask {
     R::splat(0.0).le(R::splat(0.0))
 }
 
-/// Does the packet go to a child together? If too few rays want it, they go by themselves, at once or later.
+/// Does the packet visit a child? If too few rays hit it, they visit it one by one, now or later.
 #[inline(always)]
-fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
+fn together<Q: Query, R: Real, W: Warp, S: SplitPolicy, T: Turn>(
     geometry: &TraceContext<'_>,
     node: NodeRef,
     rays: R::Mask,
     ray: &Ray<R>,
-    (hit, later): (&mut Hit<R>, &mut Later<R>),
+    (hit, deferred): (&mut Hit<R>, &mut DeferredStack<R>),
 ) -> bool {
     if !S::few(geometry, || W::count(rays), || W::count(everyone::<R>())) {
         return goes::<Q, R, W>(rays);
@@ -145,17 +145,17 @@ fn together<Q: Query, R: Real, W: Warp, S: Switch, T: Turn>(
     if !rays.any() {
         return false;
     }
-    if T::MEETS || later.count == STACK as u32 {
+    if T::REJOINS || deferred.count == STACK as u32 {
         alone::<Q, R>(geometry, node, rays, ray, hit);
     } else {
-        later.nodes.put(later.count, node);
-        later.rays[later.count as usize & (STACK - 1)] = rays;
-        later.count += 1;
+        deferred.nodes.put(deferred.count, node);
+        deferred.rays[deferred.count as usize & (STACK - 1)] = rays;
+        deferred.count += 1;
     }
     false
 }
 
-/// Every ray of the mask follows a branch by itself.
+/// Traces every ray of the mask through a branch by itself.
 #[inline(always)]
 fn alone<Q: Query, R: Real>(geometry: &TraceContext<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
@@ -166,7 +166,7 @@ fn alone<Q: Query, R: Real>(geometry: &TraceContext<'_>, node: NodeRef, rays: R:
     Q::on_parted(false);
 }
 
-/// Every ray goes on by itself with what the packet has left.
+/// Traces every ray by itself through what the packet has left to visit.
 #[inline(always)]
 fn part<Q: Query, R: Real>(geometry: &TraceContext<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
@@ -174,7 +174,7 @@ fn part<Q: Query, R: Real>(geometry: &TraceContext<'_>, cursor: &Cursor, shared:
         let mut stack = Stack::new();
         let mut i = 0;
         while i < cursor.depth() {
-            // SAFETY: below the depth all has been put.
+            // SAFETY: every index below the depth has been set.
             stack.put(i, unsafe { shared.get(i) });
             i += 1;
         }

@@ -1,12 +1,13 @@
-//! Ways through the hierarchy. A method is one small file over the shared steps of [`step`].
+//! Traversal methods. Each is one small file built from the shared steps of [`step`].
 //!
-//! Every method finds the same hit: the least (t, primitive) among the slots whose own box the ray
-//! meets, with t no less than the entry to that box. A node's box is wider than what it holds by more
-//! than the tests of both may err, so it is entered no later, and no order of visits can cull the winner.
+//! Every method finds the same hit: the least (t, primitive) among the triangles whose own box the ray
+//! hits, with t no less than the entry to that box. A node's box is wider than its contents by more than
+//! the error of both tests, so it is entered no later, and no order of visits can cull the closest hit.
 
-pub mod cursor;
 #[cfg(not(target_arch = "spirv"))]
-mod full;
+mod bvh8;
+pub mod cursor;
+mod cwbvh;
 mod hybrid;
 mod if_if;
 mod packet;
@@ -15,36 +16,35 @@ mod speculative;
 mod stack;
 pub mod step;
 mod while_while;
-mod wide;
 
 #[cfg(not(target_arch = "spirv"))]
-pub use full::FullNodes;
+pub use bvh8::Bvh8Method;
+pub use cwbvh::CwbvhMethod;
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;
-pub use wide::WideNodes;
 
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
 use crate::scene::TraceContext;
 
-/// What a ray asks for.
+/// What a ray searches for.
 pub trait Query {
     /// Is any hit enough, and do transparent triangles not count? (Shadow rays, thesis 3.2.)
     const ANY: bool;
 
-    /// Is told that a ray, or a packet, tests boxes of this number. Statistics alone listen.
+    /// Called when a ray, or a packet, tests this many boxes. Only statistics implement these callbacks.
     #[inline(always)]
     fn on_boxes(_tested: u32) {}
-    /// Is told that a ray, or a packet, tests a triangle.
+    /// Called when a ray, or a packet, tests a triangle.
     #[inline(always)]
     fn on_triangle() {}
-    /// Is told that a packet goes to a child; `_lanes` counts those of its rays that want it.
+    /// Called when a packet visits a child; `_lanes` counts those of its rays that hit the child's box.
     #[inline(always)]
     fn on_child(_lanes: impl FnOnce() -> u32) {}
-    /// Is told that rays of a packet go on by themselves, one after the other, or that the packet does.
+    /// Called when rays of a packet continue one by one (true), and when the packet continues (false).
     #[inline(always)]
     fn on_parted(_parted: bool) {}
 }
@@ -55,22 +55,22 @@ impl Query for Closest {
     const ANY: bool = false;
 }
 
-/// Whether anything opaque lies before the limit; [`step::occluded`] tells.
+/// Whether anything opaque lies before the limit; read the result with [`step::occluded`].
 pub struct Occlusion;
 impl Query for Occlusion {
     const ANY: bool = true;
 }
 
-/// A way through the hierarchy, for rays over the numbers that it can follow.
+/// A traversal method, for the types of numbers that it supports.
 pub trait Method<R: Real> {
-    /// Follows a ray from the root and leaves what it finds in `hit`, which holds its limit before.
+    /// Traces a ray from the root. `hit` holds the ray's limit before and what was found after.
     fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
-/// A method that follows rays over any numbers: on a CPU, several lanes of several values at once.
+/// A method that traces rays over any type of number: on a CPU, several lanes of several values at once.
 #[cfg(not(target_arch = "spirv"))]
 pub trait Together {
-    /// Follows all rays from the root; as [`Method::traverse`] for each.
+    /// Traces all rays from the root; as [`Method::traverse`] for each.
     fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
 }
 

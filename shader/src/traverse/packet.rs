@@ -1,5 +1,5 @@
 //! Packet traversal (thesis algorithm 6.1, after Günther et al. 2007): the lanes of a warp visit the
-//! same nodes, those that any of them wants, in the order that any of them prefers.
+//! same nodes, those that any of them hits, with the right child first if any of them that hits both prefers it.
 
 use core::marker::PhantomData;
 
@@ -45,7 +45,7 @@ impl<W: Warp> super::Together for Packet<W> {
     }
 }
 
-/// Does the packet go to a child that these rays want?
+/// Does the packet visit a child that these rays hit?
 #[inline(always)]
 pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
     let any = W::any(wanting);
@@ -55,7 +55,7 @@ pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
     any
 }
 
-/// All rays test the leaf at hand; those of an any-hit query are done when the last has found something.
+/// All rays test the current leaf; an any-hit packet is done once all its rays have found something.
 #[inline(always)]
 pub(super) fn visit_leaf<Q: Query, R: Real, W: Warp>(
     geometry: &TraceContext<'_>,

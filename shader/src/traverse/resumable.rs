@@ -1,29 +1,29 @@
-//! Single-ray methods as steps, so that whoever drives them may hand a lane another ray in between.
+//! Single-ray methods as steps, so that the caller may give a lane another ray in between.
 
 use super::Query;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::TraceContext;
 
-/// Where a traversal stands.
+/// The state of a traversal.
 pub trait Progress: Copy {
     /// At the root.
     fn start() -> Self;
-    /// Nothing to follow.
+    /// Nothing to visit.
     fn finished() -> Self;
     /// Is nothing left to visit?
     fn is_done(&self) -> bool;
 }
 
-/// A method that goes step by step. The stack is kept beside the cursor, since rust-gpu lets no pointer
-/// live in a struct that crosses a loop.
+/// A method that runs step by step. The stack is kept beside the cursor, since rust-gpu allows no pointer
+/// in a struct that lives across a loop.
 pub trait Resumable<R: Scalar> {
-    /// The place in hand.
+    /// The current position.
     type Cursor: Progress;
-    /// The places that wait.
+    /// The nodes still to visit.
     type Stack;
 
-    /// Nothing waits.
+    /// An empty stack.
     fn stack() -> Self::Stack;
 
     /// One step of a traversal that is not done.
@@ -43,7 +43,7 @@ pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &TraceContext<'_>,
     finish::<Q, R, M>(geometry, ray, hit, M::Cursor::start(), &mut stack);
 }
 
-/// From where a traversal stands to its end.
+/// From the traversal's current state to its end.
 #[inline(always)]
 pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
     geometry: &TraceContext<'_>,
@@ -54,7 +54,7 @@ pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
 ) {
     while !cursor.is_done() {
         M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
-        // Turns of a loop cost a GPU.
+        // Two steps, since loop iterations are expensive on a GPU.
         if !cursor.is_done() {
             M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
         }

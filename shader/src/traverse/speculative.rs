@@ -1,5 +1,5 @@
-//! Speculative while-while traversal (Aila and Laine 2009): a ray that has found a leaf sets it aside
-//! and goes on, until every ray of its warp has one.
+//! Speculative while-while traversal (Aila and Laine 2009): a ray that has found a leaf postpones it
+//! and continues, until every ray of its warp has one.
 
 use core::marker::PhantomData;
 
@@ -22,7 +22,7 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
-            // An inner node stands for none.
+            // An inner node means that there is none.
             let mut aside = NodeRef::ROOT;
             while !(cursor.is_done() || cursor.node.is_leaf() && aside.is_leaf()) {
                 if cursor.node.is_leaf() {

@@ -1,36 +1,36 @@
-//! What waits.
+//! The stack of nodes still to visit.
 
 use core::mem::MaybeUninit;
 
 use spirv_std::arch::IndexUnchecked;
 
-/// Room for `N` values, a power of two, that are not there before they are put: to set them all for every ray
-/// took a GPU 3 to 30 % of its time. A check of a place would leave the kernel, and a lane that has left breaks votes.
+/// Room for `N` values, a power of two, uninitialised: initialising them all for every ray took 3 to 30 % of a GPU's
+/// time. Indices are not checked, since a failed check would end the lane, and a lane that has ended breaks votes.
 pub struct Stack<T: Copy, const N: usize>([MaybeUninit<T>; N]);
 
 impl<T: Copy, const N: usize> Stack<T, N> {
-    /// Nothing waits.
+    /// An empty stack.
     #[inline(always)]
-    #[allow(clippy::new_without_default, reason = "a default says that something is set")]
+    #[allow(clippy::new_without_default, reason = "a default value should be initialised")]
     pub fn new() -> Self {
-        // SAFETY: values that may be uninitialised need no initialisation.
+        // SAFETY: an array of `MaybeUninit` needs no initialisation.
         Stack(unsafe { MaybeUninit::uninit().assume_init() })
     }
 
-    /// Sets what is at a place. Places go round; every valid tree has room.
+    /// Sets the value at an index. Indices wrap around, but no valid tree needs more than `N`.
     #[inline(always)]
-    pub fn put(&mut self, place: u32, value: T) {
-        // SAFETY: what is masked by N - 1 is less than N.
-        unsafe { *self.0.index_unchecked_mut(place as usize & (N - 1)) = MaybeUninit::new(value) };
+    pub fn put(&mut self, index: u32, value: T) {
+        // SAFETY: an index masked by N - 1 is less than N.
+        unsafe { *self.0.index_unchecked_mut(index as usize & (N - 1)) = MaybeUninit::new(value) };
     }
 
-    /// What is at a place.
+    /// The value at an index.
     ///
     /// # Safety
-    /// It has been put.
+    /// It has been set with [`Stack::put`].
     #[inline(always)]
-    pub unsafe fn get(&self, place: u32) -> T {
+    pub unsafe fn get(&self, index: u32) -> T {
         // SAFETY: as above, and the caller's.
-        unsafe { self.0.index_unchecked(place as usize & (N - 1)).assume_init() }
+        unsafe { self.0.index_unchecked(index as usize & (N - 1)).assume_init() }
     }
 }

@@ -1,11 +1,11 @@
-//! The steps that every method is made of: two boxes, or one triangle.
+//! The steps that all methods share: testing two boxes, or one triangle.
 
 use super::Query;
 use super::cursor::{Cursor, Stack};
-use crate::data::{CentredPair, Effects, Launch, NodeRef, Triangle, numbers};
 #[cfg(not(target_arch = "spirv"))]
-use crate::full::Block;
-use crate::intersect::{Crossing, Span, cross, moller, slab, spans};
+use crate::bvh8::Triangle4;
+use crate::data::{CentredPair, Effects, Launch, NodeRef, Triangle, numbers};
+use crate::intersect::{Candidate, Span, intersect_moller_trumbore, intersect_watertight, slab, straddles_origin};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -13,7 +13,7 @@ use crate::real::{Mask, Real, Scalar, V3};
 use crate::scene::TraceContext;
 use glam::UVec4;
 
-/// A limit that no box lies before: an any-hit ray that has found its triangle.
+/// The limit of an any-hit ray that has found its triangle: no box lies before it.
 const FOUND: f32 = -1.0;
 
 /// Has an any-hit ray found something opaque?
@@ -22,12 +22,12 @@ pub fn occluded<R: Real>(hit: &Hit<R>) -> R::Mask {
     hit.t.lt(R::splat(0.0))
 }
 
-/// Which children of a pair a ray meets before its limit.
+/// Which children of a pair a ray hits before its limit.
 #[derive(Clone, Copy)]
 pub struct Wanted<R: Real> {
-    /// Is the left box met?
+    /// Is the left box hit?
     pub left: R::Mask,
-    /// Is the right box met?
+    /// Is the right box hit?
     pub right: R::Mask,
     /// Is the right box the nearer?
     pub right_first: R::Mask,
@@ -35,9 +35,9 @@ pub struct Wanted<R: Real> {
 
 /// Tests both boxes of a pair.
 ///
-/// With coordinates in [-1, 1] the rounding of a plane's distance is worth less than 7 * 2^-24 of a shift
-/// of the plane, that of a triangle's own box 4 * 2^-24, and its wider exit 17 * 2^-24: below
-/// [`CentredPair::MARGIN`] together, so that a box is met, and entered no later, wherever an own box in it is.
+/// With coordinates in [-1, 1] the rounding of a plane's distance amounts to shifting the plane by less than 7 * 2^-24,
+/// that of a triangle's own box to 4 * 2^-24, and its widened exit to 17 * 2^-24: together less than
+/// [`CentredPair::MARGIN`], so a box is hit, and entered no later, wherever a triangle's own box inside it is.
 #[inline(always)]
 pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Wanted<R> {
     let left = inside(pair.left_centre, pair.left_half, ray, hit.t);
@@ -46,17 +46,17 @@ pub fn children<R: Real>(pair: &CentredPair, ray: &Ray<R>, hit: &Hit<R>) -> Want
 }
 
 /// Where a ray is inside a box given by centre and half its extent, before its limit; see [`children`]. The far end is
-/// right where it is not negative.
+/// valid where it is not negative.
 // A function, since closures are not always inlined, and what is not inlined is not compiled for the
 // processor's vectors.
 #[inline(always)]
 pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Span<R> {
     let middle = V3::splat(numbers(centre)).fused(ray.inverse, -ray.offset);
     let (half, reach) = (V3::splat(numbers(half)), ray.inverse.abs());
-    Span { near: R::latest(half.fused(-reach, middle)), far: R::earliest(half.fused(reach, middle), limit) }
+    Span { near: R::max_entry(half.fused(-reach, middle)), far: R::min_exit(half.fused(reach, middle), limit) }
 }
 
-/// A single ray's visit of the pair that its traversal stands at.
+/// A single ray's visit of its current pair.
 #[inline(always)]
 pub fn pair<Q: Query, R: Scalar>(
     geometry: &TraceContext<'_>,
@@ -71,7 +71,7 @@ pub fn pair<Q: Query, R: Scalar>(
     cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
 }
 
-/// Tests every triangle of a leaf. Returns whether no ray of an any-hit query wants more.
+/// Tests every triangle of a leaf. Returns whether this is an any-hit query all of whose rays have found something.
 #[inline(always)]
 pub fn leaf<Q: Query, R: Real>(geometry: &TraceContext<'_>, mut leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) -> bool {
     while leaf.is_leaf() {
@@ -81,85 +81,97 @@ pub fn leaf<Q: Query, R: Real>(geometry: &TraceContext<'_>, mut leaf: NodeRef, r
     Q::ANY && !(!occluded(hit)).any()
 }
 
-/// Tests the first triangle of a leaf and keeps the hit if it is the best so far.
+/// Tests the first triangle of a leaf and takes the hit if it is the best so far.
 #[inline(always)]
 pub fn triangle<Q: Query, R: Real>(geometry: &TraceContext<'_>, leaf: NodeRef, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_triangle();
     let triangle = geometry.triangle(leaf.index());
-    let crossing = single(geometry, &triangle, ray);
-    if crossing.nearer(hit.t).any() && counts::<Q>(geometry.base.spec.effects, &triangle) {
-        keep::<Q, R>(geometry, &triangle, leaf.index(), &crossing, ray, hit);
+    let candidate = single(geometry, &triangle, ray);
+    if candidate.nearer(hit.t).any() && counts::<Q>(geometry.base.spec.effects, &triangle) {
+        accept_hit::<Q, R>(geometry, &triangle, leaf.index(), &candidate, ray, hit);
     }
 }
 
-/// Crosses one triangle.
+/// Intersects one triangle.
 #[inline(always)]
-fn single<R: Real>(geometry: &TraceContext<'_>, triangle: &Triangle, ray: &Ray<R>) -> Crossing<R> {
+fn single<R: Real>(geometry: &TraceContext<'_>, triangle: &Triangle, ray: &Ray<R>) -> Candidate<R> {
     let [a, b, c] = triangle.vertices();
     let (slopes, along) = (ray.slopes(), ray.along());
-    crossed::<R, R>(geometry.base.spec.launch, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
+    intersect::<R, R>(geometry.base.spec.launch, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
 }
 
 /// The weights of the second and the third vertex where a ray has hit a triangle, or zeros if it has hit none.
 ///
-/// A CPU has kept them with the hit. The fewer registers a ray takes of a GPU, the more rays it turns to while one
-/// waits for memory: there they are computed again, from the same numbers to the same bits.
+/// A CPU keeps them with the hit. A GPU recomputes them, from the same numbers to the same bits: the fewer registers a
+/// ray takes, the more rays it can switch to while one waits for memory.
 #[inline(always)]
 pub fn weights<R: Scalar>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
     if cfg!(not(target_arch = "spirv")) {
         return hit.weights();
     }
-    if hit.slot == Hit::<R>::NOTHING {
+    if hit.triangle_index == Hit::<R>::NOTHING {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let crossing = single(geometry, &geometry.triangle(hit.slot), ray);
-    let scale = crossing.area.reciprocal();
-    (crossing.u * scale, crossing.v * scale)
+    let candidate = single(geometry, &geometry.triangle(hit.triangle_index), ray);
+    let scale = candidate.area.reciprocal();
+    (candidate.u * scale, candidate.v * scale)
 }
 
-/// Tests the triangles of a block, as many at once as there are lanes.
+/// Tests up to four triangles, as many at once as there are lanes.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-pub fn block<Q: Query, R: Scalar, F: Lanes<R>>(geometry: &TraceContext<'_>, block: &Block, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn triangle4<Q: Query, R: Scalar, F: Lanes<R>>(
+    geometry: &TraceContext<'_>,
+    triangles: &Triangle4,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
     let origin = ray.shear.cycle(ray.origin);
     let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
     let along = F::all(ray.along());
     let mut first = 0;
-    while first < Block::TRIANGLES {
+    while first < Triangle4::TRIANGLES {
         Q::on_triangle();
-        let a = vertex::<R, F>(block, 0, first, ray, origin);
-        let b = vertex::<R, F>(block, 1, first, ray, origin);
-        let c = vertex::<R, F>(block, 2, first, ray, origin);
-        let crossing = crossed::<R, F>(geometry.base.spec.launch, [a, b, c], shear, along);
-        let mut inside = F::bits(crossing.nearer(F::all(hit.t)));
+        let a = vertex::<R, F>(triangles, 0, first, ray, origin);
+        let b = vertex::<R, F>(triangles, 1, first, ray, origin);
+        let c = vertex::<R, F>(triangles, 2, first, ray, origin);
+        let candidate = intersect::<R, F>(geometry.base.spec.launch, [a, b, c], shear, along);
+        let mut inside = F::bits(candidate.nearer(F::all(hit.t)));
         while inside != 0 {
             let lane = inside.trailing_zeros() as usize;
             inside &= inside - 1;
-            let slot = block.slots[(first + lane) & 3];
-            let triangle = geometry.triangle(slot);
+            let triangle_index = triangles.triangle_indices[(first + lane) & 3];
+            let triangle = geometry.triangle(triangle_index);
             if counts::<Q>(geometry.base.spec.effects, &triangle) {
-                keep::<Q, R>(geometry, &triangle, slot, &crossing.lane(lane), ray, hit);
+                accept_hit::<Q, R>(geometry, &triangle, triangle_index, &candidate.lane(lane), ray, hit);
             }
         }
         first += F::COUNT as usize;
     }
 }
 
-/// Crosses a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see [`cross`].
+/// Intersects a triangle by the test that the launch asks for, if rays over `R` leave it a choice; see
+/// [`intersect_watertight`].
 #[inline(always)]
-fn crossed<R: Real, F: Real>(launch: Launch, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Crossing<F> {
+fn intersect<R: Real, F: Real>(launch: Launch, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Candidate<F> {
     if R::CHOOSES && launch.has(Launch::MOLLER) {
-        moller(a, b, c, shear, along)
+        intersect_moller_trumbore(a, b, c, shear, along)
     } else {
-        cross(a, b, c, shear, along)
+        intersect_watertight(a, b, c, shear, along)
     }
 }
 
-/// A vertex of the block's triangles from `first` on, relative to the ray's origin, both with their axes cycled.
+/// A vertex of the triangles from `first` on, relative to the ray's origin, both with their axes cycled.
 #[cfg(not(target_arch = "spirv"))]
 #[inline(always)]
-fn vertex<R: Scalar, F: Lanes<R>>(block: &Block, vertex: usize, first: usize, ray: &Ray<R>, origin: V3<R>) -> V3<F> {
-    let numbers = &block.vertices[vertex];
+fn vertex<R: Scalar, F: Lanes<R>>(
+    triangles: &Triangle4,
+    vertex: usize,
+    first: usize,
+    ray: &Ray<R>,
+    origin: V3<R>,
+) -> V3<F> {
+    let numbers = &triangles.vertices[vertex];
     let axis = AXES[ray.shear.major()];
     V3::new(
         F::taken(&numbers[axis[0]][first..]) - F::all(origin.x),
@@ -172,58 +184,58 @@ fn vertex<R: Scalar, F: Lanes<R>>(block: &Block, vertex: usize, first: usize, ra
 #[cfg(not(target_arch = "spirv"))]
 const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// Does the query see this triangle at all? Opaque objects cast shadows (thesis 3.2), others do not.
+/// Does the query consider this triangle? Only opaque objects cast shadows (thesis 3.2).
 #[inline(always)]
 fn counts<Q: Query>(effects: Effects, triangle: &Triangle) -> bool {
     !(Q::ANY && effects.has(Effects::REFRACTION) && triangle.is_transparent())
 }
 
-/// Leaves out what is beside a triangle seen edge-on, divides, moves the hit behind the entry to the slot's box, and takes
-/// the lesser (t, primitive).
+/// Rejects misses of triangles seen edge-on, divides, moves the hit behind the entry to the triangle's own box, and
+/// takes the lesser (t, primitive).
 ///
-/// The box lies in every box that leads here, so nothing that is kept can have been culled. A part of a split
+/// That box lies in every box that leads here, so no hit that is accepted can have been culled. A part of a split
 /// triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
-fn keep<Q: Query, R: Real>(
+fn accept_hit<Q: Query, R: Real>(
     geometry: &TraceContext<'_>,
     triangle: &Triangle,
-    slot: u32,
-    crossing: &Crossing<R>,
+    triangle_index: u32,
+    candidate: &Candidate<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
     let (primitive, effects, zero) = (triangle.primitive(), geometry.base.spec.effects, R::splat(0.0));
-    let mut inside = crossing.inside & !R::equals(primitive, ray.leaves);
-    // The inside of glass is seen from behind.
+    let mut inside = candidate.inside & !R::equals(primitive, ray.source_primitive);
+    // The inside of glass is seen from its back side.
     if effects.has(Effects::CULLING) && !Q::ANY && !triangle.is_transparent() {
-        inside = inside & crossing.front;
+        inside = inside & candidate.front;
     }
-    // Seldom, so that turning the vertices again costs less than to keep them from the crossing.
-    if (inside & crossing.in_line()).any() {
+    // This is rare, so transforming the vertices again costs less than keeping them since the intersection.
+    if (inside & candidate.in_line()).any() {
         let [a, b, c] = triangle.vertices();
-        inside = inside & spans(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
+        inside = inside & straddles_origin(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
     }
-    let (least, greatest) = geometry.bounds(slot, triangle);
+    let (least, greatest) = geometry.bounds(triangle_index, triangle);
     let own = slab(V3::splat(least), V3::splat(greatest), ray);
     // Lanes outside divide by one, so that none divides by zero.
-    let scale = R::select(inside, crossing.area, R::splat(1.0)).reciprocal();
+    let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
     let inside = inside & own.near.le(own.far);
     // A bound of zero may have either sign; of zeros `max` takes the second.
-    let t = (crossing.depth * scale).max(own.near.max(zero));
+    let t = (candidate.depth * scale).max(own.near.max(zero));
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;
     }
-    let tie = t.same(hit.t) & R::precedes(primitive, hit.primitive);
+    let tie = t.eq(hit.t) & R::precedes(primitive, hit.primitive);
     let better = inside & (t.lt(hit.t) | tie);
     if better.any() {
         hit.t = R::select(better, t, hit.t);
         if cfg!(not(target_arch = "spirv")) {
-            hit.u = R::select(better, crossing.u, hit.u);
-            hit.v = R::select(better, crossing.v, hit.v);
+            hit.u = R::select(better, candidate.u, hit.u);
+            hit.v = R::select(better, candidate.v, hit.v);
             hit.scale = R::select(better, scale, hit.scale);
         }
-        hit.slot = R::select_index(better, R::index(slot), hit.slot);
+        hit.triangle_index = R::select_index(better, R::index(triangle_index), hit.triangle_index);
         hit.primitive = R::select_index(better, R::index(primitive), hit.primitive);
     }
 }

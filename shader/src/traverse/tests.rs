@@ -2,21 +2,21 @@
 
 use super::step::{self, occluded};
 use super::{
-    Closest, Cut, FullNodes, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential, Speculative,
-    StackMax, WhileWhile, WideNodes,
+    Bvh8Method, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential,
+    Speculative, StackMax, WhileWhile,
 };
-use crate::data::{CentredPair, Features, Frame, MAX_LEAF, NodePair, NodeRef, Triangle, Tuning, WideNode};
-use crate::full::{Block, Full, FullNode, FullRef};
+use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
+use crate::data::{CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Triangle, Tuning};
 use crate::ray::{Hit, Ray};
-use crate::real::{Fast, Lanes, Real, Scalar, V3, Wide};
-use crate::scene::TraceContext;
+use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
+use crate::scene::{LaunchContext, TraceContext};
 use crate::stage::{SHADOWED, Segment, shadow_together, trace_together};
 use crate::warp::Alone;
 use bytemuck::Zeroable;
 use glam::{UVec4, Vec3};
 use proptest::prelude::*;
 
-/// A hierarchy by halves of the list: bad trees find the same hits.
+/// A hierarchy made by halving the list: bad trees must find the same hits.
 fn build(triangles: &[Triangle]) -> Vec<NodePair> {
     fn child(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> (Vec3, Vec3, NodeRef) {
         let (least, greatest) = triangles
@@ -43,22 +43,22 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
     nodes
 }
 
-/// A wide hierarchy by eighths of the list, its nodes in the order in which they are found: every box the
-/// whole grid, so that all that is to be seen is whether nodes and triangles are followed.
-fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
+/// A wide hierarchy made by splitting the list in eighths, its nodes in breadth-first order. Every box is the whole
+/// grid, so it tests only whether all nodes and triangles are visited.
+fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
     let all = 0..triangles.len() as u32;
     let mut open = vec![all];
     let mut nodes = Vec::new();
     while nodes.len() < open.len() {
         let range = open[nodes.len()].clone();
-        let step = range.len().div_ceil(WideNode::ARITY).max(3) as u32;
+        let step = range.len().div_ceil(CwbvhNode::ARITY).max(3) as u32;
         let (first_child, mut inner, mut all) = (open.len() as u32, 0, 0);
         // Leaves lie behind inner nodes: the last part alone may be shorter than the others.
         let last = range.start + (range.len() as u32 - 1) / step * step;
-        let leaves = if step <= WideNode::MAX_LEAF { range.start } else { last };
+        let leaves = if step <= CwbvhNode::MAX_LEAF { range.start } else { last };
         for (slot, first) in range.clone().step_by(step as usize).enumerate() {
             let part = first..(first + step).min(range.end);
-            if part.len() as u32 <= WideNode::MAX_LEAF {
+            if part.len() as u32 <= CwbvhNode::MAX_LEAF {
                 all |= ((1 << part.len()) - 1) << (3 * slot);
             } else {
                 inner |= 1 << slot;
@@ -66,7 +66,7 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
             }
         }
         let exponent = 127 + 2;
-        nodes.push(WideNode {
+        nodes.push(CwbvhNode {
             grid: crate::data::pack(Vec3::splat(-2.0), inner << 24 | exponent << 16 | exponent << 8 | exponent),
             children: UVec4::new(first_child, leaves, all, 0),
             low_x_low_y: UVec4::ZERO,
@@ -77,27 +77,27 @@ fn build_wide(triangles: &[Triangle]) -> Vec<WideNode> {
     nodes
 }
 
-/// The same in full precision, by eighths down to blocks, with the boxes that there must be.
-fn build_full(triangles: &[Triangle]) -> (Vec<FullNode>, Vec<Block>) {
-    let (mut nodes, mut blocks) = (vec![FullNode::EMPTY], Vec::new());
+/// The same in full precision, by eighths down to four triangles, with the boxes' real bounds.
+fn build_bvh8(triangles: &[Triangle]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
+    let (mut nodes, mut blocks) = (vec![Bvh8Node::EMPTY], Vec::new());
     let mut open = vec![(0, 0..triangles.len())];
     while let Some((node, range)) = open.pop() {
-        let step = range.len().div_ceil(8).max(Block::TRIANGLES);
+        let step = range.len().div_ceil(8).max(Triangle4::TRIANGLES);
         for (child, first) in range.clone().step_by(step).enumerate() {
             let part = first..(first + step).min(range.end);
             let boxes = triangles[part.clone()].iter().map(Triangle::bounds);
             let (least, greatest) = boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).expect("a part has triangles");
-            let planes = [least - FullNode::MARGIN, greatest + FullNode::MARGIN];
+            let planes = [least - Bvh8Node::MARGIN, greatest + Bvh8Node::MARGIN];
             for (axis, side) in (0..6).map(|i| (i / 2, i % 2)) {
                 nodes[node].planes[axis][side][child] = planes[side][axis];
             }
-            nodes[node].children[child] = if part.len() <= Block::TRIANGLES {
-                blocks.push(Block::of(part.map(|slot| (slot as u32, &triangles[slot]))));
-                FullRef::leaf(blocks.len() as u32 - 1)
+            nodes[node].children[child] = if part.len() <= Triangle4::TRIANGLES {
+                blocks.push(Triangle4::of(part.map(|slot| (slot as u32, &triangles[slot]))));
+                Bvh8Ref::leaf(blocks.len() as u32 - 1)
             } else {
-                nodes.push(FullNode::EMPTY);
+                nodes.push(Bvh8Node::EMPTY);
                 open.push((nodes.len() - 1, part));
-                FullRef::inner(nodes.len() as u32 - 1)
+                Bvh8Ref::inner(nodes.len() as u32 - 1)
             };
         }
     }
@@ -107,26 +107,30 @@ fn build_full(triangles: &[Triangle]) -> (Vec<FullNode>, Vec<Block>) {
 struct World {
     triangles: Vec<Triangle>,
     nodes: Vec<CentredPair>,
-    wide: Vec<WideNode>,
-    full: (Vec<FullNode>, Vec<Block>),
+    wide: Vec<CwbvhNode>,
+    bvh8: (Vec<Bvh8Node>, Vec<Triangle4>),
     words: Vec<UVec4>,
     frame: Frame,
-    features: Features,
+    effects: Effects,
 }
 
 impl World {
-    fn new(triangles: Vec<Triangle>, features: u32) -> Self {
+    fn new(triangles: Vec<Triangle>, effects: u32) -> Self {
         let nodes = build(&triangles).iter().map(CentredPair::from).collect();
         let words = bytemuck::cast_slice(&triangles).to_vec();
-        let (wide, full) = (build_wide(&triangles), build_full(&triangles));
-        World { triangles, nodes, wide, full, words, frame: Frame::zeroed(), features: Features(features) }
+        let (wide, bvh8) = (build_cwbvh(&triangles), build_bvh8(&triangles));
+        World { triangles, nodes, wide, bvh8, words, frame: Frame::zeroed(), effects: Effects(effects) }
     }
 
     fn geometry(&self) -> TraceContext<'_> {
-        let (frame, tuning) = (&self.frame, Tuning::new(2, 60));
-        let (nodes, wide, triangles) = (bytemuck::cast_slice(&self.nodes), &self.wide, &self.words);
-        let full = Full { nodes: &self.full.0, blocks: &self.full.1 };
-        Geometry { frame, features: self.features, tuning, nodes, wide, full, triangles, bounds: &[] }
+        let spec = Specialisation { effects: self.effects, tuning: Tuning::new(2, 60), ..Specialisation::default() };
+        TraceContext {
+            base: LaunchContext { frame: &self.frame, spec, triangles: &self.words },
+            nodes: bytemuck::cast_slice(&self.nodes),
+            wide: &self.wide,
+            bvh8: Bvh8View { nodes: &self.bvh8.0, blocks: &self.bvh8.1 },
+            bounds: &[],
+        }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
@@ -178,8 +182,8 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
 fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile<Alone>, R>(world, origin, direction);
-    check::<WideNodes, R>(world, origin, direction);
-    check::<FullNodes, R>(world, origin, direction);
+    check::<CwbvhMethod, R>(world, origin, direction);
+    check::<Bvh8Method, R>(world, origin, direction);
     check::<Speculative<Alone>, R>(world, origin, direction);
     check::<Packet<Alone>, R>(world, origin, direction);
     check::<Hybrid<Alone, StackMax, Sequential>, R>(world, origin, direction);
@@ -198,8 +202,8 @@ proptest! {
     ) {
         let direction: [f32; 3] = std::array::from_fn(|k| target[k] - origin[k]);
         prop_assume!(direction != [0.0; 3]);
-        let features = Features::REFRACTION | if culling { Features::CULLING } else { 0 };
-        let world = World::new(triangles, features);
+        let effects = Effects::REFRACTION | if culling { Effects::CULLING } else { 0 };
+        let world = World::new(triangles, effects);
         let beside: [f32; 3] = std::array::from_fn(|k| direction[k] + nudge[k]);
         for direction in [direction, beside] {
             every_method::<f32>(&world, origin, direction);
@@ -211,13 +215,13 @@ proptest! {
 
 type End = ([f32; 3], [f32; 3]);
 
-/// Every lane of a packet, however incoherent, against the same ray by itself.
-fn check_packet<M: Method<Wide<N>>, const N: usize>(world: &World, rays: &[End]) {
-    let origins = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
-    let directions = V3::<Wide<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
+/// Compares every lane of a packet, coherent or not, with the same ray traced alone.
+fn check_packet<M: Method<F32xN<N>>, const N: usize>(world: &World, rays: &[End]) {
+    let origins = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].0)));
+    let directions = V3::<F32xN<N>>::of_lanes(|i| V3::splat(Vec3::from(rays[i].1)));
     let packet = Ray::new(origins, directions);
-    let closest = world.trace::<M, Closest, Wide<N>>(&packet, f32::MAX);
-    let shadows = world.trace::<M, Occlusion, Wide<N>>(&packet, 0.5);
+    let closest = world.trace::<M, Closest, F32xN<N>>(&packet, f32::MAX);
+    let shadows = world.trace::<M, Occlusion, F32xN<N>>(&packet, 0.5);
     for (i, (origin, direction)) in rays[..N].iter().enumerate() {
         let alone = ray::<f32>(*origin, *direction);
         let (got, want) = (closest.lane(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
@@ -235,12 +239,17 @@ fn check_packets<const N: usize>(world: &World, rays: &[End]) {
     check_packet::<Hybrid<Alone, Cut, Interleaved>, N>(world, rays);
 }
 
-/// The first `count` rays as a launch follows them together, whatever lanes that leaves without one.
+/// The first `count` rays as a launch traces them together, also where some lanes have none.
 fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
     let vector = |v: [f32; 3]| V3::splat(Vec3::from(v));
     let segments: Vec<Segment<f32>> = rays[..count]
         .iter()
-        .map(|&(o, d)| Segment { origin: vector(o), direction: vector(d), limit: 0.5, leaves: Hit::<f32>::NOTHING })
+        .map(|&(o, d)| Segment {
+            origin: vector(o),
+            direction: vector(d),
+            limit: 0.5,
+            source_primitive: Hit::<f32>::NOTHING,
+        })
         .collect();
     let (mut hits, mut answers) = (vec![UVec4::ZERO; count], vec![u32::MAX; count]);
     let geometry = world.geometry();
@@ -253,13 +262,13 @@ fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
         let weights = want.weights();
         let got = crate::data::numbers(hits[i]);
         assert_eq!((got.x, got.y, got.z), (want.t, weights.0, weights.1), "ray {i} of {count}");
-        assert_eq!(primitive(hits[i].w), primitive(want.slot), "ray {i} of {count}");
+        assert_eq!(primitive(hits[i].w), primitive(want.triangle_index), "ray {i} of {count}");
         let want = occluded(&world.trace::<Packet<Alone>, Occlusion, f32>(&alone, 0.5));
         assert_eq!(answers[i] == SHADOWED, want, "ray {i} of {count}");
     }
 }
 
-/// 32 rays of eight; their directions' components are zero now and then.
+/// 32 rays from eight; some components of their directions are zero.
 fn rays_of(ends: [([f32; 3], [f32; 3]); 8], same_origin: bool) -> Vec<End> {
     (0..32)
         .map(|i| {
@@ -279,29 +288,29 @@ proptest! {
         triangles in soup(), ends in prop::array::uniform8((grid(), grid())), same_origin: bool, count in 1usize..=32,
     ) {
         let rays = rays_of(ends, same_origin);
-        let world = World::new(triangles, Features::REFRACTION);
+        let world = World::new(triangles, Effects::REFRACTION);
         check_packets::<4>(&world, &rays);
         check_packets::<8>(&world, &rays);
         check_packets::<16>(&world, &rays);
         check_packets::<32>(&world, &rays);
-        check_together::<Wide<8>>(&world, &rays, count);
-        check_together::<Wide<16>>(&world, &rays, count);
+        check_together::<F32xN<8>>(&world, &rays, count);
+        check_together::<F32xN<16>>(&world, &rays, count);
         check_together::<f32>(&world, &rays, count.min(4));
     }
 
-    /// The registers of a processor's own vectors.
+    /// The AVX2 registers.
     #[cfg(target_arch = "x86_64")]
     #[test]
     fn registers_find_what_brute_force_finds(
         triangles in soup(), ends in prop::array::uniform8((grid(), grid())), count in 1usize..=32,
     ) {
-        use crate::real::{Avx2, Vectors};
-        type Register = <Avx2 as Vectors<f32>>::Eight;
+        use crate::real::{Avx2, SimdIsa};
+        type Register = <Avx2 as SimdIsa<f32>>::Eight;
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
             let rays = rays_of(ends, false);
-            let world = World::new(triangles, Features::REFRACTION);
+            let world = World::new(triangles, Effects::REFRACTION);
             for (origin, direction) in &rays {
-                check::<FullNodes<Avx2>, f32>(&world, *origin, *direction);
+                check::<Bvh8Method<Avx2>, f32>(&world, *origin, *direction);
             }
             check_together::<Register>(&world, &rays, count);
         }
@@ -321,12 +330,12 @@ fn ties_go_to_the_least_primitive_in_any_leaf_order() {
 #[test]
 fn culling_hides_backs_from_sight_but_not_from_light() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
-    let world = World::new(vec![Triangle::new(t, 0, 0, 0), Triangle::new(t, 1, 0, 0)], Features::CULLING);
+    let world = World::new(vec![Triangle::new(t, 0, 0, 0), Triangle::new(t, 1, 0, 0)], Effects::CULLING);
     let from = |z: f32| ray::<f32>([0.0, 0.0, z], [0.0, 0.0, -z]);
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
     assert!(occluded(&world.trace::<IfIf, Occlusion, f32>(&from(-0.5), f32::MAX)));
-    let glass = World::new(vec![Triangle::new(t, 4, 0, Triangle::TRANSPARENT); 2], Features::CULLING);
+    let glass = World::new(vec![Triangle::new(t, 4, 0, Triangle::TRANSPARENT); 2], Effects::CULLING);
     assert_eq!(glass.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, 4, "glass has an inside");
 }
 
@@ -336,7 +345,7 @@ fn light_passes_transparent_triangles_only() {
     let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
     for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
         let world =
-            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Features::REFRACTION);
+            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::REFRACTION);
         assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
         assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
     }

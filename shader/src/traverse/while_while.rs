@@ -1,8 +1,8 @@
 //! While-while traversal (Aila and Laine 2009): every ray by itself, pairs until it is at a leaf, then
 //! all of the leaf's triangles.
 //!
-//! A ray that shares its instructions with others waits at its leaf for those on their way to theirs. With
-//! a vote it waits no longer than half of them take.
+//! On a GPU a ray at its leaf waits for those rays of its warp that are still searching for theirs. A vote ends the
+//! wait once too few of them are ([`Tuning::cut`](crate::data::Tuning::cut)).
 
 use core::marker::PhantomData;
 
@@ -16,7 +16,7 @@ use crate::real::Scalar;
 use crate::scene::TraceContext;
 use crate::warp::Warp;
 
-/// See the module. `W` is who waits for each other; [`Alone`](crate::warp::Alone) never breaks off.
+/// See the module. The lanes of `W` wait for each other; [`Alone`](crate::warp::Alone) never ends the search early.
 pub struct WhileWhile<W>(PhantomData<W>);
 
 impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
@@ -34,7 +34,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
-            // Turns of a loop cost a GPU, and votes more.
+            // Three pairs per iteration: iterations are expensive on a GPU, and votes more so.
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             inner::<Q, R>(geometry, ray, hit, cursor, stack);
             if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.base.spec.tuning.cut() * all {
@@ -51,7 +51,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     }
 }
 
-/// A pair, unless the traversal stands at a leaf.
+/// Visits a pair, unless the traversal is at a leaf.
 #[inline(always)]
 fn inner<Q: Query, R: Scalar>(
     geometry: &TraceContext<'_>,

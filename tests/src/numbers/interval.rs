@@ -119,7 +119,7 @@ impl Real for Interval {
     fn le(self, other: Self) -> bool {
         self.value <= other.value
     }
-    fn same(self, other: Self) -> bool {
+    fn eq(self, other: Self) -> bool {
         self.value == other.value
     }
     #[inline(never)]

@@ -138,7 +138,7 @@ macro_rules! numbers {
             }
             #[inline(never)]
             #[track_caller]
-            fn same(self, other: Self) -> bool {
+            fn eq(self, other: Self) -> bool {
                 self.seen() == other.seen()
             }
             fn abs(self) -> Self {

@@ -14,7 +14,7 @@ use glam::{DVec3, Vec3};
 
 /// A ray that leaves nothing and goes as far as it gets.
 pub fn ray(origin: Vec3, direction: Vec3) -> StreamRay {
-    StreamRay { origin, direction, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+    StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
 }
 
 /// Rays from anywhere around the triangles of a packed scene, and from vertices: into triangles, at vertices, along

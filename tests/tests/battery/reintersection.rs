@@ -53,7 +53,7 @@ fn meets<R: Scalar>(packed: &Packed, ray: Ray<R>) -> bool {
     let (laid, frame) = (Laid::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &ray, &mut hit);
-    hit.slot != StreamRay::NOWHERE
+    hit.triangle_index != StreamRay::NOWHERE
 }
 
 /// Sends a ray at a triangle and, from where it meets it, `count` rays every way by each of the two starts.
@@ -71,7 +71,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let (laid, frame) = (Laid::new(&packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &Ray::new(origin, direction), &mut hit);
-    if hit.slot == StreamRay::NOWHERE {
+    if hit.triangle_index == StreamRay::NOWHERE {
         return;
     }
     let (u, v) = hit.weights();

@@ -90,7 +90,12 @@ fn primary(packed: &Packed) -> Vec<StreamRay> {
     let ray = |pixel| {
         let (origin, direction) = camera::ray::<f32>(&frame, pixel);
         let vector = |v: eyerays_shader::real::V3<f32>| Vec3::new(v.x, v.y, v.z);
-        StreamRay { origin: vector(origin), direction: vector(direction), limit: f32::MAX, leaves: StreamRay::NOWHERE }
+        StreamRay {
+            origin: vector(origin),
+            direction: vector(direction),
+            limit: f32::MAX,
+            source_primitive: StreamRay::NOWHERE,
+        }
     };
     pixels.map(ray).collect()
 }
@@ -120,12 +125,12 @@ fn aimed(packed: &Packed, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
         if direction == Vec3::ZERO {
             direction = Vec3::X;
         }
-        let leaves = StreamRay::NOWHERE;
+        let source_primitive = StreamRay::NOWHERE;
         StreamRay {
             origin,
             direction: if i.is_multiple_of(2) { direction.normalize() } else { direction },
             limit: f32::MAX,
-            leaves,
+            source_primitive,
         }
     };
     (0..count).map(ray).collect()

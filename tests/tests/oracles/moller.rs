@@ -7,7 +7,7 @@ use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::Segment;
-use eyerays_shader::traverse::{self, Closest, IfIf, WideNodes};
+use eyerays_shader::traverse::{self, Closest, CwbvhMethod, IfIf};
 use eyerays_tests::model::{add, empty, matt};
 use eyerays_tests::{count, gpu, pack};
 use fastrand::Rng;
@@ -50,7 +50,7 @@ fn rays(packed: &Packed, count: usize) -> Stream {
         // The packed ball has a radius of at least 1/2.
         let origin = 0.5 * Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
         let target = if i.is_multiple_of(4) { a } else { a + (b - a) * rng.f32() };
-        StreamRay { origin, direction: target - origin, limit: f32::MAX, leaves: StreamRay::NOWHERE }
+        StreamRay { origin, direction: target - origin, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
     };
     Stream::new((0..count).map(ray))
 }
@@ -67,7 +67,7 @@ fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
         let segment = Segment::<R>::load(&geometry, *i, stream.words());
         let mut hit = Hit::none(segment.limit);
         M::traverse::<Closest>(&geometry, &segment.ray(), &mut hit);
-        hit.slot == Hit::<R>::NOTHING
+        hit.triangle_index == Hit::<R>::NOTHING
     };
     (0..stream.len() as u32).into_par_iter().filter(misses).count()
 }
@@ -80,15 +80,15 @@ fn moller_leaks_and_the_watertight_test_does_not() {
     let none = [
         leaks::<f32, IfIf>(&packed, &stream, watertight),
         leaks::<Fast, IfIf>(&packed, &stream, watertight),
-        leaks::<Fast, WideNodes>(&packed, &stream, watertight),
+        leaks::<Fast, CwbvhMethod>(&packed, &stream, watertight),
         // Exact numbers have no choice.
-        leaks::<f32, WideNodes>(&packed, &stream, TriangleTest::Moller),
+        leaks::<f32, CwbvhMethod>(&packed, &stream, TriangleTest::Moller),
     ];
     let some = leaks::<Fast, IfIf>(&packed, &stream, TriangleTest::Moller);
     println!("{} rays at edges and vertices of a closed ball: watertight {none:?}, moller {some} leaks", stream.len());
     assert_eq!(none, [0; 4]);
     assert!(some > 0, "its weakness is why there is a choice");
-    assert_eq!(leaks::<Fast, WideNodes>(&packed, &stream, TriangleTest::Moller), some, "several triangles at once");
+    assert_eq!(leaks::<Fast, CwbvhMethod>(&packed, &stream, TriangleTest::Moller), some, "several triangles at once");
 }
 
 /// On the GPU, whose fast arithmetic is its own.

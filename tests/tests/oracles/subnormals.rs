@@ -6,7 +6,7 @@ use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage;
-use eyerays_shader::traverse::{self, IfIf, WideNodes};
+use eyerays_shader::traverse::{self, CwbvhMethod, IfIf};
 use eyerays_tests::numbers::{Counting, Flushing, picture, subnormals};
 use eyerays_tests::{SHIPPED, count, pack, settings, shipped};
 use glam::{UVec4, Vec3};
@@ -49,7 +49,7 @@ fn none_is_used_over_scenes_and_rays() {
     for case in cases(count::of(10_000, 1_000_000)) {
         let alone = hits::<f32, IfIf>(&case);
         assert!(hits::<Counting, IfIf>(&case) == alone, "{}", case.name);
-        assert!(hits::<Counting, WideNodes>(&case) == alone, "{}", case.name);
+        assert!(hits::<Counting, CwbvhMethod>(&case) == alone, "{}", case.name);
         assert!(hits::<Flushing, IfIf>(&case) == alone, "{}, on a device that flushes", case.name);
         rays += alone.len();
     }
@@ -71,7 +71,7 @@ fn coordinate(rng: &mut fastrand::Rng) -> f32 {
 
 /// Is a triangle hit, and the bits of the crossing if so.
 fn crossing<R: Scalar>([origin, towards, a, b, c]: [Vec3; 5]) -> Option<[u32; 4]> {
-    let ray = StreamRay { origin, direction: towards - origin, limit: f32::MAX, leaves: Hit::<f32>::NOTHING };
+    let ray = StreamRay { origin, direction: towards - origin, limit: f32::MAX, source_primitive: Hit::<f32>::NOTHING };
     let crossing = crossed::<R>([a, b, c], &ray);
     let found = [crossing.depth, crossing.area, crossing.u, crossing.v];
     crossing.inside.then_some(found.map(|x| x.to_f32().to_bits()))

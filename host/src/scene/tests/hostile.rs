@@ -1,4 +1,4 @@
-//! Bytes that nobody vouches for: refused or right, but never a panic.
+//! Untrusted bytes: they are refused or read correctly, but never cause a panic.
 
 use std::path::Path;
 

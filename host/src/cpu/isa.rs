@@ -1,12 +1,12 @@
-//! The instructions of a processor that the kernels are compiled for.
+//! The instruction sets that the kernels are compiled for.
 
 use std::sync::LazyLock;
 
-use eyerays_shader::real::{Native, Scalar, Vectors};
+use eyerays_shader::real::{Native, Scalar, Task};
 
 /// A set of instructions. The kernels are compiled once for each; all give the same bits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Level {
+pub enum Isa {
     /// What every processor of the target has.
     Baseline,
     /// Vectors of eight numbers and counting of bits.
@@ -17,38 +17,31 @@ pub enum Level {
     Avx512,
 }
 
-/// What is to be compiled for every level.
-pub trait Task<R: Scalar> {
-    /// Runs with some vectors. Must be `inline(always)`, as all that it calls in loops: only what is
-    /// inlined is compiled for the level.
-    fn run<V: Vectors<R>>(self);
-}
-
-impl Level {
-    /// The levels that this processor has, the best last.
-    pub fn here() -> Vec<Level> {
+impl Isa {
+    /// The ISAs that this processor has, the best last.
+    pub fn here() -> Vec<Isa> {
         #[allow(unused_mut)]
-        let mut levels = vec![Level::Baseline];
+        let mut isas = vec![Isa::Baseline];
         #[cfg(target_arch = "x86_64")]
         {
             use std::arch::is_x86_feature_detected as has;
             if has!("avx2") && has!("fma") && has!("bmi1") && has!("bmi2") && has!("lzcnt") && has!("popcnt") {
-                levels.push(Level::Avx2);
+                isas.push(Isa::Avx2);
                 if has!("avx512f") && has!("avx512vl") && has!("avx512bw") && has!("avx512dq") {
-                    levels.push(Level::Avx512);
+                    isas.push(Isa::Avx512);
                 }
             }
         }
-        levels
+        isas
     }
 
     /// The best that this processor has.
-    pub fn best() -> Level {
-        static BEST: LazyLock<Level> = LazyLock::new(|| *Level::here().last().expect("every processor has one"));
+    pub fn best() -> Isa {
+        static BEST: LazyLock<Isa> = LazyLock::new(|| *Isa::here().last().expect("every processor has one"));
         *BEST
     }
 
-    /// Runs a task over the numbers `R` with the instructions of this level, where they have any use for them.
+    /// Runs a task over the numbers `R` with the instructions of this ISA, where they have any use for them.
     ///
     /// # Panics
     /// If the processor has not got them.
@@ -56,12 +49,12 @@ impl Level {
     pub fn run<R: Scalar>(self, task: impl Task<R>) {
         match self {
             #[cfg(target_arch = "x86_64")]
-            level if R::VECTORISES && level != Level::Baseline => {
-                assert!(level.is_here(), "this processor has no {level:?}");
+            isa if R::VECTORISES && isa != Isa::Baseline => {
+                assert!(isa.is_here(), "this processor has no {isa:?}");
                 // SAFETY: the processor has the instructions.
                 unsafe {
-                    match level {
-                        Level::Avx512 => avx512(task),
+                    match isa {
+                        Isa::Avx512 => avx512(task),
                         _ => avx2(task),
                     }
                 }
@@ -72,19 +65,21 @@ impl Level {
 
     #[cfg(target_arch = "x86_64")]
     fn is_here(self) -> bool {
-        // The levels are in order, and a better processor has all below.
-        self == Level::best() || Level::here().contains(&self)
+        // The ISAs are in order, and a better processor has all below.
+        self == Isa::best() || Isa::here().contains(&self)
     }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn avx2<R: Scalar>(task: impl Task<R>) {
-    task.run::<R::Avx2>();
+    // SAFETY: this function runs on no processor without its target features.
+    unsafe { R::run_avx2(task) }
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx512f,avx512vl,avx512bw,avx512dq,avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
 fn avx512<R: Scalar>(task: impl Task<R>) {
-    task.run::<R::Avx512>();
+    // SAFETY: as above.
+    unsafe { R::run_avx512(task) }
 }

@@ -1,17 +1,17 @@
 //! The triangle test of Moeller and Trumbore (1997): cheaper than the watertight one, and not watertight.
 //!
-//! Weights are triple products over a triangle's own edges from its first vertex. Two neighbours have other
-//! first vertices and edges, round otherwise, and a ray at what they share may be outside of both. Contraction is
-//! allowed: there is nothing that it could break.
+//! Weights are triple products over a triangle's own edges from its first vertex. Two neighbours have different
+//! first vertices and edges, so they round differently, and a ray at their common edge may miss both. Contraction is
+//! allowed: there is no guarantee that it could break.
 
-use super::Crossing;
+use super::Candidate;
 use crate::real::{Real, V3};
 
-/// As [`cross`](super::cross), with another scale of depth and weights.
+/// As [`intersect_watertight`](super::intersect_watertight), with another scale of depth and weights.
 ///
 /// The direction is taken from the shear, in units of its major component: (x, y, 1) with that axis last.
 #[inline(always)]
-pub fn moller<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): (R, R), along: R) -> Crossing<R> {
+pub fn intersect_moller_trumbore<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): (R, R), along: R) -> Candidate<R> {
     let (zero, direction) = (R::splat(0.0), V3::new(x, y, R::splat(1.0)));
     let (second, third) = (b - a, c - a);
     let across = direction.cross(third);
@@ -22,21 +22,21 @@ pub fn moller<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): (R, R), along: R) -
     let depth = third.dot(around) * along;
     let within = (zero.le(u) & zero.le(v) & (u + v).le(area)) | (u.le(zero) & v.le(zero) & area.le(u + v));
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
-    Crossing { inside: within & ahead, front: zero.lt(area * along), depth, u, v, area }
+    Candidate { inside: within & ahead, front: zero.lt(area * along), depth, u, v, area }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::intersect::cross;
+    use crate::intersect::intersect_watertight;
     use crate::ray::Ray;
     use crate::real::Fast;
     use glam::Vec3;
     use proptest::prelude::*;
 
-    type Test<R> = fn(V3<R>, V3<R>, V3<R>, (R, R), R) -> Crossing<R>;
+    type Test<R> = fn(V3<R>, V3<R>, V3<R>, (R, R), R) -> Candidate<R>;
 
-    fn run<R: Real>(test: Test<R>, t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Crossing<R> {
+    fn run<R: Real>(test: Test<R>, t: [[f32; 3]; 3], origin: [f32; 3], direction: [f32; 3]) -> Candidate<R> {
         let v = |p: [f32; 3]| V3::splat(Vec3::from(p));
         let ray = Ray::new(v(origin), v(direction));
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
@@ -55,8 +55,8 @@ mod tests {
             // A point of the plane, in the triangle or not.
             let at = |k: usize| t[0][k] + w[0] * (t[1][k] - t[0][k]) + w[1] * (t[2][k] - t[0][k]);
             let direction: [f32; 3] = std::array::from_fn(|k| at(k) - origin[k]);
-            let want = run::<f64>(cross, t, origin, direction);
-            let got = run::<f64>(moller, t, origin, direction);
+            let want = run::<f64>(intersect_watertight, t, origin, direction);
+            let got = run::<f64>(intersect_moller_trumbore, t, origin, direction);
             let edge = got.u.abs().min(got.v.abs()).min((got.area - got.u - got.v).abs());
             prop_assume!(got.area.abs() > 1e-3 && edge > 1e-6);
             prop_assert_eq!((got.inside, !got.inside || got.front == want.front), (want.inside, true));
@@ -72,9 +72,9 @@ mod tests {
     #[test]
     fn nothing_behind_edge_on_or_degenerate() {
         let flat = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]];
-        assert!(run::<Fast>(moller, flat, [0.125, 0.25, 0.75], [0.0, 0.0, -1.0]).inside);
-        assert!(!run::<Fast>(moller, flat, [0.125, 0.25, 0.75], [0.0, 0.0, 1.0]).inside);
-        assert!(!run::<Fast>(moller, flat, [-0.5, 0.125, 0.0], [1.0, 0.0, 0.0]).inside);
-        assert!(!run::<Fast>(moller, [[0.25; 3]; 3], [0.0; 3], [1.0, 1.0, 1.0]).inside);
+        assert!(run::<Fast>(intersect_moller_trumbore, flat, [0.125, 0.25, 0.75], [0.0, 0.0, -1.0]).inside);
+        assert!(!run::<Fast>(intersect_moller_trumbore, flat, [0.125, 0.25, 0.75], [0.0, 0.0, 1.0]).inside);
+        assert!(!run::<Fast>(intersect_moller_trumbore, flat, [-0.5, 0.125, 0.0], [1.0, 0.0, 0.0]).inside);
+        assert!(!run::<Fast>(intersect_moller_trumbore, [[0.25; 3]; 3], [0.0; 3], [1.0, 1.0, 1.0]).inside);
     }
 }

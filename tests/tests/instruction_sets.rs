@@ -1,6 +1,6 @@
 //! The same answers whatever instructions the processor has, and however rays share its vectors.
 
-use eyerays::cpu::{self, Level};
+use eyerays::cpu::{self, Isa};
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::pack::{Laid, Packed, Region};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
@@ -30,7 +30,7 @@ fn stream() -> Stream {
             }
             let direction = if direction == Vec3::ZERO { Vec3::X } else { direction };
             let limit = if i % 7 == 0 { 0.25 } else { f32::MAX };
-            StreamRay { origin, direction, limit, leaves: StreamRay::NOWHERE }
+            StreamRay { origin, direction, limit, source_primitive: StreamRay::NOWHERE }
         })
         .collect();
     Stream::new(rays.into_iter())
@@ -48,23 +48,23 @@ fn settled(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
 }
 
 #[test]
-fn every_level_and_method_answers_alike() {
+fn every_isa_and_method_answers_alike() {
     let stream = stream();
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (8, 8), 1));
         for question in [Question::Closest, Question::Occlusion] {
-            let cast = |level, traversal, threads| {
-                let cast = cpu::cast_by(level, &packed, traversal, threads, &stream, question);
+            let cast = |isa, traversal, threads| {
+                let cast = cpu::cast_by(isa, &packed, traversal, threads, &stream, question);
                 settled(&packed, cast.unwrap_or_else(|e| panic!("{e}")).0)
             };
-            let wanted = cast(Level::Baseline, Traversal::from(Method::IfIf), 1);
-            for level in Level::here() {
+            let wanted = cast(Isa::Baseline, Traversal::from(Method::IfIf), 1);
+            for isa in Isa::here() {
                 for traversal in traversals() {
                     for layout in [Layout::Gathered, Layout::Indexed] {
                         let traversal = Traversal { layout, ..traversal };
-                        let what = format!("{name}, {question:?}, {level:?}, {traversal:?}");
-                        assert!(cast(level, traversal, 2) == wanted, "{what}");
+                        let what = format!("{name}, {question:?}, {isa:?}, {traversal:?}");
+                        assert!(cast(isa, traversal, 2) == wanted, "{what}");
                     }
                 }
             }
@@ -73,20 +73,20 @@ fn every_level_and_method_answers_alike() {
 }
 
 #[test]
-fn every_level_renders_the_same_tile() {
+fn every_isa_renders_the_same_tile() {
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));
         let region = Region { x: 3, y: 2, width: 33, height: 26 };
-        let tile = |level, method| {
+        let tile = |isa, method| {
             let (film, secondary) =
-                cpu::render_tile_by::<f32>(level, &Laid::new(&packed, Traversal::from(method)), region, &());
+                cpu::render_tile_by::<f32>(isa, &Laid::new(&packed, Traversal::from(method)), region, &());
             (film.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)
         };
-        let wanted = tile(Level::Baseline, Method::IfIf);
-        for level in Level::here() {
+        let wanted = tile(Isa::Baseline, Method::IfIf);
+        for isa in Isa::here() {
             for method in Method::ALL {
-                assert!(tile(level, method) == wanted, "{name}, {level:?}, {method:?}");
+                assert!(tile(isa, method) == wanted, "{name}, {isa:?}, {method:?}");
             }
         }
     }

@@ -1,8 +1,8 @@
-//! The wide hierarchy as a CPU loads it, see [`eyerays_shader::full`]: nodes collapsed from the pairs for leaves
+//! The wide hierarchy as a CPU loads it, see [`eyerays_shader::bvh8`]: nodes collapsed from the pairs for leaves
 //! that are tested four triangles at once.
 
+use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
 use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Triangle};
-use eyerays_shader::full::{Block, Full, FullNode, FullRef};
 
 use super::{
     binary::{Binary, Node},
@@ -10,30 +10,30 @@ use super::{
 };
 use crate::bounds::Bounds;
 
-/// The cost of a block beside that of a node, which tests eight boxes.
-const BLOCK: f32 = 0.6;
+/// The cost of a [`Triangle4`] relative to that of a node, which tests eight boxes.
+const TRIANGLE4: f32 = 0.6;
 
-/// Nodes and blocks, owned.
+/// Nodes and triangles, owned.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct FullBvh {
+pub struct Bvh8 {
     /// Nodes, the root first, a parent before its children.
-    pub nodes: Vec<FullNode>,
+    pub nodes: Vec<Bvh8Node>,
     /// The triangles of leaves, in the order of the nodes.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<Triangle4>,
 }
 
-impl FullBvh {
-    /// Makes them of a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
+impl Bvh8 {
+    /// Converts a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
     /// unless triangles are split.
     pub fn of(pairs: &[CentredPair], triangles: &[Triangle], bounds: &[Record]) -> Self {
         let bounds: Vec<Bounds> = match bounds {
             [] => triangles.iter().map(Bounds::of).collect(),
             split => split.iter().map(Bounds::read).collect(),
         };
-        let leaves = Leaves { most: Block::TRIANGLES as u32, fixed: BLOCK, triangle: 0.0 };
+        let leaves = Leaves { most: Triangle4::TRIANGLES as u32, fixed: TRIANGLE4, triangle: 0.0 };
         let (tree, order) = binary(pairs, &bounds, leaves.most);
         let plan = Plan::of(&tree, leaves);
-        let mut full = FullBvh { nodes: vec![FullNode::EMPTY], blocks: Vec::new() };
+        let mut bvh8 = Bvh8 { nodes: vec![Bvh8Node::EMPTY], blocks: Vec::new() };
         let (mut open, mut children) = (vec![(0, 0, 0)], Vec::new());
         while let Some((number, node, level)) = open.pop() {
             plan.children_at(&tree, node, level, &mut children);
@@ -43,32 +43,32 @@ impl FullBvh {
             for (i, &(child, is_leaf)) in children.iter().enumerate() {
                 let Node { bounds, first, count, .. } = tree.nodes[child as usize];
                 let reference = if is_leaf {
-                    full.leaf(&order[first as usize..(first + count) as usize], triangles)
+                    bvh8.leaf(&order[first as usize..(first + count) as usize], triangles)
                 } else {
-                    full.nodes.push(FullNode::EMPTY);
-                    open.push((full.nodes.len() - 1, child, level + 1));
-                    FullRef::inner(full.nodes.len() as u32 - 1)
+                    bvh8.nodes.push(Bvh8Node::EMPTY);
+                    open.push((bvh8.nodes.len() - 1, child, level + 1));
+                    Bvh8Ref::inner(bvh8.nodes.len() as u32 - 1)
                 };
-                set(&mut full.nodes[number], i, bounds, reference);
+                set(&mut bvh8.nodes[number], i, bounds, reference);
             }
             open[first..].reverse();
         }
-        full
+        bvh8
     }
 
-    /// Adds the block of a leaf's slots.
-    fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> FullRef {
-        self.blocks.push(Block::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
-        FullRef::leaf(self.blocks.len() as u32 - 1)
+    /// Adds the triangles of a leaf's slots.
+    fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> Bvh8Ref {
+        self.blocks.push(Triangle4::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
+        Bvh8Ref::leaf(self.blocks.len() as u32 - 1)
     }
 
     /// What a launch borrows.
-    pub fn borrow(&self) -> Full<'_> {
-        Full { nodes: &self.nodes, blocks: &self.blocks }
+    pub fn borrow(&self) -> Bvh8View<'_> {
+        Bvh8View { nodes: &self.nodes, blocks: &self.blocks }
     }
 }
 
-/// The binary tree with leaves of at most `most` triangles, and the slot at each of its places.
+/// The binary tree with leaves of at most `most` triangles, and the slots in its order.
 fn binary(pairs: &[CentredPair], bounds: &[Bounds], most: u32) -> (Binary, Vec<u32>) {
     let (references, mut order) = depth_first(pairs, bounds.len());
     let boxed = |reference: NodeRef| {
@@ -103,8 +103,8 @@ fn depth_first(pairs: &[CentredPair], slots: usize) -> (Vec<[NodeRef; 2]>, Vec<u
 }
 
 /// Puts a child into a node.
-fn set(node: &mut FullNode, child: usize, bounds: Bounds, reference: FullRef) {
-    let margin = f64::from(FullNode::MARGIN);
+fn set(node: &mut Bvh8Node, child: usize, bounds: Bounds, reference: Bvh8Ref) {
+    let margin = f64::from(Bvh8Node::MARGIN);
     for axis in 0..3 {
         node.planes[axis][0][child] = (f64::from(bounds.min[axis]) - margin) as f32;
         node.planes[axis][1][child] = (f64::from(bounds.max[axis]) + margin) as f32;

@@ -9,17 +9,17 @@ use crate::ray::{Hit, Ray};
 /// `N` numbers, one a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct Wide<const N: usize>(pub [f32; N]);
+pub struct F32xN<const N: usize>(pub [f32; N]);
 
 /// `N` truth values, all bits set or none, as vector registers compare.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct WideMask<const N: usize>(pub [u32; N]);
+pub struct MaskxN<const N: usize>(pub [u32; N]);
 
 /// `N` integers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
-pub struct WideIndex<const N: usize>(pub [u32; N]);
+pub struct U32xN<const N: usize>(pub [u32; N]);
 
 macro_rules! lanewise {
     ($type:ident, $trait:ident, $name:ident, $op:tt) => {
@@ -32,29 +32,29 @@ macro_rules! lanewise {
         }
     };
 }
-lanewise!(Wide, Add, add, +);
-lanewise!(Wide, Sub, sub, -);
-lanewise!(Wide, Mul, mul, *);
-lanewise!(WideMask, BitAnd, bitand, &);
-lanewise!(WideMask, BitOr, bitor, |);
+lanewise!(F32xN, Add, add, +);
+lanewise!(F32xN, Sub, sub, -);
+lanewise!(F32xN, Mul, mul, *);
+lanewise!(MaskxN, BitAnd, bitand, &);
+lanewise!(MaskxN, BitOr, bitor, |);
 
-impl<const N: usize> Neg for Wide<N> {
+impl<const N: usize> Neg for F32xN<N> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Wide(self.0.map(|x| -x))
+        F32xN(self.0.map(|x| -x))
     }
 }
 
-impl<const N: usize> Not for WideMask<N> {
+impl<const N: usize> Not for MaskxN<N> {
     type Output = Self;
     #[inline(always)]
     fn not(self) -> Self {
-        WideMask(self.0.map(|m| !m))
+        MaskxN(self.0.map(|m| !m))
     }
 }
 
-impl<const N: usize> Mask for WideMask<N> {
+impl<const N: usize> Mask for MaskxN<N> {
     #[inline(always)]
     fn any(self) -> bool {
         self.0.iter().fold(0, |a, m| a | m) != 0
@@ -71,67 +71,67 @@ fn bits(holds: bool) -> u32 {
     if holds { u32::MAX } else { 0 }
 }
 
-impl<const N: usize> Real for Wide<N> {
-    type Mask = WideMask<N>;
-    type Index = WideIndex<N>;
+impl<const N: usize> Real for F32xN<N> {
+    type Mask = MaskxN<N>;
+    type Index = U32xN<N>;
     type Lane = f32;
-    const ROUNDOFF: Self = Wide([<f32 as Real>::ROUNDOFF; N]);
+    const ROUNDOFF: Self = F32xN([<f32 as Real>::ROUNDOFF; N]);
 
     #[inline(always)]
     fn splat(x: f32) -> Self {
-        Wide([x; N])
+        F32xN([x; N])
     }
     #[inline(always)]
     fn div(self, divisor: Self) -> Self {
-        Wide(from_fn(|i| Real::div(self.0[i], divisor.0[i])))
+        F32xN(from_fn(|i| Real::div(self.0[i], divisor.0[i])))
     }
     #[inline(always)]
     fn reciprocal(self) -> Self {
-        Wide(self.0.map(Real::reciprocal))
+        F32xN(self.0.map(Real::reciprocal))
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
-        Wide(self.0.map(Real::sqrt))
+        F32xN(self.0.map(Real::sqrt))
     }
     #[inline(always)]
-    fn lt(self, other: Self) -> WideMask<N> {
-        WideMask(from_fn(|i| bits(self.0[i] < other.0[i])))
+    fn lt(self, other: Self) -> MaskxN<N> {
+        MaskxN(from_fn(|i| bits(self.0[i] < other.0[i])))
     }
     #[inline(always)]
-    fn le(self, other: Self) -> WideMask<N> {
-        WideMask(from_fn(|i| bits(self.0[i] <= other.0[i])))
+    fn le(self, other: Self) -> MaskxN<N> {
+        MaskxN(from_fn(|i| bits(self.0[i] <= other.0[i])))
     }
     #[inline(always)]
-    fn same(self, other: Self) -> WideMask<N> {
-        WideMask(from_fn(|i| bits(self.0[i] == other.0[i])))
+    fn eq(self, other: Self) -> MaskxN<N> {
+        MaskxN(from_fn(|i| bits(self.0[i] == other.0[i])))
     }
     #[inline(always)]
-    fn select(mask: WideMask<N>, a: Self, b: Self) -> Self {
-        Wide(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
+    fn select(mask: MaskxN<N>, a: Self, b: Self) -> Self {
+        F32xN(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        Wide(self.0.map(f32::abs))
+        F32xN(self.0.map(f32::abs))
     }
     #[inline(always)]
-    fn index(i: u32) -> WideIndex<N> {
-        WideIndex([i; N])
+    fn index(i: u32) -> U32xN<N> {
+        U32xN([i; N])
     }
     #[inline(always)]
-    fn precedes(i: u32, other: WideIndex<N>) -> WideMask<N> {
-        WideMask(other.0.map(|o| bits(i < o)))
+    fn precedes(i: u32, other: U32xN<N>) -> MaskxN<N> {
+        MaskxN(other.0.map(|o| bits(i < o)))
     }
     #[inline(always)]
-    fn equals(i: u32, other: WideIndex<N>) -> WideMask<N> {
-        WideMask(other.0.map(|o| bits(i == o)))
+    fn equals(i: u32, other: U32xN<N>) -> MaskxN<N> {
+        MaskxN(other.0.map(|o| bits(i == o)))
     }
     #[inline(always)]
-    fn select_index(mask: WideMask<N>, a: WideIndex<N>, b: WideIndex<N>) -> WideIndex<N> {
-        WideIndex(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
+    fn select_index(mask: MaskxN<N>, a: U32xN<N>, b: U32xN<N>) -> U32xN<N> {
+        U32xN(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
     }
 
     #[inline(always)]
-    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: WideMask<N>, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
+    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: MaskxN<N>, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
         for i in 0..N {
             if mask.0[i] != 0 {
                 let mut lane = hit.lane(i);
@@ -144,40 +144,40 @@ impl<const N: usize> Real for Wide<N> {
 
 macro_rules! lanes {
     ($scalar:ty, $wrap:expr, $inner:expr) => {
-        impl<const N: usize> Lanes<$scalar> for Wide<N> {
+        impl<const N: usize> Lanes<$scalar> for F32xN<N> {
             const COUNT: u32 = N as u32;
 
             #[inline(always)]
             fn all(x: $scalar) -> Self {
-                Wide([$inner(x); N])
+                F32xN([$inner(x); N])
             }
             #[inline(always)]
             fn of(number: impl Fn(usize) -> $scalar) -> Self {
-                Wide(from_fn(|i| $inner(number(i))))
+                F32xN(from_fn(|i| $inner(number(i))))
             }
             #[inline(always)]
-            fn indices(index: impl Fn(usize) -> u32) -> WideIndex<N> {
-                WideIndex(from_fn(index))
+            fn indices(index: impl Fn(usize) -> u32) -> U32xN<N> {
+                U32xN(from_fn(index))
             }
             #[inline(always)]
             fn lane(&self, i: usize) -> $scalar {
                 $wrap(self.0[i])
             }
             #[inline(always)]
-            fn index_of(index: WideIndex<N>, i: usize) -> u32 {
+            fn index_of(index: U32xN<N>, i: usize) -> u32 {
                 index.0[i]
             }
             #[inline(always)]
             fn taken(numbers: &[f32]) -> Self {
                 let numbers = &numbers[..N];
-                Wide(from_fn(|i| numbers[i]))
+                F32xN(from_fn(|i| numbers[i]))
             }
             #[inline(always)]
             fn put(self, numbers: &mut [f32]) {
                 numbers[..N].copy_from_slice(&self.0);
             }
             #[inline(always)]
-            fn bits(mask: WideMask<N>) -> u32 {
+            fn bits(mask: MaskxN<N>) -> u32 {
                 (0..N).map(|i| (mask.0[i] & 1) << i).sum()
             }
         }
@@ -186,11 +186,11 @@ macro_rules! lanes {
 lanes!(f32, core::convert::identity, core::convert::identity);
 lanes!(Fast, Fast, |x: Fast| x.0);
 
-impl<const N: usize> V3<Wide<N>> {
+impl<const N: usize> V3<F32xN<N>> {
     /// Vectors of `N` lanes.
     #[inline(always)]
     pub fn of_lanes(lane: impl Fn(usize) -> V3<f32>) -> Self {
-        V3::new(Wide(from_fn(|i| lane(i).x)), Wide(from_fn(|i| lane(i).y)), Wide(from_fn(|i| lane(i).z)))
+        V3::new(F32xN(from_fn(|i| lane(i).x)), F32xN(from_fn(|i| lane(i).y)), F32xN(from_fn(|i| lane(i).z)))
     }
 
     #[inline(always)]
@@ -199,7 +199,7 @@ impl<const N: usize> V3<Wide<N>> {
     }
 }
 
-impl<const N: usize> Ray<Wide<N>> {
+impl<const N: usize> Ray<F32xN<N>> {
     /// One lane's ray.
     #[inline(always)]
     fn lane(&self, i: usize) -> Ray<f32> {
@@ -208,12 +208,12 @@ impl<const N: usize> Ray<Wide<N>> {
             inverse: self.inverse.lane(i),
             offset: self.offset.lane(i),
             shear: self.shear.lane(i),
-            leaves: self.leaves.0[i],
+            source_primitive: self.source_primitive.0[i],
         }
     }
 }
 
-impl<const N: usize> Hit<Wide<N>> {
+impl<const N: usize> Hit<F32xN<N>> {
     /// One lane's hit.
     #[inline(always)]
     pub fn lane(&self, i: usize) -> Hit<f32> {
@@ -222,7 +222,7 @@ impl<const N: usize> Hit<Wide<N>> {
             u: self.u.0[i],
             v: self.v.0[i],
             scale: self.scale.0[i],
-            slot: self.slot.0[i],
+            triangle_index: self.triangle_index.0[i],
             primitive: self.primitive.0[i],
         }
     }
@@ -233,7 +233,7 @@ impl<const N: usize> Hit<Wide<N>> {
         self.u.0[i] = hit.u;
         self.v.0[i] = hit.v;
         self.scale.0[i] = hit.scale;
-        self.slot.0[i] = hit.slot;
+        self.triangle_index.0[i] = hit.triangle_index;
         self.primitive.0[i] = hit.primitive;
     }
 }

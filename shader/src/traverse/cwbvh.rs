@@ -1,12 +1,12 @@
 //! Traversal of nodes of eight children (Ylitie, Karras and Laine 2017: CWBVH): every ray by itself, in
 //! every step at most one node and at most one triangle.
 //!
-//! The boxes lie on a grid of bytes. Instead of every plane, the grid is brought into the ray's terms: a plane
-//! `origin + q * step` is met at `f * extent + start`, where `extent` is 256 steps times the inverse and `f` is
-//! 1 + q / 256, or 256 + q / 256 for every second child, and `start` makes up for the 1 or the 256.
+//! The boxes lie on a grid of bytes. The grid is transformed instead of every plane: the ray crosses plane
+//! `origin + q * step` at `f * extent + start`, where `extent` is 256 steps times the inverse and `f` is
+//! 1 + q / 256, or 256 + q / 256 for every second child, and `start` compensates for the 1 or the 256.
 //!
 //! With coordinates in [-1, 1] that errs by less than 9 * 2^-24 and 3/256 of a step, as a shift of the plane, the
-//! entry into a triangle's own box by 4 * 2^-24, and its wider exit by 17 * 2^-24. The quantised boxes' margin of
+//! entry into a triangle's own box by 4 * 2^-24, and its widened exit by 17 * 2^-24. The quantised boxes' margin of
 //! 2^-19 and 1/64 of a step covers all, so a node is entered no later than any triangle's own box below it, and no
 //! order of visits can cull a hit.
 
@@ -14,16 +14,16 @@ use super::resumable::{Progress, Resumable, follow};
 use super::step::{occluded, triangle};
 use super::{Method, Query};
 use crate::buffer::read;
-use crate::data::{NodeRef, STACK, WideNode, numbers};
+use crate::data::{CwbvhNode, NodeRef, STACK, numbers};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
 use glam::{UVec4, Vec3};
 
 /// See the module.
-pub struct WideNodes;
+pub struct CwbvhMethod;
 
-/// Inner nodes of one parent that wait.
+/// Inner nodes of one parent that are still to visit.
 #[derive(Clone, Copy)]
 struct Nodes {
     /// The parent's first.
@@ -33,7 +33,7 @@ struct Nodes {
     waiting: u32,
 }
 
-/// Where bits of inner nodes are.
+/// The bits of inner nodes.
 const NODES: u32 = 0xff00_0000;
 
 impl Nodes {
@@ -45,12 +45,12 @@ impl Nodes {
     }
 }
 
-/// Triangles of one parent that wait.
+/// Triangles of one parent that are still to test.
 #[derive(Clone, Copy)]
 struct Triangles {
     /// The parent's first.
     first: u32,
-    /// Bits of those that wait.
+    /// Bits of those still to test.
     waiting: u32,
     /// Bits of all.
     all: u32,
@@ -59,7 +59,7 @@ struct Triangles {
 impl Triangles {
     const NOTHING: Triangles = Triangles { first: 0, waiting: 0, all: 0 };
 
-    /// Takes one: its slot.
+    /// Takes one and returns its index.
     #[inline(always)]
     fn take(&mut self) -> u32 {
         let bit = 1 << (31 - self.waiting.leading_zeros());
@@ -68,7 +68,7 @@ impl Triangles {
     }
 }
 
-/// What is in hand.
+/// The current groups.
 #[derive(Clone, Copy)]
 pub struct Groups {
     nodes: Nodes,
@@ -95,14 +95,14 @@ impl Progress for Groups {
 }
 
 impl Groups {
-    /// Takes the nearest node that waits in hand; the rest of its group waits on. `inverted` is what the
-    /// ray's order turns slots by.
+    /// Takes the nearest node and pushes the rest of its group. Slots are XORed with `inverted` to get the ray's
+    /// order.
     #[inline(always)]
     fn take(&mut self, inverted: u32, stack: &mut Stack) -> u32 {
         let mut group = self.nodes;
         if !group.any() {
             self.depth -= 1;
-            // SAFETY: below the depth all has been put.
+            // SAFETY: every index below the depth has been set.
             group = unsafe { Nodes { first: stack.get(2 * self.depth), waiting: stack.get(2 * self.depth + 1) } };
         }
         let place = 31 - group.waiting.leading_zeros();
@@ -113,15 +113,15 @@ impl Groups {
             stack.put(2 * self.depth + 1, group.waiting);
             self.depth += 1;
         }
-        // The siblings before it.
+        // Counts the siblings before it.
         group.first + (group.waiting & ((1 << slot) - 1)).count_ones()
     }
 }
 
-/// Groups that wait, two words each.
+/// Groups still to visit, two words each.
 pub type Stack = super::stack::Stack<u32, { 2 * STACK }>;
 
-impl<R: Scalar> Resumable<R> for WideNodes {
+impl<R: Scalar> Resumable<R> for CwbvhMethod {
     type Cursor = Groups;
     type Stack = Stack;
 
@@ -141,12 +141,12 @@ impl<R: Scalar> Resumable<R> for WideNodes {
         if cursor.triangles.waiting == 0 {
             let node = cursor.take(inverted(ray), stack);
             let node = read(geometry.wide, node);
-            Q::on_boxes(WideNode::ARITY as u32);
+            Q::on_boxes(CwbvhNode::ARITY as u32);
             (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
         }
         if cursor.triangles.waiting != 0 {
-            let slot = cursor.triangles.take();
-            triangle::<Q, R>(geometry, NodeRef::leaf(slot, 1), ray, hit);
+            let triangle_index = cursor.triangles.take();
+            triangle::<Q, R>(geometry, NodeRef::leaf(triangle_index, 1), ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
@@ -154,14 +154,14 @@ impl<R: Scalar> Resumable<R> for WideNodes {
     }
 }
 
-impl<R: Scalar> Method<R> for WideNodes {
+impl<R: Scalar> Method<R> for CwbvhMethod {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         follow::<Q, R, Self>(geometry, ray, hit);
     }
 }
 
-/// What a slot is turned by for a ray, so that the nearest child has the highest bit: slot `s` is the
+/// What a slot is XORed with for a ray, so that the nearest child has the highest bit: slot `s` is the
 /// first for a ray whose direction is negative on the axes of the bits of `s`.
 #[inline(always)]
 fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
@@ -170,11 +170,11 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
     bit(ray.inverse.x, 1) | bit(ray.inverse.y, 2) | bit(ray.inverse.z, 4)
 }
 
-/// Tests the eight boxes of a node: the inner children that are met, and the triangles of those leaves.
+/// Tests the eight boxes of a node. Returns the inner children that are hit, and the triangles of the leaves that are.
 #[inline(always)]
-fn open<R: Scalar>(node: &WideNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
+fn open<R: Scalar>(node: &CwbvhNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
     let opening = Opening::<R>::new(node, ray, hit.t);
-    // A loop is not always unrolled.
+    // Not a loop, since it is not always unrolled.
     let met = opening.met(0)
         | opening.met(1)
         | opening.met(2)
@@ -197,24 +197,24 @@ fn turned(slots: u32, inverted: u32) -> u32 {
     ((slots << by_4) & 0xf000_0000) | ((slots >> by_4) & 0x0f00_0000)
 }
 
-/// A node in a ray's terms.
+/// A node's grid, transformed for a ray.
 struct Opening<R: Scalar> {
-    /// Where the ray would meet the plane that is 256 steps before the grid's origin, and that 256 * 256 before it.
+    /// Where the ray crosses the plane 256 steps before the grid's origin, and the one 256 * 256 steps before it.
     start: [V3<R>; 2],
-    /// How far 256 steps are.
+    /// The length of 256 steps along the ray.
     extent: V3<R>,
     /// Where the ray ends.
     limit: R,
-    /// Planes that the ray enters by, an axis after the other: those of children 0 and 1, 4 and 5 to be read
-    /// as they are, and the same turned by half for the others.
+    /// Planes that the ray enters through, by axis: words to be read as they are for children 0, 1, 4 and 5, and
+    /// rotated by half for the others.
     near: [[u32; 4]; 3],
-    /// Planes that it leaves by.
+    /// Planes that it leaves through.
     far: [[u32; 4]; 3],
 }
 
 impl<R: Scalar> Opening<R> {
     #[inline(always)]
-    fn new(node: &WideNode, ray: &Ray<R>, limit: R) -> Self {
+    fn new(node: &CwbvhNode, ray: &Ray<R>, limit: R) -> Self {
         let power = |shift: u32| f32::from_bits(((node.grid.w >> shift) & 255) << 23);
         let extent = V3::<R>::splat(Vec3::new(power(0), power(8), power(16))).times(ray.inverse);
         let start = (V3::splat(numbers(node.grid)) - ray.origin).times(ray.inverse);
@@ -233,13 +233,13 @@ impl<R: Scalar> Opening<R> {
         }
     }
 
-    /// The bits that a child may have among those that wait, if its box is met.
+    /// The bits that a child may have in the node's masks, if its box is hit; else none.
     #[inline(always)]
     fn met(&self, child: u32) -> u32 {
         let start = self.start[if child & 1 == 1 { 0 } else { 1 }];
         let near = self.planes(&self.near, child).fused(self.extent, start);
         let far = self.planes(&self.far, child).fused(self.extent, start);
-        if R::latest(near).le(R::earliest(far, self.limit)) { (1 << (24 + child)) | (7 << (3 * child)) } else { 0 }
+        if R::max_entry(near).le(R::min_exit(far, self.limit)) { (1 << (24 + child)) | (7 << (3 * child)) } else { 0 }
     }
 
     /// A child's planes: in units of 256 steps and 1 too large for odd children, 256 too large for the others.
@@ -250,20 +250,20 @@ impl<R: Scalar> Opening<R> {
     }
 }
 
-/// The nearer and the farther planes of the lesser and the greater ones.
+/// The near and the far planes, given the lower and the upper ones.
 #[inline(always)]
 fn sides(down: bool, low: [u32; 2], high: [u32; 2]) -> ([u32; 4], [u32; 4]) {
     if down { (both(high), both(low)) } else { (both(low), both(high)) }
 }
 
-/// Two words, each followed by itself turned by half.
+/// Two words, each followed by itself rotated by half.
 #[inline(always)]
 fn both([a, b]: [u32; 2]) -> [u32; 4] {
     [a, a.rotate_left(16), b, b.rotate_left(16)]
 }
 
-/// The plane of a child in its word, put into the fraction of a number: of 1 for odd children, of 256 for the
-/// others, whose plane lies 8 bits lower. That is fewer instructions than a conversion of the byte.
+/// The plane of a child in its word, placed in the fraction of a float: of 1 for odd children, of 256 for the
+/// others, whose plane lies 8 bits lower. That takes fewer instructions than converting the byte.
 #[inline(always)]
 fn plane<R: Scalar>(word: u32, child: u32) -> R {
     let bits = if child & 1 == 1 { (word & 0x007f_8000) | 0x3f80_0000 } else { (word & 0x7f80) | 0x4380_0000 };

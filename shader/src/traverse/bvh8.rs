@@ -1,48 +1,47 @@
-//! Traversal of eight children a node on a CPU: the same tree in other words, see [`crate::full`]. Every ray by
-//! itself, its boxes and triangles in the lanes.
+//! Traversal of nodes of eight children on a CPU, see [`crate::bvh8`]. Every ray by itself, with the boxes and
+//! triangles in the vectors' lanes.
 //!
-//! A plane `p` is met at `p * inverse - offset`, which errs by the rounding of the offset, of the product and of
+//! A ray crosses plane `p` at `p * inverse - offset`, which errs by the rounding of the offset, of the product and of
 //! the difference: with coordinates in [-1, 1], by less than 4 * 2^-24 of a shift of the plane. A triangle's own
-//! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`FullNode::MARGIN`]
-//! together, so that a box is met, and entered no later, wherever an own box in it is. That leaves room for what
-//! is entered where to be rounded to single precision.
+//! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`Bvh8Node::MARGIN`]
+//! together, so that a box is hit, and entered no later, wherever a triangle's own box inside it is. That leaves room
+//! to round entry distances to single precision.
 
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
-use super::step::{block, occluded};
+use super::step::{occluded, triangle4};
 use super::{Method, Query};
-use crate::full::{FullNode, FullRef};
+use crate::bvh8::{Bvh8Node, Bvh8Ref};
 use crate::ray::{Hit, Ray};
-use crate::real::{Lanes, Native, Scalar, V3, Vectors};
+use crate::real::{Lanes, Native, Scalar, SimdIsa, V3};
 use crate::scene::TraceContext;
 
-/// See the module. `V` are the vectors that test boxes and triangles.
-pub struct FullNodes<V = Native>(PhantomData<V>);
+/// See the module. The vectors of `V` test boxes and triangles.
+pub struct Bvh8Method<V = Native>(PhantomData<V>);
 
-impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
+impl<R: Scalar, V: SimdIsa<R>> Method<R> for Bvh8Method<V> {
     #[inline(always)]
     fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let boxes = Boxes::<R, V::Eight>::new(ray);
-        let mut waiting = Waiting::new();
-        let mut at = FullRef::ROOT;
+        let mut stack = Stack::new();
+        let mut at = Bvh8Ref::ROOT;
         loop {
             while !at.is_leaf() {
                 Q::on_boxes(8);
-                let node = &geometry.full.nodes[at.index()];
+                let node = &geometry.bvh8.nodes[at.index()];
                 let (met, near) = boxes.meet(node, hit.t);
-                let next =
-                    if Q::ANY { first(node, met, &mut waiting) } else { nearest(node, met, &near, &mut waiting) };
-                match next.or_else(|| waiting.take(hit.t.to_f32())) {
+                let next = if Q::ANY { first(node, met, &mut stack) } else { nearest(node, met, &near, &mut stack) };
+                match next.or_else(|| stack.take(hit.t.to_f32())) {
                     Some(next) => at = next,
                     None => return,
                 }
             }
-            block::<Q, R, V::Four>(geometry, &geometry.full.blocks[at.index()], ray, hit);
+            triangle4::<Q, R, V::Four>(geometry, &geometry.bvh8.blocks[at.index()], ray, hit);
             if Q::ANY && occluded(hit) {
                 return;
             }
-            match waiting.take(hit.t.to_f32()) {
+            match stack.take(hit.t.to_f32()) {
                 Some(next) => at = next,
                 None => return,
             }
@@ -50,12 +49,12 @@ impl<R: Scalar, V: Vectors<R>> Method<R> for FullNodes<V> {
     }
 }
 
-/// A ray as the boxes of nodes take it.
+/// A ray, prepared for box tests.
 struct Boxes<R: Scalar, E: Lanes<R>> {
     inverse: V3<E>,
     /// The negated offset.
     start: V3<E>,
-    /// By axis which planes the ray enters by: 0 the lesser ones, 1 the greater ones.
+    /// For each axis the planes that the ray enters through: 0 for the lower ones, 1 for the upper ones.
     near: [usize; 3],
     scalar: PhantomData<R>,
 }
@@ -73,25 +72,25 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
         }
     }
 
-    /// A bit for every box that the ray meets up to a limit, and where it enters each.
+    /// A bit for every box that the ray hits before a limit, and where it enters each.
     #[inline(always)]
-    fn meet(&self, node: &FullNode, limit: R) -> (u32, [f32; 8]) {
+    fn meet(&self, node: &Bvh8Node, limit: R) -> (u32, [f32; 8]) {
         let (mut met, mut near) = (0, [0.0; 8]);
         let mut first = 0;
         while first < 8 {
             let enter = self.planes(node, [self.near[0], self.near[1], self.near[2]], first);
             let leave = self.planes(node, [self.near[0] ^ 1, self.near[1] ^ 1, self.near[2] ^ 1], first);
-            let entry = E::latest(enter);
-            met |= E::bits(entry.le(E::earliest(leave, E::all(limit)))) << first;
+            let entry = E::max_entry(enter);
+            met |= E::bits(entry.le(E::min_exit(leave, E::all(limit)))) << first;
             entry.put(&mut near[first..]);
             first += E::COUNT as usize;
         }
         (met, near)
     }
 
-    /// Where the ray meets planes, of the lanes' boxes from `first` on.
+    /// Where the ray crosses planes of the boxes from `first` on, one box a lane.
     #[inline(always)]
-    fn planes(&self, node: &FullNode, side: [usize; 3], first: usize) -> V3<E> {
+    fn planes(&self, node: &Bvh8Node, side: [usize; 3], first: usize) -> V3<E> {
         let plane = V3::new(
             E::taken(&node.planes[0][side[0] & 1][first..]),
             E::taken(&node.planes[1][side[1] & 1][first..]),
@@ -101,10 +100,10 @@ impl<R: Scalar, E: Lanes<R>> Boxes<R, E> {
     }
 }
 
-/// The first child that is met; the others wait, the first of them the last. Children are in the order of their
-/// size: a ray that asks for any hit is done the sooner in the larger, whichever is nearer.
+/// The first child that is hit; the others are pushed in reverse order. Children are sorted by size: an any-hit ray is
+/// done sooner in a larger child, whichever is nearer.
 #[inline(always)]
-fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef> {
+fn first(node: &Bvh8Node, mut met: u32, stack: &mut Stack) -> Option<Bvh8Ref> {
     while met != 0 {
         let last = 31 - met.leading_zeros();
         met ^= 1 << last;
@@ -112,14 +111,14 @@ fn first(node: &FullNode, mut met: u32, waiting: &mut Waiting) -> Option<FullRef
         if met == 0 {
             return Some(child);
         }
-        waiting.put(entry(0.0, child));
+        stack.put(entry(0.0, child));
     }
     None
 }
 
-/// The nearest child that is met; the others wait, the nearer the later.
+/// The nearest child that is hit; the others are pushed, the nearest last.
 #[inline(always)]
-fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) -> Option<FullRef> {
+fn nearest(node: &Bvh8Node, met: u32, near: &[f32; 8], stack: &mut Stack) -> Option<Bvh8Ref> {
     if met == 0 {
         return None;
     }
@@ -134,40 +133,40 @@ fn nearest(node: &FullNode, met: u32, near: &[f32; 8], waiting: &mut Waiting) ->
     let (b, met) = child(met);
     let (first, second) = ordered(a, b);
     if met == 0 {
-        waiting.put(second);
+        stack.put(second);
         return Some(reference(first));
     }
     let (c, met) = child(met);
     let (second, third) = ordered(second, c);
     let (first, second) = ordered(first, second);
     if met == 0 {
-        waiting.put(third);
-        waiting.put(second);
+        stack.put(third);
+        stack.put(second);
         return Some(reference(first));
     }
-    let from = waiting.count;
-    waiting.put(third);
-    waiting.put(second);
+    let from = stack.count;
+    stack.put(third);
+    stack.put(second);
     let (mut nearest, mut met) = (first, met);
     while met != 0 {
         let next;
         (next, met) = child(met);
         let (less, more) = ordered(nearest, next);
         nearest = less;
-        waiting.insert(from, more);
+        stack.insert(from, more);
     }
     Some(reference(nearest))
 }
 
-/// Where a box is entered, and what it holds: in the order of distances, which are no less than +0.
+/// Where a box is entered, and its child, as an integer: sorted by distance, since distances are at least +0.
 #[inline(always)]
-fn entry(near: f32, child: FullRef) -> u64 {
+fn entry(near: f32, child: Bvh8Ref) -> u64 {
     u64::from(near.to_bits()) << 32 | u64::from(child.0)
 }
 
 #[inline(always)]
-fn reference(entry: u64) -> FullRef {
-    FullRef(entry as u32)
+fn reference(entry: u64) -> Bvh8Ref {
+    Bvh8Ref(entry as u32)
 }
 
 #[inline(always)]
@@ -175,49 +174,49 @@ fn ordered(a: u64, b: u64) -> (u64, u64) {
     (a.min(b), a.max(b))
 }
 
-/// Entries that wait.
-struct Waiting {
-    entries: [MaybeUninit<u64>; Waiting::MOST],
+/// The stack of entries.
+struct Stack {
+    entries: [MaybeUninit<u64>; Stack::MOST],
     count: usize,
 }
 
-impl Waiting {
-    /// Seven siblings on each of the levels, which `eyerays-bvh` limits to 32; a power of two.
+impl Stack {
+    /// Room for seven siblings on each level, of which `eyerays-bvh` allows 32; a power of two.
     const MOST: usize = 256;
 
-    // No constant, which would be copied, what is not set as well.
+    // Not a constant: all of it would be copied, the uninitialised part too.
     #[inline(always)]
     fn new() -> Self {
-        Waiting { entries: [const { MaybeUninit::uninit() }; Waiting::MOST], count: 0 }
+        Stack { entries: [const { MaybeUninit::uninit() }; Stack::MOST], count: 0 }
     }
 
     #[inline(always)]
     fn put(&mut self, entry: u64) {
-        self.entries[self.count & (Waiting::MOST - 1)] = MaybeUninit::new(entry);
+        self.entries[self.count & (Stack::MOST - 1)] = MaybeUninit::new(entry);
         self.count += 1;
     }
 
-    /// Puts an entry before those from `from` on that are less.
+    /// Inserts an entry below those from index `from` on that are less.
     #[inline(always)]
     fn insert(&mut self, from: usize, entry: u64) {
-        let mut place = self.count;
-        while place > from && self.get(place - 1) < entry {
-            self.entries[place & (Waiting::MOST - 1)] = self.entries[(place - 1) & (Waiting::MOST - 1)];
-            place -= 1;
+        let mut index = self.count;
+        while index > from && self.get(index - 1) < entry {
+            self.entries[index & (Stack::MOST - 1)] = self.entries[(index - 1) & (Stack::MOST - 1)];
+            index -= 1;
         }
-        self.entries[place & (Waiting::MOST - 1)] = MaybeUninit::new(entry);
+        self.entries[index & (Stack::MOST - 1)] = MaybeUninit::new(entry);
         self.count += 1;
     }
 
     #[inline(always)]
-    fn get(&self, place: usize) -> u64 {
-        // SAFETY: a place below the count has been put.
-        unsafe { self.entries[place & (Waiting::MOST - 1)].assume_init() }
+    fn get(&self, index: usize) -> u64 {
+        // SAFETY: every index below the count has been set.
+        unsafe { self.entries[index & (Stack::MOST - 1)].assume_init() }
     }
 
-    /// The last that is entered before `limit`.
+    /// Pops the last entry whose box is entered before `limit`.
     #[inline(always)]
-    fn take(&mut self, limit: f32) -> Option<FullRef> {
+    fn take(&mut self, limit: f32) -> Option<Bvh8Ref> {
         while self.count > 0 {
             self.count -= 1;
             let entry = self.get(self.count);

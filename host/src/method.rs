@@ -2,30 +2,34 @@
 
 use eyerays_shader::data::{Features, Tuning};
 
-/// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Method {
-    /// What was measured to be fastest for the device and each kind of ray
-    #[default]
-    Auto,
-    /// Every ray by itself, one pair of boxes and one triangle at a time
-    IfIf,
-    /// Every ray by itself, pairs of boxes until it is at a leaf
-    WhileWhile,
-    /// As while-while, but on past a leaf until every ray of a subgroup has one
-    Speculative,
-    /// Every ray by itself, through nodes of eight boxes: on a GPU quantised ones (CWBVH)
-    Wide,
-    /// The rays of a subgroup together, by votes
-    Packet,
-    /// Together until a small stack is full, then each ray by itself
-    SequentialStack,
-    /// Together where enough rays want a node, the others of it in the end by themselves
-    SequentialCut,
-    /// Together until a small stack is full, each ray by itself below
-    InterleavedStack,
-    /// Together where enough rays want a node, else each ray by itself below it
-    InterleavedCut,
+use crate::choice::choices;
+
+choices! {
+    /// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Method {
+        /// What was measured to be fastest for the device and each kind of ray
+        #[default]
+        Auto = "auto",
+        /// Every ray by itself, one pair of boxes and one triangle at a time
+        IfIf = "if-if",
+        /// Every ray by itself, pairs of boxes until it is at a leaf
+        WhileWhile = "while-while",
+        /// As while-while, but on past a leaf until every ray of a subgroup has one
+        Speculative = "speculative",
+        /// Every ray by itself, through nodes of eight boxes: on a GPU quantised ones (CWBVH)
+        Wide = "wide",
+        /// The rays of a subgroup together, by votes
+        Packet = "packet",
+        /// Together until a small stack is full, then each ray by itself
+        SequentialStack = "sequential-stack",
+        /// Together where enough rays want a node, the others of it in the end by themselves
+        SequentialCut = "sequential-cut",
+        /// Together until a small stack is full, each ray by itself below
+        InterleavedStack = "interleaved-stack",
+        /// Together where enough rays want a node, else each ray by itself below it
+        InterleavedCut = "interleaved-cut",
+    }
 }
 
 impl Method {
@@ -68,50 +72,58 @@ impl Method {
     }
 }
 
-/// How a GPU's subgroups come by their rays (thesis 6.1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Scheduling {
-    /// What was measured to be fastest for the method and each kind of ray
-    #[default]
-    Auto,
-    /// A thread a ray
-    Grid,
-    /// As many threads as the GPU holds, which take new rays when they are done
-    Persistent,
+choices! {
+    /// How a GPU's subgroups come by their rays (thesis 6.1).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Scheduling {
+        /// What was measured to be fastest for the method and each kind of ray
+        #[default]
+        Auto = "auto",
+        /// A thread a ray
+        Grid = "grid",
+        /// As many threads as the GPU holds, which take new rays when they are done
+        Persistent = "persistent",
+    }
 }
 
-/// Which pixels' rays lie beside each other (thesis 6.1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Order {
-    /// Blocks of 8x4 pixels, row by row
-    #[default]
-    Tiled,
-    /// Pixels row by row
-    Linear,
-    /// Pixels along a Morton curve in squares of 64
-    Morton,
+choices! {
+    /// Which pixels' rays lie beside each other (thesis 6.1).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Order {
+        /// Blocks of 8x4 pixels, row by row
+        #[default]
+        Tiled = "tiled",
+        /// Pixels row by row
+        Linear = "linear",
+        /// Pixels along a Morton curve in squares of 64
+        Morton = "morton",
+    }
 }
 
-/// How the hierarchy and its triangles lie in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Layout {
-    /// Each triangle with its vertices, in the order of the hierarchy
-    #[default]
-    Gathered,
-    /// Three indices a triangle, and the vertices once
-    Indexed,
-    /// As gathered, and the boxes of pairs of nodes on a grid of 16 bits
-    Compact,
+choices! {
+    /// How the hierarchy and its triangles lie in memory.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Layout {
+        /// Each triangle with its vertices, in the order of the hierarchy
+        #[default]
+        Gathered = "gathered",
+        /// Three indices a triangle, and the vertices once
+        Indexed = "indexed",
+        /// As gathered, and the boxes of pairs of nodes on a grid of 16 bits
+        Compact = "compact",
+    }
 }
 
-/// How a ray is tested against a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum TriangleTest {
-    /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
-    #[default]
-    Watertight,
-    /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
-    Moller,
+choices! {
+    /// How a ray is tested against a triangle.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum TriangleTest {
+        /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
+        #[default]
+        Watertight = "watertight",
+        /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
+        Moller = "moller",
+    }
 }
 
 /// A method and its switches.

@@ -9,6 +9,6 @@ mod tile;
 
 pub use cast::{cast, cast_by, closest};
 pub use level::Level;
-pub(crate) use pool::pool;
+pub use pool::pool;
 pub use render::{Renderer, render};
 pub use tile::{Observer, Records, render_tile, render_tile_by};

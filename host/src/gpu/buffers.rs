@@ -6,7 +6,7 @@ use eyerays_shader::stage::RECORDS;
 
 use super::device::Gpu;
 use super::scene::SceneBuffers;
-use crate::error::{Error, Result};
+use crate::error::{Content, Error, Result};
 use crate::pack::Packed;
 
 /// What stands for a buffer that the scene does not need: as large as the largest record, since a kernel may be
@@ -64,22 +64,23 @@ pub(super) fn most_slots(gpu: &Gpu, packed: &Packed) -> Result<u32> {
     let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
     let most = gpu.device.limits().max_compute_workgroups_per_dimension;
     if packed.lights.len() as u64 > u64::from(most) {
-        return Err(Error::new(format!(
-            "the scene has {} lights, but \"{}\" takes at most {most}: remove some, or use --device cpu",
-            packed.lights.len(),
-            gpu.report.name
-        )));
+        return Err(Error::TooManyLights {
+            device: gpu.report.name.clone(),
+            lights: packed.lights.len(),
+            most: most.into(),
+        });
     }
     let share = Share::of(packed);
     let memory = limit.min(MOST) / share.paths.max(share.shadows).max(RECORD);
     let threads = u64::from(most) * u64::from(WORKGROUP);
     let slots = memory.min(threads).min(RAYS / (packed.lights.len() as u64).max(1)) / 32 * 32;
     if memory < 32 {
-        return Err(Error::new(format!(
-            "a block of pixels needs buffers of {} bytes, but \"{}\" has at most {limit}: lower --bounces, remove lights, or use --device cpu",
-            32 * share.paths.max(share.shadows),
-            gpu.report.name
-        )));
+        return Err(Error::TooLarge {
+            device: gpu.report.name.clone(),
+            what: Content::Block,
+            bytes: 32 * share.paths.max(share.shadows),
+            limit,
+        });
     }
     Ok(slots.max(32) as u32)
 }

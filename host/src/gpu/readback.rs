@@ -17,7 +17,10 @@ pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8
     staging.map_async(wgpu::MapMode::Read, .., |_| {});
     gpu.wait()?;
     let view = staging.get_mapped_range(..);
-    let view = view.map_err(|e| Error::new(format!("can't read from \"{}\": {e}", gpu.report.name)))?;
+    let view = view.map_err(|e| Error::DeviceFailed {
+        device: gpu.report.name.clone(),
+        message: format!("a buffer can't be read: {e}"),
+    })?;
     Ok(view.to_vec())
 }
 

@@ -5,7 +5,7 @@ use eyerays_shader::launch::binding;
 
 use super::buffers::{self, DUMMY};
 use super::device::Gpu;
-use crate::error::{Error, Result};
+use crate::error::{Content, Error, Result};
 use crate::method::Layout;
 use crate::pack::{NodeWords, Packed, TriangleWords};
 
@@ -73,11 +73,12 @@ pub(super) struct Hierarchies {
 fn upload(gpu: &Gpu, name: &str, bytes: &[u8]) -> Result<wgpu::Buffer> {
     let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
     if bytes.len() as u64 > limit {
-        return Err(Error::new(format!(
-            "the scene's {name} take {} bytes, but \"{}\" has buffers of at most {limit}: use --device cpu",
-            bytes.len(),
-            gpu.report.name
-        )));
+        return Err(Error::TooLarge {
+            device: gpu.report.name.clone(),
+            what: Content::Scene(name.to_owned()),
+            bytes: bytes.len() as u64,
+            limit,
+        });
     }
     let size = (bytes.len() as u64).max(DUMMY);
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
@@ -89,7 +90,10 @@ fn upload(gpu: &Gpu, name: &str, bytes: &[u8]) -> Result<wgpu::Buffer> {
     gpu.check()?;
     let mapped = buffer.get_mapped_range_mut(..);
     mapped
-        .map_err(|e| Error::new(format!("can't upload the {name} to \"{}\": {e}", gpu.report.name)))?
+        .map_err(|e| Error::DeviceFailed {
+            device: gpu.report.name.clone(),
+            message: format!("the {name} can't be uploaded: {e}"),
+        })?
         .slice(..bytes.len())
         .copy_from_slice(bytes);
     buffer.unmap();

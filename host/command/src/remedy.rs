@@ -56,8 +56,8 @@ mod tests {
             ),
             (
                 Error::Inexact { device: device(), by_naga: false },
-                "exact precision needs Vulkan with SPIR-V passthrough, which \"a GPU\" is without: use --precision fast \
-                 or --device cpu",
+                "exact precision needs Vulkan with SPIR-V passthrough, which \"a GPU\" is without: use --precision \
+                 fast or --device cpu",
             ),
             (
                 Error::TooLarge { device: device(), what: Content::Rays(3), bytes: 96, limit: 64 },

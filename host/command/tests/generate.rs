@@ -4,8 +4,8 @@ mod program;
 
 use std::fs;
 
-use eyerays_command::generate::Kind;
 use eyerays::{image, scene};
+use eyerays_command::generate::Kind;
 use program::Place;
 
 #[test]

@@ -80,7 +80,13 @@ struct RayOptions {
 #[command(next_help_heading = "Methods")]
 struct Ways {
     /// How rays are followed, for example packet,if-if; auto is the one that it stands for [default: all]
-    #[arg(long, value_parser = choice::<Method>(), value_delimiter = ',', hide_default_value = true, default_values_t = Method::ALL)]
+    #[arg(
+        long,
+        value_parser = choice::<Method>(),
+        value_delimiter = ',',
+        hide_default_value = true,
+        default_values_t = Method::ALL
+    )]
     methods: Vec<Method>,
     /// How a GPU's subgroups come by their rays
     #[arg(long, value_parser = choice::<Scheduling>(), value_delimiter = ',', default_values_t = [Scheduling::Auto])]
@@ -92,7 +98,13 @@ struct Ways {
     #[arg(long, value_parser = choice::<Layout>(), value_delimiter = ',', default_values_t = [Layout::Gathered])]
     layout: Vec<Layout>,
     /// How a ray is tested against a triangle; moller in fast precision only
-    #[arg(long, value_name = "TEST", value_parser = choice::<TriangleTest>(), value_delimiter = ',', default_values_t = [TriangleTest::Watertight])]
+    #[arg(
+        long,
+        value_name = "TEST",
+        value_parser = choice::<TriangleTest>(),
+        value_delimiter = ',',
+        default_values_t = [TriangleTest::Watertight]
+    )]
     triangle: Vec<TriangleTest>,
     /// Stack methods: nodes that wait when a packet parts, 1 to 63
     #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]

@@ -33,7 +33,7 @@ Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with wh
 
 /// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
-#[command(name = "eyerays", version, about, max_term_width = 100, after_help = CODES)]
+#[command(name = "eyerays", version, max_term_width = 100, after_help = CODES)]
 struct Cli {
     #[command(subcommand)]
     command: Command,

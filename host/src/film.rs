@@ -33,9 +33,7 @@ impl Film {
     pub fn new(width: u32, height: u32) -> Result<Self> {
         let count = Self::check_size(width, height)?;
         let mut pixels = Vec::new();
-        pixels.try_reserve_exact(count).map_err(|_| {
-            Error::new(format!("too little memory for an image of {width}x{height} pixels; choose a smaller size"))
-        })?;
+        pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         pixels.resize(count, [0.0; 3]);
         Ok(Film { width, height, pixels })
     }
@@ -56,18 +54,8 @@ impl Film {
     /// A side of 0 or above [`Film::MAX_SIDE`], or more than [`Film::MAX_PIXELS`] pixels.
     pub fn check_size(width: u32, height: u32) -> Result<usize> {
         let pixels = u64::from(width) * u64::from(height);
-        if pixels == 0 {
-            return Err(Error::new(format!(
-                "an image of {width}x{height} pixels is empty; both sides must be at least 1"
-            )));
-        }
-        if width.max(height) > Self::MAX_SIDE || pixels > Self::MAX_PIXELS {
-            return Err(Error::new(format!(
-                "an image of {width}x{height} pixels is too large; a side is at most {} and \
-                 all at most {} pixels",
-                Self::MAX_SIDE,
-                Self::MAX_PIXELS
-            )));
+        if pixels == 0 || width.max(height) > Self::MAX_SIDE || pixels > Self::MAX_PIXELS {
+            return Err(Error::Size { width, height });
         }
         Ok(pixels as usize)
     }

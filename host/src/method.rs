@@ -2,94 +2,75 @@
 
 use eyerays_shader::data::{Launch, Layout as LayoutBits, Order as OrderBits, Tuning};
 
-/// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Method {
-    /// What was measured to be fastest for the device and each kind of ray
-    #[default]
-    Auto,
-    /// Every ray by itself, one pair of boxes and one triangle at a time
-    IfIf,
-    /// Every ray by itself, pairs of boxes until it is at a leaf
-    WhileWhile,
-    /// As while-while, but on past a leaf until every ray of a subgroup has one
-    Speculative,
-    /// Every ray by itself, through nodes of eight boxes: on a GPU quantised ones (CWBVH)
-    Wide,
-    /// The rays of a subgroup together, by votes
-    Packet,
-    /// Together until a small stack is full, then each ray by itself
-    SequentialStack,
-    /// Together where enough rays want a node, the others of it in the end by themselves
-    SequentialCut,
-    /// Together until a small stack is full, each ray by itself below
-    InterleavedStack,
-    /// Together where enough rays want a node, else each ray by itself below it
-    InterleavedCut,
-}
+use crate::choice::choices;
 
-impl Method {
-    /// Every method but [`Method::Auto`], which is one of them.
-    pub const ALL: [Method; 9] = [
-        Method::IfIf,
-        Method::WhileWhile,
-        Method::Speculative,
-        Method::Wide,
-        Method::Packet,
-        Method::SequentialStack,
-        Method::SequentialCut,
-        Method::InterleavedStack,
-        Method::InterleavedCut,
-    ];
-
-    /// Does it vote across the lanes of a subgroup?
-    pub fn votes(self) -> bool {
-        !matches!(self, Method::IfIf | Method::WhileWhile | Method::Wide)
-    }
-
-    /// Can it go on with another ray at any step, as persistent subgroups ask?
-    pub fn is_resumable(self) -> bool {
-        !self.votes()
-    }
-
-    /// Its part of an entry point's name.
-    fn entry(self) -> &'static str {
-        match self {
-            Method::Auto | Method::IfIf => "if_if",
-            Method::WhileWhile => "while_while",
-            Method::Speculative => "speculative",
-            Method::Wide => "wide",
-            Method::Packet => "packet",
-            Method::SequentialStack => "sequential_stack",
-            Method::SequentialCut => "sequential_cut",
-            Method::InterleavedStack => "interleaved_stack",
-            Method::InterleavedCut => "interleaved_cut",
+/// Makes the enum of the shader's table of methods.
+macro_rules! methods {
+    ([] $(#[doc = $help:literal] $variant:ident $path:ident $name:literal:
+        gpu($lanes:ident, $gpu:ty), persistent($($persistent:ty)?), cpu($($cpu:tt)*);)*) => {
+        choices! {
+            /// How rays are followed (thesis chapter 6.2). Every method finds the same hits.
+            #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+            pub enum Method {
+                /// What was measured to be fastest for the device and each kind of ray
+                #[default]
+                Auto = "auto",
+                $(#[doc = $help] $variant = $name,)*
+            }
         }
+
+        impl Method {
+            /// Every method but [`Method::Auto`], which is one of them.
+            pub const ALL: &'static [Method] = &[$(Method::$variant),*];
+
+            /// Does it vote across the lanes of a subgroup?
+            pub fn votes(self) -> bool {
+                matches!(self.row().1, "subgroup")
+            }
+
+            /// Can it go on with another ray at any step, as persistent subgroups ask?
+            pub fn is_resumable(self) -> bool {
+                !self.row().2.is_empty()
+            }
+
+            /// Its part of its kernels' paths, whose lanes vote, and the type of persistent subgroups.
+            fn row(self) -> (&'static str, &'static str, &'static str) {
+                match self {
+                    Method::Auto => Method::IfIf.row(),
+                    $(Method::$variant => (stringify!($path), stringify!($lanes), stringify!($($persistent)?)),)*
+                }
+            }
+        }
+    };
+}
+eyerays_shader::for_each_method!(methods);
+
+choices! {
+    /// How a GPU's subgroups come by their rays (thesis 6.1).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Scheduling {
+        /// What was measured to be fastest for the method and each kind of ray
+        #[default]
+        Auto = "auto",
+        /// A thread a ray
+        Grid = "grid",
+        /// As many threads as the GPU holds, which take new rays when they are done
+        Persistent = "persistent",
     }
 }
 
-/// How a GPU's subgroups come by their rays (thesis 6.1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Scheduling {
-    /// What was measured to be fastest for the method and each kind of ray
-    #[default]
-    Auto,
-    /// A thread a ray
-    Grid,
-    /// As many threads as the GPU holds, which take new rays when they are done
-    Persistent,
-}
-
-/// Which pixels' rays lie beside each other (thesis 6.1).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Order {
-    /// Blocks of 8x4 pixels, row by row
-    #[default]
-    Tiled,
-    /// Pixels row by row
-    Linear,
-    /// Pixels along a Morton curve in squares of 64
-    Morton,
+choices! {
+    /// Which pixels' rays lie beside each other (thesis 6.1).
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Order {
+        /// Blocks of 8x4 pixels, row by row
+        #[default]
+        Tiled = "tiled",
+        /// Pixels row by row
+        Linear = "linear",
+        /// Pixels along a Morton curve in squares of 64
+        Morton = "morton",
+    }
 }
 
 impl Order {
@@ -103,16 +84,18 @@ impl Order {
     }
 }
 
-/// How the hierarchy and its triangles lie in memory.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Layout {
-    /// Each triangle with its vertices, in the order of the hierarchy
-    #[default]
-    Gathered,
-    /// Three indices a triangle, and the vertices once
-    Indexed,
-    /// As gathered, and the boxes of pairs of nodes on a grid of 16 bits
-    Compact,
+choices! {
+    /// How the hierarchy and its triangles lie in memory.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Layout {
+        /// Each triangle with its vertices, in the order of the hierarchy
+        #[default]
+        Gathered = "gathered",
+        /// Three indices a triangle, and the vertices once
+        Indexed = "indexed",
+        /// As gathered, and the boxes of pairs of nodes on a grid of 16 bits
+        Compact = "compact",
+    }
 }
 
 impl Layout {
@@ -126,14 +109,16 @@ impl Layout {
     }
 }
 
-/// How a ray is tested against a triangle.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum TriangleTest {
-    /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
-    #[default]
-    Watertight,
-    /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
-    Moller,
+choices! {
+    /// How a ray is tested against a triangle.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum TriangleTest {
+        /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
+        #[default]
+        Watertight = "watertight",
+        /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
+        Moller = "moller",
+    }
 }
 
 impl TriangleTest {
@@ -214,7 +199,7 @@ impl Traversal {
     /// Its part of the paths of its kernels.
     pub(crate) fn path(&self) -> String {
         let persistent = if self.scheduling == Scheduling::Persistent { "persistent::" } else { "" };
-        format!("{persistent}{}::", self.method.entry())
+        format!("{persistent}{}::", self.method.row().0)
     }
 
     /// Do its kernels vote across the lanes of a subgroup?

@@ -2,16 +2,20 @@
 
 use eyerays_bvh::Quality;
 
-/// Quality of the hierarchy: a better one takes longer to build and is faster to trace.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, clap::ValueEnum)]
-pub enum Bvh {
-    /// Soon built
-    Fast,
-    /// Between the two
-    #[default]
-    Medium,
-    /// Soon traced
-    High,
+use crate::choice::choices;
+
+choices! {
+    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Bvh {
+        /// Soon built
+        Fast = "fast",
+        /// Between the two
+        #[default]
+        Medium = "medium",
+        /// Soon traced
+        High = "high",
+    }
 }
 
 impl Bvh {

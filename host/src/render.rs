@@ -4,6 +4,7 @@ use std::time::{Duration, Instant};
 
 use eyerays_shader::real::Fast;
 
+use crate::choice::choices;
 use crate::cpu;
 use crate::error::{Error, Result};
 use crate::film::Film;
@@ -12,29 +13,34 @@ use crate::method::{Processor, Traversal};
 use crate::pack::Packed;
 use crate::rays::Rays;
 use crate::view::View;
+pub use crate::why::Why;
 
-/// How numbers are computed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum Precision {
-    /// The same picture bit for bit on every device.
-    #[default]
-    Exact,
-    /// The device's own division, root and power.
-    Fast,
-    /// Double precision on the CPU, to measure errors against.
-    Reference,
+choices! {
+    /// How numbers are computed.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Precision {
+        /// The same picture bit for bit on every device.
+        #[default]
+        Exact = "exact",
+        /// The device's own division, root and power.
+        Fast = "fast",
+        /// Double precision on the CPU, to measure errors against.
+        Reference = "reference",
+    }
 }
 
-/// Where to render.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, clap::ValueEnum)]
-pub enum DeviceWish {
-    /// A GPU when one works, else the CPU.
-    #[default]
-    Auto,
-    /// A GPU, a software one such as lavapipe too.
-    Gpu,
-    /// The CPU.
-    Cpu,
+choices! {
+    /// Where to render.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum DeviceWish {
+        /// A GPU when one works, else the CPU.
+        #[default]
+        Auto = "auto",
+        /// A GPU, a software one such as lavapipe too.
+        Gpu = "gpu",
+        /// The CPU.
+        Cpu = "cpu",
+    }
 }
 
 /// What a caller asks of devices.
@@ -64,7 +70,7 @@ enum Device {
 pub struct Chosen {
     device: Device,
     choice: Choice,
-    why: String,
+    why: Why,
     open_time: Duration,
 }
 
@@ -79,7 +85,7 @@ pub struct Rendering {
     /// Of what kind it is.
     pub processor: Processor,
     /// Why it was taken.
-    pub why: String,
+    pub why: Why,
     /// What opening the device took, compiling its kernels, uploading the scene, and making nodes that only it needs.
     pub prepare_time: Duration,
     /// Wall-clock time of a rendering, median of all of them.
@@ -115,16 +121,14 @@ impl Chosen {
     pub fn new(choice: &Choice) -> Result<Chosen> {
         let start = Instant::now();
         let chosen = |device, why| Chosen { device, choice: choice.clone(), why, open_time: start.elapsed() };
-        let cpu = |why: String| chosen(Device::Cpu, why);
+        let cpu = |why| chosen(Device::Cpu, why);
         if choice.device == DeviceWish::Cpu {
-            return Ok(cpu("--device cpu".to_owned()));
+            return Ok(cpu(Why::Asked));
         }
         if choice.precision == Precision::Reference {
             return match choice.device {
-                DeviceWish::Gpu => Err(Error::new(
-                    "reference precision is double precision on the CPU: use --device cpu, or --precision exact",
-                )),
-                _ => Ok(cpu("reference precision is the CPU's".to_owned())),
+                DeviceWish::Gpu => Err(Error::ReferenceOnGpu),
+                _ => Ok(cpu(Why::Reference)),
             };
         }
         let asked = choice.device == DeviceWish::Gpu;
@@ -136,11 +140,11 @@ impl Chosen {
         };
         match Gpu::open(&want) {
             Ok(gpu) => {
-                let why = if asked { "--device gpu" } else { "a GPU that works" }.to_owned();
+                let why = if asked { Why::Asked } else { Why::Works };
                 Ok(chosen(Device::Gpu(Box::new(gpu)), why))
             }
             Err(error) if asked || choice.adapter.is_some() => Err(error),
-            Err(error) => Ok(cpu(error.message)),
+            Err(error) => Ok(cpu(Why::Instead(error))),
         }
     }
 
@@ -189,7 +193,7 @@ impl Chosen {
         if let Device::Gpu(gpu) = &self.device {
             match self.on_gpu(gpu, scene, runs, done) {
                 Err(error) if self.choice.device == DeviceWish::Auto => {
-                    return self.on_cpu(scene, error.message, runs, done);
+                    return self.on_cpu(scene, Why::Instead(error), runs, done);
                 }
                 result => return result,
             }
@@ -239,7 +243,7 @@ impl Chosen {
     fn on_cpu(
         &self,
         (packed, view): Seen<'_>,
-        why: String,
+        why: Why,
         runs: Runs,
         done: &(dyn Fn(u64) + Sync),
     ) -> Result<Rendering> {

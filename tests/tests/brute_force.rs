@@ -5,11 +5,11 @@
 use std::path::Path;
 
 use eyerays::cpu;
-use eyerays::generate::{Files, Kind, Recipe};
 use eyerays::pack::Packed;
 use eyerays::scene;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
+use eyerays_command::generate::{Files, Kind, Recipe};
 use eyerays_tests::brute_force::{brute_force, found};
 use eyerays_tests::traversals;
 use glam::Vec3;

@@ -1,13 +1,13 @@
 //! Every kind of ray by every method gets the same answers from GPU and CPU.
 
-use eyerays::bench::Kind;
-use eyerays::bench::answers::first_difference;
-use eyerays::bench::rays::{Sight, View, diagonal};
 use eyerays::cpu;
 use eyerays::gpu::{Caster, Gpu, Want};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::pack::Packed;
 use eyerays::stream::{Answers, Question, Stream};
+use eyerays_command::bench::Kind;
+use eyerays_command::bench::answers::first_difference;
+use eyerays_command::bench::rays::{Sight, View, diagonal};
 use eyerays_tests::{SHIPPED, gpu, pack, settings, shipped, traversals};
 
 /// Rays through the middle of this many pixels.

@@ -54,7 +54,7 @@ fn a_nan_is_beyond_any_tolerance() {
 #[test]
 fn unequal_sizes_are_both_named() {
     let error = compare(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).unwrap_err();
-    assert!(error.message.contains("2x3") && error.message.contains("3x2"), "{error}");
+    assert!(error.message().contains("2x3") && error.message().contains("3x2"), "{error}");
     assert!(heat_map(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).is_err());
 }
 

@@ -21,20 +21,21 @@ pub enum Job<'a, R: Scalar> {
     Shadow(Asking<'a, R>, u32, &'a mut [u32]),
 }
 
-/// Follows the rays of slots by a method, with the instructions of an ISA.
-pub fn follow<R: Scalar>(isa: Isa, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    let follow = match method {
-        Method::Auto | Method::IfIf => alone::<R, IfIf>,
-        Method::Wide => nodes::<R>,
-        Method::WhileWhile => alone::<R, WhileWhile<Alone>>,
-        Method::Speculative => alone::<R, Speculative<Alone>>,
-        Method::Packet => together::<R, Packet<Alone>>,
-        Method::SequentialStack => plainly::<R, Hybrid<Alone, StackMax, Sequential>>,
-        Method::SequentialCut => plainly::<R, Hybrid<Alone, Cut, Sequential>>,
-        Method::InterleavedStack => plainly::<R, Hybrid<Alone, StackMax, Interleaved>>,
-        Method::InterleavedCut => plainly::<R, Hybrid<Alone, Cut, Interleaved>>,
+/// The way of a method on a CPU, from the shader's table.
+macro_rules! way {
+    ([$method:ident $R:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
+        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
+        match $method {
+            Method::Auto => alone::<$R, IfIf>,
+            $(Method::$variant => $way::<$R $(, $type)?>,)*
+        }
     };
-    follow(isa, geometry, slots, job);
+}
+
+/// Follows the rays of slots by a method, with the instructions of an [`Isa`].
+pub fn follow<R: Scalar>(isa: Isa, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    let way = eyerays_shader::for_each_method!(way method R);
+    way(isa, geometry, slots, job);
 }
 
 /// The slots of a task.

@@ -9,6 +9,6 @@ mod tile;
 
 pub use cast::{cast, cast_by, closest};
 pub use isa::Isa;
-pub(crate) use pool::pool;
+pub use pool::pool;
 pub use render::{Picture, Renderer, render};
 pub use tile::{Observer, Planned, Records};

@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 
 /// Threads to install work in; 0 is one a core.
-pub(crate) fn pool(threads: usize) -> Result<rayon::ThreadPool> {
+pub fn pool(threads: usize) -> Result<rayon::ThreadPool> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-    pool.map_err(|e| Error::new(format!("can't start {threads} threads ({e}): ask for fewer")))
+    pool.map_err(|e| Error::Threads { threads, message: e.to_string() })
 }

@@ -106,9 +106,7 @@ pub(super) fn choose(instance: &wgpu::Instance, wish: Option<&str>) -> Result<(u
     let adapters = all(instance);
     let names: Vec<String> = adapters.iter().map(|a| a.get_info().name).collect();
     if names.is_empty() {
-        return Err(Error::new(
-            "there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver, or use --device cpu",
-        ));
+        return Err(Error::NoGpu);
     }
     let index = match wish {
         None => Some(0),
@@ -117,9 +115,6 @@ pub(super) fn choose(instance: &wgpu::Instance, wish: Option<&str>) -> Result<(u
             Err(_) => names.iter().position(|n| n.to_lowercase().contains(&wish.to_lowercase())),
         },
     };
-    let index = index.ok_or_else(|| {
-        let list: Vec<String> = names.iter().enumerate().map(|(i, n)| format!("{i} \"{n}\"")).collect();
-        Error::new(format!("no adapter matches \"{}\": there is {}", wish.unwrap_or_default(), list.join(", ")))
-    })?;
+    let index = index.ok_or_else(|| Error::NoSuchAdapter { wish: wish.unwrap_or_default().to_owned(), names })?;
     Ok((index, adapters.into_iter().nth(index).expect("the index is of this list")))
 }

@@ -18,7 +18,7 @@ use super::recipe::Recipe;
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
 use super::warm::warm;
-use crate::error::{Error, Result};
+use crate::error::{Content, Error, Result};
 use crate::method::{Coherence, Layout, Traversal};
 use crate::pack::Packed;
 use crate::plan::{Stage, Step};
@@ -68,10 +68,12 @@ impl<'a> Caster<'a> {
         let count = stream.len() as u64;
         let (size, limit) = (32 * count, self.gpu.report.max_binding.min(self.gpu.report.max_buffer));
         if size > limit {
-            return Err(Error::new(format!(
-                "{count} rays take {size} bytes, but \"{}\" has buffers of at most {limit}: use a smaller --size",
-                self.gpu.report.name
-            )));
+            return Err(Error::TooLarge {
+                device: self.gpu.report.name.clone(),
+                what: Content::Rays(count),
+                bytes: size,
+                limit,
+            });
         }
         let buffers = LaunchBuffers::new(self.gpu, &RAY_BYTES, count as u32)?;
         let frame = self.packed.stream_frame(stream.len());

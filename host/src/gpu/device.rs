@@ -51,17 +51,11 @@ impl Gpu {
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
         if report.is_software() && !want.software {
-            return Err(Error::new(format!(
-                "no hardware GPU; \"{}\" is software, which --device gpu takes",
-                report.name
-            )));
+            return Err(Error::OnlySoftware { device: report.name });
         }
         let route = if report.passthrough && !want.naga { Route::Passthrough } else { Route::Naga };
         if want.exact && (route == Route::Naga || !report.exact) {
-            return Err(Error::new(format!(
-                "exact precision needs Vulkan with SPIR-V passthrough, which {} is without: use --precision fast or --device cpu",
-                if want.naga { "--no-passthrough".to_owned() } else { format!("\"{}\"", report.name) }
-            )));
+            return Err(Error::Inexact { device: report.name, by_naga: want.naga });
         }
         let mut features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
         if route == Route::Passthrough {
@@ -77,7 +71,7 @@ impl Gpu {
             trace: wgpu::Trace::Off,
         });
         let (device, queue) = pollster::block_on(request)
-            .map_err(|e| Error::new(format!("can't open \"{}\": {e}; use --device cpu", report.name)))?;
+            .map_err(|e| Error::NotOpened { device: report.name.clone(), message: e.to_string() })?;
         let fault = Arc::new(Mutex::new(None));
         let (first, lost) = (fault.clone(), fault.clone());
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&first, e.to_string())));
@@ -101,10 +95,7 @@ impl Gpu {
         if resolved.method != traversal.method && traversal.scheduling != Scheduling::Persistent {
             return Ok(Traversal { method: Method::IfIf, scheduling: Scheduling::Grid, ..traversal });
         }
-        Err(Error::new(format!(
-            "\"{}\" has no subgroups to vote in: use --method if-if --scheduling grid",
-            self.report.name
-        )))
+        Err(Error::NoSubgroups { device: self.report.name.clone() })
     }
 
     /// Which kernels it takes in a precision.
@@ -118,7 +109,7 @@ impl Gpu {
     /// That fault.
     pub fn check(&self) -> Result<()> {
         match self.fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).take() {
-            Some(fault) => Err(Error::new(format!("\"{}\" failed: {fault}; use --device cpu", self.report.name))),
+            Some(message) => Err(Error::DeviceFailed { device: self.report.name.clone(), message }),
             None => Ok(()),
         }
     }
@@ -142,7 +133,7 @@ impl Gpu {
     fn poll(&self, what: wgpu::PollType) -> Result<()> {
         let polled = self.device.poll(what);
         self.check()?;
-        polled.map(|_| ()).map_err(|e| Error::new(format!("\"{}\" failed: {e}", self.report.name)))
+        polled.map(|_| ()).map_err(|e| Error::DeviceFailed { device: self.report.name.clone(), message: e.to_string() })
     }
 }
 

@@ -92,23 +92,24 @@ impl<'a> Queue<'a> {
     }
 
     /// Waits for everything, and reads buffers.
-    pub fn read<'b>(
+    pub fn read(
         &mut self,
         counters: &wgpu::Buffer,
-        films: impl Iterator<Item = (&'b wgpu::Buffer, u64)>,
+        films: &[(&wgpu::Buffer, u64)],
     ) -> Result<Read> {
-        let mut buffers = vec![(counters, 4 * u64::from(counter::LENGTH))];
-        buffers.extend(films);
         let timer = self.timer.as_ref().filter(|_| self.passes > 0);
-        if let Some(timer) = timer {
+        let times = timer.map(|timer| {
             let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
             timer.resolve(&mut encoder, self.passes);
             self.gpu.queue.submit([encoder.finish()]);
-            buffers.push(timer.resolved(self.passes));
-        }
+            timer.resolved(self.passes)
+        });
+        let mut buffers: Vec<(&wgpu::Buffer, u64)> = vec![(counters, 4 * u64::from(counter::LENGTH))];
+        buffers.extend(films);
+        buffers.extend(times);
         let mut read = readback::read_all(self.gpu, &buffers)?;
         if let Some(timer) = timer {
-            self.time += timer.times(&read.pop().expect("the times")).into_iter().sum();
+            self.time += timer.times(&read.pop().expect("the times")).into_iter().sum::<Duration>();
             self.passes = 0;
         }
         self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
@@ -159,7 +160,7 @@ impl<'l, 'a> Launch<'l, 'a> {
     ) -> Result<Self> {
         let gpu = queue.gpu;
         if queue.passes + MOST_PASSES > PASSES && queue.has_clock() {
-            queue.read(memory.buffers.of(binding::COUNTERS), std::iter::empty())?;
+            queue.read(memory.buffers.of(binding::COUNTERS), &[])?;
         }
         gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());

@@ -6,7 +6,7 @@ use eyerays_shader::resources::{RESOURCES, binding};
 use wgpu::BufferUsages as Use;
 
 use super::device::Gpu;
-use crate::error::{Error, Result};
+use crate::error::{Content, Error, Result};
 use crate::plan::Plan;
 
 /// The most memory that one buffer of a launch takes; a larger picture is rendered in more launches.
@@ -23,21 +23,16 @@ pub(super) fn most_slots(gpu: &Gpu, plan: &Plan) -> Result<u32> {
     let most = gpu.device.limits().max_compute_workgroups_per_dimension;
     let rows = plan.shadow_rays;
     if rows > most {
-        return Err(Error::new(format!(
-            "the scene has {rows} lights, but \"{}\" takes at most {most}: remove some, or use --device cpu",
-            gpu.report.name
-        )));
+        let device = gpu.report.name.clone();
+        return Err(Error::TooManyLights { device, lights: rows as usize, most: most.into() });
     }
     let share = plan.slot_bytes.iter().map(|&(_, bytes)| bytes).max().unwrap_or(1);
     let memory = limit.min(MOST) / share;
     let threads = u64::from(most) * u64::from(WORKGROUP);
     let slots = memory.min(threads).min(RAYS / u64::from(rows).max(1)) / 32 * 32;
     if memory < 32 {
-        return Err(Error::new(format!(
-            "a block of pixels needs buffers of {} bytes, but \"{}\" has at most {limit}: lower --bounces, remove lights, or use --device cpu",
-            32 * share,
-            gpu.report.name
-        )));
+        let device = gpu.report.name.clone();
+        return Err(Error::TooLarge { device, what: Content::Block, bytes: 32 * share, limit });
     }
     Ok(slots.max(32) as u32)
 }

@@ -29,8 +29,11 @@ pub(super) fn read_all(gpu: &Gpu, buffers: &[(&wgpu::Buffer, u64)]) -> Result<Ve
     }
     gpu.wait()?;
     let view = |staging: &wgpu::Buffer| {
-        let view = staging.get_mapped_range(..);
-        Ok(view.map_err(|e| Error::new(format!("can't read from \"{}\": {e}", gpu.report.name)))?.to_vec())
+        let view = staging.get_mapped_range(..).map_err(|e| Error::DeviceFailed {
+            device: gpu.report.name.clone(),
+            message: format!("a buffer can't be read: {e}"),
+        })?;
+        Ok(view.to_vec())
     };
     stagings.iter().map(view).collect()
 }

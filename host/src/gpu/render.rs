@@ -132,7 +132,8 @@ impl<'a> Renderer<'a> {
             _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
         };
         self.picture = Some(Picture { view: *view, bands, samples: 0 });
-        self.queue.restart(self.buffers().of(binding::COUNTERS));
+        let memory = self.memory.as_ref().expect("it was reserved");
+        self.queue.restart(memory.buffers.of(binding::COUNTERS));
         Ok(())
     }
 
@@ -199,8 +200,9 @@ impl<'a> Renderer<'a> {
                 bytes <= READ
             };
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
-            let films = now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels()));
-            let mut read = self.queue.read(&counters, films)?;
+            let films: Vec<_> =
+                now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels())).collect();
+            let mut read = self.queue.read(&counters, &films)?;
             for (band, bytes) in now.iter().zip(read.films.drain(..)) {
                 let records: Vec<UVec4> = bytemuck::pod_collect_to_vec(&bytes);
                 film.develop::<f32>(band.region, &records, *samples, &mut rays);

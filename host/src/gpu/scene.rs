@@ -4,7 +4,7 @@ use eyerays_shader::data::Effects;
 use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::device::Gpu;
-use crate::error::{Error, Result};
+use crate::error::{Content, Error, Result};
 use crate::method::Layout;
 use crate::pack::{NodeWords, Packed, TriangleWords};
 use crate::plan::Plan;
@@ -79,11 +79,12 @@ impl From<&Plan> for Hierarchies {
 fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
     let (limit, name) = (gpu.report.max_binding.min(gpu.report.max_buffer), RESOURCES[binding as usize].name);
     if bytes.len() as u64 > limit {
-        return Err(Error::new(format!(
-            "the scene's {name} take {} bytes, but \"{}\" has buffers of at most {limit}: use --device cpu",
-            bytes.len(),
-            gpu.report.name
-        )));
+        return Err(Error::TooLarge {
+            device: gpu.report.name.clone(),
+            what: Content::Scene(name.to_owned()),
+            bytes: bytes.len() as u64,
+            limit,
+        });
     }
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
@@ -94,7 +95,10 @@ fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
     gpu.check()?;
     let mapped = buffer.get_mapped_range_mut(..);
     mapped
-        .map_err(|e| Error::new(format!("can't upload the {name} to \"{}\": {e}", gpu.report.name)))?
+        .map_err(|e| Error::DeviceFailed {
+            device: gpu.report.name.clone(),
+            message: format!("the {name} can't be uploaded: {e}"),
+        })?
         .slice(..bytes.len())
         .copy_from_slice(bytes);
     buffer.unmap();

@@ -14,7 +14,6 @@ use super::{BitDepth, Encoding, Format};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::math;
-use crate::output::write_error;
 
 /// Encodes a film and writes the file's bytes, at once and in order, so that any writer will do.
 ///
@@ -36,7 +35,7 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
         Format::Exr => exr::single(film, scale).map_err(|e| refused(&e))?,
         Format::Hdr => hdr(film, scale).map_err(|e| refused(&e))?,
     };
-    writer.write_all(&bytes).map_err(|e| write_error(&e))
+    writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 
 /// Every channel of every pixel, converted.

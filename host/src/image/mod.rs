@@ -17,9 +17,7 @@ use std::fmt;
 use std::path::Path;
 
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::math;
-use crate::output::Destination;
 
 pub use encode::encode;
 pub use read::{decode, read};
@@ -109,7 +107,7 @@ impl Encoding {
     /// Those of [`Encoding::scale`], and floats of 16 bits in another format than EXR.
     pub fn check(&self, format: Format) -> Result<()> {
         if self.half && format != Format::Exr {
-            return Err(Error::new(format!("--half is for .exr files, not for {format}; leave it out or write .exr")));
+            return Err(Error::NoHalf { format });
         }
         self.scale().map(drop)
     }
@@ -129,15 +127,6 @@ impl Encoding {
             )))
         }
     }
-}
-
-/// Writes a film to where it belongs, in the format that the place asks for.
-///
-/// # Errors
-/// An unknown format and those of [`encode()`] and [`Destination::write`].
-pub fn write(film: &Film, destination: &Destination, encoding: &Encoding) -> Result<()> {
-    let format = destination.format()?;
-    destination.write(|out| encode(film, format, encoding, out))
 }
 
 #[cfg(test)]

@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<Film> {
         return Err(Error::file(path, "is empty; write the image again"));
     }
     let file = File::open(path).map_err(fault)?;
-    decode(BufReader::new(file)).map_err(|error| Error { file: Some(path.to_owned()), ..error })
+    decode(BufReader::new(file)).map_err(|error| error.of(path))
 }
 
 /// Decodes a PNG, EXR or HDR file, told apart by their first bytes. A PNG's sRGB values become

@@ -64,7 +64,7 @@ mod tests {
 
     fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
         let packed = Packed::new(scene, settings, Quality::Fast);
-        packed.err().map(|error| error.message)
+        packed.err().map(|error| error.message())
     }
 
     /// What code makes is refused as what files hold is; kernels would read beyond their buffers.

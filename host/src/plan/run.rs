@@ -24,7 +24,7 @@ pub trait Executor {
 /// # Errors
 /// Those of the executor.
 pub fn run(plan: &Plan, executor: &mut impl Executor) -> Result<()> {
-    let mut all = |from: usize, steps: &[Step], executor: &mut _| -> Result<()> {
+    let all = |from: usize, steps: &[Step], executor: &mut _| -> Result<()> {
         steps.iter().zip(from..).try_for_each(|(step, index)| Executor::step(executor, index, step))
     };
     all(0, &plan.first, executor)?;

@@ -24,7 +24,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         culling: table.flag("culling")?.unwrap_or(default.culling),
     };
     let (width, height) = settings.size;
-    Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message))?;
+    Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message()))?;
     table.done()?;
     Ok(settings)
 }

@@ -141,8 +141,8 @@ mod tests {
             let mut lines = Lines::new(Path::new("a.obj"), &text[..]);
             lines.advance().unwrap();
             let error = lines.advance().unwrap_err();
-            assert_eq!(error.line, Some(2), "{error}");
-            assert!(error.message.contains("4194304 bytes"), "{error}");
+            assert_eq!(error.place().and_then(|(_, line)| line), Some(2), "{error}");
+            assert!(error.message().contains("4194304 bytes"), "{error}");
         }
     }
 

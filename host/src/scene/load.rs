@@ -82,7 +82,10 @@ fn load_toml(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
 }
 
 /// Makes something of the tables of a TOML file.
-pub(crate) fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
+///
+/// # Errors
+/// No readable TOML file, and those of `make`.
+pub fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
     make(Source::new(path, text(path, &bytes)?).parse()?)
 }

@@ -34,11 +34,10 @@ mod transform;
 mod tests;
 
 pub use frame::default_camera;
-pub use load::load;
-pub(crate) use load::read_table;
-pub(crate) use range::Range;
+pub use load::{load, read_table};
+pub use range::Range;
 pub use suggest::suggest;
-pub(crate) use table::Table;
+pub use table::Table;
 
 use eyerays_shader::data::NodeRef;
 use glam::Vec3;

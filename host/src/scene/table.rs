@@ -29,7 +29,7 @@ type Value<'s> = Spanned<DeValue<'s>>;
 
 impl<'s> Table<'s> {
     /// A table that begins at byte `at` and is called `name` in messages.
-    pub fn new(source: Source<'s>, name: impl Into<String>, at: usize, table: DeTable<'s>) -> Self {
+    pub(super) fn new(source: Source<'s>, name: impl Into<String>, at: usize, table: DeTable<'s>) -> Self {
         let mut entries: Vec<_> = table
             .into_iter()
             .map(|(key, value)| Entry { at: key.span().start, key: key.into_inner().into_owned(), value: Some(value) })

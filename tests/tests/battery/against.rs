@@ -1,8 +1,8 @@
 //! Hits against those of brute force.
 
-use eyerays::bench::rays::diagonal;
 use eyerays::pack::Packed;
 use eyerays::stream::{Stream, StreamRay};
+use eyerays_command::bench::rays::diagonal;
 use eyerays_shader::data::BOX_PADDING;
 use eyerays_shader::real::Fast;
 use eyerays_tests::brute_force::{Found, brute_force, brute_force_of, found};

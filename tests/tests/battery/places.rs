@@ -3,14 +3,14 @@
 //! The bound of t: a sheared vertex is off by less than 8 roundoffs of its distance from the origin, and a weight by
 //! as much, times how thin the triangle is; both move the hit along the plane, and the ray by as much over its cosine.
 
-use eyerays::bench::Kind;
-use eyerays::bench::rays::{Sight, View};
 use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::method::{Method, Order};
 use eyerays::pack::Packed;
 use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
+use eyerays_command::bench::Kind;
+use eyerays_command::bench::rays::{Sight, View};
 use eyerays_shader::data::Triangle;
 use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;

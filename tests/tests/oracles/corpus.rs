@@ -1,9 +1,9 @@
 //! The scenes and rays that all oracles are asked about, with fixed seeds.
 
-use eyerays::generate::{Files, Kind, Recipe};
 use eyerays::pack::{Packed, Region};
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
+use eyerays_command::generate::{Files, Kind, Recipe};
 use eyerays_shader::camera;
 use eyerays_tests::model::{add, empty, matt};
 use eyerays_tests::{SHIPPED, pack, settings, shipped};

@@ -51,10 +51,10 @@ pub fn budget(bytes: u64) -> Budget {
 
 /// Asserts where and why a file is refused.
 pub fn assert_refused(error: &Error, file: &str, line: Option<usize>, why: &str) {
-    let named = error.file.as_ref().and_then(|path| path.file_name());
-    assert_eq!(named, Some(file.as_ref()), "{error}");
-    assert_eq!(error.line, line, "{error}");
-    assert!(error.message.contains(why), "{error}, wanted: {why}");
+    let (path, of_line) = error.place().unwrap_or_else(|| panic!("no file: {error}"));
+    assert_eq!(path.file_name(), Some(file.as_ref()), "{error}");
+    assert_eq!(of_line, line, "{error}");
+    assert!(error.message().contains(why), "{error}, wanted: {why}");
 }
 
 /// One triangle.

@@ -1,0 +1,44 @@
+//! `eyerays check`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use clap::Args;
+use eyerays_bvh::Quality;
+
+use super::options::Read;
+use super::outline::Outline;
+use super::{console, plural, progress};
+use crate::error::Result;
+use eyerays::pack::Packed;
+
+#[derive(Args)]
+pub(super) struct Check {
+    /// The scene
+    scene: PathBuf,
+}
+
+impl Check {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
+        let named = |e: eyerays::error::Error| e.of(&self.scene);
+        let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Fast);
+        let mut packed = progress::stage("building", quiet, pack).map_err(named)?;
+        for camera in &scene.cameras {
+            packed.look(&scene, camera).map_err(named)?;
+        }
+        if !quiet {
+            let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
+            console::print_line(format_args!(
+                "{}: {}, {}, {}; cameras {}",
+                self.scene.display(),
+                plural(scene.mesh.triangles.len(), "triangle"),
+                plural(scene.materials.len(), "material"),
+                plural(scene.lights.len(), "light"),
+                cameras.join(", ")
+            ))?;
+            console::print(&Outline::of(&scene).to_string())?;
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

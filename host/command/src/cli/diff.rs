@@ -1,0 +1,135 @@
+//! `eyerays diff`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::slice;
+
+use clap::Args;
+use serde_json::json;
+
+use super::console;
+use super::options::{Effort, On, Read, View};
+use super::progress;
+use crate::error::{Error, Result};
+use crate::output::{self, Destination};
+use eyerays::compare::{Comparison, compare, heat_map};
+use eyerays::film::Film;
+use eyerays::image::{self, Encoding};
+use eyerays::render::{Chosen, DeviceWish, Precision, Rendering};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  eyerays diff before.png after.png -o difference.png
+  eyerays diff scenes/cornell.toml --size 256x256
+Exit code 1 tells that the pictures differ by more than the tolerance.";
+
+/// Exit code of pictures that differ.
+const DIFFERENT: u8 = 1;
+
+#[derive(Args)]
+pub(super) struct Diff {
+    /// A picture, or a scene to render on GPU and CPU
+    first: PathBuf,
+    /// The picture to compare with
+    #[arg(conflicts_with_all = [
+        "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
+        "no_passthrough", "size", "samples", "camera", "eye", "target", "fov", "bounces", "min_contribution", "cull",
+        "bvh",
+    ])]
+    second: Option<PathBuf>,
+    /// Write a heat map of the difference (black where bits are equal)
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<std::ffi::OsString>,
+    /// The largest absolute difference of a channel that still counts as the same
+    #[arg(long, value_name = "X", default_value_t = 0.0)]
+    tolerance: f32,
+    /// Print the comparison as JSON to standard output
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    on: On,
+    #[command(flatten)]
+    view: View,
+    #[command(flatten)]
+    effort: Effort,
+}
+
+fn has_extension(file: &Path, names: &[&str]) -> bool {
+    file.extension().is_some_and(|e| names.iter().any(|name| e.eq_ignore_ascii_case(name)))
+}
+
+impl Diff {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
+            return Err(Error::new(format!("--tolerance {} is no finite number from 0 up", self.tolerance)));
+        }
+        let heat = self.output.clone().map(Destination::from);
+        if let Some(destination) = &heat {
+            super::one_on_stdout(self.json, destination)?;
+            destination.format()?;
+            output::check_apart(slice::from_ref(destination), self.second.iter().chain([&self.first]))?;
+            output::check_writable(destination)?;
+        }
+        let (a, b, names) = match &self.second {
+            Some(second) => self.pictures(second)?,
+            None => self.renderings(heat.as_slice(), quiet)?,
+        };
+        let comparison = compare(&a, &b)?;
+        if let Some(destination) = &heat {
+            output::write_picture(&heat_map(&a, &b)?, destination, &Encoding::default())?;
+        }
+        self.report(&comparison, &names, quiet)?;
+        let differs = comparison.exceeds(self.tolerance);
+        Ok(if differs { ExitCode::from(DIFFERENT) } else { ExitCode::SUCCESS })
+    }
+
+    fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
+        for file in [&self.first, second] {
+            if has_extension(file, &["toml", "obj"]) {
+                return Err(Error::file(
+                    file,
+                    "a scene is compared alone, from GPU and CPU; render two to compare them",
+                ));
+            }
+        }
+        let names = [&self.first, second].map(|path| path.display().to_string());
+        Ok((image::read(&self.first)?, image::read(second)?, names))
+    }
+
+    /// The unquantised films of a scene from GPU and CPU.
+    fn renderings(&self, outputs: &[Destination], quiet: bool) -> Result<(Film, Film, [String; 2])> {
+        if has_extension(&self.first, &["png", "exr", "hdr"]) {
+            return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
+        }
+        if self.on.precision() == Precision::Reference {
+            return Err(Error::new("reference precision is the CPU's alone: there is no GPU to compare with"));
+        }
+        let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
+        let cpu_choice = eyerays::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
+        let read = Read::scene(&self.first, outputs, quiet)?;
+        let loaded = self.view.pack(read, &self.effort, gpu_choice.threads, quiet)?;
+        let (width, height) = loaded.packed.settings.size;
+        let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);
+        let render = |choice| -> Result<Rendering> {
+            Ok(Chosen::new(choice)?.render(&loaded.packed, 1, &|pixels| progress.inc(pixels))?)
+        };
+        let renderings = render(&gpu_choice).and_then(|gpu| Ok((gpu, render(&cpu_choice)?)));
+        progress.finish_and_clear();
+        let (gpu, cpu) = renderings?;
+        if gpu.rays != cpu.rays {
+            super::warn(&[format!("the GPU counted {:?}, the CPU {:?}", gpu.rays, cpu.rays)], quiet);
+        }
+        Ok((gpu.film, cpu.film, [gpu.device, cpu.device]))
+    }
+
+    fn report(&self, comparison: &Comparison, names: &[String; 2], quiet: bool) -> Result<()> {
+        if self.json {
+            return console::print_json(&json!({ "first": names[0], "second": names[1], "comparison": comparison }));
+        }
+        if quiet {
+            return Ok(());
+        }
+        console::print_line(format_args!("{} against {}", names[0], names[1]))?;
+        console::print(&comparison.to_string())
+    }
+}

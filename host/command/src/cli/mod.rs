@@ -1,0 +1,134 @@
+//! The command line.
+
+mod bench;
+mod check;
+mod choice;
+mod console;
+mod diff;
+mod generate;
+mod info;
+mod options;
+mod outline;
+mod progress;
+mod render;
+#[cfg(unix)]
+mod signals;
+mod summary;
+mod tradeoff;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+
+use crate::error::{Error, Result};
+use crate::output::Destination;
+
+/// Exit code of a command that failed on what it was given.
+const BAD_INPUT: u8 = 2;
+
+const CODES: &str = "\
+Pictures and tables go to files and standard output, summaries and messages to standard error.
+Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given,
+128 and the signal's number where one ended it.";
+
+/// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
+#[derive(Parser)]
+#[command(name = "eyerays", version, max_term_width = 100, after_help = CODES)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say nothing but errors
+    #[arg(short, long, global = true)]
+    quiet: bool,
+    /// Say more: warnings of drivers; twice for debugging
+    #[arg(short, long, global = true, action = clap::ArgAction::Count, conflicts_with = "quiet")]
+    verbose: u8,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Render a scene to a picture
+    #[command(after_help = render::EXAMPLES, allow_negative_numbers = true)]
+    Render(Box<render::Render>),
+    /// Compare two pictures, or a scene's pictures from GPU and CPU
+    #[command(after_help = diff::EXAMPLES, allow_negative_numbers = true)]
+    Diff(Box<diff::Diff>),
+    /// Measure every method, kind of rays and device, as tables
+    #[command(after_help = bench::EXAMPLES)]
+    Bench(Box<bench::Bench>),
+    /// Measure what speed costs a scene's picture, and recommend a setting
+    #[command(after_help = tradeoff::EXAMPLES, allow_negative_numbers = true)]
+    Tradeoff(Box<tradeoff::Tradeoff>),
+    /// List the GPUs of this machine, or tell a scene's figures
+    Info(info::Info),
+    /// Validate a scene and render nothing
+    Check(check::Check),
+    /// Make a scene of any number of triangles to measure with
+    #[command(after_help = generate::EXAMPLES)]
+    Generate(generate::Generate),
+}
+
+/// Runs the command line of this process.
+pub fn run() -> ExitCode {
+    let outcome = Cli::try_parse().map_or_else(|said| explain(&said), execute);
+    outcome.unwrap_or_else(|error| {
+        console::say(format_args!("error: {error}"));
+        ExitCode::from(BAD_INPUT)
+    })
+}
+
+/// Prints the help or version that was asked for, or says what is wrong with the command line.
+fn explain(said: &clap::Error) -> Result<ExitCode> {
+    if said.use_stderr() {
+        console::say_text(&said.render().to_string());
+        return Ok(ExitCode::from(BAD_INPUT));
+    }
+    // In color, which only clap knows how to print.
+    console::printed(said.print())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn execute(cli: Cli) -> Result<ExitCode> {
+    log(cli.verbose);
+    #[cfg(unix)]
+    signals::watch()
+        .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;
+    match cli.command {
+        Command::Render(command) => command.run(cli.quiet),
+        Command::Diff(command) => command.run(cli.quiet),
+        Command::Bench(command) => command.run(cli.quiet),
+        Command::Tradeoff(command) => command.run(cli.quiet),
+        Command::Info(command) => command.run(cli.quiet),
+        Command::Check(command) => command.run(cli.quiet),
+        Command::Generate(command) => command.run(cli.quiet),
+    }
+}
+
+fn log(verbose: u8) {
+    let level = ["off", "warn", "debug"][usize::from(verbose).min(2)];
+    let filter = tracing_subscriber::EnvFilter::try_from_default_env();
+    let filter = filter.unwrap_or_else(|_| tracing_subscriber::EnvFilter::new(level));
+    let log = tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).without_time();
+    // It would tell standard error that standard error failed, and panic.
+    log.log_internal_errors(false).init();
+}
+
+/// Warnings of a scene, each on its line.
+fn warn(warnings: &[String], quiet: bool) {
+    for warning in warnings.iter().filter(|_| !quiet) {
+        console::say(format_args!("warning: {warning}"));
+    }
+}
+
+/// A count with its noun.
+fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Standard output is for the JSON or for a picture.
+fn one_on_stdout(json: bool, picture: &Destination) -> Result<()> {
+    if json && matches!(picture, Destination::Stdout) {
+        return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
+    }
+    Ok(())
+}

@@ -1,0 +1,302 @@
+//! What the commands that render share.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use eyerays_bvh::Quality;
+use eyerays_shader::data::Tuning;
+use glam::Vec3;
+
+use super::choice::choice;
+use super::progress;
+use crate::error::{Error, Result, within};
+use crate::output::{self, Destination};
+use crate::preset::Preset;
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
+use eyerays::pack::Packed;
+use eyerays::quality::Bvh;
+use eyerays::render::{Choice, DeviceWish, Precision};
+use eyerays::scene::{self, Camera, Scene, Settings};
+
+/// The most threads.
+const MOST_THREADS: usize = 1024;
+
+/// The scene and how to see it.
+#[derive(Args)]
+#[command(next_help_heading = "View")]
+pub(super) struct View {
+    /// Image width and height in pixels, for example 1920x1080 [default: the scene's]
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    /// One of the scene's cameras, by name or number from 0 [default: the first]
+    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "eye")]
+    camera: Option<String>,
+    /// Look from here instead, in the scene's units
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "target", allow_hyphen_values = true)]
+    eye: Option<Vec3>,
+    /// Look there
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "eye", allow_hyphen_values = true)]
+    target: Option<Vec3>,
+    /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
+    #[arg(long, value_name = "D")]
+    fov: Option<f32>,
+    /// Skip opaque triangles seen from behind [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    cull: Option<bool>,
+}
+
+/// How much work a picture is worth.
+#[derive(Args, Clone, Copy, Default)]
+#[command(next_help_heading = "View")]
+pub(super) struct Effort {
+    /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
+    #[arg(long, value_name = "N")]
+    samples: Option<u32>,
+    /// How often a ray is reflected or refracted at most [default: the scene's]
+    #[arg(long, value_name = "N")]
+    bounces: Option<u32>,
+    /// Least share of its pixel that a ray is followed for [default: the scene's]
+    #[arg(long, value_name = "SHARE")]
+    min_contribution: Option<f32>,
+    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: medium]
+    #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>())]
+    bvh: Option<Bvh>,
+}
+
+impl Effort {
+    /// With a settings file below the command line.
+    pub fn over(self, file: &Preset) -> Effort {
+        Effort {
+            samples: self.samples.or(file.samples),
+            bounces: self.bounces.or(file.bounces),
+            min_contribution: self.min_contribution.or(file.min_contribution),
+            bvh: self.bvh.or(file.bvh),
+        }
+    }
+
+    fn quality(&self) -> Quality {
+        self.bvh.unwrap_or_default().quality()
+    }
+}
+
+/// Which device, and its arithmetic.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Device")]
+pub(super) struct On {
+    /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
+    /// [default: exact]
+    #[arg(long, value_parser = choice::<Precision>())]
+    precision: Option<Precision>,
+    /// How rays are followed; every method gives the same picture [default: auto]
+    #[arg(long, value_parser = choice::<Method>())]
+    method: Option<Method>,
+    /// Stack methods: nodes that wait when a packet parts, 1 to 63
+    #[arg(long, value_name = "N", default_value_t = Tuning::default().stack_max())]
+    pub stack_max: u32,
+    /// Cut methods: percent of a packet that must want a node for it to stay together
+    #[arg(long, value_name = "PERCENT", default_value_t = Tuning::default().cut())]
+    pub cut: u32,
+    /// How a GPU's subgroups come by their rays: if-if, while-while and wide can do both
+    #[arg(long, value_parser = choice::<Scheduling>(), default_value_t = Scheduling::Auto)]
+    pub scheduling: Scheduling,
+    /// Which pixels' rays lie beside each other
+    #[arg(long, value_parser = choice::<Order>(), default_value_t = Order::Tiled)]
+    pub order: Order,
+    /// How the hierarchy and its triangles lie in memory [default: gathered]
+    #[arg(long, value_parser = choice::<Layout>())]
+    layout: Option<Layout>,
+    /// How a ray is tested against a triangle; moller in fast precision only [default: watertight]
+    #[arg(long, value_name = "TEST", value_parser = choice::<TriangleTest>())]
+    triangle: Option<TriangleTest>,
+    /// A GPU by its number or a part of its name, as `eyerays info` lists them
+    #[arg(long, value_name = "NAME|INDEX")]
+    pub adapter: Option<String>,
+    /// CPU threads [default: one a core]
+    #[arg(long, value_name = "N")]
+    pub threads: Option<usize>,
+    /// Translate the kernels through naga, as where SPIR-V passthrough is missing (fast only)
+    #[arg(long)]
+    pub no_passthrough: bool,
+}
+
+/// A scene that was read, from which file, and what that took.
+pub(super) struct Read<'a> {
+    pub path: &'a Path,
+    pub scene: Scene,
+    pub time: Duration,
+}
+
+impl<'a> Read<'a> {
+    /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
+    pub fn scene(path: &'a Path, outputs: &[Destination], quiet: bool) -> Result<Self> {
+        let start = Instant::now();
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
+        let time = start.elapsed();
+        super::warn(&warnings, quiet);
+        output::check_apart(outputs, &scene.files)?;
+        Ok(Read { path, scene, time })
+    }
+}
+
+/// A scene, packed, and what that took.
+pub(super) struct Loaded {
+    pub packed: Packed,
+    pub read_time: Duration,
+    pub build_time: Duration,
+}
+
+impl View {
+    /// Was a size asked for?
+    pub fn has_size(&self) -> bool {
+        self.size.is_some()
+    }
+
+    /// Packs a scene for these options with `threads` threads (0: one a core).
+    pub fn pack(&self, read: Read<'_>, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
+        let Read { path, scene, time: read_time } = read;
+        let settings = self.settings(&scene, effort)?;
+        let camera = self.camera(&scene).map_err(|e| e.of(path))?;
+        let threads = cpu::pool(threads)?;
+        let pack = || threads.install(|| Packed::new(&scene, &camera, settings, effort.quality()));
+        let start = Instant::now();
+        let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
+        Ok(Loaded { packed, read_time, build_time: start.elapsed() })
+    }
+
+    /// The scene's settings with the command line's over them.
+    pub fn settings(&self, scene: &Scene, effort: &Effort) -> Result<Settings> {
+        let own = scene.settings;
+        let settings = Settings {
+            size: self.size.unwrap_or(own.size),
+            samples: effort.samples.unwrap_or(own.samples),
+            bounces: effort.bounces.unwrap_or(own.bounces),
+            min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
+            culling: self.cull.unwrap_or(own.culling),
+        };
+        Film::check_size(settings.size.0, settings.size.1)?;
+        within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
+        within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
+        within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;
+        Ok(settings)
+    }
+
+    /// The camera that was asked for.
+    pub fn camera(&self, scene: &Scene) -> Result<Camera> {
+        let mut camera = match (&self.camera, self.eye, self.target) {
+            (_, Some(eye), Some(target)) => {
+                let up = if (target - eye).cross(Vec3::Y).length() == 0.0 { Vec3::Z } else { Vec3::Y };
+                Camera { name: "--eye".to_owned(), eye, target, up, fov: 60.0 }
+            }
+            (Some(wish), ..) => pick(&scene.cameras, wish)?.clone(),
+            _ => scene.cameras[0].clone(),
+        };
+        if camera.eye == camera.target {
+            return Err(Error::new("--eye and --target are the same point: the camera looks at itself; move one"));
+        }
+        if let Some(fov) = self.fov {
+            if !(fov > 0.0 && fov < 180.0) {
+                return Err(Error::new(format!("--fov {fov} is not between 0 and 180 degrees")));
+            }
+            camera.fov = fov;
+        }
+        Ok(camera)
+    }
+}
+
+impl On {
+    /// With a settings file below the command line, whose precision also undoes the file's triangle test: exact
+    /// precision has only one.
+    pub fn over(&self, file: &Preset) -> On {
+        let triangle = file.triangle.filter(|_| self.precision.is_none_or(|own| Some(own) == file.precision));
+        On {
+            precision: self.precision.or(file.precision),
+            method: self.method.or(file.method),
+            layout: self.layout.or(file.layout),
+            triangle: self.triangle.or(triangle),
+            ..self.clone()
+        }
+    }
+
+    /// How numbers are computed.
+    pub fn precision(&self) -> Precision {
+        self.precision.unwrap_or_default()
+    }
+
+    /// The choice of devices these options make.
+    pub fn choice(&self, device: DeviceWish) -> Result<Choice> {
+        let (threads, precision) = (threads(self.threads)?, self.precision());
+        let triangle = self.triangle.unwrap_or_default();
+        if self.no_passthrough && precision != Precision::Fast {
+            return Err(Error::new("--no-passthrough can't keep exact arithmetic: add --precision fast"));
+        }
+        if device == DeviceWish::Cpu && (self.adapter.is_some() || self.no_passthrough) {
+            return Err(Error::new("--adapter and --no-passthrough are for GPUs: drop them, or --device cpu"));
+        }
+        check_tests(&[triangle], precision == Precision::Fast)?;
+        let method = self.method.unwrap_or_default();
+        if self.scheduling == Scheduling::Persistent && method != Method::Auto && !method.is_resumable() {
+            let message = "--scheduling persistent is for if-if, while-while and wide: choose one of them, or drop it";
+            return Err(Error::new(message));
+        }
+        let traversal = Traversal {
+            method,
+            tuning: tuning(self.stack_max, self.cut)?,
+            scheduling: self.scheduling,
+            order: self.order,
+            layout: self.layout.unwrap_or_default(),
+            triangle,
+        };
+        let adapter = self.adapter.clone();
+        Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
+    }
+}
+
+/// `--threads`; 0 is one a core.
+pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
+    within("--threads", wish.as_slice(), 1..=MOST_THREADS)?;
+    Ok(wish.unwrap_or(0))
+}
+
+/// `--triangle`.
+pub(super) fn check_tests(tests: &[TriangleTest], fast: bool) -> Result<()> {
+    if tests.contains(&TriangleTest::Moller) && !fast {
+        return Err(Error::new("--triangle moller is for fast precision: add --precision fast, or drop it"));
+    }
+    Ok(())
+}
+
+/// `--stack-max` and `--cut`.
+pub(super) fn tuning(stack_max: u32, cut: u32) -> Result<Tuning> {
+    within("--stack-max", &[stack_max], 1..=63)?;
+    within("--cut", &[cut], 0..=100)?;
+    Ok(Tuning::new(stack_max, cut))
+}
+
+/// The camera with this name, or this number.
+pub(super) fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
+    let named = cameras.iter().find(|c| c.name == wish);
+    let numbered = || wish.parse::<usize>().ok().and_then(|i| cameras.get(i));
+    named.or_else(numbered).ok_or_else(|| {
+        let list: Vec<String> = cameras.iter().enumerate().map(|(i, c)| format!("{i} \"{}\"", c.name)).collect();
+        Error::new(format!("no camera is \"{wish}\": the scene has {}", list.join(", ")))
+    })
+}
+
+/// `WxH`.
+pub(super) fn size(text: &str) -> std::result::Result<(u32, u32), String> {
+    let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    parts.ok_or_else(|| "write a width and a height in pixels, for example 640x480".to_owned())
+}
+
+/// `X,Y,Z`.
+fn vector(text: &str) -> std::result::Result<Vec3, String> {
+    let parts: Option<Vec<f32>> =
+        text.split(',').map(|p| p.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
+    match parts.as_deref() {
+        Some([x, y, z]) => Ok(Vec3::new(*x, *y, *z)),
+        _ => Err("write three finite numbers, for example 1,2.5,-3".to_owned()),
+    }
+}

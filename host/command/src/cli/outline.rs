@@ -1,0 +1,64 @@
+//! Where the meshes of a scene lie: by these figures its author places cameras, lights and further meshes.
+
+use std::fmt;
+
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use super::plural;
+use crate::error::printable;
+use eyerays::scene::{Camera, Scene, default_camera};
+
+/// The most meshes that are told one by one as text.
+const MOST_MESHES: usize = 50;
+
+/// The bounds of a scene and of each of its meshes in world units, and the camera it would have if it named none.
+pub(super) struct Outline<'a> {
+    scene: &'a Scene,
+    camera: Option<Camera>,
+}
+
+impl<'a> Outline<'a> {
+    /// The outline of a scene, whose default camera fits its image.
+    pub fn of(scene: &'a Scene) -> Self {
+        let (width, height) = scene.settings.size;
+        Outline { scene, camera: default_camera(&scene.mesh, f64::from(width) / f64::from(height)) }
+    }
+
+    pub fn json(&self) -> Value {
+        let bounds = |[least, greatest]: [Vec3; 2]| json!([least.to_array(), greatest.to_array()]);
+        let meshes =
+            self.scene.parts.iter().map(
+                |part| json!({ "name": part.name, "triangles": part.triangles.len(), "bounds": bounds(part.bounds) }),
+            );
+        let camera = self.camera.as_ref().map(
+            |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.fov }),
+        );
+        json!({
+            "bounds": bounds(self.scene.mesh.bounds()),
+            "default_camera": camera,
+            "meshes": meshes.collect::<Vec<_>>(),
+        })
+    }
+}
+
+impl fmt::Display for Outline<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let range = |[least, greatest]: [Vec3; 2]| format!("{:?} to {:?}", least.to_array(), greatest.to_array());
+        writeln!(out, "bounds: {}", range(self.scene.mesh.bounds()))?;
+        if let Some(Camera { eye, target, fov, .. }) = &self.camera {
+            let (eye, target) = (eye.to_array(), target.to_array());
+            writeln!(out, "default camera: eye = {eye:?}, target = {target:?}, fov = {fov:?}")?;
+        }
+        let parts = &self.scene.parts;
+        for (number, part) in parts.iter().enumerate().take(MOST_MESHES) {
+            let triangles = plural(part.triangles.len(), "triangle");
+            let name = printable(&part.name);
+            writeln!(out, "mesh {}: {name}, {triangles}, {}", number + 1, range(part.bounds))?;
+        }
+        match parts.len().saturating_sub(MOST_MESHES) {
+            0 => Ok(()),
+            more => writeln!(out, "and {more} more, which eyerays info --json has"),
+        }
+    }
+}

@@ -1,0 +1,103 @@
+//! `eyerays render`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::slice;
+use std::time::Instant;
+
+use clap::Args;
+
+use super::choice::choice;
+use super::console;
+use super::options::{Effort, On, Read, View};
+use super::progress;
+use super::summary::{Summary, Times};
+use crate::error::Result;
+use crate::output::{self, Destination};
+use crate::preset::Preset;
+use eyerays::image::{BitDepth, Encoding};
+use eyerays::render::{Chosen, DeviceWish};
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  eyerays render scenes/cornell.toml -o cornell.png
+  eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
+  eyerays render scenes/whitted.toml -o - > whitted.png
+  eyerays render scenes/cornell.toml --settings fast.toml";
+
+#[derive(Args)]
+pub(super) struct Render {
+    /// A scene (.toml), or a bare mesh (.obj) that is framed and lit as it is
+    scene: PathBuf,
+    /// The picture, .png, .exr or .hdr; - writes PNG to standard output [default: SCENE.png here]
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<std::ffi::OsString>,
+    /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
+    #[arg(long, value_name = "FILE")]
+    settings: Option<PathBuf>,
+    /// Where to render [default: auto]
+    #[arg(long, value_parser = choice::<DeviceWish>())]
+    device: Option<DeviceWish>,
+    /// Brighten the picture by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    exposure: f32,
+    /// Bits a channel of a PNG: 8 or 16
+    #[arg(long, value_name = "BITS", default_value_t = 8)]
+    bits: u32,
+    /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
+    #[arg(long)]
+    half: bool,
+    /// Render this many times and tell the median time
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    repeat: u32,
+    /// Print the summary as JSON to standard output
+    #[arg(long)]
+    json: bool,
+    #[command(flatten)]
+    on: On,
+    #[command(flatten)]
+    view: View,
+    #[command(flatten)]
+    effort: Effort,
+}
+
+impl Render {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let destination = match &self.output {
+            Some(name) => Destination::from(name.clone()),
+            None => Destination::from(default_output(&self.scene).as_path()),
+        };
+        super::one_on_stdout(self.json, &destination)?;
+        let bits = BitDepth::from_bits(self.bits)?;
+        let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half };
+        encoding.check(destination.format()?)?;
+        let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
+        let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
+        output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
+        output::check_writable(&destination)?;
+        let read = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
+        let loaded = self.view.pack(read, &self.effort.over(&preset), choice.threads, quiet)?;
+        let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
+        let (width, height) = loaded.packed.settings.size;
+        let progress =
+            progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
+        let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
+        progress.finish_and_clear();
+        let rendering = rendering.map_err(|e| e.of(&self.scene))?;
+        let start = Instant::now();
+        progress::stage("writing", quiet, || output::write_picture(&rendering.film, &destination, &encoding))?;
+        let times = Times::new(&loaded, &rendering, start.elapsed());
+        let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
+        if self.json {
+            console::print_json(&summary.json())?;
+        } else if !quiet {
+            console::say(summary);
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}
+
+/// The scene's name with another ending, in the current folder.
+fn default_output(scene: &Path) -> PathBuf {
+    PathBuf::from(scene.file_stem().unwrap_or("eyerays".as_ref())).with_extension("png")
+}

@@ -1,0 +1,5 @@
+//! The command `eyerays`.
+
+fn main() -> std::process::ExitCode {
+    eyerays_command::cli::run()
+}

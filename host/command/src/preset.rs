@@ -1,0 +1,102 @@
+//! Settings files: what a measurement recommended, kept for renderings to come.
+
+use std::path::Path;
+
+use eyerays::choice::Named;
+use serde::{Serialize, Serializer};
+
+use crate::error::Result;
+use eyerays::method::{Layout, Method, TriangleTest};
+use eyerays::quality::Bvh;
+use eyerays::render::{DeviceWish, Precision};
+use eyerays::scene::{Range, Settings, Table, read_table};
+
+/// What a settings file says; its keys are the names of options of `eyerays render`, with `_` for `-`. What it
+/// does not say is left to the command line and the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Preset {
+    /// Where to render.
+    #[serde(serialize_with = "wish")]
+    pub device: Option<DeviceWish>,
+    /// How numbers are computed.
+    #[serde(serialize_with = "wish")]
+    pub precision: Option<Precision>,
+    /// How a ray is tested against a triangle.
+    #[serde(serialize_with = "wish")]
+    pub triangle: Option<TriangleTest>,
+    /// How rays are followed.
+    #[serde(serialize_with = "wish")]
+    pub method: Option<Method>,
+    /// How the hierarchy and its triangles lie in memory.
+    #[serde(serialize_with = "wish")]
+    pub layout: Option<Layout>,
+    /// Quality of the hierarchy.
+    #[serde(serialize_with = "wish")]
+    pub bvh: Option<Bvh>,
+    /// Samples along a pixel's edge.
+    pub samples: Option<u32>,
+    /// The most times a ray is followed on.
+    pub bounces: Option<u32>,
+    /// A ray whose every weight is less is not followed.
+    pub min_contribution: Option<f32>,
+}
+
+impl Preset {
+    /// Reads a settings file.
+    ///
+    /// # Errors
+    /// No readable TOML file, an unknown key or value, a number out of range, or a triangle test that the
+    /// precision has not: one line that names file, line and remedy.
+    pub fn read(path: &Path) -> Result<Preset> {
+        Ok(read_table(path, Self::of)?)
+    }
+
+    fn of(mut table: Table) -> eyerays::error::Result<Preset> {
+        let preset = Preset {
+            device: word(&mut table, "device")?,
+            precision: word(&mut table, "precision")?,
+            triangle: word(&mut table, "triangle")?,
+            method: word(&mut table, "method")?,
+            layout: word(&mut table, "layout")?,
+            bvh: word(&mut table, "bvh")?,
+            samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
+            bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,
+            min_contribution: table.number("min_contribution", Range::SHARE)?,
+        };
+        if preset.triangle == Some(TriangleTest::Moller) && preset.precision != Some(Precision::Fast) {
+            let fault = "triangle \"moller\" is for fast precision; add precision = \"fast\" or remove it";
+            return Err(table.fault_of("triangle", fault));
+        }
+        table.done()?;
+        Ok(preset)
+    }
+
+    /// The text of a settings file, below a comment.
+    pub fn text(&self, comment: &str) -> String {
+        let keys = toml::to_string(self).expect("every field is a plain value");
+        format!("# {}\n{keys}", comment.replace(char::is_control, " "))
+    }
+}
+
+/// A choice as the command line and files spell it.
+pub fn name<T: Named>(value: T) -> String {
+    value.name().to_owned()
+}
+
+/// A choice by its name.
+fn word<T: Named>(table: &mut Table, key: &'static str) -> eyerays::error::Result<Option<T>> {
+    let words: Vec<(&str, T)> = T::VARIANTS.iter().map(|&value| (value.name(), value)).collect();
+    table.word(key, &words)
+}
+
+/// Writes a choice by its name.
+pub(crate) fn named<T: Named, S: Serializer>(value: &T, out: S) -> std::result::Result<S::Ok, S::Error> {
+    out.serialize_str(&name(*value))
+}
+
+fn wish<T: Named, S: Serializer>(value: &Option<T>, out: S) -> std::result::Result<S::Ok, S::Error> {
+    match value {
+        Some(value) => named(value, out),
+        None => out.serialize_none(),
+    }
+}

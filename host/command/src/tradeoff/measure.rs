@@ -1,0 +1,228 @@
+//! Times and errors of settings.
+
+use std::path::PathBuf;
+
+use super::hits::{HitErrors, Primary};
+use super::record::mark;
+use super::{Axes, Record, Report, Setting, Wish, recommended, search};
+use crate::bench::{Timing, cpu_model};
+use crate::error::{Error, Result};
+use crate::remedy;
+use eyerays::compare::compare;
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::method::{Processor, Traversal};
+use eyerays::pack::Packed;
+use eyerays::quality::Bvh;
+use eyerays::render::Chosen;
+use eyerays::scene::{Camera, Scene, Settings};
+
+/// What is measured, and how thoroughly.
+#[derive(Debug, Clone)]
+pub struct Plan {
+    /// The values that are tried.
+    pub axes: Axes,
+    /// How often a picture is rendered after a warm-up.
+    pub repeat: u32,
+    /// The most settings.
+    pub trials: usize,
+    /// What is to be recommended.
+    pub wish: Option<Wish>,
+}
+
+/// A scene as it is seen.
+pub struct Subject {
+    /// As tables call it.
+    pub name: String,
+    /// Where it came from, for errors.
+    pub file: PathBuf,
+    /// The scene.
+    pub scene: Scene,
+    /// Where it is seen from.
+    pub camera: Camera,
+    /// Its own settings, in the size that is measured.
+    pub settings: Settings,
+}
+
+/// The most steps that [`run`] reports.
+pub fn steps(plan: &Plan) -> usize {
+    plan.axes.samples.len() + plan.trials
+}
+
+/// Renders a scene with settings of a plan, as [`search`] chooses them, on a device, and compares each picture with
+/// one in double precision. `begins` is called with every step.
+///
+/// # Errors
+/// A scene that can't be packed, or the base, which all is compared with, fails on the device. Other settings that
+/// fail are left out with a note.
+pub fn run(plan: &Plan, subject: &Subject, device: Chosen, begins: &dyn Fn(&str)) -> Result<Report> {
+    let base = plan.axes.base(Setting::of(&subject.settings));
+    let mut judge = Judge::new(plan, subject, device, begins).map_err(|error| error.of(&subject.file))?;
+    let (mut records, stopped) = search(&plan.axes, base, plan.trials, &mut |setting| {
+        begins(&setting.beside(&base));
+        judge.tried(setting)
+    })
+    .map_err(|error| error.of(&subject.file))?;
+    mark(&mut records);
+    if let Some(best) = plan.wish.and_then(|wish| recommended(&records, wish)) {
+        records[best].recommended = true;
+    }
+    let mut notes = judge.notes;
+    if stopped {
+        let note = format!("stopped after {} settings, the front may not be whole: raise --trials", plan.trials);
+        notes.push(note);
+    }
+    let setup = setup(plan, subject, &judge.place);
+    Ok(Report { scene: subject.name.clone(), setup, base, records, notes })
+}
+
+/// Where pictures were rendered, and by which clock.
+struct Place {
+    processor: Processor,
+    device: String,
+    clock: &'static str,
+}
+
+/// What settings are measured by.
+struct Judge<'a> {
+    plan: &'a Plan,
+    subject: &'a Subject,
+    device: Chosen,
+    packed: Packed,
+    bvh: Bvh,
+    primary: Primary,
+    /// By samples along a pixel's edge.
+    references: Vec<(u32, Film)>,
+    /// By settings that lead to the same hits.
+    hits: Vec<(Setting, HitErrors)>,
+    /// Of the first setting; one that runs elsewhere is left out.
+    place: Option<Place>,
+    notes: Vec<String>,
+}
+
+impl<'a> Judge<'a> {
+    fn new(plan: &'a Plan, subject: &'a Subject, device: Chosen, begins: &dyn Fn(&str)) -> Result<Self> {
+        let best = plan.axes.reference(subject.settings);
+        let (bvh, threads) = (Bvh::default(), device.choice().threads);
+        let once = Settings { samples: 1, ..best };
+        let mut packed = Packed::new(&subject.scene, &subject.camera, once, bvh.quality())?;
+        let primary = Primary::new(&packed, threads)?;
+        let mut references = Vec::new();
+        for &samples in &plan.axes.samples {
+            begins(&format!("reference, {samples}x{samples} samples"));
+            packed.set(&subject.scene, &subject.camera, Settings { samples, ..best })?;
+            references.push((samples, cpu::render::<f64>(&packed, Traversal::default(), threads, &|_| ())?.0));
+        }
+        Ok(Judge {
+            plan,
+            subject,
+            device,
+            packed,
+            bvh,
+            primary,
+            references,
+            hits: Vec::new(),
+            place: None,
+            notes: Vec::new(),
+        })
+    }
+
+    /// Measures a setting; the first one must not fail.
+    fn tried(&mut self, setting: &Setting) -> Result<Option<Record>> {
+        match self.measured(setting) {
+            Err(error) if self.place.is_some() => {
+                self.notes.push(format!("{} is left out: {error}", setting.options()));
+                Ok(None)
+            }
+            result => result.map(Some),
+        }
+    }
+
+    fn measured(&mut self, setting: &Setting) -> Result<Record> {
+        self.pack(setting)?;
+        let traversal = setting.traversal(self.device.choice().traversal);
+        self.device.turn(setting.precision, traversal);
+        let rendering = self.device.measure(&self.packed, self.plan.repeat)?;
+        let elsewhere = self.place.as_ref().is_some_and(|place| place.processor != rendering.processor);
+        if elsewhere {
+            return Err(Error::new(format!("it runs on {}: {}", rendering.device, remedy::why(&rendering))));
+        }
+        let hits = self.hits(setting, rendering.processor)?;
+        let timing = Timing::of(&rendering.times);
+        let slowest = rendering.times.iter().max().map_or(0.0, |time| time.as_secs_f64());
+        let judged = compare(&rendering.film, self.reference(self.plan.axes.samples[0]))?;
+        let alike = compare(&rendering.film, self.reference(setting.samples))?;
+        self.place.get_or_insert(Place {
+            processor: rendering.processor,
+            clock: if rendering.device_time.is_some() { "device time, by timestamps" } else { "wall-clock time" },
+            device: rendering.device,
+        });
+        Ok(Record {
+            setting: *setting,
+            time_ms: timing.median * 1e3,
+            spread: timing.spread,
+            slowest_ms: slowest * 1e3,
+            build_ms: self.packed.build_time.as_secs_f64() * 1e3,
+            wrong_primitives: hits.wrong,
+            t_error_median_ulp: hits.median_ulp,
+            t_error_max_ulp: hits.max_ulp,
+            rmse: judged.rmse,
+            psnr_db: judged.psnr,
+            rmse_same_samples: alike.rmse,
+            front: None,
+            recommended: false,
+        })
+    }
+
+    /// Packs the scene for a setting, with another hierarchy only where it must be.
+    fn pack(&mut self, setting: &Setting) -> Result<()> {
+        let Subject { scene, camera, .. } = self.subject;
+        let settings = setting.settings(self.subject.settings);
+        if self.bvh != setting.bvh {
+            self.packed = Packed::new(scene, camera, settings, setting.bvh.quality())?;
+            self.bvh = setting.bvh;
+        }
+        Ok(self.packed.set(scene, camera, settings)?)
+    }
+
+    fn reference(&self, samples: u32) -> &Film {
+        let found = self.references.iter().find(|(of, _)| *of == samples);
+        &found.expect("every number of samples that is tried has a reference").1
+    }
+
+    /// What a setting's primary rays meet does not depend on what follows.
+    fn hits(&mut self, setting: &Setting, processor: Processor) -> Result<HitErrors> {
+        let key = Setting { samples: 0, bounces: 0, min_contribution: 0.0, ..*setting };
+        if let Some((_, errors)) = self.hits.iter().find(|(of, _)| *of == key) {
+            return Ok(*errors);
+        }
+        let gpu = self.device.gpu().filter(|_| processor == Processor::Gpu);
+        let errors = self.primary.errors(&self.packed, gpu, self.device.choice())?;
+        self.hits.push((key, errors));
+        Ok(errors)
+    }
+}
+
+/// Names and values of all that figures depend on.
+fn setup(plan: &Plan, subject: &Subject, place: &Option<Place>) -> Vec<(String, String)> {
+    let (width, height) = subject.settings.size;
+    let Settings { samples, bounces, min_contribution, .. } = plan.axes.reference(subject.settings);
+    let (device, clock) = place.as_ref().map_or(("", ""), |place| (place.device.as_str(), place.clock));
+    let triangles = subject.scene.mesh.triangles.len();
+    let lines = [
+        ("program", format!("eyerays {}", env!("CARGO_PKG_VERSION"))),
+        ("machine", format!("{}, {} {}", cpu_model(), std::env::consts::OS, std::env::consts::ARCH)),
+        ("device", device.to_owned()),
+        ("scene", format!("{}, {triangles} triangles, camera {}", subject.file.display(), subject.camera.name)),
+        ("size", format!("{width}x{height} pixels")),
+        (
+            "reference",
+            format!(
+                "double precision, {samples}x{samples} samples a pixel, at most {bounces} bounces, least contribution \
+                 {min_contribution}"
+            ),
+        ),
+        ("time", format!("{clock}, median of {} after a warm-up; without building", plan.repeat)),
+    ];
+    lines.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()
+}

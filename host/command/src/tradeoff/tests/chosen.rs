@@ -1,0 +1,195 @@
+//! Fronts, recommendations and what is tried, over records that were made up.
+
+use std::cell::RefCell;
+
+use proptest::prelude::*;
+
+use super::*;
+use crate::error::Error;
+use eyerays::scene::{Material, Settings};
+
+/// Is it beaten?
+fn is_beaten(point: (f64, f64), all: &[(f64, f64)]) -> bool {
+    all.iter().any(|&(time, error)| time <= point.0 && error <= point.1 && (time, error) != point)
+}
+
+/// Few values, so that times and errors are often equal.
+fn points() -> impl Strategy<Value = Vec<(f64, f64)>> {
+    let time = prop_oneof![(1u32..6).prop_map(f64::from), 0.1..1e4];
+    let error = prop_oneof![(0u32..6).prop_map(f64::from), 0.0..1.0, Just(f64::INFINITY)];
+    proptest::collection::vec((time, error), 0..40)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn nothing_beats_a_member_of_the_front_and_something_is_as_good_as_any_other(points in points()) {
+        let members = front(&points);
+        for (i, &point) in points.iter().enumerate() {
+            if members.contains(&i) {
+                prop_assert!(!is_beaten(point, &points), "{point:?}");
+            } else {
+                let is_covered = members.iter().any(|&m| points[m].0 <= point.0 && points[m].1 <= point.1);
+                prop_assert!(is_covered, "{point:?}");
+            }
+        }
+        let order = members.windows(2).map(|pair| (points[pair[0]], points[pair[1]]));
+        for (first, second) in order {
+            prop_assert!(first.0 < second.0 && first.1 > second.1);
+        }
+    }
+
+    #[test]
+    fn what_is_recommended_serves_the_wish_and_nothing_that_serves_it_is_better(
+        points in points(), bound in prop_oneof![0.0..1.0, 0.0..1e4]
+    ) {
+        let records: Vec<Record> = points.iter().map(|&(time, error)| record(setting(), time, error)).collect();
+        let serving = |wish| -> Vec<&Record> {
+            records.iter().filter(|r| match wish {
+                Wish::MaxError(most) => r.rmse <= most,
+                Wish::Budget(most) => r.slowest_ms <= most,
+            }).collect()
+        };
+        for wish in [Wish::MaxError(bound), Wish::Budget(bound)] {
+            let best = recommended(&records, wish).map(|i| &records[i]);
+            prop_assert_eq!(best.is_none(), serving(wish).is_empty());
+            let Some(best) = best else { continue };
+            prop_assert!(serving(wish).contains(&best));
+            for other in serving(wish) {
+                let is_better = match wish {
+                    Wish::MaxError(_) => (other.time_ms, other.rmse) < (best.time_ms, best.rmse),
+                    Wish::Budget(_) => (other.rmse, other.time_ms) < (best.rmse, best.time_ms),
+                };
+                prop_assert!(!is_better, "{other:?}");
+            }
+        }
+    }
+
+    /// Times and errors that each axis shares in as it likes: whatever they are, nothing is tried twice or is
+    /// no value of the axes, the base is first, and no step from the front is left.
+    #[test]
+    fn a_search_ends_where_no_step_on_an_axis_improves_the_front(seed in proptest::array::uniform8(0.1f64..3.0)) {
+        let (time, error) = model(seed);
+        let measure = |s: &Setting| Record { slowest_ms: time(s), ..record(*s, time(s), error(s)) };
+        let (records, stopped) = search(&axes(), setting(), 10_000, &mut |s| Ok(Some(measure(s)))).unwrap();
+        prop_assert!(!stopped);
+        prop_assert_eq!(records[0].setting, setting());
+        for (i, one) in records.iter().enumerate() {
+            prop_assert!(records[..i].iter().all(|other| other.setting != one.setting));
+            let on = |axis| axes().along(axis, one.setting).contains(&one.setting);
+            prop_assert!(Axis::ALL.into_iter().all(on));
+        }
+        let all: Vec<_> = records.iter().map(|r| (r.time_ms, r.rmse)).collect();
+        for i in front(&all) {
+            for axis in Axis::TRADING {
+                let line = axes().along(axis, records[i].setting);
+                let here = line.iter().position(|s| *s == records[i].setting).unwrap();
+                for near in [here.checked_sub(1), Some(here + 1)].into_iter().flatten().filter_map(|n| line.get(n)) {
+                    let near = measure(near);
+                    let is_new = !is_covered((near.time_ms, near.rmse), &all);
+                    prop_assert!(!is_new, "{near:?}");
+                }
+            }
+        }
+    }
+}
+
+fn is_covered(point: (f64, f64), all: &[(f64, f64)]) -> bool {
+    all.iter().any(|&(time, error)| time <= point.0 && error <= point.1)
+}
+
+/// A time that is a product of what the axes contribute, and an error that is a sum of it.
+fn model(w: [f64; 8]) -> (impl Fn(&Setting) -> f64, impl Fn(&Setting) -> f64) {
+    let time = move |s: &Setting| {
+        let fast = if s.precision == Precision::Fast { w[0].min(0.95) } else { 1.0 };
+        let moller = if s.triangle == TriangleTest::Moller { w[1].min(0.97) } else { 1.0 };
+        let free = [w[2], w[3], w[4]][s.bvh as usize] * if s.layout == Layout::Compact { w[5] } else { 1.0 };
+        let method = if s.method == Method::Wide { w[6] } else { 1.0 };
+        let rays =
+            f64::from(s.samples * s.samples) * (1.0 + f64::from(s.bounces) * (1.0 - f64::from(s.min_contribution)));
+        fast * moller * free * method * rays
+    };
+    let error = move |s: &Setting| {
+        let fast = if s.precision == Precision::Fast { 1e-6 } else { 0.0 };
+        let moller = if s.triangle == TriangleTest::Moller { 1e-4 * w[7] } else { 0.0 };
+        let left_out = 0.1 / f64::from(1 + s.bounces) + f64::from(s.min_contribution);
+        fast + moller + left_out + 1.0 / f64::from(s.samples)
+    };
+    (time, error)
+}
+
+#[test]
+fn a_search_changes_one_thing_at_a_time_and_then_takes_the_fastest_of_what_is_free() {
+    let (time, error) = model([0.5, 0.5, 1.0, 2.0, 0.8, 0.7, 0.9, 1.0]);
+    let tried = RefCell::new(Vec::new());
+    search(&axes(), setting(), 10_000, &mut |s| {
+        tried.borrow_mut().push(*s);
+        Ok(Some(record(*s, time(s), error(s))))
+    })
+    .unwrap();
+    let tried = tried.into_inner();
+    let differing = |s: &Setting| Axis::ALL.into_iter().filter(|axis| axis.taken(setting(), s) != setting()).count();
+    let single = 2 + 2 + 1 + 2 + 2 + 2 + 1;
+    assert!(tried[0] == setting() && tried[1..=single].iter().all(|s| differing(s) == 1));
+    assert!(tried.len() > single + 5);
+    for combined in &tried[single + 1..] {
+        assert_eq!((combined.method, combined.layout, combined.bvh), (Method::Wide, Layout::Compact, Bvh::High));
+    }
+}
+
+/// Repetitions that overlap prove nothing.
+#[test]
+fn what_is_not_clearly_faster_is_not_taken() {
+    let time =
+        |s: &Setting| if s.method == Method::Wide { 95.0 } else { 100.0 } / if s.samples == 4 { 1.0 } else { 4.0 };
+    let measure = |s: &Setting| record(*s, time(s), 1.0 / f64::from(s.samples));
+    let (records, _) = search(&axes(), setting(), 10_000, &mut |s| Ok(Some(measure(s)))).unwrap();
+    let combined = |r: &&Record| r.setting.samples < 4 && r.setting.precision == Precision::Fast;
+    assert!(records.iter().any(|r| combined(&r)));
+    assert!(records.iter().filter(combined).all(|r| r.setting.method == Method::Auto));
+}
+
+#[test]
+fn a_search_stops_after_so_many_trials_and_goes_on_past_what_is_left_out() {
+    let some = |s: &Setting| Ok((s.method != Method::Packet).then(|| record(*s, 1.0, 1.0)));
+    let (records, stopped) = search(&axes(), setting(), 5, &mut { some }).unwrap();
+    assert!(stopped && records.len() == 4, "the third method is the fifth of them, the second left out");
+    let (records, stopped) = search(&axes(), setting(), 10_000, &mut { some }).unwrap();
+    assert!(!stopped && records.iter().all(|r| r.setting.method != Method::Packet));
+    let fails = |_: &Setting| Err(Error::new("the device was lost"));
+    assert_eq!(search(&axes(), setting(), 5, &mut { fails }).unwrap_err().message, "the device was lost");
+}
+
+fn scene(reflection: f32) -> eyerays::scene::Scene {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
+    let mut scene = eyerays::scene::load(&path).unwrap().0;
+    let opaque =
+        |m: Material| Material { reflection: glam::Vec3::splat(reflection), transmission: glam::Vec3::ZERO, ..m };
+    scene.materials = scene.materials.into_iter().map(opaque).collect();
+    scene
+}
+
+#[test]
+fn bounces_are_tried_where_rays_are_followed() {
+    let own = Settings { samples: 3, bounces: 6, min_contribution: 0.0, ..Settings::default() };
+    let mirrors = Axes::of(&scene(0.5), &own);
+    assert_eq!((&mirrors.samples[..], &mirrors.bounces[..]), (&[4, 3, 2, 1][..], &[6, 4, 2, 1, 0][..]));
+    assert_eq!(mirrors.min_contributions, [0.0, 1.0 / 1024.0, 1.0 / 256.0, 1.0 / 64.0]);
+    let matt = Axes::of(&scene(0.0), &own);
+    assert_eq!((matt.bounces, matt.min_contributions), (vec![6], vec![0.0]));
+}
+
+#[test]
+fn the_reference_has_a_scenes_own_settings_and_no_less_than_is_tried() {
+    let own = Settings { samples: 2, bounces: 4, min_contribution: 0.01, ..Settings::default() };
+    let of = |axes: Axes| {
+        let Settings { samples, bounces, min_contribution, size, .. } = axes.reference(own);
+        assert_eq!(size, own.size);
+        (samples, bounces, min_contribution)
+    };
+    assert_eq!(of(axes()), (4, 8, 1.0 / 1024.0));
+    assert_eq!(of(Axes { samples: vec![1], bounces: vec![1], min_contributions: vec![0.5], ..axes() }), (1, 4, 0.01));
+    let base = axes().base(Setting { samples: 3, method: Method::IfIf, ..setting() });
+    assert_eq!(base, setting(), "what is not tried is replaced by the first of what is");
+}

@@ -1,0 +1,138 @@
+//! Errors of hits, and settings of the Cornell box as they are measured.
+
+use std::path::Path;
+
+use super::*;
+use eyerays::compare::compare;
+use eyerays::film::Film;
+use eyerays::method::Processor;
+use eyerays::render::{Choice, Chosen, DeviceWish};
+use eyerays::scene::{self, Settings};
+use eyerays::stream::StreamRay;
+use eyerays::{cpu, pack::Packed};
+
+const NOWHERE: u32 = StreamRay::NOWHERE;
+
+#[test]
+fn errors_of_hits_are_counted_in_units_of_the_last_place() {
+    let step = 2f64.powi(-23);
+    let truth = [(1.0, 7), (1.0 + 0.25 * step, 7), (4.0, 8), (5.0, NOWHERE), (2.0, 9), (3.0, NOWHERE)];
+    let found = [(1.0, 7), (1.0, 7), (4.0f32.next_up(), 8), (5.0, NOWHERE), (2.0, 8), (3.0, 1)];
+    let errors = HitErrors::of(&found, &truth);
+    assert_eq!(errors, HitErrors { wrong: 2.0 / 6.0, median_ulp: Some(0.25), max_ulp: Some(1.0) });
+    let nothing = HitErrors::of(&[(1.0, NOWHERE)], &[(1.0, NOWHERE)]);
+    assert_eq!(nothing, HitErrors { wrong: 0.0, median_ulp: None, max_ulp: None });
+    assert_eq!(HitErrors::of(&[], &[]).wrong, 0.0);
+}
+
+fn subject() -> Subject {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
+    let (scene, _) = scene::load(&file).unwrap();
+    let camera = scene.cameras[0].clone();
+    let settings = Settings { size: (40, 36), ..scene.settings };
+    Subject { name: "box".to_owned(), file, scene, camera, settings }
+}
+
+fn plan(axes: Axes) -> Plan {
+    Plan { axes, repeat: 1, trials: 60, wish: None }
+}
+
+fn on_cpu() -> Chosen {
+    Chosen::new(&Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() }).unwrap()
+}
+
+/// The picture of a setting, straight from the executor.
+fn picture(subject: &Subject, setting: &Setting) -> Film {
+    let settings = setting.settings(subject.settings);
+    let packed = Packed::new(&subject.scene, &subject.camera, settings, setting.bvh.quality()).unwrap();
+    let choice = Choice {
+        device: DeviceWish::Cpu,
+        precision: setting.precision,
+        traversal: setting.traversal(Default::default()),
+        ..Choice::default()
+    };
+    Chosen::new(&choice).unwrap().render(&packed, 1, &|_| ()).unwrap().film
+}
+
+fn reference(subject: &Subject, samples: u32) -> Film {
+    let settings = Settings { samples, ..subject.settings };
+    let packed = Packed::new(&subject.scene, &subject.camera, settings, Bvh::High.quality()).unwrap();
+    cpu::render::<f64>(&packed, Method::IfIf, 0, &|_| ()).unwrap().0
+}
+
+#[test]
+fn every_error_is_that_of_the_picture_beside_the_reference() {
+    let subject = subject();
+    let axes = Axes { methods: vec![Method::Auto, Method::IfIf], samples: vec![2, 1], ..axes() };
+    let report = run(&plan(axes), &subject, on_cpu(), &|_| ()).unwrap();
+    assert_eq!(report.base, Setting { samples: 1, ..setting() });
+    assert!(report.notes.iter().all(|note| note.contains("raise --trials")), "{:?}", report.notes);
+    let references = [reference(&subject, 1), reference(&subject, 2)];
+    for record in &report.records {
+        let film = picture(&subject, &record.setting);
+        let [alike, judged] = [&references[record.setting.samples as usize - 1], &references[1]]
+            .map(|reference| compare(&film, reference).unwrap());
+        let what = record.setting.options();
+        assert_eq!((record.rmse, record.psnr_db), (judged.rmse, judged.psnr), "{what}");
+        assert_eq!(record.rmse_same_samples, alike.rmse, "{what}");
+        assert!(record.time_ms > 0.0 && record.slowest_ms >= record.time_ms);
+        assert!(record.t_error_median_ulp <= record.t_error_max_ulp && record.t_error_max_ulp.is_some());
+    }
+    let points: Vec<_> = report.records.iter().map(|r| (r.time_ms, r.rmse)).collect();
+    let members: Vec<_> = report.front().iter().map(|r| r.setting).collect();
+    assert_eq!(members, front(&points).iter().map(|&i| report.records[i].setting).collect::<Vec<_>>());
+}
+
+/// In exact precision method, layout and hierarchy leave a picture and its hits as they are, to the last bit.
+#[test]
+fn what_is_free_changes_no_error_and_what_trades_does() {
+    let subject = subject();
+    let arithmetic = vec![(Precision::Exact, TriangleTest::Watertight)];
+    let axes = Axes { arithmetic, samples: vec![1], methods: Method::ALL.to_vec(), ..axes() };
+    let report = run(&plan(axes), &subject, on_cpu(), &|_| ()).unwrap();
+    let of = |r: &Record| (r.rmse, r.wrong_primitives, r.t_error_median_ulp, r.t_error_max_ulp);
+    let base = of(&report.records[0]);
+    let (mut free, mut trading) = (0, 0);
+    for record in &report.records {
+        let whole = record.setting.bounces == 8 && record.setting.min_contribution == report.base.min_contribution;
+        if whole {
+            assert_eq!(of(record), base, "{}", record.setting.options());
+            free += 1;
+        } else if record.setting.bounces == 0 {
+            assert!(record.rmse > 2.0 * base.0, "{}", record.setting.options());
+            assert_eq!(record.wrong_primitives, base.1);
+            trading += 1;
+        }
+    }
+    assert!(free >= 1 + 8 + 1 + 2 && trading >= 1);
+    assert!(base.0 > 0.0 && base.0 < 0.05, "single precision is not double: {base:?}");
+}
+
+#[test]
+fn exact_hits_are_right_but_for_edges() {
+    let subject = subject();
+    let settings = Settings { samples: 1, ..subject.settings };
+    let packed = Packed::new(&subject.scene, &subject.camera, settings, Bvh::Medium.quality()).unwrap();
+    let primary = super::super::hits::Primary::new(&packed, 2).unwrap();
+    let errors = primary.errors(&packed, None, &Choice::default()).unwrap();
+    assert!(errors.wrong < 0.01, "{errors:?}");
+    assert!(errors.max_ulp.unwrap() < 64.0 && errors.median_ulp.unwrap() < 2.0, "{errors:?}");
+    let view = crate::bench::rays::View::of(&packed, eyerays::method::Order::Tiled);
+    let sight = crate::bench::rays::Sight::new(&packed, &view, 2).unwrap();
+    let stream = sight.rays(crate::bench::Kind::Primary, 0.0).unwrap();
+    let [first, second] =
+        [Method::IfIf, Method::Wide].map(|method| cpu::closest::<f64>(&packed, method.into(), 2, &stream).unwrap());
+    assert!(first == second, "every method finds the same in double precision, too");
+    let exact = eyerays::method::Traversal::default().resolved(Processor::Cpu, eyerays::method::Coherence::Primary);
+    let (answers, _) = cpu::cast(&packed, exact, 2, &stream, eyerays::stream::Question::Closest).unwrap();
+    assert_eq!(eyerays::stream::Answers::Closest(cpu::closest::<f32>(&packed, exact, 2, &stream).unwrap()), answers);
+}
+
+/// A scene that no device can hold has no base, and says which file is to blame.
+#[test]
+fn a_scene_that_can_not_be_packed_is_an_error() {
+    let mut subject = subject();
+    subject.scene.lights = vec![scene::Light::Point { position: glam::Vec3::splat(1e30), colour: glam::Vec3::ONE }];
+    let error = run(&plan(axes()), &subject, on_cpu(), &|_| ()).unwrap_err();
+    assert!(error.file == Some(subject.file) && error.message.contains("too far away"), "{error}");
+}

@@ -1,0 +1,97 @@
+//! Pictures are the same bits everywhere: on this machine as when the README's were made, and on another platform.
+
+mod program;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use eyerays::image;
+use program::{Outcome, Place, shipped};
+use serde::Deserialize;
+
+/// A picture of `docs/pictures.toml`.
+#[derive(Deserialize)]
+struct Picture {
+    scene: String,
+    options: Vec<String>,
+    film_hash: String,
+}
+
+fn docs(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
+}
+
+#[test]
+fn the_readmes_pictures_are_what_the_program_renders() {
+    let pictures: BTreeMap<String, Picture> =
+        toml::from_str(&fs::read_to_string(docs("pictures.toml")).unwrap()).unwrap();
+    let readme = fs::read_to_string(docs("../README.md")).unwrap();
+    let shown = |name: &str| readme.contains(&format!("](docs/{name})"));
+    assert!(pictures.len() == 4 && pictures.keys().all(|name| shown(name)));
+    let place = Place::new(&[]);
+    for (name, Picture { scene, options, film_hash }) in &pictures {
+        let scene = docs("..").join(scene);
+        let mut arguments = vec!["render".into(), scene.into_os_string(), "-o".into(), name.into(), "--json".into()];
+        arguments.extend(options.iter().map(Into::into));
+        let found = &place.succeed(&arguments).json()["film_hash"];
+        assert_eq!(found, film_hash, "{name}: another film; if it should be, make docs/{name} and its hash again");
+        let [now, then] = [place.path(name), docs(name)].map(|path| image::read(&path).unwrap());
+        assert!(now.bits_equal(&then), "docs/{name} is another picture; make it again");
+    }
+}
+
+/// A command line that runs this program as built for another platform, such as `qemu-aarch64 -L DIR eyerays`.
+const FOREIGN: &str = "EYERAYS_FOREIGN";
+
+#[test]
+fn another_platform_gives_the_same_films_and_files() {
+    let Ok(foreign) = std::env::var(FOREIGN) else {
+        eprintln!("skipped: {FOREIGN} names no program");
+        return;
+    };
+    let foreign: Vec<&str> = foreign.split_whitespace().collect();
+    let place = Place::new(&[("turned.toml", TURNED)]);
+    let framed = shipped("rod").replace(".toml", ".obj");
+    for (scene, format) in
+        [(shipped("cornell"), "png"), (shipped("glass"), "exr"), (framed, "hdr"), ("turned.toml".to_owned(), "png")]
+    {
+        let render = |name: &str, mut program: Command| {
+            let name = format!("{name}.{format}");
+            program.args(["render", &scene, "-o", &name, "--json"]).current_dir(place.path(""));
+            // An emulator is slow.
+            program.args(["--size", "24x16", "--samples", "1", "--device", "cpu", "--exposure", "0.3"]);
+            let outcome: Outcome = program.output().expect("the program starts").into();
+            assert_eq!(outcome.code, Some(0), "{program:?}: {}", outcome.stderr);
+            (outcome.json()["film_hash"].take(), fs::read(place.path(&name)).unwrap())
+        };
+        let mut other = Command::new(foreign[0]);
+        other.args(&foreign[1..]);
+        let (here, there) = (render("here", place.command::<&str>(&[])), render("there", other));
+        assert_eq!(here.0, there.0, "{scene}: the films differ");
+        assert!(here.1 == there.1, "{scene}: the {format} files differ");
+    }
+}
+
+/// A camera, a spot and a mesh whose numbers take sines.
+const TURNED: &str = "\
+[[camera]]
+name = \"front\"
+eye = [0, 1, 4]
+target = [0, 0, 0]
+fov = 37.0
+
+[[light]]
+kind = \"spot\"
+position = [2, 3, 4]
+target = [0, 0, 0]
+angle = 31.0
+softness = 0.3
+
+[[mesh]]
+shape = \"box\"
+min = [-1, -1, -1]
+max = [1, 1, 1]
+rotate = [11.0, 23.0, 47.0]
+";

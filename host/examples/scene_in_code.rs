@@ -1,0 +1,79 @@
+//! A scene that code makes, not a file: a square on a floor, rendered on the CPU and, where there is one, on the GPU.
+
+use eyerays::compare::compare;
+use eyerays::error::{Error, Result};
+use eyerays::pack::Packed;
+use eyerays::quality::Bvh;
+use eyerays::render::{Choice, Chosen, DeviceWish, Rendering};
+use eyerays::scene::{Background, Camera, Light, Material, Mesh, Scene, Settings};
+use glam::{Vec3, vec3};
+
+fn main() -> Result<()> {
+    let scene = scene();
+    let packed = Packed::new(&scene, &scene.cameras[0], scene.settings, Bvh::Medium.quality())?;
+    let cpu = render(&packed, DeviceWish::Cpu)?;
+    println!("{}: {} rays", cpu.device, cpu.rays.total());
+
+    // Three floats of linear light a pixel, row by row from the top left.
+    let values: &[f32] = cpu.film.pixels.as_flattened();
+    let mean = values.iter().sum::<f32>() / values.len() as f32;
+    println!("{} values, {mean:.4} on average", values.len());
+
+    match render(&packed, DeviceWish::Gpu) {
+        Ok(gpu) => {
+            let comparison = compare(&cpu.film, &gpu.film)?;
+            println!("{}: {} pixels differ from the CPU's", gpu.device, comparison.differing_pixels);
+        }
+        // Without a GPU, or with one that can't be exact, there is nothing to compare with.
+        Err(Error::NoGpu) => println!("there is no GPU here"),
+        Err(Error::Inexact { device, .. }) => println!("{device} can't be exact"),
+        Err(other) => return Err(other),
+    }
+    Ok(())
+}
+
+fn render(packed: &Packed, device: DeviceWish) -> Result<Rendering> {
+    let choice = Choice { device, ..Choice::default() };
+    Chosen::new(&choice)?.render(packed, 1, &|_| ())
+}
+
+/// A mirror that stands on a red floor.
+fn scene() -> Scene {
+    let plain = Material {
+        name: "floor".to_owned(),
+        ambient: Vec3::splat(0.1),
+        diffuse: vec3(0.8, 0.2, 0.2),
+        specular: Vec3::ZERO,
+        shininess: 1.0,
+        reflection: Vec3::ZERO,
+        transmission: Vec3::ZERO,
+        ior: 1.5,
+        checker: None,
+    };
+    let mirror = Material { name: "mirror".to_owned(), reflection: Vec3::splat(0.7), ..plain.clone() };
+    let floor = [(-2.0, 0.0, 2.0), (2.0, 0.0, 2.0), (2.0, 0.0, -2.0), (-2.0, 0.0, -2.0)];
+    let stands = [(-1.0, 0.0, -1.0), (1.0, 0.0, -1.0), (1.0, 1.5, -1.0), (-1.0, 1.5, -1.0)];
+    Scene {
+        mesh: Mesh {
+            positions: [floor, stands].concat().into_iter().map(Vec3::from).collect(),
+            // None at all: every triangle is flat.
+            normals: Vec::new(),
+            triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
+            materials: vec![0, 0, 1, 1],
+        },
+        parts: Vec::new(),
+        files: Vec::new(),
+        materials: vec![plain, mirror],
+        lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE }],
+        cameras: vec![Camera {
+            name: "front".to_owned(),
+            eye: vec3(0.5, 1.5, 4.0),
+            target: vec3(0.0, 0.5, 0.0),
+            up: Vec3::Y,
+            fov: 50.0,
+        }],
+        background: Background::Colour(vec3(0.2, 0.3, 0.5)),
+        ambient: Vec3::ONE,
+        settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
+    }
+}

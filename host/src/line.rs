@@ -1,0 +1,49 @@
+//! Texts of strangers as one harmless line: names come from hostile files, messages from drivers.
+
+/// The most characters of a name or a message that are shown.
+const MOST_SHOWN: usize = 1000;
+/// How many of them are the last: the remedy stands at the end.
+const LAST_SHOWN: usize = 300;
+
+/// Escapes what would break the line or steer a terminal, and leaves out the middle of what would fill it.
+pub fn one_line(text: &str) -> String {
+    // No character has more than four bytes, so that a text of millions need not be counted.
+    if text.len() > 4 * MOST_SHOWN || text.chars().count() > MOST_SHOWN {
+        let start: String = text.chars().take(MOST_SHOWN - LAST_SHOWN).collect();
+        let end = text.char_indices().rev().nth(LAST_SHOWN - 1).map_or(0, |(at, _)| at);
+        return format!("{} ... {}", printable(&start), printable(&text[end..]));
+    }
+    printable(text)
+}
+
+/// Escapes what would break a line or steer a terminal.
+pub fn printable(text: &str) -> String {
+    text.chars()
+        .flat_map(|c| {
+            let escaped: Box<dyn Iterator<Item = char>> =
+                if c.is_control() { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) };
+            escaped
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::*;
+    use crate::error::Error;
+
+    #[test]
+    fn a_long_message_keeps_its_beginning_and_its_remedy() {
+        for letter in ["a", "\u{1f600}", "\0"] {
+            let message = format!("unknown key \"{}\"; did you mean \"size\"?", letter.repeat(1 << 20));
+            let shown = Error::line(Path::new("a.toml"), 3, message).to_string();
+            assert!(shown.starts_with("a.toml:3: unknown key \""), "{shown}");
+            assert!(shown.contains(" ... ") && shown.ends_with("\"; did you mean \"size\"?"), "{shown}");
+            assert!(shown.len() < 8 * MOST_SHOWN, "{} bytes", shown.len());
+        }
+        let whole = "a".repeat(MOST_SHOWN);
+        assert_eq!(Error::new(whole.as_str()).to_string(), whole);
+    }
+}

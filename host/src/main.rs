@@ -1,5 +1,0 @@
-//! The command `eyerays`.
-
-fn main() -> std::process::ExitCode {
-    eyerays::cli::run()
-}

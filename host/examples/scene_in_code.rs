@@ -10,7 +10,7 @@ use glam::{Vec3, vec3};
 
 fn main() -> Result<()> {
     let scene = scene();
-    let packed = Packed::new(&scene, &scene.cameras[0], scene.settings, Bvh::Medium.quality())?;
+    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
     let cpu = render(&packed, DeviceWish::Cpu)?;
     println!("{}: {} rays", cpu.device, cpu.rays.total());
 

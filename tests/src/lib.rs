@@ -45,7 +45,7 @@ pub fn settings(scene: &Scene, size: (u32, u32), samples: u32) -> Settings {
 /// # Panics
 /// If no device could hold it.
 pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Packed {
-    Packed::new(scene, camera, settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+    Packed::new(scene, settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// The GPU that tests run on, a software one such as lavapipe too: `EYERAYS_ADAPTER` names one, else it is

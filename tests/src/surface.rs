@@ -103,13 +103,13 @@ impl Surface {
         let mut scene = self.scene();
         let camera = &mut scene.cameras[0];
         (camera.eye, camera.target) = (eye, eye - Vec3::Z);
-        Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        Packed::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 
 /// The triangles of a packed scene, each once and in the scene's order, which no hierarchy changes.
 pub fn triangles(packed: &Packed) -> Vec<Triangle> {
-    let mut triangles = packed.triangles.clone();
+    let mut triangles = packed.triangles().clone();
     triangles.sort_by_key(Triangle::primitive);
     triangles.dedup_by_key(|triangle| triangle.primitive());
     triangles

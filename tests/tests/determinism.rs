@@ -3,7 +3,8 @@
 use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::method::Traversal;
-use eyerays::pack::{Packed, Region};
+use eyerays::pack::Packed;
+use eyerays::view::Region;
 use eyerays::rays::Rays;
 use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
@@ -52,7 +53,7 @@ fn a_better_hierarchy_changes_nothing() {
         let scene = shipped(name);
         for camera in &scene.cameras {
             let of = |quality| {
-                let packed = Packed::new(&scene, camera, settings(&scene, SIZE, 1), quality).unwrap();
+                let packed = Packed::new(&scene, settings(&scene, SIZE, 1), quality).unwrap();
                 render::<f32>(&packed, 2)
             };
             let (film, rays) = of(Quality::Fast);

@@ -37,12 +37,12 @@ struct Log<'a> {
 }
 
 impl<R: Scalar> Observer<R> for Log<'_> {
-    fn wave(&self, geometry: &Geometry<'_>, slots: &[u32], records: &Records<R>) {
+    fn wave(&self, geometry: &TraceContext<'_>, slots: &[u32], records: &Records<R>) {
         let mut stories = self.stories.lock().unwrap();
         let corner = geometry.frame.region;
         for &slot in slots {
             let pixel = camera::pixel(geometry.frame, geometry.features, slot);
-            let at = (corner.y + pixel.y) * self.packed.settings.size.0 + corner.x + pixel.x;
+            let at = (corner.y + pixel.y) * self.packed.settings().size.0 + corner.x + pixel.x;
             self.tell(geometry, slot, records, &mut stories[at as usize]);
         }
     }
@@ -50,7 +50,7 @@ impl<R: Scalar> Observer<R> for Log<'_> {
 
 impl Log<'_> {
     /// What became of a slot's ray: its place in the tree, what it hit, and every branch that shading takes there.
-    fn tell<R: Scalar>(&self, geometry: &Geometry<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
+    fn tell<R: Scalar>(&self, geometry: &TraceContext<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
         let path = Path::<R>::current(geometry, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
         let (hit, triangle_index) = R::load(records.hits[slot as usize]);
@@ -58,7 +58,7 @@ impl Log<'_> {
             return story.events.push(triangle_index);
         }
         let packed = self.packed;
-        let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
+        let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
         let triangle = &geometry.triangle(triangle_index);
         let contact = Contact::new(triangle, hit.y, hit.z, path.direction);
         let surface = Surface::new(geometry.features, &looks, triangle_index, triangle, path.direction, &contact);
@@ -66,7 +66,7 @@ impl Log<'_> {
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.primitive(), u32::from(contact.front)]);
         story.events.extend(cell);
-        for (light, index) in packed.lights.iter().zip(0..) {
+        for (light, index) in packed.lights().iter().zip(0..) {
             let answer = records.shadows[(index * geometry.slots() + slot) as usize];
             story.events.push(answer);
             if answer == REACHED {
@@ -94,7 +94,7 @@ fn cone<R: Scalar>(features: Features, light: &Light, contact: &Contact<R>) -> u
 }
 
 fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed) -> (Film, Vec<Story>) {
-    let (width, height) = packed.settings.size;
+    let (width, height) = packed.settings().size;
     let log = Log { packed, stories: Mutex::new(vec![Story::default(); (width * height) as usize]) };
     let (film, rays) = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap().render::<R>(&|_| (), &log).unwrap();
     assert_eq!(rays.non_finite, 0);

@@ -74,9 +74,9 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         "medium" => (Quality::Medium, BuildQuality::MEDIUM),
         _ => (Quality::High, BuildQuality::HIGH),
     };
-    let mut packed = Packed::new(&scene, &scene.cameras[0], settings, quality)?;
+    let mut packed = Packed::new(&scene, settings, quality)?;
     let ao_length =
-        options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation.scale) as f32;
+        options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let embree = embree::Embree::new(&packed, embree_quality).map_err(|e| format!("Embree: {e:?}"))?;
     let binary = hierarchies::Binary::new(&packed, quality);

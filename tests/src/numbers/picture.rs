@@ -11,15 +11,15 @@ use eyerays_shader::traverse::IfIf;
 
 /// The film of one sample a pixel, row-major from the top left.
 pub fn picture<R: Scalar>(packed: &Packed) -> Vec<V3<R>> {
-    let (width, height) = packed.settings.size;
+    let (width, height) = packed.settings().size;
     let laid = Laid::new(packed, Traversal::default());
     let features = laid.features();
     let frame = packed.frame(Region { x: 0, y: 0, width, height }, 0, features);
     let mut geometry = laid.geometry(&frame);
-    let looks = Looks { normals: &packed.normals, materials: &packed.materials, lights: &packed.lights };
+    let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
     let (slots, black) = (geometry.slots() as usize, R::store(V3::zero(), 0));
     let mut paths = vec![black; slots * (packed.levels() * RECORDS) as usize];
-    let (mut hits, mut shadows) = (vec![black; slots], vec![0; slots * packed.lights.len()]);
+    let (mut hits, mut shadows) = (vec![black; slots], vec![0; slots * packed.lights().len()]);
     let mut film = vec![black; (width * height) as usize];
     let mut queue: Vec<u32> = (0..slots as u32).filter(|&slot| camera::pixel(&frame, features, slot).inside).collect();
     while !queue.is_empty() {

@@ -62,7 +62,7 @@ struct Drawn {
 fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
     let mut drawn = Drawn::default();
     for scene in scenes {
-        match Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Medium) {
+        match Packed::new(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
                 let (film, rays) = machine.render(&packed);
                 drawn.meshes += 1;

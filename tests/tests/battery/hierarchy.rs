@@ -38,15 +38,15 @@ fn depth(levels: u32, ratio: f32) -> u32 {
     let scene = chain(levels, ratio).scene();
     let what = format!("hierarchy, chain of {levels} by {ratio}");
     let built = [Quality::Fast, Quality::Medium, Quality::High].map(|quality| {
-        let packed = Packed::new(&scene, &scene.cameras[0], scene.settings, quality).unwrap();
-        assert!(packed.build_time < PATIENCE, "{what}, {quality:?}: {:?}", packed.build_time);
+        let packed = Packed::new(&scene, scene.settings, quality).unwrap();
+        assert!(packed.build_time() < PATIENCE, "{what}, {quality:?}: {:?}", packed.build_time());
         packed
     });
-    let packed = built.into_iter().max_by_key(|packed| packed.statistics.depth).expect("three were built");
+    let packed = built.into_iter().max_by_key(|packed| packed.statistics().depth).expect("three were built");
     let anywhere = rays(&packed, count::of(200, 10_000));
     let anywhere = (0..anywhere.len()).map(|i| anywhere.ray(i)).collect();
     assert_like_brute_force(&what, &packed, &Stream::of_parts(&[at_each(&packed), anywhere]), 0);
-    let depth = packed.statistics.depth;
+    let depth = packed.statistics().depth;
     println!("battery: {what}: depth {depth} of at most {MAX_DEPTH}");
     assert!(depth <= MAX_DEPTH, "{what}: {depth}");
     depth

@@ -52,7 +52,7 @@ impl<'a> Closed<'a> {
     /// Rays from places in world units that `inside` makes.
     fn assert_no_leak(&self, inside: impl Fn(&mut Random) -> DVec3) {
         self.assert_no_ray_leaks(|kind, random| {
-            towards(self.packed.normalisation.exactly(inside(random)), self.target(kind, random))
+            towards(self.packed.normalisation().exactly(inside(random)), self.target(kind, random))
         });
     }
 
@@ -121,7 +121,7 @@ fn sphere_far_from_its_camera() {
 /// Rays at all but the outermost cells, which have nothing beside them.
 fn assert_plane(name: &str, centre: DVec3) {
     let mut closed = Closed::new(name, &Surface::plane(centre, 12.0, 200), centre, COUNTS);
-    let normalisation = closed.packed.normalisation;
+    let normalisation = closed.packed.normalisation();
     let (middle, half) = (normalisation.exactly(centre), 5.9 * normalisation.scale);
     let within = |v: &Vec3| (v.as_dvec3() - middle).abs().max_element() < half;
     closed.targets.retain(|vertices| vertices.iter().all(within));
@@ -145,7 +145,7 @@ fn large_cells_from_near() {
     let mut plane = Surface::plane(DVec3::ZERO, 12.0, 7);
     plane.positions.iter_mut().for_each(|p| p.y = 1e-4 * p.x + 3e-6 * p.z);
     let mut closed = Closed::new("large cells from near", &plane, DVec3::ZERO, COUNTS);
-    let within = |v: &Vec3| v.as_dvec3().abs().max_element() < 5.5 * closed.packed.normalisation.scale;
+    let within = |v: &Vec3| v.as_dvec3().abs().max_element() < 5.5 * closed.packed.normalisation().scale;
     closed.targets.retain(|vertices| vertices.iter().all(within));
     closed.assert_no_ray_leaks(|kind, random| {
         let (target, away) = (closed.target(kind, random), random.direction());

@@ -68,7 +68,7 @@ fn compare(machine: Machine, packed: &Packed, stream: &Stream) -> Apart {
     let mut apart = Apart { others: 0, error: 0.0, rays: stream.len() };
     for (i, (hit, &record)) in got.iter().zip(&truth).enumerate() {
         let (place, slot) = f64::load(record);
-        let triangle = |slot: u32| packed.triangles.get(slot as usize);
+        let triangle = |slot: u32| packed.triangles().get(slot as usize);
         match (triangle(hit.w), triangle(slot)) {
             (Some(a), Some(b)) if a.primitive() == b.primitive() => {
                 let error = (f64::from(f32::from_bits(hit.x)) - place.x).abs() / bound(b, &stream.ray(i));

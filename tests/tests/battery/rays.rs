@@ -30,7 +30,7 @@ fn assert_rays(what: &str, rays: Vec<StreamRay>) {
     let mut scene = floor.scene();
     add_box(&mut scene, matt(Vec3::ONE), Vec3::splat(-0.5), Vec3::splat(0.5));
     let packed = pack(&scene, &empty().cameras[0], scene.settings);
-    assert_eq!(packed.normalisation.scale, 1.0);
+    assert_eq!(packed.normalisation().scale, 1.0);
     assert_like_brute_force(&format!("rays, {what}"), &packed, &Stream::new(rays.into_iter()), 0);
 }
 

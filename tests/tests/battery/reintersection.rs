@@ -62,10 +62,10 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let vertices: [Vec3; 3] = std::array::from_fn(|_| place(random));
     let eye = place(random);
     let packed = alone(vertices, eye);
-    let triangle: Triangle = packed.triangles[0];
+    let triangle: Triangle = packed.triangles()[0];
     let [a, b, c] = triangle.vertices().map(|v| v.as_dvec3());
     let [u, v, w] = random.weights();
-    let origin = packed.normalisation.place(eye);
+    let origin = packed.normalisation().place(eye);
     let direction = (a * u + b * v + c * w - origin.as_dvec3()).normalize().as_vec3();
     let (origin, direction) = (V3::<R>::splat(origin), V3::<R>::splat(direction));
     let (laid, frame) = (Laid::new(&packed, Default::default()), packed.stream_frame(1));

@@ -144,7 +144,7 @@ fn rays_beside_triangles_in_their_planes() {
             let cells = (0..CELLS.pow(3)).map(|i| beside_in_plane(centre(i), CELL / 2.0, &mut random));
             let (triangles, rays): (Vec<_>, Vec<_>) = cells.unzip();
             let (packed, stream) = (soup(triangles).pack(), Stream::new(rays.into_iter()));
-            assert_eq!(packed.normalisation.exactly(DVec3::ONE), DVec3::ONE, "rays are of the world");
+            assert_eq!(packed.normalisation().exactly(DVec3::ONE), DVec3::ONE, "rays are of the world");
             let tracer = machine.tracer(&packed);
             for traversal in machine.traversals() {
                 met += tracer.closest(traversal, &stream).iter().filter(|hit| hit.w != StreamRay::NOWHERE).count();
@@ -157,7 +157,7 @@ fn rays_beside_triangles_in_their_planes() {
 
 /// What a scene without vouched-for numbers is refused with.
 fn refusal(scene: &Scene) -> Option<Error> {
-    Packed::new(scene, &scene.cameras[0], scene.settings, Quality::Medium).err()
+    Packed::new(scene, scene.settings, Quality::Medium).err()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The scenes and rays that all oracles are asked about, with fixed seeds.
 
-use eyerays::pack::{Packed, Region};
+use eyerays::pack::Packed;
+use eyerays::view::Region;
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
@@ -27,7 +28,7 @@ impl Case {
 
     /// Every triangle once, by its number in the scene.
     pub fn triangles(&self) -> Vec<[Vec3; 3]> {
-        let mut all: Vec<_> = self.packed.triangles.iter().map(|t| (t.primitive(), t.vertices())).collect();
+        let mut all: Vec<_> = self.packed.triangles().iter().map(|t| (t.primitive(), t.vertices())).collect();
         all.sort_by_key(|t| t.0);
         all.dedup_by_key(|t| t.0);
         all.into_iter().map(|t| t.1).collect()
@@ -83,7 +84,7 @@ fn point(rng: &mut Rng) -> Vec3 {
 
 /// The camera's.
 fn primary(packed: &Packed) -> Vec<StreamRay> {
-    let (width, height) = packed.settings.size;
+    let (width, height) = packed.settings().size;
     let frame = packed.frame(Region { x: 0, y: 0, width, height }, 0, packed.features);
     let slots = camera::slots(width, height, packed.features);
     let pixels = (0..slots).map(|slot| camera::pixel(&frame, packed.features, slot)).filter(|pixel| pixel.inside);
@@ -102,7 +103,7 @@ fn primary(packed: &Packed) -> Vec<StreamRay> {
 
 /// At vertices, at edges, into triangles, along axes, along a triangle's plane, and anywhere.
 fn aimed(packed: &Packed, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
-    let triangles: Vec<[Vec3; 3]> = packed.triangles.iter().map(|t| t.vertices()).collect();
+    let triangles: Vec<[Vec3; 3]> = packed.triangles().iter().map(|t| t.vertices()).collect();
     let ray = |i: usize| {
         let [a, b, c] = triangles[rng.usize(0..triangles.len())];
         let mut origin = point(rng) * 0.99;

@@ -113,7 +113,7 @@ fn answers(case: &Case, method: Method) -> Vec<Option<(f32, u32)>> {
     let stream = Stream::new(case.rays.iter().copied());
     let (answers, _) = cpu::cast(&case.packed, method.into(), 0, &stream, Question::Closest).unwrap();
     let Answers::Closest(hits) = answers else { unreachable!("closest hits were asked for") };
-    let slot = |hit: UVec4| case.packed.triangles.get(hit.w as usize).map(|t| (f32::from_bits(hit.x), t.primitive()));
+    let slot = |hit: UVec4| case.packed.triangles().get(hit.w as usize).map(|t| (f32::from_bits(hit.x), t.primitive()));
     hits.into_iter().map(slot).collect()
 }
 

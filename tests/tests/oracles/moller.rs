@@ -46,7 +46,7 @@ fn ball(steps: u32) -> Packed {
 fn rays(packed: &Packed, count: usize) -> Stream {
     let mut rng = Rng::with_seed(17);
     let ray = |i: usize| {
-        let [a, b, _] = packed.triangles[rng.usize(0..packed.triangles.len())].vertices();
+        let [a, b, _] = packed.triangles()[rng.usize(0..packed.triangles().len())].vertices();
         // The packed ball has a radius of at least 1/2.
         let origin = 0.5 * Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
         let target = if i.is_multiple_of(4) { a } else { a + (b - a) * rng.f32() };

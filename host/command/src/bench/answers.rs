@@ -48,7 +48,7 @@ fn comparable(packed: &Packed, hit: UVec4) -> UVec4 {
 
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
 pub(crate) fn primitive(packed: &Packed, slot: u32) -> u32 {
-    match packed.triangles.get(slot as usize) {
+    match packed.triangles().get(slot as usize) {
         Some(triangle) => triangle.primitive(),
         None if slot == StreamRay::NOWHERE => slot,
         None => slot | 1 << 31,
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn a_bit_or_a_primitive_makes_a_difference_and_a_slot_none() {
         let mut packed = cornell((8, 8));
-        packed.triangles[1] = packed.triangles[0];
+        packed.triangles()[1] = packed.triangles()[0];
         let of = |hits: &[UVec4]| Answers::Closest(hits.to_vec());
         let first = of(&[hit(1.0, 0), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);
         let same = of(&[hit(1.0, 1), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);

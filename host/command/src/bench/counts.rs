@@ -7,7 +7,7 @@ use std::ops::{Add, Range};
 
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{F32xN, Real, U32xN, V3};
-use eyerays_shader::scene::Geometry;
+use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{
     self, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative,
@@ -116,7 +116,7 @@ pub struct Counts {
 }
 
 /// Follows a group of rays and counts.
-type Follow = fn(&Geometry<'_>, &Stream, Range<usize>, Question) -> Calls;
+type Follow = fn(&TraceContext<'_>, &Stream, Range<usize>, Question) -> Calls;
 
 /// How a method's rays are followed: by themselves or 32 together.
 fn follower(method: Method) -> Follow {
@@ -174,7 +174,7 @@ fn groups(rays: usize) -> Vec<Range<usize>> {
 }
 
 fn single<M: traverse::Method<f32>>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     stream: &Stream,
     rays: Range<usize>,
     question: Question,
@@ -188,7 +188,7 @@ fn single<M: traverse::Method<f32>>(
 }
 
 fn packet<M: traverse::Method<F32xN<PACKET>>>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     stream: &Stream,
     rays: Range<usize>,
     question: Question,
@@ -207,7 +207,7 @@ fn packet<M: traverse::Method<F32xN<PACKET>>>(
 }
 
 fn traverse<R: Real, M: traverse::Method<R>>(
-    geometry: &Geometry<'_>,
+    geometry: &TraceContext<'_>,
     ray: &Ray<R>,
     mut hit: Hit<R>,
     question: Question,
@@ -245,8 +245,8 @@ mod tests {
             NodePair::new(leaf(0, 1), leaf(1, 1)),
         ];
         let mut packed = cornell((8, 8));
-        packed.nodes = nodes.iter().map(CentredPair::from).collect();
-        packed.triangles = triangles;
+        packed.nodes() = nodes.iter().map(CentredPair::from).collect();
+        packed.triangles() = triangles;
         packed.features.0 &= !Features::SPLIT;
         packed
     }

@@ -124,7 +124,7 @@ impl Plan {
             _ => Ok(Traversal { scheduling: Scheduling::Grid, ..wanted.resolved(processor, coherence) }),
         };
         let traversal = resolved(wanted)?;
-        if traversal.method == Method::Wide && packed.wide.is_empty() {
+        if traversal.method == Method::Wide && packed.wide().is_empty() {
             return Err("wide is left out: there is no hierarchy of wide nodes".to_owned());
         }
         let auto = Traversal { method: Method::Auto, scheduling: Scheduling::Auto, ..wanted };

@@ -14,7 +14,8 @@ use super::{Kind, sample};
 use crate::error::Result;
 use eyerays::cpu;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
-use eyerays::pack::{Packed, Region};
+use eyerays::pack::Packed;
+use eyerays::view::Region;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 
 /// Ambient occlusion rays a hit.
@@ -40,7 +41,7 @@ impl View {
     /// What a scene is packed for, or was last [turned to](Packed::look): one ray a pixel.
     pub fn of(packed: &Packed, order: Order) -> View {
         let features = Features(packed.features.0 | Traversal { order, ..Traversal::default() }.features().0);
-        let (width, height) = packed.settings.size;
+        let (width, height) = packed.settings().size;
         View { frame: packed.frame(Region { x: 0, y: 0, width, height }, 0, features), features }
     }
 
@@ -54,7 +55,7 @@ impl View {
 
 /// The diagonal of the box around a scene's triangles, in the normalised scene.
 pub fn diagonal(packed: &Packed) -> f64 {
-    let vertices = || packed.triangles.iter().flat_map(Triangle::vertices);
+    let vertices = || packed.triangles().iter().flat_map(Triangle::vertices);
     let least = vertices().fold(Vec3::INFINITY, Vec3::min);
     let greatest = vertices().fold(Vec3::NEG_INFINITY, Vec3::max);
     (greatest.as_dvec3() - least.as_dvec3()).length()
@@ -137,7 +138,7 @@ impl<'a> Sight<'a> {
     /// How many lights rays of [`Kind::Shadow`] go to: all, unless there are so many that these would be more
     /// than [`MOST_RAYS`].
     pub fn lights(&self) -> usize {
-        self.packed.lights.len().min(MOST_RAYS / self.hits().max(1))
+        self.packed.lights().len().min(MOST_RAYS / self.hits().max(1))
     }
 
     /// The rays of a kind in the order of slots, those of a hit beside each other; but shadow rays go to one
@@ -161,7 +162,7 @@ impl<'a> Sight<'a> {
 
     fn shadows(&self) -> Result<Vec<Vec<StreamRay>>> {
         let mut parts = Vec::new();
-        for light in &self.packed.lights[..self.lights()] {
+        for light in &self.packed.lights()[..self.lights()] {
             parts.extend(self.spawned(|place, rays| {
                 let (origin, direction, limit) = shadow_ray(self.packed.features, light, &place.contact);
                 if place.contact.faces(direction) {
@@ -185,7 +186,7 @@ impl<'a> Sight<'a> {
     }
 
     fn place(&self, i: usize, hit: UVec4) -> Place {
-        let triangle = &self.packed.triangles[hit.w as usize];
+        let triangle = &self.packed.triangles()[hit.w as usize];
         let direction = V3::splat(self.primary.ray(i).direction);
         let contact = Contact::new(triangle, f32::from_bits(hit.y), f32::from_bits(hit.z), direction);
         Place { pixel: self.pixels[i], direction, contact, primitive: triangle.primitive() }

@@ -36,7 +36,7 @@ pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<R
 
 fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
     let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-    let mut packed = Packed::new(&subject.scene, &subject.cameras[0], settings, plan.quality)?;
+    let mut packed = Packed::new(&subject.scene, settings, plan.quality)?;
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
@@ -76,8 +76,8 @@ struct Asked<'s> {
 
 impl<'a> Bench<'a> {
     fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a Packed, report: &mut Report) -> Result<Self> {
-        let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.normalisation.scale);
-        let statistics = &packed.statistics;
+        let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.normalisation().scale);
+        let statistics = &packed.statistics();
         report.scenes.push(SceneRow {
             scene: subject.name.clone(),
             triangles: statistics.triangles,
@@ -85,8 +85,8 @@ impl<'a> Bench<'a> {
             nodes: statistics.nodes,
             leaves: statistics.leaves,
             depth: statistics.depth,
-            wide_nodes: packed.wide.len(),
-            build_ms: packed.build_time.as_secs_f64() * 1e3,
+            wide_nodes: packed.wide().len(),
+            build_ms: packed.build_time().as_secs_f64() * 1e3,
             ao_length,
         });
         let gpu = match plan.gpu.as_ref().map(|gpu| OnGpu::new(gpu, packed, &plan.layouts)).transpose() {
@@ -96,7 +96,7 @@ impl<'a> Bench<'a> {
             }
             gpu => gpu?,
         };
-        let ao_length = (ao_length * packed.normalisation.scale).clamp(1e-30, 1e30) as f32;
+        let ao_length = (ao_length * packed.normalisation().scale).clamp(1e-30, 1e30) as f32;
         Ok(Bench { plan, subject, packed, gpu, ao_length })
     }
 
@@ -118,7 +118,7 @@ impl<'a> Bench<'a> {
                 report.note(format!("{place}: there are no {} rays", kind.name()));
                 continue;
             }
-            if kind == Kind::Shadow && sight.lights() < self.packed.lights.len() {
+            if kind == Kind::Shadow && sight.lights() < self.packed.lights().len() {
                 report.note(format!("{place}: shadow rays go to the first {} lights", sight.lights()));
             }
             rays += stream.len();
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn another_answer_in_exact_precision_is_a_fault_that_names_the_ray() {
         let (plan, subject, mut report) = (plan(), subject(), Report::default());
-        let packed = Packed::new(&subject.scene, &subject.cameras[0], subject.scene.settings, plan.quality).unwrap();
+        let packed = Packed::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
         let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
         let stream = sight.rays(Kind::Ao, bench.ao_length).unwrap();

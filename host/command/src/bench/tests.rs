@@ -24,7 +24,7 @@ fn scene() -> Scene {
 pub(super) fn cornell(size: (u32, u32)) -> Packed {
     let scene = scene();
     let settings = Settings { size, samples: 1, ..scene.settings };
-    Packed::new(&scene, &scene.cameras[0], settings, Quality::Medium).unwrap()
+    Packed::new(&scene, settings, Quality::Medium).unwrap()
 }
 
 fn rays(sight: &Sight<'_>, kind: Kind) -> Vec<StreamRay> {
@@ -82,7 +82,7 @@ fn every_hit_has_its_rays() {
     assert!(hits > 64 * 48 / 2);
     assert_eq!((count(Kind::Primary), count(Kind::Reflection), count(Kind::Diffuse)), (64 * 48, hits, hits));
     assert_eq!(count(Kind::Ao), AO_RAYS as usize * hits);
-    assert!(count(Kind::Refraction) <= hits && count(Kind::Shadow) <= packed.lights.len() * hits);
+    assert!(count(Kind::Refraction) <= hits && count(Kind::Shadow) <= packed.lights().len() * hits);
     assert!(rays(&sight, Kind::Ao).iter().all(|ray| ray.limit == 0.125));
     assert!(
         rays(&sight, Kind::Ao)
@@ -96,7 +96,7 @@ fn every_hit_has_its_rays() {
 fn rays_go_to_their_side() {
     let packed = cornell((48, 48));
     let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
-    let slots = packed.triangles.iter().map(|t| (t.primitive(), t.vertices()));
+    let slots = packed.triangles().iter().map(|t| (t.primitive(), t.vertices()));
     let by_primitive: HashMap<u32, [Vec3; 3]> = slots.collect();
     let primary = rays(&sight, Kind::Primary);
     assert_eq!(sight.hits(), primary.len(), "the box fills this view");
@@ -127,7 +127,7 @@ fn every_order_has_the_same_rays() {
 #[test]
 fn the_diagonal_is_that_of_the_box() {
     let packed = cornell((8, 8));
-    assert!((diagonal(&packed) / packed.normalisation.scale - 12f64.sqrt()).abs() < 1e-3);
+    assert!((diagonal(&packed) / packed.normalisation().scale - 12f64.sqrt()).abs() < 1e-3);
 }
 
 pub(super) fn plan() -> Plan {

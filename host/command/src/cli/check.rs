@@ -22,7 +22,7 @@ impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
         let named = |e: eyerays::error::Error| e.of(&self.scene);
-        let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, Quality::Fast);
+        let pack = || Packed::new(&scene, scene.settings, Quality::Fast);
         let mut packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
             packed.look(&scene, camera).map_err(named)?;

@@ -60,9 +60,9 @@ impl Info {
         let (mut rows, mut cost) = (Vec::new(), None);
         let qualities = self.bvh.as_ref().map_or(Bvh::VARIANTS, std::slice::from_ref);
         for bvh in qualities {
-            let pack = || Packed::new(&scene, &scene.cameras[0], scene.settings, bvh.quality());
+            let pack = || Packed::new(&scene, scene.settings, bvh.quality());
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
-            let row = Row { bvh: bvh.to_string(), statistics: packed.statistics, build_time: packed.build_time };
+            let row = Row { bvh: bvh.to_string(), statistics: packed.statistics(), build_time: packed.build_time() };
             if !self.json && rows.is_empty() {
                 console::print(&format!("{outline}{HEAD}"))?;
             }

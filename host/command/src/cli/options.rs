@@ -160,7 +160,7 @@ impl View {
         let settings = self.settings(&scene, effort)?;
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;
         let threads = cpu::pool(threads)?;
-        let pack = || threads.install(|| Packed::new(&scene, &camera, settings, effort.quality()));
+        let pack = || threads.install(|| Packed::new(&scene, settings, effort.quality()));
         let start = Instant::now();
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         Ok(Loaded { packed, read_time, build_time: start.elapsed() })

@@ -78,7 +78,7 @@ impl Render {
         let read = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
         let loaded = self.view.pack(read, &self.effort.over(&preset), choice.threads, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Chosen::new(&choice))?;
-        let (width, height) = loaded.packed.settings.size;
+        let (width, height) = loaded.packed.settings().size;
         let progress =
             progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
         let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));

@@ -75,7 +75,7 @@ impl<'a> Summary<'a> {
     }
 
     pub fn json(&self) -> Value {
-        let settings = &self.loaded.packed.settings;
+        let settings = &self.loaded.packed.settings();
         let times = &self.times;
         json!({
             "output": self.destination.to_string(),
@@ -86,7 +86,7 @@ impl<'a> Summary<'a> {
             "precision": self.precision(),
             "device": self.rendering.device,
             "why": remedy::why(self.rendering),
-            "triangles": self.loaded.packed.statistics.triangles,
+            "triangles": self.loaded.packed.statistics().triangles,
             "rays": self.rendering.rays,
             "film_hash": self.rendering.film.hash(),
             "mrays_per_second": self.mrays(times.render),
@@ -107,7 +107,7 @@ fn milliseconds(time: Duration) -> f64 {
 
 impl fmt::Display for Summary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (width, height) = self.loaded.packed.settings.size;
+        let (width, height) = self.loaded.packed.settings().size;
         let (rendering, rays) = (self.rendering, self.rendering.rays);
         write!(out, "{}: {width}x{height} in {} precision", self.destination, self.precision())?;
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;

@@ -147,7 +147,7 @@ fn load(kind: Kind, triangles: u64, seed: u64) -> Scene {
 fn film(scene: &Scene, camera: usize, around: Vec3) -> Film {
     let scene = Scene { background: Background::Colour(around), ..scene.clone() };
     let settings = scene::Settings { size: (72, 72), ..scene.settings };
-    let packed = Packed::new(&scene, &scene.cameras[camera], settings, Quality::Fast).unwrap();
+    let packed = Packed::new(&scene, settings, Quality::Fast).unwrap();
     cpu::render::<f32>(&packed, eyerays::method::Method::IfIf, 0, &|_| ()).unwrap().0
 }
 

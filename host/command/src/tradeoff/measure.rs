@@ -105,7 +105,7 @@ impl<'a> Judge<'a> {
         let best = plan.axes.reference(subject.settings);
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
         let once = Settings { samples: 1, ..best };
-        let mut packed = Packed::new(&subject.scene, &subject.camera, once, bvh.quality())?;
+        let mut packed = Packed::new(&subject.scene, once, bvh.quality())?;
         let primary = Primary::new(&packed, threads)?;
         let mut references = Vec::new();
         for &samples in &plan.axes.samples {
@@ -162,7 +162,7 @@ impl<'a> Judge<'a> {
             time_ms: timing.median * 1e3,
             spread: timing.spread,
             slowest_ms: slowest * 1e3,
-            build_ms: self.packed.build_time.as_secs_f64() * 1e3,
+            build_ms: self.packed.build_time().as_secs_f64() * 1e3,
             wrong_primitives: hits.wrong,
             t_error_median_ulp: hits.median_ulp,
             t_error_max_ulp: hits.max_ulp,
@@ -179,7 +179,7 @@ impl<'a> Judge<'a> {
         let Subject { scene, camera, .. } = self.subject;
         let settings = setting.settings(self.subject.settings);
         if self.bvh != setting.bvh {
-            self.packed = Packed::new(scene, camera, settings, setting.bvh.quality())?;
+            self.packed = Packed::new(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
         Ok(self.packed.set(scene, camera, settings)?)

@@ -21,7 +21,7 @@ macro_rules! methods {
 
         impl Method {
             /// Every method but [`Method::Auto`], which is one of them.
-            pub const ALL: &'static [Method] = &[$(Method::$variant),*];
+            pub const ALL: [Method; [$(Method::$variant),*].len()] = [$(Method::$variant),*];
 
             /// Does it vote across the lanes of a subgroup?
             pub fn votes(self) -> bool {

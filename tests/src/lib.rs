@@ -18,6 +18,7 @@ use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::pack::Packed;
 use eyerays::rays::Rays;
 use eyerays::scene::{self, Camera, Scene, Settings};
+use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use eyerays_shader::real::Scalar;
@@ -44,8 +45,34 @@ pub fn settings(scene: &Scene, size: (u32, u32), samples: u32) -> Settings {
 ///
 /// # Panics
 /// If no device could hold it.
-pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Packed {
-    Packed::new(scene, settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Posed {
+    pack_in(scene, camera, settings, Quality::Medium)
+}
+
+/// The same at some quality.
+///
+/// # Panics
+/// As [`pack`].
+pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Posed {
+    let packed = Packed::new(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
+    let view = View::new(&packed, camera).unwrap_or_else(|e| panic!("{e}"));
+    Posed { packed, view }
+}
+
+/// A scene before a camera.
+pub struct Posed {
+    /// The scene.
+    pub packed: Packed,
+    /// The camera's view.
+    pub view: View,
+}
+
+impl std::ops::Deref for Posed {
+    type Target = Packed;
+
+    fn deref(&self) -> &Packed {
+        &self.packed
+    }
 }
 
 /// The GPU that tests run on, a software one such as lavapipe too: `EYERAYS_ADAPTER` names one, else it is
@@ -97,8 +124,8 @@ pub fn traversals() -> Vec<Traversal> {
 ///
 /// # Panics
 /// If there is no memory for the film.
-pub fn on_cpu<R: Scalar<Record: Send + Sync>>(packed: &Packed) -> (Film, Rays) {
-    cpu::render::<R>(packed, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
+pub fn on_cpu<R: Scalar<Record: Send + Sync>>(posed: &Posed) -> (Film, Rays) {
+    cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Asserts that two films have the same bits.

@@ -13,7 +13,7 @@ use eyerays::stream::{Answers, Question, Stream};
 use eyerays_shader::real::Fast;
 use glam::UVec4;
 
-use crate::{gpu, traversals};
+use crate::{Posed, gpu, traversals};
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| gpu(&Want { exact: true, ..Want::default() }));
 
@@ -79,13 +79,13 @@ impl Machine {
     ///
     /// # Panics
     /// If the device can't.
-    pub fn render(&self, packed: &Packed) -> (Film, Rays) {
-        let traversal = Traversal::default();
+    pub fn render(&self, posed: &Posed) -> (Film, Rays) {
+        let (packed, view, traversal) = (&posed.packed, &posed.view, Traversal::default());
         let rendered = match (self.gpu, self.exact) {
-            (None, true) => cpu::render::<f32>(packed, traversal, 0, &|_| ()),
-            (None, false) => cpu::render::<Fast>(packed, traversal, 0, &|_| ()),
+            (None, true) => cpu::render::<f32>(packed, view, traversal, 0, &|_| ()),
+            (None, false) => cpu::render::<Fast>(packed, view, traversal, 0, &|_| ()),
             (Some(gpu), exact) => Renderer::new(gpu, packed, exact, traversal)
-                .and_then(|renderer| renderer.render(&|_| ()))
+                .and_then(|mut renderer| renderer.render(view, &|_| ()))
                 .map(|rendering| (rendering.film, rendering.rays)),
         };
         rendered.unwrap_or_else(|e| panic!("{self}: {e}"))

@@ -92,24 +92,25 @@ impl Surface {
     /// # Panics
     /// If no device could hold it.
     pub fn pack(&self) -> Packed {
-        self.pack_seen_from(Vec3::ZERO)
+        let scene = self.scene();
+        Packed::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 
-    /// The scene packed, its camera at a place in world units.
+    /// The scene packed, with a place in world units that it reaches to: a triangle without extent, the last, which no ray
+    /// meets.
     ///
     /// # Panics
     /// If no device could hold it.
-    pub fn pack_seen_from(&self, eye: Vec3) -> Packed {
+    pub fn pack_up_to(&self, end: Vec3) -> Packed {
         let mut scene = self.scene();
-        let camera = &mut scene.cameras[0];
-        (camera.eye, camera.target) = (eye, eye - Vec3::Z);
+        add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
         Packed::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 
 /// The triangles of a packed scene, each once and in the scene's order, which no hierarchy changes.
 pub fn triangles(packed: &Packed) -> Vec<Triangle> {
-    let mut triangles = packed.triangles().clone();
+    let mut triangles = packed.triangles().to_vec();
     triangles.sort_by_key(Triangle::primitive);
     triangles.dedup_by_key(|triangle| triangle.primitive());
     triangles

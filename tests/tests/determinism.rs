@@ -3,19 +3,20 @@
 use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::method::Traversal;
-use eyerays::pack::Packed;
+use eyerays::cpu::{Isa, Planned};
+use eyerays::pack::Laid;
 use eyerays::view::Region;
 use eyerays::rays::Rays;
 use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::NON_FINITE;
-use eyerays_tests::{SHIPPED, assert_same_bits, pack, settings, shipped, traversals};
+use eyerays_tests::{Posed, SHIPPED, assert_same_bits, pack, pack_in, settings, shipped, traversals};
 
 /// Edges that no tile's edge divides.
 const SIZE: (u32, u32) = (83, 61);
 
-fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed, threads: usize) -> (Film, Rays) {
-    cpu::render::<R>(packed, Traversal::default(), threads, &|_| ()).unwrap()
+fn render<R: Scalar<Record: Send + Sync>>(posed: &Posed, threads: usize) -> (Film, Rays) {
+    cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), threads, &|_| ()).unwrap()
 }
 
 /// The same film at 1, 2 and 7 threads, and twice with each.
@@ -53,7 +54,7 @@ fn a_better_hierarchy_changes_nothing() {
         let scene = shipped(name);
         for camera in &scene.cameras {
             let of = |quality| {
-                let packed = Packed::new(&scene, settings(&scene, SIZE, 1), quality).unwrap();
+                let packed = pack_in(&scene, camera, settings(&scene, SIZE, 1), quality);
                 render::<f32>(&packed, 2)
             };
             let (film, rays) = of(Quality::Fast);
@@ -76,7 +77,7 @@ fn another_method_changes_nothing() {
             let (film, rays) = render::<f32>(&packed, 2);
             for traversal in traversals() {
                 let what = format!("{name}, camera {}, {traversal:?}", camera.name);
-                let (other, counted) = cpu::render::<f32>(&packed, traversal, 2, &|_| ()).unwrap();
+                let (other, counted) = cpu::render::<f32>(&packed, &packed.view, traversal, 2, &|_| ()).unwrap();
                 assert_same_bits(&film, &other, &what);
                 assert_eq!(rays, counted, "{what}");
             }
@@ -101,16 +102,17 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 2));
         let (whole, rays) = render::<f32>(&packed, 2);
+        let planned = Planned::new(Laid::new(&packed, Traversal::default()), Isa::best());
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
             let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
             for tile in tiles(SIZE, size) {
-                let (records, secondary) = cpu::render_tile::<f32>(&packed, Traversal::default(), tile, &());
-                counted.secondary += secondary;
-                counted.primary += u64::from(tile.width * tile.height * packed.samples());
+                let mut records = planned.film::<f32>(tile);
+                counted.secondary += planned.add::<f32>(&packed.view, tile, 0..4, &mut records, &());
+                counted.primary += u64::from(tile.width * tile.height * 4);
                 for (record, at) in records.into_iter().zip(0..) {
                     let (colour, word) = f32::load(record);
                     let (x, y) = (tile.x + at % tile.width, tile.y + at / tile.width);
-                    film.pixels[(y * SIZE.0 + x) as usize] = [colour.x, colour.y, colour.z];
+                    film.pixels[(y * SIZE.0 + x) as usize] = [colour.x, colour.y, colour.z].map(|sum| sum / 4.0);
                     counted.shadow += u64::from(word & !NON_FINITE);
                     counted.non_finite += u64::from(word & NON_FINITE != 0);
                 }

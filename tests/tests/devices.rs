@@ -3,10 +3,10 @@
 use eyerays::error::{Content, Error};
 use eyerays::gpu::{Gpu, Renderer, Want};
 use eyerays::method::{Method, Traversal};
-use eyerays::pack::Packed;
+use eyerays::integrator;
 use eyerays::scene::{Background, Light, Material, Scene, Settings};
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
-use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
+use eyerays_tests::{Posed, assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
 use glam::Vec3;
 
 /// Size and samples: with and without whole blocks of pixels.
@@ -16,20 +16,20 @@ fn exact() -> Option<Gpu> {
     gpu(&Want { exact: true, ..Want::default() })
 }
 
-fn assert_same_by(gpu: &Gpu, packed: &Packed, traversals: &[Traversal], what: &str) {
+fn assert_same_by(gpu: &Gpu, packed: &Posed, traversals: &[Traversal], what: &str) {
     let (film, rays) = on_cpu::<f32>(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     for &traversal in traversals {
         let what = format!("{what}, {traversal:?}");
-        let renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
-        let rendering = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+        let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
+        let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
         assert_same_bits(&rendering.film, &film, &what);
         assert_eq!(rendering.rays, rays, "{what}");
     }
 }
 
 /// The GPU against the CPU by the default method.
-fn assert_same(gpu: &Gpu, packed: &Packed, what: &str) {
+fn assert_same(gpu: &Gpu, packed: &Posed, what: &str) {
     assert_same_by(gpu, packed, &[Traversal::default()], what);
 }
 
@@ -70,8 +70,8 @@ fn twice_in_a_row() {
     let Some(gpu) = exact() else { return };
     let scene = shipped("whitted");
     let packed = pack(&scene, &scene.cameras[2], settings(&scene, (70, 50), 2));
-    let renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
-    let [first, second] = [0, 1].map(|_| renderer.render(&|_| ()).unwrap());
+    let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+    let [first, second] = [0, 1].map(|_| renderer.render(&packed.view, &|_| ()).unwrap());
     assert_same_bits(&first.film, &second.film, "twice");
     assert_eq!(first.rays, second.rays);
 }
@@ -139,7 +139,7 @@ fn bands() {
     let Some(mut gpu) = exact() else { return };
     let scene = still_life();
     let packed = pack(&scene, &scene.cameras[0], Settings { samples: 2, ..scene.settings });
-    let block = u64::from(packed.levels()) * 3 * 16 * 32;
+    let block = u64::from(integrator::whitted(&packed).paths) * 3 * 16 * 32;
     for blocks in [1, 2, 9, 40] {
         gpu.report.max_binding = blocks * block;
         assert_same(&gpu, &packed, &format!("{blocks} blocks a band"));
@@ -205,7 +205,7 @@ fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
     let packed = pack(&scene, &scene.cameras[0], Settings { bounces: 0, ..scene.settings });
     gpu.report.max_binding = 1000;
     let error = Renderer::new(&gpu, &packed, true, Traversal::default()).err().expect("it does not fit").to_string();
-    let size = size_of_val(packed.nodes().as_slice()).to_string();
+    let size = size_of_val(packed.nodes()).to_string();
     for part in ["hierarchy", &size, "1000", &gpu.report.name, "--device cpu"] {
         assert!(error.contains(part), "{error}: no {part}");
     }

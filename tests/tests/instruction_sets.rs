@@ -2,7 +2,8 @@
 
 use eyerays::cpu::{self, Isa};
 use eyerays::method::{Layout, Method, Traversal};
-use eyerays::pack::{Laid, Packed, Region};
+use eyerays::pack::{Laid, Packed};
+use eyerays::view::Region;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::real::Scalar;
 use eyerays_tests::{SHIPPED, pack, settings, shipped, traversals};
@@ -79,8 +80,9 @@ fn every_isa_renders_the_same_tile() {
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));
         let region = Region { x: 3, y: 2, width: 33, height: 26 };
         let tile = |isa, method| {
-            let (film, secondary) =
-                cpu::render_tile_by::<f32>(isa, &Laid::new(&packed, Traversal::from(method)), region, &());
+            let planned = cpu::Planned::new(Laid::new(&packed, Traversal::from(method)), isa);
+            let mut film = planned.film::<f32>(region);
+            let secondary = planned.add::<f32>(&packed.view, region, 0..1, &mut film, &());
             (film.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)
         };
         let wanted = tile(Isa::Baseline, Method::IfIf);

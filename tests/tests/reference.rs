@@ -7,13 +7,13 @@ use eyerays::film::Film;
 use eyerays::method::Traversal;
 use eyerays::pack::Packed;
 use eyerays_shader::camera;
-use eyerays_shader::data::{Features, Light};
+use eyerays_shader::data::{Effects, Light};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::Scalar;
-use eyerays_shader::scene::{Geometry, Looks};
+use eyerays_shader::scene::{Looks, TraceContext};
 use eyerays_shader::shade::{Contact, Incidence, Surface, refract};
 use eyerays_shader::stage::{Path, REACHED};
-use eyerays_tests::{differences, pack, shipped};
+use eyerays_tests::{Posed, differences, pack, shipped};
 
 /// The largest difference of a channel that rounding explains.
 const NEAR: f32 = 1e-4;
@@ -39,10 +39,10 @@ struct Log<'a> {
 impl<R: Scalar> Observer<R> for Log<'_> {
     fn wave(&self, geometry: &TraceContext<'_>, slots: &[u32], records: &Records<R>) {
         let mut stories = self.stories.lock().unwrap();
-        let corner = geometry.frame.region;
+        let frame = geometry.base.frame;
         for &slot in slots {
-            let pixel = camera::pixel(geometry.frame, geometry.features, slot);
-            let at = (corner.y + pixel.y) * self.packed.settings().size.0 + corner.x + pixel.x;
+            let pixel = camera::pixel(frame, geometry.base.spec.order, slot);
+            let at = (frame.top + pixel.y) * frame.width + frame.left + pixel.x;
             self.tell(geometry, slot, records, &mut stories[at as usize]);
         }
     }
@@ -51,7 +51,7 @@ impl<R: Scalar> Observer<R> for Log<'_> {
 impl Log<'_> {
     /// What became of a slot's ray: its place in the tree, what it hit, and every branch that shading takes there.
     fn tell<R: Scalar>(&self, geometry: &TraceContext<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
-        let path = Path::<R>::current(geometry, slot, &records.paths);
+        let path = Path::<R>::current(&geometry.base, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
         let (hit, triangle_index) = R::load(records.hits[slot as usize]);
         if triangle_index == Hit::<R>::NOTHING {
@@ -61,16 +61,16 @@ impl Log<'_> {
         let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
         let triangle = &geometry.triangle(triangle_index);
         let contact = Contact::new(triangle, hit.y, hit.z, path.direction);
-        let surface = Surface::new(geometry.features, &looks, triangle_index, triangle, path.direction, &contact);
+        let surface = Surface::new(geometry.base.spec.effects, &looks, triangle_index, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.primitive(), u32::from(contact.front)]);
         story.events.extend(cell);
         for (light, index) in packed.lights().iter().zip(0..) {
-            let answer = records.shadows[(index * geometry.slots() + slot) as usize];
+            let answer = records.shadows[(index * geometry.base.frame.slots + slot) as usize];
             story.events.push(answer);
             if answer == REACHED {
-                story.events.push(cone(geometry.features, light, &contact));
+                story.events.push(cone(geometry.base.spec.effects, light, &contact));
             }
         }
         if !surface.ior.eq(R::splat(0.0)) {
@@ -83,8 +83,8 @@ impl Log<'_> {
 }
 
 /// The part of a spot's cone that a place is in: full light, the rim or none.
-fn cone<R: Scalar>(features: Features, light: &Light, contact: &Contact<R>) -> u32 {
-    let colour = Incidence::new(features, light, contact.position).colour;
+fn cone<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<R>) -> u32 {
+    let colour = Incidence::new(effects, light, contact.position).colour;
     let all = f32::from_bits(light.colour.x);
     match colour.x.to_f32() {
         0.0 => 0,
@@ -93,10 +93,11 @@ fn cone<R: Scalar>(features: Features, light: &Light, contact: &Contact<R>) -> u
     }
 }
 
-fn render<R: Scalar<Record: Send + Sync>>(packed: &Packed) -> (Film, Vec<Story>) {
-    let (width, height) = packed.settings().size;
+fn render<R: Scalar<Record: Send + Sync>>(packed: &Posed) -> (Film, Vec<Story>) {
+    let (width, height) = packed.view.size();
     let log = Log { packed, stories: Mutex::new(vec![Story::default(); (width * height) as usize]) };
-    let (film, rays) = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap().render::<R>(&|_| (), &log).unwrap();
+    let renderer = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap();
+    let (film, rays) = renderer.render::<R>(&packed.view, &|_| (), &log).unwrap();
     assert_eq!(rays.non_finite, 0);
     (film, log.stories.into_inner().unwrap())
 }

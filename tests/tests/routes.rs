@@ -2,17 +2,16 @@
 
 use eyerays::gpu::{Gpu, Renderer, Route, Want};
 use eyerays::method::{Method, Traversal};
-use eyerays::pack::Packed;
 use eyerays::scene::Settings;
 use eyerays_shader::modules;
-use eyerays_tests::{SHIPPED, differences, gpu, on_cpu, pack, settings, shipped};
+use eyerays_tests::{Posed, SHIPPED, differences, gpu, on_cpu, pack, settings, shipped};
 
 /// At least 99.9 % of the pixels lie within 1e-4 of exact. (Measured with lavapipe at this size, over every scene
 /// and method: all do, and all but one of 19,200 within 1e-5.)
-fn assert_near(gpu: &Gpu, packed: &Packed, traversal: Traversal, what: &str) {
+fn assert_near(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
     let (exact, _) = on_cpu::<f32>(packed);
-    let renderer = Renderer::new(gpu, packed, false, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
-    let fast = renderer.render(&|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let mut renderer = Renderer::new(gpu, packed, false, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let fast = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert_eq!(fast.rays.non_finite, 0, "{what}");
     let differences = differences(&exact, &fast.film);
     let far = differences.iter().filter(|&&difference| difference > 1e-4).count();

@@ -7,8 +7,8 @@ use eyerays::pack::Packed;
 use eyerays::stream::{Answers, Question, Stream};
 use eyerays_command::bench::Kind;
 use eyerays_command::bench::answers::first_difference;
-use eyerays_command::bench::rays::{Sight, View, diagonal};
-use eyerays_tests::{SHIPPED, gpu, pack, settings, shipped, traversals};
+use eyerays_command::bench::rays::{CameraRays, Sight, diagonal};
+use eyerays_tests::{Posed, SHIPPED, gpu, pack, settings, shipped, traversals};
 
 /// Rays through the middle of this many pixels.
 const SIZE: (u32, u32) = (40, 30);
@@ -18,7 +18,7 @@ fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Ques
 }
 
 /// The GPU's answers by those of these traversals that take a layout.
-fn assert_gpu(gpu: &Gpu, packed: &Packed, how: &[Traversal], layout: Layout, what: &str) {
+fn assert_gpu(gpu: &Gpu, packed: &Posed, how: &[Traversal], layout: Layout, what: &str) {
     let caster = Caster::new(gpu, packed, layout).unwrap();
     let streams = streams(packed);
     for (kind, stream) in &streams {
@@ -27,13 +27,13 @@ fn assert_gpu(gpu: &Gpu, packed: &Packed, how: &[Traversal], layout: Layout, wha
         for &traversal in how.iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
             caster.trace(&cast, true, traversal, kind.question()).unwrap();
             let got = caster.answers(&cast, kind.question()).unwrap();
-            assert_eq!(first_difference(packed, &got, &want), None, "{what}, {kind:?}, {traversal:?}");
+            assert_eq!(first_difference(packed.triangles(), &got, &want), None, "{what}, {kind:?}, {traversal:?}");
         }
     }
 }
 
-fn streams(packed: &Packed) -> Vec<(Kind, Stream)> {
-    let sight = Sight::new(packed, &View::of(packed, Order::Tiled), 0).unwrap();
+fn streams(packed: &Posed) -> Vec<(Kind, Stream)> {
+    let sight = Sight::new(packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
     let length = 0.2 * diagonal(packed) as f32;
     Kind::ALL
         .into_iter()
@@ -51,7 +51,7 @@ fn every_kind_by_every_method_on_the_cpu() {
             let want = on_cpu(&packed, Method::IfIf.into(), &stream, kind.question());
             for traversal in traversals() {
                 let got = on_cpu(&packed, traversal, &stream, kind.question());
-                assert_eq!(first_difference(&packed, &got, &want), None, "{name}, {kind:?}, {traversal:?}");
+                assert_eq!(first_difference(packed.triangles(), &got, &want), None, "{name}, {kind:?}, {traversal:?}");
             }
         }
     }

@@ -230,7 +230,8 @@ fn info_tells_the_hierarchies_of_a_scene() {
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
     {
-        let want = Packed::new(&scene, scene.settings, quality).unwrap().statistics;
+        let want = Packed::new(&scene, scene.settings, quality).unwrap();
+        let want = want.statistics();
         let counts = [want.triangles, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
         assert_eq!(rows[row][0], name);
         assert_eq!(rows[row][1..5], counts, "{name}");

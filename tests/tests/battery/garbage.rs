@@ -5,6 +5,8 @@ use std::fmt::Write as _;
 use eyerays::pack::Packed;
 use eyerays::scene::{self, Scene, Settings};
 use eyerays_bvh::Quality;
+use eyerays::view::View;
+use eyerays_tests::Posed;
 use eyerays_tests::count;
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, empty, glass, lamp, matt, mirror, sun};
@@ -64,7 +66,8 @@ fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
     for scene in scenes {
         match Packed::new(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
-                let (film, rays) = machine.render(&packed);
+                let Ok(view) = View::new(&packed, &scene.cameras[0]) else { continue };
+                let (film, rays) = machine.render(&Posed { packed, view });
                 drawn.meshes += 1;
                 drawn.pixels += film.pixels.len();
                 let is_bad = |pixel: &&[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());

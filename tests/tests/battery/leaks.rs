@@ -26,10 +26,10 @@ struct Closed<'a> {
 }
 
 impl<'a> Closed<'a> {
-    /// A surface seen from `eye`.
+    /// A surface around `eye`.
     fn new(name: &'a str, surface: &Surface, eye: DVec3, rays: (usize, usize)) -> Self {
-        let packed = surface.pack_seen_from(eye.as_vec3());
-        let targets = triangles(&packed).iter().map(|t| t.vertices()).collect();
+        let packed = surface.pack_up_to(eye.as_vec3());
+        let targets = triangles(&packed)[..surface.triangles.len()].iter().map(|t| t.vertices()).collect();
         Closed { name, packed, targets, rays }
     }
 

@@ -10,7 +10,7 @@ use eyerays::pack::Packed;
 use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_command::bench::Kind;
-use eyerays_command::bench::rays::{Sight, View};
+use eyerays_command::bench::rays::{CameraRays, Sight};
 use eyerays_shader::data::Triangle;
 use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;
@@ -93,9 +93,9 @@ fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
     // A sample has to do where each ray meets most triangles.
     if count::full() && !is_crowded(&packed) {
         scene.settings.size = (640, 480);
-        packed.set(&scene, &scene.cameras[0], scene.settings).unwrap_or_else(|e| panic!("{e}"));
+        packed = pack(&scene, &scene.cameras[0], scene.settings);
     }
-    let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
+    let sight = Sight::new(&packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
     let truth = on_cpu::<f64>(&packed).0;
     for machine in Machine::all() {
         if machine.is_software() && is_crowded(&packed) {

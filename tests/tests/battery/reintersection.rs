@@ -18,13 +18,12 @@ use glam::{DMat3, DVec3, Vec3};
 /// Where coordinates lie: 10 to a power in this range, of either sign.
 const POWERS: (f64, f64) = (-8.0, 8.0);
 
-/// A triangle alone in a scene that is seen from `eye`.
-fn alone(vertices: [Vec3; 3], eye: Vec3) -> Packed {
+/// A triangle alone in a scene that reaches as far as `end`: to a triangle without extent, which no ray meets.
+fn alone(vertices: [Vec3; 3], end: Vec3) -> Packed {
     let mut scene = empty();
     add(&mut scene, matt(Vec3::ONE), &vertices, &[[0, 1, 2]]);
-    let camera = &mut scene.cameras[0];
-    (camera.eye, camera.target) = (eye, eye - Vec3::Z * eye.abs().max_element());
-    pack(&scene, &scene.cameras[0], scene.settings)
+    add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
+    pack(&scene, &scene.cameras[0], scene.settings).packed
 }
 
 /// Rays that met the triangle again which they left, of how many.

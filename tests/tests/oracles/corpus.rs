@@ -1,20 +1,20 @@
 //! The scenes and rays that all oracles are asked about, with fixed seeds.
 
 use eyerays::pack::Packed;
-use eyerays::view::Region;
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
 use eyerays_shader::camera;
+use eyerays_shader::data::Order;
 use eyerays_tests::model::{add, empty, matt};
-use eyerays_tests::{SHIPPED, pack, settings, shipped};
+use eyerays_tests::{Posed, SHIPPED, pack, settings, shipped};
 use fastrand::Rng;
 use glam::Vec3;
 
 /// A scene, and rays that start in it.
 pub struct Case {
     pub name: String,
-    pub packed: Packed,
+    pub packed: Posed,
     pub rays: Vec<StreamRay>,
 }
 
@@ -83,16 +83,14 @@ fn point(rng: &mut Rng) -> Vec3 {
 }
 
 /// The camera's.
-fn primary(packed: &Packed) -> Vec<StreamRay> {
-    let (width, height) = packed.settings().size;
-    let frame = packed.frame(Region { x: 0, y: 0, width, height }, 0, packed.features);
-    let slots = camera::slots(width, height, packed.features);
-    let pixels = (0..slots).map(|slot| camera::pixel(&frame, packed.features, slot)).filter(|pixel| pixel.inside);
+fn primary(posed: &Posed) -> Vec<StreamRay> {
+    let frame = posed.view.launch(posed.view.region(), 0, 1, Order::default());
+    let pixels = (0..frame.slots).map(|slot| camera::pixel(&frame, Order::default(), slot)).filter(|pixel| pixel.inside);
     let ray = |pixel| {
         let (origin, direction) = camera::ray::<f32>(&frame, pixel);
         let vector = |v: eyerays_shader::real::V3<f32>| Vec3::new(v.x, v.y, v.z);
         StreamRay {
-            origin: vector(origin),
+            origin: vector(camera::approach(origin, direction)),
             direction: vector(direction),
             limit: f32::MAX,
             source_primitive: StreamRay::NOWHERE,

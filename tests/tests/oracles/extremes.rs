@@ -2,23 +2,22 @@
 
 use eyerays::gpu::{Renderer, Want};
 use eyerays::method::Traversal;
-use eyerays::pack::Packed;
 use eyerays::scene::{self, Background, Light, Material, Scene, Settings};
 use eyerays_shader::real::{Real, Scalar, V3};
 use eyerays_shader::shade::{fresnel, refract};
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt};
 use eyerays_tests::numbers::picture;
-use eyerays_tests::{assert_same_bits, count, gpu, on_cpu, pack};
+use eyerays_tests::{Posed, assert_same_bits, count, gpu, on_cpu, pack};
 use glam::Vec3;
 
 /// On the CPU without a value that is not finite, and on a GPU the same bits.
-fn films(packed: &Packed, what: &str) -> Vec<Vec3> {
+fn films(packed: &Posed, what: &str) -> Vec<Vec3> {
     let (film, rays) = on_cpu::<f32>(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()), "{what}");
     if let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) {
-        let renderer = Renderer::new(&gpu, packed, true, Traversal::default()).unwrap();
-        let rendering = renderer.render(&|_| ()).unwrap();
+        let mut renderer = Renderer::new(&gpu, packed, true, Traversal::default()).unwrap();
+        let rendering = renderer.render(&packed.view, &|_| ()).unwrap();
         assert_same_bits(&rendering.film, &film, what);
     }
     film.pixels.iter().map(|&pixel| Vec3::from(pixel)).collect()

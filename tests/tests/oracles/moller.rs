@@ -39,7 +39,7 @@ fn ball(steps: u32) -> Packed {
     }
     let mut scene = empty();
     add(&mut scene, matt(Vec3::ONE), &corners, &triangles);
-    pack(&scene, &scene.cameras[0], scene.settings)
+    pack(&scene, &scene.cameras[0], scene.settings).packed
 }
 
 /// From inside to edges and vertices.

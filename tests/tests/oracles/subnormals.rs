@@ -1,21 +1,21 @@
 //! No subnormal number is used but where it is flushed, so that a device which flushes all gives the same picture.
 
 use eyerays::method::Traversal;
-use eyerays::pack::{Laid, Packed};
+use eyerays::pack::Laid;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage;
 use eyerays_shader::traverse::{self, CwbvhMethod, IfIf};
 use eyerays_tests::numbers::{Counting, Flushing, picture, subnormals};
-use eyerays_tests::{SHIPPED, count, pack, settings, shipped};
+use eyerays_tests::{Posed, SHIPPED, count, pack, settings, shipped};
 use glam::{UVec4, Vec3};
 
 use super::corpus::{Case, cases};
 use super::hits::crossed;
 
 /// The bits of a picture.
-fn bits<R: Scalar>(packed: &Packed) -> Vec<[u32; 3]> {
+fn bits<R: Scalar>(packed: &Posed) -> Vec<[u32; 3]> {
     let pixel = |p: V3<R>| [p.x, p.y, p.z].map(|channel| channel.to_f32().to_bits());
     picture::<R>(packed).into_iter().map(pixel).collect()
 }

@@ -1,8 +1,8 @@
 //! Whether two runs gave the same answers, bit for bit.
 
+use eyerays_shader::data::Triangle;
 use glam::UVec4;
 
-use eyerays::pack::Packed;
 use eyerays::stream::{Answers, StreamRay};
 
 /// FNV-1a over words of 32 bits.
@@ -23,11 +23,11 @@ impl Hash {
 
     /// The answers of a stream: bits of (t, u, v) and the primitive's number (a slot depends on how the
     /// hierarchy was built), or what is known of its end.
-    pub fn of(packed: &Packed, answers: &Answers) -> Hash {
+    pub fn of(triangles: &[Triangle], answers: &Answers) -> Hash {
         let mut hash = Hash::default();
         match answers {
             Answers::Closest(hits) => {
-                hits.iter().flat_map(|&hit| comparable(packed, hit).to_array()).for_each(|word| hash.add(word));
+                hits.iter().flat_map(|&hit| comparable(triangles, hit).to_array()).for_each(|word| hash.add(word));
             }
             Answers::Occlusion(shadows) => shadows.iter().for_each(|&word| hash.add(word)),
         }
@@ -42,13 +42,13 @@ impl std::fmt::Display for Hash {
 }
 
 /// A hit with its primitive instead of its slot.
-fn comparable(packed: &Packed, hit: UVec4) -> UVec4 {
-    hit.truncate().extend(primitive(packed, hit.w))
+fn comparable(triangles: &[Triangle], hit: UVec4) -> UVec4 {
+    hit.truncate().extend(primitive(triangles, hit.w))
 }
 
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
-pub(crate) fn primitive(packed: &Packed, slot: u32) -> u32 {
-    match packed.triangles().get(slot as usize) {
+pub(crate) fn primitive(triangles: &[Triangle], slot: u32) -> u32 {
+    match triangles.get(slot as usize) {
         Some(triangle) => triangle.primitive(),
         None if slot == StreamRay::NOWHERE => slot,
         None => slot | 1 << 31,
@@ -56,11 +56,11 @@ pub(crate) fn primitive(packed: &Packed, slot: u32) -> u32 {
 }
 
 /// The first ray with another answer, or with none.
-pub fn first_difference(packed: &Packed, a: &Answers, b: &Answers) -> Option<usize> {
+pub fn first_difference(triangles: &[Triangle], a: &Answers, b: &Answers) -> Option<usize> {
     let shorter = |a: usize, b: usize| (a != b).then(|| a.min(b));
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
-            let differs = |(&a, &b): (&UVec4, &UVec4)| comparable(packed, a) != comparable(packed, b);
+            let differs = |(&a, &b): (&UVec4, &UVec4)| comparable(triangles, a) != comparable(triangles, b);
             a.iter().zip(b).position(differs).or_else(|| shorter(a.len(), b.len()))
         }
         (Answers::Occlusion(a), Answers::Occlusion(b)) => {
@@ -71,11 +71,11 @@ pub fn first_difference(packed: &Packed, a: &Answers, b: &Answers) -> Option<usi
 }
 
 /// The share of rays that met another primitive, or were told another answer.
-pub fn differing(packed: &Packed, a: &Answers, b: &Answers) -> f64 {
+pub fn differing(triangles: &[Triangle], a: &Answers, b: &Answers) -> f64 {
     let share = |differing: usize, all: usize| differing as f64 / all.max(1) as f64;
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
-            let differs = |(a, b): &(&UVec4, &UVec4)| primitive(packed, a.w) != primitive(packed, b.w);
+            let differs = |(a, b): &(&UVec4, &UVec4)| primitive(triangles, a.w) != primitive(triangles, b.w);
             share(a.iter().zip(b).filter(differs).count(), a.len())
         }
         (Answers::Occlusion(a), Answers::Occlusion(b)) => {
@@ -96,23 +96,24 @@ mod tests {
 
     #[test]
     fn a_bit_or_a_primitive_makes_a_difference_and_a_slot_none() {
-        let mut packed = cornell((8, 8));
-        packed.triangles()[1] = packed.triangles()[0];
+        let mut triangles = cornell((8, 8)).0.triangles().to_vec();
+        triangles[1] = triangles[0];
+        let triangles = &triangles[..];
         let of = |hits: &[UVec4]| Answers::Closest(hits.to_vec());
         let first = of(&[hit(1.0, 0), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);
         let same = of(&[hit(1.0, 1), hit(2.0, StreamRay::NOWHERE), hit(3.0, 2)]);
         let nearer = of(&[hit(1.0, 0), hit(2.0, StreamRay::NOWHERE), hit(3.0f32.next_down(), 2)]);
         let other = of(&[hit(1.0, 0), hit(2.0, 3), hit(3.0, u32::MAX - 1)]);
-        assert_eq!(Hash::of(&packed, &first), Hash::of(&packed, &same));
+        assert_eq!(Hash::of(triangles, &first), Hash::of(triangles, &same));
         for (answers, ray, share) in [(&same, None, 0.0), (&nearer, Some(2), 0.0), (&other, Some(1), 2.0 / 3.0)] {
-            assert_eq!(first_difference(&packed, &first, answers), ray);
-            assert_eq!(differing(&packed, &first, answers), share);
-            assert_eq!(Hash::of(&packed, &first) == Hash::of(&packed, answers), ray.is_none());
+            assert_eq!(first_difference(triangles, &first, answers), ray);
+            assert_eq!(differing(triangles, &first, answers), share);
+            assert_eq!(Hash::of(triangles, &first) == Hash::of(triangles, answers), ray.is_none());
         }
         let shadows = [vec![0, 1, 1, 0], vec![0, 1, 0, 0]].map(Answers::Occlusion);
-        assert_eq!(first_difference(&packed, &shadows[0], &shadows[1]), Some(2));
-        assert_eq!(differing(&packed, &shadows[0], &shadows[1]), 0.25);
-        assert_ne!(Hash::of(&packed, &shadows[0]), Hash::of(&packed, &shadows[1]));
-        assert_eq!(first_difference(&packed, &shadows[0], &first), Some(0));
+        assert_eq!(first_difference(triangles, &shadows[0], &shadows[1]), Some(2));
+        assert_eq!(differing(triangles, &shadows[0], &shadows[1]), 0.25);
+        assert_ne!(Hash::of(triangles, &shadows[0]), Hash::of(triangles, &shadows[1]));
+        assert_eq!(first_difference(triangles, &shadows[0], &first), Some(0));
     }
 }

@@ -118,20 +118,23 @@ pub struct Counts {
 /// Follows a group of rays and counts.
 type Follow = fn(&TraceContext<'_>, &Stream, Range<usize>, Question) -> Calls;
 
-/// How a method's rays are followed: by themselves or 32 together.
+/// How a method's rays are followed, from the shader's table: by themselves or 32 together. Alone, `speculative` never
+/// speculates: its counts are those of `while-while`.
+macro_rules! follower {
+    ([$method:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
+        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
+        match $method {
+            Method::Auto => alone::<IfIf>,
+            $(Method::$variant => follower!(@ $way $($type)?),)*
+        }
+    };
+    (@ nodes) => { single::<CwbvhMethod> };
+    (@ $way:ident $type:ty) => { $way::<$type> };
+}
+
 fn follower(method: Method) -> Follow {
-    match method {
-        Method::Auto | Method::IfIf => single::<IfIf>,
-        Method::WhileWhile => single::<WhileWhile<Alone>>,
-        // Alone it never speculates: its counts are those of while-while.
-        Method::Speculative => single::<Speculative<Alone>>,
-        Method::Wide => single::<CwbvhMethod>,
-        Method::Packet => packet::<Packet<Alone>>,
-        Method::SequentialStack => packet::<Hybrid<Alone, StackMax, Sequential>>,
-        Method::SequentialCut => packet::<Hybrid<Alone, Cut, Sequential>>,
-        Method::InterleavedStack => packet::<Hybrid<Alone, StackMax, Interleaved>>,
-        Method::InterleavedCut => packet::<Hybrid<Alone, Cut, Interleaved>>,
-    }
+    use {packet as plainly, packet as together, single as alone};
+    eyerays_shader::for_each_method!(follower method)
 }
 
 /// Counts what a method does for a sample of a stream, every so many of its groups of 32, with `threads`
@@ -150,12 +153,21 @@ pub fn counts(
     let layout = if traversal.layout == Layout::Compact { Layout::Compact } else { Layout::Gathered };
     let laid = Laid::new(packed, Traversal { layout, ..traversal });
     let frame = packed.stream_frame(stream.len());
-    let geometry = laid.stream(&frame);
+    in_scene(&laid.stream(&frame), traversal.method, threads, stream, question)
+}
+
+fn in_scene(
+    scene: &TraceContext<'_>,
+    method: Method,
+    threads: usize,
+    stream: &Stream,
+    question: Question,
+) -> Result<Counts> {
     let groups = groups(stream.len());
     let rays: usize = groups.iter().map(Range::len).sum();
-    let follow = follower(traversal.method);
+    let follow = follower(method);
     let calls: Calls = cpu::pool(threads)?
-        .install(|| groups.par_iter().map(|group| follow(&geometry, stream, group.clone(), question)).sum());
+        .install(|| groups.par_iter().map(|group| follow(scene, stream, group.clone(), question)).sum());
     let each = |calls: u64| calls as f64 / rays.max(1) as f64;
     let efficiency = || calls.lanes as f64 / (PACKET as u64 * calls.children) as f64;
     Ok(Counts {
@@ -221,14 +233,13 @@ fn traverse<R: Real, M: traverse::Method<R>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_shader::data::{CentredPair, Features, NodePair, NodeRef, Triangle, Tuning};
+    use eyerays_shader::data::{CentredPair, Frame, Launch, NodePair, NodeRef, Specialisation, Triangle, Tuning};
+    use eyerays_shader::scene::LaunchContext;
     use glam::{Vec3, vec3};
 
-    use crate::bench::tests::cornell;
-
-    /// Four triangles in a row along x. The root has the first two on the left, in a pair of leaves, and the
-    /// others on the right, in one leaf.
-    fn row() -> Packed {
+    /// Counts in a scene of four triangles in a row along x. The root has the first two on the left, in a pair of leaves,
+    /// and the others on the right, in one leaf.
+    fn in_row(traversal: Traversal, stream: &Stream, question: Question) -> Counts {
         let wall = |x: f32| [vec3(x, -0.1, -0.1), vec3(x, 0.1, -0.1), vec3(x, 0.0, 0.1)];
         let triangles: Vec<Triangle> =
             [0.1, 0.3, 0.5, 0.7].iter().zip(0..).map(|(&x, i)| Triangle::new(wall(x), i, 0, 0)).collect();
@@ -244,11 +255,17 @@ mod tests {
             NodePair::new(around(&triangles[..2], NodeRef::inner(1)), leaf(2, 2)),
             NodePair::new(leaf(0, 1), leaf(1, 1)),
         ];
-        let mut packed = cornell((8, 8));
-        packed.nodes() = nodes.iter().map(CentredPair::from).collect();
-        packed.triangles() = triangles;
-        packed.features.0 &= !Features::SPLIT;
-        packed
+        let nodes: Vec<CentredPair> = nodes.iter().map(CentredPair::from).collect();
+        let frame = Frame { slots: stream.len() as u32, ..Frame::default() };
+        let spec = Specialisation { tuning: traversal.tuning, ..Specialisation::default() }.with_launch(Launch::STREAM);
+        let scene = TraceContext {
+            base: LaunchContext { frame: &frame, spec, triangles: bytemuck::cast_slice(&triangles) },
+            nodes: bytemuck::cast_slice(&nodes),
+            wide: &[],
+            bvh8: Default::default(),
+            bounds: &[],
+        };
+        in_scene(&scene, traversal.method, 1, stream, question).unwrap()
     }
 
     fn rays(directions: impl Fn(usize) -> Vec3, limit: f32) -> Stream {
@@ -258,7 +275,7 @@ mod tests {
     }
 
     fn of(method: Method, stream: &Stream, question: Question) -> Counts {
-        counts(&row(), method.into(), 1, stream, question).unwrap()
+        in_row(method.into(), stream, question)
     }
 
     /// Every second ray hits nothing.
@@ -297,7 +314,7 @@ mod tests {
     fn parted_rays_are_charged_to_themselves() {
         // The packet splits at the pair on the left, while the leaf on the right is still to visit for all.
         let traversal = Traversal { tuning: Tuning::new(1, 0), ..Method::SequentialStack.into() };
-        let counts = counts(&row(), traversal, 1, &halves(), Question::Closest).unwrap();
+        let counts = in_row(traversal, &halves(), Question::Closest);
         assert_eq!((counts.visits, counts.triangles, counts.simd_efficiency), (2.0, 3.0, Some(0.5)));
     }
 

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use eyerays_shader::camera::{self, Pixel};
-use eyerays_shader::data::{Features, Frame, Triangle};
+use eyerays_shader::data::{Frame, Order as OrderBits, Triangle};
 use eyerays_shader::real::V3;
 use eyerays_shader::shade::{Contact, reflect, refract, shadow_ray};
 use glam::{UVec4, Vec3};
@@ -15,8 +15,8 @@ use crate::error::Result;
 use eyerays::cpu;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
 use eyerays::pack::Packed;
-use eyerays::view::Region;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays::view::View;
 
 /// Ambient occlusion rays a hit.
 pub const AO_RAYS: u32 = 4;
@@ -30,26 +30,23 @@ pub const AO_SHARE: f64 = 0.2;
 /// Hits whose rays a task makes.
 const TASK: usize = 4096;
 
-/// A camera with the order of its pixels.
+/// A camera's rays, one a pixel, in an order of the pixels.
 #[derive(Clone, Copy)]
-pub struct View {
+pub struct CameraRays {
     frame: Frame,
-    features: Features,
+    order: OrderBits,
 }
 
-impl View {
-    /// What a scene is packed for, or was last [turned to](Packed::look): one ray a pixel.
-    pub fn of(packed: &Packed, order: Order) -> View {
-        let features = Features(packed.features.0 | Traversal { order, ..Traversal::default() }.features().0);
-        let (width, height) = packed.settings().size;
-        View { frame: packed.frame(Region { x: 0, y: 0, width, height }, 0, features), features }
+impl CameraRays {
+    /// Those of a view with one sample a pixel.
+    pub fn of(view: &View, order: Order) -> CameraRays {
+        CameraRays { frame: view.launch(view.region(), 0, 1, order.bits()), order: order.bits() }
     }
 
     /// The pixels of its slots in order.
     fn pixels(&self) -> impl Iterator<Item = Pixel> + '_ {
-        let (width, height) = (self.frame.region.z, self.frame.region.w);
-        let slots = 0..camera::slots(width, height, self.features);
-        slots.map(|slot| camera::pixel(&self.frame, self.features, slot)).filter(|pixel| pixel.inside)
+        let slots = 0..self.frame.slots;
+        slots.map(|slot| camera::pixel(&self.frame, self.order, slot)).filter(|pixel| pixel.inside)
     }
 }
 
@@ -113,13 +110,13 @@ impl<'a> Sight<'a> {
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &'a Packed, view: &View, threads: usize) -> Result<Self> {
+    pub fn new(packed: &'a Packed, view: &CameraRays, threads: usize) -> Result<Self> {
         let pixels: Vec<Pixel> = view.pixels().collect();
         let rays: Vec<StreamRay> = pixels
             .par_iter()
             .map(|&pixel| {
                 let (origin, direction) = camera::ray::<f32>(&view.frame, pixel);
-                let (origin, direction) = (vector(origin), vector(direction));
+                let (origin, direction) = (vector(camera::approach(origin, direction)), vector(direction));
                 StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })
             .collect();
@@ -164,7 +161,7 @@ impl<'a> Sight<'a> {
         let mut parts = Vec::new();
         for light in &self.packed.lights()[..self.lights()] {
             parts.extend(self.spawned(|place, rays| {
-                let (origin, direction, limit) = shadow_ray(self.packed.features, light, &place.contact);
+                let (origin, direction, limit) = shadow_ray(self.packed.effects(), light, &place.contact);
                 if place.contact.faces(direction) {
                     rays.push(place.ray(origin, direction, limit));
                 }

@@ -7,13 +7,14 @@ use super::answers::{self, Hash};
 use super::counts::{Counts, counts};
 use super::device::{OnGpu, Run, Uploaded, on_cpu};
 use super::plan::Trial;
-use super::rays::{AO_SHARE, Sight, View, diagonal};
+use super::rays::{AO_SHARE, CameraRays, Sight, diagonal};
 use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
 use crate::error::Result;
 use crate::preset::name;
 use eyerays::cpu;
 use eyerays::method::{Coherence, Layout, Method, Order, Processor, Traversal};
 use eyerays::pack::Packed;
+use eyerays::view::View;
 use eyerays::scene::{Camera, Settings};
 use eyerays::stream::{Answers, Question, Stream};
 
@@ -36,12 +37,11 @@ pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<R
 
 fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
     let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-    let mut packed = Packed::new(&subject.scene, settings, plan.quality)?;
+    let packed = Packed::new(&subject.scene, settings, plan.quality)?;
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
-            packed.look(&subject.scene, camera)?;
-            views.push((camera, order, View::of(&packed, order)));
+            views.push((camera, order, CameraRays::of(&View::new(&packed, camera)?, order)));
         }
     }
     let bench = Bench::new(plan, subject, &packed, report)?;
@@ -104,7 +104,7 @@ impl<'a> Bench<'a> {
         &self,
         camera: &Camera,
         order: Order,
-        view: &View,
+        view: &CameraRays,
         report: &mut Report,
         begins: &dyn Fn(&str),
     ) -> Result<()> {
@@ -179,7 +179,7 @@ impl<'a> Bench<'a> {
                 entry.insert(counts(packed, trial.traversal, threads, stream, ask)?);
             }
         }
-        let hash = Hash::of(packed, &reference);
+        let hash = Hash::of(packed.triangles(), &reference);
         Ok(Asked { kind, camera, stream, reference, hash, counts: by_way })
     }
 
@@ -227,8 +227,8 @@ impl<'a> Bench<'a> {
             boxes: counts.boxes,
             triangle_tests: counts.triangles,
             simd_efficiency: counts.simd_efficiency,
-            hash: Hash::of(self.packed, &run.answers).to_string(),
-            differing: answers::differing(self.packed, &asked.reference, &run.answers),
+            hash: Hash::of(self.packed.triangles(), &run.answers).to_string(),
+            differing: answers::differing(self.packed.triangles(), &asked.reference, &run.answers),
         }
     }
 
@@ -242,7 +242,7 @@ impl<'a> Bench<'a> {
 
     fn difference(&self, trial: &Trial, asked: &Asked<'_>, answers: &Answers) -> String {
         let how = self.describe(trial, asked);
-        match answers::first_difference(self.packed, &asked.reference, answers) {
+        match answers::first_difference(self.packed.triangles(), &asked.reference, answers) {
             Some(ray) => format!("{how}: ray {ray} of {} differs first", asked.stream.len()),
             None => format!("{how}: there are fewer answers than rays"),
         }
@@ -267,7 +267,8 @@ mod tests {
         let (plan, subject, mut report) = (plan(), subject(), Report::default());
         let packed = Packed::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
-        let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), 0).unwrap();
+        let view = View::new(&packed, &subject.cameras[0]).unwrap();
+        let sight = Sight::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
         let stream = sight.rays(Kind::Ao, bench.ao_length).unwrap();
         let trial = plan.trials(&packed, Kind::Ao, Order::Tiled, &mut |_| ())[4];
         let asked = bench.asked(Kind::Ao, &subject.cameras[0], &stream, &[trial]).unwrap();

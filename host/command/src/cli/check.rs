@@ -11,6 +11,7 @@ use super::outline::Outline;
 use super::{console, plural, progress};
 use crate::error::Result;
 use eyerays::pack::Packed;
+use eyerays::view::View;
 
 #[derive(Args)]
 pub(super) struct Check {
@@ -23,9 +24,9 @@ impl Check {
         let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
         let named = |e: eyerays::error::Error| e.of(&self.scene);
         let pack = || Packed::new(&scene, scene.settings, Quality::Fast);
-        let mut packed = progress::stage("building", quiet, pack).map_err(named)?;
+        let packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
-            packed.look(&scene, camera).map_err(named)?;
+            View::new(&packed, camera).map_err(named)?;
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();

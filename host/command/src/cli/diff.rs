@@ -111,7 +111,7 @@ impl Diff {
         let (width, height) = loaded.packed.settings().size;
         let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);
         let render = |choice| -> Result<Rendering> {
-            Ok(Chosen::new(choice)?.render(&loaded.packed, 1, &|pixels| progress.inc(pixels))?)
+            Ok(Chosen::new(choice)?.render(&loaded.packed, &loaded.view, 1, &|pixels| progress.inc(pixels))?)
         };
         let renderings = render(&gpu_choice).and_then(|gpu| Ok((gpu, render(&cpu_choice)?)));
         progress.finish_and_clear();

@@ -62,7 +62,7 @@ impl Info {
         for bvh in qualities {
             let pack = || Packed::new(&scene, scene.settings, bvh.quality());
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
-            let row = Row { bvh: bvh.to_string(), statistics: packed.statistics(), build_time: packed.build_time() };
+            let row = Row { bvh: bvh.to_string(), statistics: *packed.statistics(), build_time: packed.build_time() };
             if !self.json && rows.is_empty() {
                 console::print(&format!("{outline}{HEAD}"))?;
             }
@@ -72,7 +72,7 @@ impl Info {
             rows.push(row.json());
             // The kernels are the same for all, and cutting them takes time.
             if Some(bvh) == qualities.last() {
-                cost = Some(Cost::of(&packed, true, Traversal::default())?);
+                cost = Some(Cost::of(&packed, true, Traversal::default()));
             }
         }
         let cost = cost.expect("one quality at least");
@@ -85,7 +85,8 @@ impl Info {
         json["gpu"] = json!({
             "kernels": cost.kernels,
             "scene_bytes": cost.scene.iter().copied().collect::<BTreeMap<_, _>>(),
-            "ray_bytes": cost.ray.iter().copied().collect::<BTreeMap<_, _>>(),
+            "sample_bytes": cost.sample.iter().copied().collect::<BTreeMap<_, _>>(),
+            "pixel_bytes": cost.pixel,
         });
         console::print_json(&json)
     }
@@ -104,7 +105,7 @@ fn paid(cost: &Cost) -> String {
     };
     text += "+ runs for reflected and refracted rays, once for each wave of them\n";
     text += &format!("bytes of the scene: {}\n", sum(&cost.scene));
-    text + &format!("bytes of a ray in flight: {}\n", sum(&cost.ray))
+    text + &format!("bytes of a sample in flight: {}; of a pixel: film {}\n", sum(&cost.sample), cost.pixel)
 }
 
 const HEAD: &str = "BVH      triangles      nodes     leaves  depth  SAH cost       memory          build\n";

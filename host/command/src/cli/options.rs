@@ -144,6 +144,7 @@ impl<'a> Read<'a> {
 /// A scene, packed, and what that took.
 pub(super) struct Loaded {
     pub packed: Packed,
+    pub view: eyerays::view::View,
     pub read_time: Duration,
     pub build_time: Duration,
 }
@@ -163,7 +164,8 @@ impl View {
         let pack = || threads.install(|| Packed::new(&scene, settings, effort.quality()));
         let start = Instant::now();
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
-        Ok(Loaded { packed, read_time, build_time: start.elapsed() })
+        let view = eyerays::view::View::new(&packed, &camera).map_err(|e| e.of(path))?;
+        Ok(Loaded { packed, view, read_time, build_time: start.elapsed() })
     }
 
     /// The scene's settings with the command line's over them.

@@ -81,7 +81,7 @@ impl Render {
         let (width, height) = loaded.packed.settings().size;
         let progress =
             progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
-        let rendering = chosen.render(&loaded.packed, self.repeat, &|pixels| progress.inc(pixels));
+        let rendering = chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| progress.inc(pixels));
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
         let start = Instant::now();

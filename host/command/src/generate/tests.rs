@@ -9,6 +9,7 @@ use proptest::prelude::*;
 
 use super::{Files, Kind, Recipe, obj};
 use eyerays::pack::Packed;
+use eyerays::view::View;
 use eyerays::scene::{self, Background, Scene};
 use eyerays::{cpu, film::Film};
 
@@ -148,7 +149,8 @@ fn film(scene: &Scene, camera: usize, around: Vec3) -> Film {
     let scene = Scene { background: Background::Colour(around), ..scene.clone() };
     let settings = scene::Settings { size: (72, 72), ..scene.settings };
     let packed = Packed::new(&scene, settings, Quality::Fast).unwrap();
-    cpu::render::<f32>(&packed, eyerays::method::Method::IfIf, 0, &|_| ()).unwrap().0
+    let view = View::new(&packed, &scene.cameras[camera]).unwrap();
+    cpu::render::<f32>(&packed, &view, eyerays::method::Method::IfIf, 0, &|_| ()).unwrap().0
 }
 
 /// Where two backgrounds give two colours, a ray got out.

@@ -4,7 +4,7 @@ use eyerays_shader::real::{Fast, Scalar};
 use glam::UVec4;
 
 use crate::bench::answers::primitive;
-use crate::bench::rays::{Sight, View};
+use crate::bench::rays::{CameraRays, Sight};
 use crate::bench::{Kind, OnGpu};
 use crate::error::Result;
 use eyerays::cpu;
@@ -13,6 +13,7 @@ use eyerays::method::{Coherence, Order, Processor, Traversal};
 use eyerays::pack::Packed;
 use eyerays::render::{Choice, Precision};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays::view::View;
 
 /// How far hits are from those in double precision.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,16 +57,16 @@ pub struct Primary {
 }
 
 impl Primary {
-    /// Of what a scene is packed for: one ray a pixel, made in exact precision and then traced in double.
+    /// Of a view: one ray a pixel, made in exact precision and then traced in double.
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &Packed, threads: usize) -> Result<Primary> {
-        let sight = Sight::new(packed, &View::of(packed, Order::Tiled), threads)?;
+    pub fn new(packed: &Packed, view: &View, threads: usize) -> Result<Primary> {
+        let sight = Sight::new(packed, &CameraRays::of(view, Order::Tiled), threads)?;
         let stream = sight.rays(Kind::Primary, 0.0)?.into_owned();
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
         let hits = cpu::closest::<f64>(packed, traversal, threads, &stream)?;
-        let truth = hits.into_iter().map(f64::load).map(|(place, slot)| (place.x, primitive(packed, slot))).collect();
+        let truth = hits.into_iter().map(f64::load).map(|(place, slot)| (place.x, primitive(packed.triangles(), slot))).collect();
         Ok(Primary { stream, truth })
     }
 
@@ -81,7 +82,7 @@ impl Primary {
             None if fast => cpu::closest::<Fast>(packed, on_cpu, choice.threads, &self.stream)?,
             None => cpu::closest::<f32>(packed, on_cpu, choice.threads, &self.stream)?,
         };
-        let found: Vec<_> = hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed, hit.w))).collect();
+        let found: Vec<_> = hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed.triangles(), hit.w))).collect();
         Ok(HitErrors::of(&found, &self.truth))
     }
 

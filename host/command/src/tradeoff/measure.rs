@@ -13,6 +13,7 @@ use eyerays::cpu;
 use eyerays::film::Film;
 use eyerays::method::{Processor, Traversal};
 use eyerays::pack::Packed;
+use eyerays::view::View;
 use eyerays::quality::Bvh;
 use eyerays::render::Chosen;
 use eyerays::scene::{Camera, Scene, Settings};
@@ -106,12 +107,13 @@ impl<'a> Judge<'a> {
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
         let once = Settings { samples: 1, ..best };
         let mut packed = Packed::new(&subject.scene, once, bvh.quality())?;
-        let primary = Primary::new(&packed, threads)?;
+        let primary = Primary::new(&packed, &View::new(&packed, &subject.camera)?, threads)?;
         let mut references = Vec::new();
         for &samples in &plan.axes.samples {
             begins(&format!("reference, {samples}x{samples} samples"));
-            packed.set(&subject.scene, &subject.camera, Settings { samples, ..best })?;
-            references.push((samples, cpu::render::<f64>(&packed, Traversal::default(), threads, &|_| ())?.0));
+            packed.set(&subject.scene, Settings { samples, ..best })?;
+            let view = View::new(&packed, &subject.camera)?;
+            references.push((samples, cpu::render::<f64>(&packed, &view, Traversal::default(), threads, &|_| ())?.0));
         }
         Ok(Judge {
             plan,
@@ -142,7 +144,8 @@ impl<'a> Judge<'a> {
         self.pack(setting)?;
         let traversal = setting.traversal(self.device.choice().traversal);
         self.device.turn(setting.precision, traversal);
-        let rendering = self.device.measure(&self.packed, self.plan.repeat)?;
+        let view = View::new(&self.packed, &self.subject.camera)?;
+        let rendering = self.device.measure(&self.packed, &view, self.plan.repeat)?;
         let elsewhere = self.place.as_ref().is_some_and(|place| place.processor != rendering.processor);
         if elsewhere {
             return Err(Error::new(format!("it runs on {}: {}", rendering.device, remedy::why(&rendering))));
@@ -176,13 +179,13 @@ impl<'a> Judge<'a> {
 
     /// Packs the scene for a setting, with another hierarchy only where it must be.
     fn pack(&mut self, setting: &Setting) -> Result<()> {
-        let Subject { scene, camera, .. } = self.subject;
+        let Subject { scene, .. } = self.subject;
         let settings = setting.settings(self.subject.settings);
         if self.bvh != setting.bvh {
             self.packed = Packed::new(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
-        Ok(self.packed.set(scene, camera, settings)?)
+        Ok(self.packed.set(scene, settings)?)
     }
 
     fn reference(&self, samples: u32) -> &Film {

@@ -9,6 +9,7 @@ use eyerays::method::Processor;
 use eyerays::render::{Choice, Chosen, DeviceWish};
 use eyerays::scene::{self, Settings};
 use eyerays::stream::StreamRay;
+use eyerays::view::View;
 use eyerays::{cpu, pack::Packed};
 
 const NOWHERE: u32 = StreamRay::NOWHERE;
@@ -51,13 +52,15 @@ fn picture(subject: &Subject, setting: &Setting) -> Film {
         traversal: setting.traversal(Default::default()),
         ..Choice::default()
     };
-    Chosen::new(&choice).unwrap().render(&packed, 1, &|_| ()).unwrap().film
+    let view = View::new(&packed, &subject.camera).unwrap();
+    Chosen::new(&choice).unwrap().render(&packed, &view, 1, &|_| ()).unwrap().film
 }
 
 fn reference(subject: &Subject, samples: u32) -> Film {
     let settings = Settings { samples, ..subject.settings };
     let packed = Packed::new(&subject.scene, settings, Bvh::High.quality()).unwrap();
-    cpu::render::<f64>(&packed, Method::IfIf, 0, &|_| ()).unwrap().0
+    let view = View::new(&packed, &subject.camera).unwrap();
+    cpu::render::<f64>(&packed, &view, Method::IfIf, 0, &|_| ()).unwrap().0
 }
 
 #[test]
@@ -113,12 +116,13 @@ fn exact_hits_are_right_but_for_edges() {
     let subject = subject();
     let settings = Settings { samples: 1, ..subject.settings };
     let packed = Packed::new(&subject.scene, settings, Bvh::Medium.quality()).unwrap();
-    let primary = super::super::hits::Primary::new(&packed, 2).unwrap();
+    let view = View::new(&packed, &subject.camera).unwrap();
+    let primary = super::super::hits::Primary::new(&packed, &view, 2).unwrap();
     let errors = primary.errors(&packed, None, &Choice::default()).unwrap();
     assert!(errors.wrong < 0.01, "{errors:?}");
     assert!(errors.max_ulp.unwrap() < 64.0 && errors.median_ulp.unwrap() < 2.0, "{errors:?}");
-    let view = crate::bench::rays::View::of(&packed, eyerays::method::Order::Tiled);
-    let sight = crate::bench::rays::Sight::new(&packed, &view, 2).unwrap();
+    let rays = crate::bench::rays::CameraRays::of(&view, eyerays::method::Order::Tiled);
+    let sight = crate::bench::rays::Sight::new(&packed, &rays, 2).unwrap();
     let stream = sight.rays(crate::bench::Kind::Primary, 0.0).unwrap();
     let [first, second] =
         [Method::IfIf, Method::Wide].map(|method| cpu::closest::<f64>(&packed, method.into(), 2, &stream).unwrap());

@@ -6,12 +6,14 @@ use eyerays::pack::Packed;
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, Chosen, DeviceWish, Rendering};
 use eyerays::scene::{Background, Camera, Light, Material, Mesh, Scene, Settings};
+use eyerays::view::View;
 use glam::{Vec3, vec3};
 
 fn main() -> Result<()> {
     let scene = scene();
     let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
-    let cpu = render(&packed, DeviceWish::Cpu)?;
+    let view = View::new(&packed, &scene.cameras[0])?;
+    let cpu = render(&packed, &view, DeviceWish::Cpu)?;
     println!("{}: {} rays", cpu.device, cpu.rays.total());
 
     // Three floats of linear light a pixel, row by row from the top left.
@@ -19,7 +21,7 @@ fn main() -> Result<()> {
     let mean = values.iter().sum::<f32>() / values.len() as f32;
     println!("{} values, {mean:.4} on average", values.len());
 
-    match render(&packed, DeviceWish::Gpu) {
+    match render(&packed, &view, DeviceWish::Gpu) {
         Ok(gpu) => {
             let comparison = compare(&cpu.film, &gpu.film)?;
             println!("{}: {} pixels differ from the CPU's", gpu.device, comparison.differing_pixels);
@@ -32,9 +34,9 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn render(packed: &Packed, device: DeviceWish) -> Result<Rendering> {
+fn render(packed: &Packed, view: &View, device: DeviceWish) -> Result<Rendering> {
     let choice = Choice { device, ..Choice::default() };
-    Chosen::new(&choice)?.render(packed, 1, &|_| ())
+    Chosen::new(&choice)?.render(packed, view, 1, &|_| ())
 }
 
 /// A mirror that stands on a red floor.

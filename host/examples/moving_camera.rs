@@ -1,0 +1,58 @@
+//! A camera that moves over a scene which is uploaded once: `moving_camera SCENE.toml [FRAMES] [SIZE]`.
+
+use std::error::Error;
+use std::f32::consts::TAU;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+use eyerays::gpu::{Gpu, Renderer, Want};
+use eyerays::method::Traversal;
+use eyerays::pack::Packed;
+use eyerays::quality::Bvh;
+use eyerays::scene::{self, Camera};
+use eyerays::view::View;
+use glam::Vec3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut arguments = std::env::args().skip(1);
+    let shipped = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell.toml"));
+    let file = arguments.next().map_or(shipped, PathBuf::from);
+    let frames: u32 = arguments.next().map_or(Ok(10), |frames| frames.parse())?;
+    let size: u32 = arguments.next().map_or(Ok(256), |size| size.parse())?;
+
+    let (scene, warnings) = scene::load(&file)?;
+    warnings.iter().for_each(|warning| println!("{warning}"));
+    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let Ok(gpu) = Gpu::open(&Want { software: true, exact: true, ..Want::default() }) else {
+        println!("there is no GPU that renders exactly");
+        return Ok(());
+    };
+    let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default())?;
+
+    let view = |frame| View::of(&packed, &turned(&scene.cameras[0], frame as f32 / frames as f32), (size, size), 1);
+    // A first frame takes memory; the others only send what a view says.
+    renderer.render(&view(0)?, &|_| ())?;
+    let start = Instant::now();
+    for frame in 0..frames {
+        renderer.start(&view(frame)?)?;
+        renderer.add(1, &|_| ())?;
+    }
+    let last = renderer.film()?;
+    println!("{frames} frames of {size}x{size} in {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
+    println!("checksum of the last: {}", last.film.hash());
+
+    // Once more, asking the device after every frame what it took.
+    let mut device = Duration::ZERO;
+    for frame in 0..frames {
+        device += renderer.render(&view(frame)?, &|_| ())?.device_time.unwrap_or_default();
+    }
+    println!("on the device {:.1} ms", device.as_secs_f64() * 1e3);
+    Ok(())
+}
+
+/// A camera that looks to one side, to the other and back over a whole turn.
+fn turned(camera: &Camera, turn: f32) -> Camera {
+    let ahead = camera.target - camera.eye;
+    let aside: Vec3 = ahead.cross(camera.up).normalize() * ahead.length();
+    Camera { target: camera.target + aside * 0.1 * (turn * TAU).sin(), ..camera.clone() }
+}

@@ -1,0 +1,45 @@
+//! Rays of one's own through a scene, all at once: how far it is to the next surface in every direction.
+
+use std::error::Error;
+use std::path::Path;
+
+use eyerays::batch::{Batch, Ray};
+use eyerays::cpu;
+use eyerays::gpu::{Caster, Gpu, Want};
+use eyerays::method::{Layout, Method};
+use eyerays::pack::Packed;
+use eyerays::quality::Bvh;
+use eyerays::scene;
+use eyerays::stream::Question;
+use glam::Vec3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let (scene, _) = scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
+    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
+
+    // On a sphere around the middle of the room, evenly: a spiral by the golden angle.
+    let count = 10_000;
+    let middle = Vec3::new(0.0, 1.0, 0.0);
+    let ray = |i: u32| {
+        let (height, turn) = (1.0 - (2 * i + 1) as f32 / count as f32, i as f32 * 2.399_963);
+        let radius = (1.0 - height * height).sqrt();
+        Ray::new(middle, Vec3::new(radius * turn.cos(), height, radius * turn.sin()))
+    };
+    let rays: Vec<Ray> = (0..count).map(ray).collect();
+    let batch = Batch::new(&packed, &rays);
+
+    let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
+    let hits = batch.hits(&packed, &answers);
+    let distances: Vec<f64> = hits.iter().flatten().map(|hit| hit.distance).collect();
+    let mean = distances.iter().sum::<f64>() / distances.len() as f64;
+    println!("{} of {count} rays meet a surface, {mean:.3} away on average", distances.len());
+
+    if let Ok(gpu) = Gpu::open(&Want { software: true, exact: true, ..Want::default() }) {
+        let caster = Caster::new(&gpu, &packed, Layout::Gathered)?;
+        let cast = caster.upload(batch.stream())?;
+        caster.trace(&cast, true, Method::IfIf.into(), Question::Closest)?;
+        let same = batch.hits(&packed, &caster.answers(&cast, Question::Closest)?) == hits;
+        println!("{}: {}", gpu.report.name, if same { "the same hits" } else { "other hits" });
+    }
+    Ok(())
+}

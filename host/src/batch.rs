@@ -1,0 +1,132 @@
+//! Rays of one's own, in the scene's units, traced many at once.
+
+use eyerays_shader::camera;
+use eyerays_shader::real::V3;
+use glam::{DVec3, UVec4, Vec3};
+
+use crate::pack::Packed;
+use crate::stream::{Answers, Stream, StreamRay};
+
+/// A ray in the scene's units.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ray {
+    /// Where it starts, anywhere.
+    pub origin: Vec3,
+    /// Where it goes, of any length but zero.
+    pub direction: Vec3,
+    /// How far it goes, in the scene's units; [`Ray::ENDLESS`] for one without an end.
+    pub length: f32,
+}
+
+/// What a ray meets first.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Hit {
+    /// The distance from the ray's origin, in the scene's units.
+    pub distance: f64,
+    /// The triangle's number in [`crate::scene::Mesh::triangles`].
+    pub triangle: u32,
+    /// Barycentric weights of the triangle's second and third vertex.
+    pub weights: [f32; 2],
+}
+
+/// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
+pub struct Batch {
+    stream: Stream,
+    /// How far each ray was moved along itself towards the scene, in the scene's units.
+    moved: Vec<f64>,
+    scale: f64,
+}
+
+impl Ray {
+    /// The length of a ray without an end.
+    pub const ENDLESS: f32 = f32::INFINITY;
+
+    /// From a place in a direction, without an end.
+    pub fn new(origin: Vec3, direction: Vec3) -> Self {
+        Ray { origin, direction, length: Ray::ENDLESS }
+    }
+}
+
+impl Batch {
+    /// Rays through a scene. One that starts so far away that its place can't be told, or goes nowhere, meets nothing.
+    pub fn new(packed: &Packed, rays: &[Ray]) -> Self {
+        let scale = packed.normalisation().scale;
+        let placed: Vec<(StreamRay, f64)> = rays.iter().map(|ray| placed(packed, ray)).collect();
+        let (stream, moved): (Vec<StreamRay>, Vec<f64>) = placed.into_iter().unzip();
+        Batch { stream: Stream::new(stream.into_iter()), moved, scale }
+    }
+
+    /// The rays for a device.
+    pub fn stream(&self) -> &Stream {
+        &self.stream
+    }
+
+    /// What each ray met, from a device's answers to [`crate::stream::Question::Closest`]; nothing from other answers.
+    pub fn hits(&self, packed: &Packed, answers: &Answers) -> Vec<Option<Hit>> {
+        match answers {
+            Answers::Closest(records) => {
+                records.iter().zip(&self.moved).map(|(&record, &moved)| self.hit(packed, record, moved)).collect()
+            }
+            Answers::Occlusion(_) => vec![None; self.moved.len()],
+        }
+    }
+
+    fn hit(&self, packed: &Packed, record: UVec4, moved: f64) -> Option<Hit> {
+        let triangle = packed.triangles().get(record.w as usize)?.primitive();
+        let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
+        Some(Hit { distance: moved + f64::from(t) / self.scale, triangle, weights: [u, v] })
+    }
+}
+
+/// A ray in the normalised scene, and how far it was moved along itself, in the scene's units.
+fn placed(packed: &Packed, ray: &Ray) -> (StreamRay, f64) {
+    let normalisation = packed.normalisation();
+    let direction = ray.direction.as_dvec3().normalize_or_zero().as_vec3();
+    let (origin, length) = match normalisation.place_anywhere(ray.origin) {
+        Some(origin) if direction != Vec3::ZERO => (origin, f64::from(ray.length)),
+        _ => (Vec3::ZERO, -1.0),
+    };
+    let vector = |v: Vec3| V3::<f32>::splat(v);
+    let near = camera::approach(vector(origin), vector(direction));
+    let near = Vec3::new(near.x, near.y, near.z);
+    let moved = DVec3::distance(near.as_dvec3(), origin.as_dvec3()) / normalisation.scale;
+    let limit = ((length - moved) * normalisation.scale).clamp(-1.0, f64::from(f32::MAX)) as f32;
+    (StreamRay { origin: near, direction, limit, source_primitive: StreamRay::NOWHERE }, moved)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cpu;
+    use crate::method::Method;
+    use crate::quality::Bvh;
+    use crate::scene;
+    use crate::stream::Question;
+
+    /// The floor of the shipped scene `whitted` from above, near and far: the same distance in the scene's units, wherever
+    /// the ray starts.
+    #[test]
+    fn distances_are_in_the_scenes_units_from_where_a_ray_starts() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
+        let scene = scene::load(path.as_ref()).unwrap().0;
+        let packed = Packed::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+        let bottom = scene.mesh.positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
+        let corner = scene.mesh.positions.iter().copied().reduce(Vec3::min).unwrap() + Vec3::new(0.25, 0.0, 0.25);
+        let up = |height: f32| Vec3::new(corner.x, bottom + height, corner.z);
+        let mut rays: Vec<Ray> = [0.5, 3.0, 1e3, 1e6].map(|height| Ray::new(up(height), -2.0 * Vec3::Y)).into();
+        rays.push(Ray { length: 900.0, ..rays[2] });
+        rays.push(Ray { length: 1100.0, ..rays[2] });
+        rays.push(Ray::new(up(1e3), Vec3::Y));
+        rays.push(Ray::new(up(1e3), Vec3::ZERO));
+        rays.push(Ray::new(Vec3::splat(f32::NAN), Vec3::Y));
+        let batch = Batch::new(&packed, &rays);
+        let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
+        let hits = batch.hits(&packed, &answers);
+        for (hit, ray) in hits[..4].iter().zip(&rays) {
+            let (hit, height) = (hit.expect("the floor is below"), f64::from(ray.origin.y - bottom));
+            assert!((hit.distance - height).abs() <= 1e-6 * height, "{height}: {hit:?}");
+            assert!(scene.mesh.triangles[hit.triangle as usize].iter().all(|&v| scene.mesh.positions[v as usize].y == bottom));
+        }
+        assert_eq!(hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false, false, false]);
+    }
+}

@@ -10,7 +10,7 @@ use eyerays_shader::resources::binding;
 
 use super::device::Gpu;
 use super::kernel::Kernel;
-use super::readback;
+use super::readback::{self, Readback};
 use super::render::{Band, Memory};
 use super::timer::Timer;
 use crate::error::Result;
@@ -25,6 +25,8 @@ const FEW: u32 = 4;
 const MOST_WAVES: u32 = 64;
 /// Launches that wait on the GPU while the host makes the next.
 const UNDER_WAY: usize = 2;
+/// Bytes of the counters.
+const COUNTERS: u64 = 4 * counter::LENGTH as u64;
 /// Passes whose times are kept until they are read.
 const PASSES: u32 = 256;
 /// Passes of a launch, at most: each of [`MOST_WAVES`] waves. A tree of more waves than those is not timed to its end.
@@ -34,6 +36,9 @@ const MOST_PASSES: u32 = 64;
 pub(super) struct Queue<'a> {
     gpu: &'a Gpu,
     timer: Option<Timer>,
+    readback: Option<Readback>,
+    /// For the counters alone.
+    counters: Readback,
     /// Passes since the times were read.
     passes: u32,
     time: Duration,
@@ -46,8 +51,7 @@ pub(super) struct Queue<'a> {
 
 /// What [`Queue::read`] brings.
 pub(super) struct Read {
-    pub counters: Vec<u8>,
-    pub films: Vec<Vec<u8>>,
+    pub counters: Vec<u32>,
     /// Of all passes since [`Queue::restart`].
     pub device_time: Option<Duration>,
 }
@@ -57,6 +61,8 @@ impl<'a> Queue<'a> {
         Queue {
             gpu,
             timer: Timer::new(gpu, PASSES),
+            readback: None,
+            counters: Readback::new(gpu, COUNTERS),
             passes: 0,
             time: Duration::ZERO,
             under_way: VecDeque::new(),
@@ -72,7 +78,7 @@ impl<'a> Queue<'a> {
 
     /// Counts rays and time from now on.
     pub fn restart(&mut self, counters: &wgpu::Buffer) {
-        self.gpu.queue.write_buffer(counters, 0, bytemuck::bytes_of(&[0u32; counter::LENGTH as usize]));
+        self.gpu.queue.write_buffer(counters, 0, &[0; COUNTERS as usize]);
         (self.passes, self.time) = (0, Duration::ZERO);
     }
 
@@ -91,30 +97,48 @@ impl<'a> Queue<'a> {
         std::mem::take(&mut self.done) + self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>()
     }
 
-    /// Waits for everything, and reads buffers.
+    /// Waits for everything, and reads the counters and some films.
     pub fn read(
         &mut self,
         counters: &wgpu::Buffer,
         films: &[(&wgpu::Buffer, u64)],
+        mut look: impl FnMut(usize, &[u8]),
     ) -> Result<Read> {
-        let timer = self.timer.as_ref().filter(|_| self.passes > 0);
-        let times = timer.map(|timer| {
-            let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
+        let timed = self.timer.as_ref().filter(|_| self.passes > 0).map(|timer| {
             timer.resolve(&mut encoder, self.passes);
-            self.gpu.queue.submit([encoder.finish()]);
             timer.resolved(self.passes)
         });
-        let mut buffers: Vec<(&wgpu::Buffer, u64)> = vec![(counters, 4 * u64::from(counter::LENGTH))];
-        buffers.extend(films);
-        buffers.extend(times);
-        let mut read = readback::read_all(self.gpu, &buffers)?;
-        if let Some(timer) = timer {
-            self.time += timer.times(&read.pop().expect("the times")).into_iter().sum::<Duration>();
-            self.passes = 0;
+        let all: Vec<(&wgpu::Buffer, u64)> =
+            [(counters, COUNTERS)].into_iter().chain(timed).chain(films.iter().copied()).collect();
+        let size = all.iter().map(|(_, size)| size).sum();
+        let readback = match self.readback.take() {
+            Some(readback) if readback.size() >= size => readback,
+            _ => Readback::new(self.gpu, size),
+        };
+        let mut offset = 0;
+        for &(buffer, size) in &all {
+            readback.copy(&mut encoder, buffer, offset, size);
+            offset += size;
         }
+        self.gpu.queue.submit([encoder.finish()]);
+        let counters = readback.read(self.gpu, size, |bytes| {
+            let (counters, mut rest) = bytes.split_at(COUNTERS as usize);
+            if let (Some(timer), Some((_, size))) = (&self.timer, timed) {
+                let (times, films) = rest.split_at(size as usize);
+                self.time += timer.times(times).into_iter().sum::<Duration>();
+                rest = films;
+            }
+            for (i, (_, size)) in films.iter().enumerate() {
+                let (film, others) = rest.split_at(*size as usize);
+                look(i, film);
+                rest = others;
+            }
+            readback::words(counters).collect()
+        })?;
+        (self.readback, self.passes) = (Some(readback), 0);
         self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
-        let device_time = self.has_clock().then_some(self.time);
-        Ok(Read { counters: read.remove(0), films: read, device_time })
+        Ok(Read { counters, device_time: self.has_clock().then_some(self.time) })
     }
 
     /// Begins the pass of a submission.
@@ -145,8 +169,10 @@ pub(super) struct Launch<'l, 'a> {
     is_second: bool,
     /// Waves to be recorded before anyone looks whether a ray is left.
     unseen: u32,
-    /// Waves that are looked for next.
+    /// Waves that are recorded next.
     next: u32,
+    /// Waves that were recorded.
+    recorded: u32,
 }
 
 impl<'l, 'a> Launch<'l, 'a> {
@@ -160,7 +186,7 @@ impl<'l, 'a> Launch<'l, 'a> {
     ) -> Result<Self> {
         let gpu = queue.gpu;
         if queue.passes + MOST_PASSES > PASSES && queue.has_clock() {
-            queue.read(memory.buffers.of(binding::COUNTERS), &[])?;
+            queue.read(memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
@@ -169,7 +195,20 @@ impl<'l, 'a> Launch<'l, 'a> {
             Waves::AtMost(count) if count <= UNSEEN => count,
             _ => queue.waves.get().max(FEW),
         };
-        Ok(Launch { kernels, memory, band, frame, queue, plan, pass: None, encoder, is_second: false, unseen, next: unseen })
+        Ok(Launch {
+            kernels,
+            memory,
+            band,
+            frame,
+            queue,
+            plan,
+            pass: None,
+            encoder,
+            is_second: false,
+            unseen,
+            next: unseen,
+            recorded: 0,
+        })
     }
 
     /// Ends the launch, which finishes so many pixels.
@@ -180,14 +219,20 @@ impl<'l, 'a> Launch<'l, 'a> {
         self.queue.gpu.check()
     }
 
+    /// Hands what is recorded to the device, which begins with it while the rest is recorded.
+    fn flush(&mut self) {
+        drop(self.pass.take());
+        let next = self.queue.gpu.device.create_command_encoder(&Default::default());
+        self.queue.submit(std::mem::replace(&mut self.encoder, next));
+    }
+
     /// Submits what is recorded, waits, and tells whether any ray is left.
     fn look(&mut self) -> Result<bool> {
         drop(self.pass.take());
-        let gpu = self.queue.gpu;
-        let encoder = std::mem::replace(&mut self.encoder, gpu.device.create_command_encoder(&Default::default()));
-        self.queue.submit(encoder);
-        let bytes = readback::read(gpu, self.memory.buffers.of(binding::COUNTERS), 4 * u64::from(counter::LENGTH))?;
-        let counters: Vec<u32> = readback::words(&bytes).collect();
+        self.queue.counters.copy(&mut self.encoder, self.memory.buffers.of(binding::COUNTERS), 0, COUNTERS);
+        self.flush();
+        let look = |bytes: &[u8]| readback::words(bytes).collect::<Vec<u32>>();
+        let counters = self.queue.counters.read(self.queue.gpu, COUNTERS, look)?;
         let waves = counters[counter::WAVES as usize];
         self.queue.waves.set(self.queue.waves.get().max(waves));
         Ok(counters[counter::NEXT as usize] > 0)
@@ -229,6 +274,11 @@ impl Executor for Launch<'_, '_> {
             self.unseen = self.next;
         }
         self.unseen -= 1;
+        self.recorded += 1;
+        // The first waves have the most rays: the device is at work on them while the others are recorded.
+        if self.recorded == FEW && self.unseen > FEW {
+            self.flush();
+        }
         Ok(true)
     }
 }

@@ -3,39 +3,56 @@
 use super::device::Gpu;
 use crate::error::{Error, Result};
 
-/// The first `size` bytes of a buffer, once all that was submitted is done.
-pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>> {
-    Ok(read_all(gpu, &[(buffer, size)])?.remove(0))
+/// Memory of the host that the device copies into, kept from one reading to the next: to take it takes longer than to copy.
+pub(super) struct Readback {
+    staging: wgpu::Buffer,
 }
 
-/// The first bytes of several buffers, once all that was submitted is done: one wait for all.
-pub(super) fn read_all(gpu: &Gpu, buffers: &[(&wgpu::Buffer, u64)]) -> Result<Vec<Vec<u8>>> {
-    let staging = |&(_, size): &(&wgpu::Buffer, u64)| {
-        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+impl Readback {
+    /// For at most so many bytes.
+    pub fn new(gpu: &Gpu, size: u64) -> Self {
+        let staging = gpu.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("readback"),
             size,
             usage: wgpu::BufferUsages::COPY_DST | wgpu::BufferUsages::MAP_READ,
             mapped_at_creation: false,
-        })
-    };
-    let stagings: Vec<_> = buffers.iter().map(staging).collect();
+        });
+        Readback { staging }
+    }
+
+    /// How many bytes there is room for.
+    pub fn size(&self) -> u64 {
+        self.staging.size()
+    }
+
+    /// Records that the first bytes of a buffer are copied here, from `offset` on.
+    pub fn copy(&self, encoder: &mut wgpu::CommandEncoder, buffer: &wgpu::Buffer, offset: u64, size: u64) {
+        encoder.copy_buffer_to_buffer(buffer, 0, &self.staging, offset, size);
+    }
+
+    /// Waits for all that was submitted, and shows the first `size` bytes to `look`.
+    pub fn read<T>(&self, gpu: &Gpu, size: u64, look: impl FnOnce(&[u8]) -> T) -> Result<T> {
+        self.staging.map_async(wgpu::MapMode::Read, ..size, |_| {});
+        gpu.wait()?;
+        let seen = match self.staging.get_mapped_range(..size) {
+            Ok(view) => Ok(look(&view)),
+            Err(e) => {
+                let message = format!("a buffer can't be read: {e}");
+                Err(Error::DeviceFailed { device: gpu.report.name.clone(), message })
+            }
+        };
+        self.staging.unmap();
+        seen
+    }
+}
+
+/// The first `size` bytes of a buffer, once all that was submitted is done.
+pub(super) fn read(gpu: &Gpu, buffer: &wgpu::Buffer, size: u64) -> Result<Vec<u8>> {
+    let readback = Readback::new(gpu, size);
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    for (&(buffer, size), staging) in buffers.iter().zip(&stagings) {
-        encoder.copy_buffer_to_buffer(buffer, 0, staging, 0, size);
-    }
+    readback.copy(&mut encoder, buffer, 0, size);
     gpu.queue.submit([encoder.finish()]);
-    for staging in &stagings {
-        staging.map_async(wgpu::MapMode::Read, .., |_| {});
-    }
-    gpu.wait()?;
-    let view = |staging: &wgpu::Buffer| {
-        let view = staging.get_mapped_range(..).map_err(|e| Error::DeviceFailed {
-            device: gpu.report.name.clone(),
-            message: format!("a buffer can't be read: {e}"),
-        })?;
-        Ok(view.to_vec())
-    };
-    stagings.iter().map(view).collect()
+    readback.read(gpu, size, <[u8]>::to_vec)
 }
 
 /// Little-endian words.

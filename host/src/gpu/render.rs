@@ -1,5 +1,6 @@
 //! Pictures on the GPU: launches over bands of the image and batches of samples, whose sums the film keeps.
 
+use std::borrow::Cow;
 use std::time::Duration;
 
 use eyerays_shader::camera;
@@ -14,7 +15,6 @@ use super::device::Gpu;
 use super::kernel::{Kernel, compile};
 use super::launch::{Launch, Queue};
 use super::memory::{LaunchBuffers, buffer, most_slots};
-use super::readback;
 use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::error::Result;
@@ -202,13 +202,12 @@ impl<'a> Renderer<'a> {
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
             let films: Vec<_> =
                 now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels())).collect();
-            let mut read = self.queue.read(&counters, &films)?;
-            for (band, bytes) in now.iter().zip(read.films.drain(..)) {
-                let records: Vec<UVec4> = bytemuck::pod_collect_to_vec(&bytes);
-                film.develop::<f32>(band.region, &records, *samples, &mut rays);
-            }
-            let words: Vec<u32> = readback::words(&read.counters).collect();
-            let [low, high] = [0, 1].map(|i| u64::from(words[(counter::RAYS + i) as usize]));
+            let read = self.queue.read(&counters, &films, |i, bytes| {
+                let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
+                let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
+                film.develop::<f32>(now[i].region, &records, *samples, &mut rays);
+            })?;
+            let [low, high] = [0, 1].map(|i| u64::from(read.counters[(counter::RAYS + i) as usize]));
             rays.secondary = high << 32 | low;
             device_time = read.device_time;
             rest = later;

@@ -5,9 +5,9 @@ use std::f32::consts::TAU;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use eyerays::gpu::{Gpu, Renderer, Want};
+use eyerays::device_scene::DeviceScene;
+use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::Traversal;
-use eyerays::pack::Packed;
 use eyerays::quality::Bvh;
 use eyerays::scene::{self, Camera};
 use eyerays::view::View;
@@ -22,8 +22,8 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let (scene, warnings) = scene::load(&file)?;
     warnings.iter().for_each(|warning| println!("{warning}"));
-    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
-    let Ok(gpu) = Gpu::open(&Want { software: true, exact: true, ..Want::default() }) else {
+    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let Ok(gpu) = Gpu::open(&AdapterRequest { software: true, exact: true, ..AdapterRequest::default() }) else {
         println!("there is no GPU that renders exactly");
         return Ok(());
     };

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use eyerays::batch::{Batch, Ray};
 use eyerays::cpu;
-use eyerays::gpu::{Caster, Gpu, Want};
+use eyerays::device_scene::DeviceScene;
+use eyerays::gpu::{AdapterRequest, Caster, Gpu};
 use eyerays::method::{Layout, Method};
-use eyerays::pack::Packed;
 use eyerays::quality::Bvh;
 use eyerays::scene;
 use eyerays::stream::Question;
@@ -15,7 +15,7 @@ use glam::Vec3;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
-    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
 
     // On a sphere around the middle of the room, evenly: a spiral by the golden angle.
     let count = 10_000;
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mean = distances.iter().sum::<f64>() / distances.len() as f64;
     println!("{} of {count} rays meet a surface, {mean:.3} away on average", distances.len());
 
-    if let Ok(gpu) = Gpu::open(&Want { software: true, exact: true, ..Want::default() }) {
+    if let Ok(gpu) = Gpu::open(&AdapterRequest { software: true, exact: true, ..AdapterRequest::default() }) {
         let caster = Caster::new(&gpu, &packed, Layout::Gathered)?;
         let cast = caster.upload(batch.stream())?;
         caster.trace(&cast, true, Method::IfIf.into(), Question::Closest)?;

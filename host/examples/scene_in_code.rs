@@ -1,17 +1,17 @@
 //! A scene that code makes, not a file: a square on a floor, rendered on the CPU and, where there is one, on the GPU.
 
 use eyerays::compare::compare;
+use eyerays::device_scene::DeviceScene;
 use eyerays::error::{Error, Result};
-use eyerays::pack::Packed;
 use eyerays::quality::Bvh;
-use eyerays::render::{Choice, Chosen, DeviceWish, Rendering};
+use eyerays::render::{Backend, Choice, DeviceWish, Rendering};
 use eyerays::scene::{Background, Camera, Light, Material, Mesh, Scene, Settings};
 use eyerays::view::View;
 use glam::{Vec3, vec3};
 
 fn main() -> Result<()> {
     let scene = scene();
-    let packed = Packed::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
     let view = View::new(&packed, &scene.cameras[0])?;
     let cpu = render(&packed, &view, DeviceWish::Cpu)?;
     println!("{}: {} rays", cpu.device, cpu.rays.total());
@@ -34,9 +34,9 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn render(packed: &Packed, view: &View, device: DeviceWish) -> Result<Rendering> {
+fn render(packed: &DeviceScene, view: &View, device: DeviceWish) -> Result<Rendering> {
     let choice = Choice { device, ..Choice::default() };
-    Chosen::new(&choice)?.render(packed, view, 1, &|_| ())
+    Backend::new(&choice)?.render(packed, view, 1, &|_| ())
 }
 
 /// A mirror that stands on a red floor.

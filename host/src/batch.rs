@@ -4,7 +4,7 @@ use eyerays_shader::camera;
 use eyerays_shader::real::V3;
 use glam::{DVec3, UVec4, Vec3};
 
-use crate::pack::Packed;
+use crate::device_scene::DeviceScene;
 use crate::stream::{Answers, Stream, StreamRay};
 
 /// A ray in the scene's units.
@@ -49,7 +49,7 @@ impl Ray {
 
 impl Batch {
     /// Rays through a scene. One that starts so far away that its place can't be told, or goes nowhere, meets nothing.
-    pub fn new(packed: &Packed, rays: &[Ray]) -> Self {
+    pub fn new(packed: &DeviceScene, rays: &[Ray]) -> Self {
         let scale = packed.normalisation().scale;
         let placed: Vec<(StreamRay, f64)> = rays.iter().map(|ray| placed(packed, ray)).collect();
         let (stream, moved): (Vec<StreamRay>, Vec<f64>) = placed.into_iter().unzip();
@@ -62,7 +62,7 @@ impl Batch {
     }
 
     /// What each ray met, from a device's answers to [`crate::stream::Question::Closest`]; nothing from other answers.
-    pub fn hits(&self, packed: &Packed, answers: &Answers) -> Vec<Option<Hit>> {
+    pub fn hits(&self, packed: &DeviceScene, answers: &Answers) -> Vec<Option<Hit>> {
         match answers {
             Answers::Closest(records) => {
                 records.iter().zip(&self.moved).map(|(&record, &moved)| self.hit(packed, record, moved)).collect()
@@ -71,7 +71,7 @@ impl Batch {
         }
     }
 
-    fn hit(&self, packed: &Packed, record: UVec4, moved: f64) -> Option<Hit> {
+    fn hit(&self, packed: &DeviceScene, record: UVec4, moved: f64) -> Option<Hit> {
         let triangle = packed.triangles().get(record.w as usize)?.primitive();
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
         Some(Hit { distance: moved + f64::from(t) / self.scale, triangle, weights: [u, v] })
@@ -79,7 +79,7 @@ impl Batch {
 }
 
 /// A ray in the normalised scene, and how far it was moved along itself, in the scene's units.
-fn placed(packed: &Packed, ray: &Ray) -> (StreamRay, f64) {
+fn placed(packed: &DeviceScene, ray: &Ray) -> (StreamRay, f64) {
     let normalisation = packed.normalisation();
     let direction = ray.direction.as_dvec3().normalize_or_zero().as_vec3();
     let (origin, length) = match normalisation.place_anywhere(ray.origin) {
@@ -109,7 +109,7 @@ mod tests {
     fn distances_are_in_the_scenes_units_from_where_a_ray_starts() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
         let scene = scene::load(path.as_ref()).unwrap().0;
-        let packed = Packed::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+        let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let bottom = scene.mesh.positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let corner = scene.mesh.positions.iter().copied().reduce(Vec3::min).unwrap() + Vec3::new(0.25, 0.0, 0.25);
         let up = |height: f32| Vec3::new(corner.x, bottom + height, corner.z);
@@ -125,7 +125,11 @@ mod tests {
         for (hit, ray) in hits[..4].iter().zip(&rays) {
             let (hit, height) = (hit.expect("the floor is below"), f64::from(ray.origin.y - bottom));
             assert!((hit.distance - height).abs() <= 1e-6 * height, "{height}: {hit:?}");
-            assert!(scene.mesh.triangles[hit.triangle as usize].iter().all(|&v| scene.mesh.positions[v as usize].y == bottom));
+            assert!(
+                scene.mesh.triangles[hit.triangle as usize]
+                    .iter()
+                    .all(|&v| scene.mesh.positions[v as usize].y == bottom)
+            );
         }
         assert_eq!(hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false, false, false]);
     }

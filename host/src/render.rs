@@ -6,11 +6,11 @@ use eyerays_shader::real::Fast;
 
 use crate::choice::choices;
 use crate::cpu;
+use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::gpu::{Gpu, Renderer, Want, warm};
+use crate::gpu::{AdapterRequest, Gpu, Renderer, warm};
 use crate::method::{Processor, Traversal};
-use crate::pack::Packed;
 use crate::rays::Rays;
 use crate::view::View;
 pub use crate::why::Why;
@@ -67,7 +67,7 @@ enum Device {
 }
 
 /// A device, and why it was taken.
-pub struct Chosen {
+pub struct Backend {
     device: Device,
     choice: Choice,
     why: Why,
@@ -97,7 +97,7 @@ pub struct Rendering {
 }
 
 /// A scene, and how it is seen.
-type Seen<'a> = (&'a Packed, &'a View);
+type Seen<'a> = (&'a DeviceScene, &'a View);
 
 /// How often a picture is rendered.
 #[derive(Debug, Clone, Copy)]
@@ -113,14 +113,14 @@ struct Runs {
 /// Pictures, with pauses to read them, raise a GPU's clocks in so long.
 const LEAST_WARMING: Duration = Duration::from_millis(500);
 
-impl Chosen {
+impl Backend {
     /// Opens the device that fits the choice.
     ///
     /// # Errors
     /// A GPU was asked for by name and there is none, or none that can do it.
-    pub fn new(choice: &Choice) -> Result<Chosen> {
+    pub fn new(choice: &Choice) -> Result<Backend> {
         let start = Instant::now();
-        let chosen = |device, why| Chosen { device, choice: choice.clone(), why, open_time: start.elapsed() };
+        let chosen = |device, why| Backend { device, choice: choice.clone(), why, open_time: start.elapsed() };
         let cpu = |why| chosen(Device::Cpu, why);
         if choice.device == DeviceWish::Cpu {
             return Ok(cpu(Why::Asked));
@@ -132,7 +132,7 @@ impl Chosen {
             };
         }
         let asked = choice.device == DeviceWish::Gpu;
-        let want = Want {
+        let want = AdapterRequest {
             adapter: choice.adapter.clone(),
             software: asked || choice.adapter.is_some(),
             naga: choice.no_passthrough,
@@ -173,7 +173,7 @@ impl Chosen {
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
     pub fn render(
         &self,
-        packed: &Packed,
+        packed: &DeviceScene,
         view: &View,
         repeat: u32,
         done: &(dyn Fn(u64) + Sync),
@@ -181,11 +181,11 @@ impl Chosen {
         self.run((packed, view), Runs { warm_up: false, repeat, since: Instant::now() }, done)
     }
 
-    /// [`Chosen::render`] after a warm-up, which counts for no time.
+    /// [`Backend::render`] after a warm-up, which counts for no time.
     ///
     /// # Errors
-    /// As [`Chosen::render`].
-    pub fn measure(&self, packed: &Packed, view: &View, repeat: u32) -> Result<Rendering> {
+    /// As [`Backend::render`].
+    pub fn measure(&self, packed: &DeviceScene, view: &View, repeat: u32) -> Result<Rendering> {
         self.run((packed, view), Runs { warm_up: true, repeat, since: Instant::now() }, &|_| ())
     }
 
@@ -208,7 +208,8 @@ impl Chosen {
         runs: Runs,
         done: &(dyn Fn(u64) + Sync),
     ) -> Result<Rendering> {
-        let mut renderer = Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
+        let mut renderer =
+            Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         if runs.warm_up {
             warm(LEAST_WARMING, || {
@@ -240,13 +241,7 @@ impl Chosen {
         })
     }
 
-    fn on_cpu(
-        &self,
-        (packed, view): Seen<'_>,
-        why: Why,
-        runs: Runs,
-        done: &(dyn Fn(u64) + Sync),
-    ) -> Result<Rendering> {
+    fn on_cpu(&self, (packed, view): Seen<'_>, why: Why, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         let threads = self.choice.threads;
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();

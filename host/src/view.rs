@@ -4,10 +4,10 @@ use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Lens, Order};
 use glam::DVec3;
 
+use crate::device_scene::{DeviceScene, flushed};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::math;
-use crate::pack::{Packed, flushed};
 use crate::scene::{Camera, Settings};
 
 /// A rectangle of the image in pixels.
@@ -42,7 +42,7 @@ impl View {
     ///
     /// # Errors
     /// There is no way to look so, or the camera is too far away for the scene's numbers.
-    pub fn new(packed: &Packed, camera: &Camera) -> Result<View> {
+    pub fn new(packed: &DeviceScene, camera: &Camera) -> Result<View> {
         View::of(packed, camera, packed.settings().size, packed.settings().samples)
     }
 
@@ -50,7 +50,7 @@ impl View {
     ///
     /// # Errors
     /// As [`View::new`]; or a size that [`Film::check_size`] refuses, or no sample or too many.
-    pub fn of(packed: &Packed, camera: &Camera, (width, height): (u32, u32), samples: u32) -> Result<View> {
+    pub fn of(packed: &DeviceScene, camera: &Camera, (width, height): (u32, u32), samples: u32) -> Result<View> {
         Film::check_size(width, height)?;
         crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
         let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();

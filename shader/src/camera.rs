@@ -68,8 +68,7 @@ pub fn approach<R: Scalar>(origin: V3<R>, direction: V3<R>) -> V3<R> {
         let along = if direction.lt(R::splat(0.0)) { -origin } else { origin };
         if direction.abs().le(R::splat(TINY)) { R::splat(0.0) } else { (-one - along).div(direction.abs()) }
     };
-    let (x, y, z) =
-        (entry(origin.x, direction.x), entry(origin.y, direction.y), entry(origin.z, direction.z));
+    let (x, y, z) = (entry(origin.x, direction.x), entry(origin.y, direction.y), entry(origin.z, direction.z));
     let distance = x.max(y).max(z) * R::splat(1.0 - SHORT_SHARE) - R::splat(SHORT);
     if R::splat(0.0).lt(distance) { origin + direction * distance } else { origin }
 }
@@ -164,5 +163,32 @@ mod tests {
             .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
             .collect();
         assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);
+    }
+
+    #[test]
+    fn rays_from_afar_come_close_to_the_scene_and_others_stay() {
+        let vector = |v: Vec3| V3::<f32>::new(v.x, v.y, v.z);
+        let approached = |origin: Vec3, direction: Vec3| {
+            let near = approach(vector(origin), vector(direction));
+            Vec3::new(near.x, near.y, near.z)
+        };
+        for inside in [Vec3::ZERO, Vec3::ONE, Vec3::new(-1.0, 0.5, 0.25)] {
+            assert_eq!(approached(inside, Vec3::X), inside);
+        }
+        for distance in [1.5f32, 3.0, 100.0, 1e4, 1e6] {
+            for target in [Vec3::ZERO, Vec3::new(0.9, -0.9, 0.3), Vec3::new(-1.0, 1.0, 0.0)] {
+                let direction = Vec3::new(0.3, -0.5, -0.8).normalize();
+                let origin = target - direction * (2.0 * distance);
+                let near = approached(origin, direction);
+                let size = near.abs().max_element();
+                // Outside, so that nothing is passed, and at a distance that the errors are bounded for.
+                assert!(size > 1.0 && size < 1.0 + 2.0 * SHORT + 2e-6 * distance, "{distance}, {target}: {near}");
+                let beside = (near - target) - direction * (near - target).dot(direction);
+                assert!(beside.length() < 1e-6 * distance.max(1.0), "{distance}, {target}: {near} is beside the ray");
+            }
+        }
+        let away = Vec3::new(3.0, 0.0, 0.0);
+        assert_eq!(approached(away, Vec3::X), away, "what goes away stays");
+        assert_eq!(approached(away, Vec3::Y), away, "and what passes by in parallel");
     }
 }

@@ -1,15 +1,17 @@
 #![cfg_attr(target_arch = "spirv", no_std, feature(asm_experimental_arch))]
 //! Everything a ray of Eyerays meets, written once: rust-gpu compiles it to SPIR-V, rustc to native code.
-
+pub mod background;
 pub mod buffer;
+#[cfg(not(target_arch = "spirv"))]
+pub mod bvh8;
 pub mod camera;
 pub mod data;
 pub mod entry;
-#[cfg(not(target_arch = "spirv"))]
-pub mod bvh8;
+pub mod geometry;
 pub mod integrator;
-pub mod intersect;
 pub mod launch;
+pub mod light;
+pub mod material;
 pub mod methods;
 #[cfg(not(target_arch = "spirv"))]
 pub mod modules;
@@ -18,7 +20,6 @@ pub mod ray;
 pub mod real;
 pub mod resources;
 pub mod scene;
-pub mod shade;
 pub mod stage;
 pub mod traverse;
 pub mod warp;

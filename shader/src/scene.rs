@@ -1,11 +1,12 @@
 //! What a launch sees of the scene in device memory.
 
 use crate::buffer::read;
-use crate::data::{
-    Bounds, CentredPair, CompactPair, Frame, Layout, Light, Material, Normals, Specialisation, Triangle, CwbvhNode, numbers,
-};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
+use crate::data::{
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Specialisation, Triangle,
+    numbers,
+};
 use glam::{UVec4, Vec3};
 
 /// A launch, and the triangles of its scene.
@@ -88,7 +89,7 @@ impl TraceContext<'_> {
 
 /// What surfaces look like.
 #[derive(Clone, Copy)]
-pub struct Looks<'a> {
+pub struct ShadingData<'a> {
     /// Vertex normals in leaf order ([`Effects::SMOOTH`](crate::data::Effects)).
     pub normals: &'a [Normals],
     /// Materials.

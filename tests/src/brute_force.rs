@@ -1,7 +1,7 @@
 //! A test of every triangle, with no hierarchy and no box but the triangles' own.
 
+use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::method::Traversal;
-use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
@@ -17,8 +17,8 @@ const LANES: usize = 8;
 pub type Found = [u32; 4];
 
 /// The closest hits of a stream.
-pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
-    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+pub fn brute_force(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
+    let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
     let found = starts.par_iter().flat_map_iter(|&start| {
@@ -40,8 +40,8 @@ pub fn brute_force(packed: &Packed, stream: &Stream) -> Vec<Found> {
 }
 
 /// The same in any arithmetic, a ray at a time.
-pub fn brute_force_of<R: Scalar>(packed: &Packed, stream: &Stream) -> Vec<Found> {
-    let (laid, frame) = (Laid::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
+pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
+    let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let found = (0..stream.len()).into_par_iter().map(|i| {
         let StreamRay { origin, direction, limit, source_primitive } = stream.ray(i);
@@ -57,7 +57,7 @@ pub fn brute_force_of<R: Scalar>(packed: &Packed, stream: &Stream) -> Vec<Found>
 }
 
 /// A hit as a traversal returns it: a split triangle may be met at any of its slots.
-pub fn found(packed: &Packed, hit: UVec4) -> Found {
+pub fn found(packed: &DeviceScene, hit: UVec4) -> Found {
     let primitive = packed.triangles().get(hit.w as usize).map_or(hit.w, |triangle| triangle.primitive());
     [hit.x, hit.y, hit.z, primitive]
 }

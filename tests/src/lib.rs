@@ -12,10 +12,10 @@ use std::path::PathBuf;
 
 use eyerays::compare::compare;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
-use eyerays::gpu::{Gpu, Want};
+use eyerays::gpu::{AdapterRequest, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
-use eyerays::pack::Packed;
 use eyerays::rays::Rays;
 use eyerays::scene::{self, Camera, Scene, Settings};
 use eyerays::view::View;
@@ -54,7 +54,7 @@ pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Posed {
 /// # Panics
 /// As [`pack`].
 pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Posed {
-    let packed = Packed::new(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
+    let packed = DeviceScene::new(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
     let view = View::new(&packed, camera).unwrap_or_else(|e| panic!("{e}"));
     Posed { packed, view }
 }
@@ -62,15 +62,15 @@ pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Qual
 /// A scene before a camera.
 pub struct Posed {
     /// The scene.
-    pub packed: Packed,
+    pub packed: DeviceScene,
     /// The camera's view.
     pub view: View,
 }
 
 impl std::ops::Deref for Posed {
-    type Target = Packed;
+    type Target = DeviceScene;
 
-    fn deref(&self) -> &Packed {
+    fn deref(&self) -> &DeviceScene {
         &self.packed
     }
 }
@@ -80,9 +80,9 @@ impl std::ops::Deref for Posed {
 ///
 /// # Panics
 /// If there is none and there must be.
-pub fn gpu(want: &Want) -> Option<Gpu> {
+pub fn gpu(want: &AdapterRequest) -> Option<Gpu> {
     let adapter = std::env::var("EYERAYS_ADAPTER").ok();
-    match Gpu::open(&Want { software: true, adapter, ..want.clone() }) {
+    match Gpu::open(&AdapterRequest { software: true, adapter, ..want.clone() }) {
         Ok(gpu) => Some(gpu),
         Err(error) => {
             let required = std::env::var("EYERAYS_REQUIRE_GPU").is_ok_and(|value| value == "1");

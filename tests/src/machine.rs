@@ -4,10 +4,10 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
-use eyerays::gpu::{Caster, Gpu, Renderer, Want};
+use eyerays::gpu::{AdapterRequest, Caster, Gpu, Renderer};
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
-use eyerays::pack::Packed;
 use eyerays::rays::Rays;
 use eyerays::stream::{Answers, Question, Stream};
 use eyerays_shader::real::Fast;
@@ -15,7 +15,7 @@ use glam::UVec4;
 
 use crate::{Posed, gpu, traversals};
 
-static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| gpu(&Want { exact: true, ..Want::default() }));
+static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }));
 
 /// A device in a precision. Without a GPU there are those of the CPU alone.
 #[derive(Clone, Copy)]
@@ -70,7 +70,7 @@ impl Machine {
     ///
     /// # Panics
     /// If the GPU can't hold it.
-    pub fn tracer<'a>(self, packed: &'a Packed) -> Tracer<'a> {
+    pub fn tracer<'a>(self, packed: &'a DeviceScene) -> Tracer<'a> {
         let caster = |gpu| Caster::new(gpu, packed, Layout::Gathered).unwrap_or_else(|e| panic!("{self}: {e}"));
         Tracer { machine: self, packed, caster: self.gpu.map(caster) }
     }
@@ -95,7 +95,7 @@ impl Machine {
 /// A scene on a machine.
 pub struct Tracer<'a> {
     machine: Machine,
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     caster: Option<Caster<'a>>,
 }
 

@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::scene::Scene;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Triangle;
@@ -91,9 +91,9 @@ impl Surface {
     ///
     /// # Panics
     /// If no device could hold it.
-    pub fn pack(&self) -> Packed {
+    pub fn pack(&self) -> DeviceScene {
         let scene = self.scene();
-        Packed::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        DeviceScene::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// The scene packed, with a place in world units that it reaches to: a triangle without extent, the last, which no ray
@@ -101,15 +101,15 @@ impl Surface {
     ///
     /// # Panics
     /// If no device could hold it.
-    pub fn pack_up_to(&self, end: Vec3) -> Packed {
+    pub fn pack_up_to(&self, end: Vec3) -> DeviceScene {
         let mut scene = self.scene();
         add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
-        Packed::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        DeviceScene::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 
 /// The triangles of a packed scene, each once and in the scene's order, which no hierarchy changes.
-pub fn triangles(packed: &Packed) -> Vec<Triangle> {
+pub fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
     let mut triangles = packed.triangles().to_vec();
     triangles.sort_by_key(Triangle::primitive);
     triangles.dedup_by_key(|triangle| triangle.primitive());

@@ -1,12 +1,12 @@
 //! One picture, whatever the threads, the hierarchy and the tiles.
 
 use eyerays::cpu;
+use eyerays::cpu::{Isa, Planned};
+use eyerays::device_scene::SceneView;
 use eyerays::film::Film;
 use eyerays::method::Traversal;
-use eyerays::cpu::{Isa, Planned};
-use eyerays::pack::Laid;
-use eyerays::view::Region;
 use eyerays::rays::Rays;
+use eyerays::view::Region;
 use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::NON_FINITE;
@@ -102,7 +102,7 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 2));
         let (whole, rays) = render::<f32>(&packed, 2);
-        let planned = Planned::new(Laid::new(&packed, Traversal::default()), Isa::best());
+        let planned = Planned::new(SceneView::new(&packed, Traversal::default()), Isa::best());
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
             let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
             for tile in tiles(SIZE, size) {

@@ -1,9 +1,9 @@
 //! One picture from GPU and CPU, in every bit. Without a GPU these tests do nothing, see [`gpu`].
 
 use eyerays::error::{Content, Error};
-use eyerays::gpu::{Gpu, Renderer, Want};
-use eyerays::method::{Method, Traversal};
+use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::integrator;
+use eyerays::method::{Method, Traversal};
 use eyerays::scene::{Background, Light, Material, Scene, Settings};
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{Posed, assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
@@ -13,7 +13,7 @@ use glam::Vec3;
 const PICTURES: [((u32, u32), u32); 3] = [((96, 72), 1), ((37, 23), 2), ((21, 40), 3)];
 
 fn exact() -> Option<Gpu> {
-    gpu(&Want { exact: true, ..Want::default() })
+    gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() })
 }
 
 fn assert_same_by(gpu: &Gpu, packed: &Posed, traversals: &[Traversal], what: &str) {

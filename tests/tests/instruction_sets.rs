@@ -1,10 +1,10 @@
 //! The same answers whatever instructions the processor has, and however rays share its vectors.
 
 use eyerays::cpu::{self, Isa};
+use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::method::{Layout, Method, Traversal};
-use eyerays::pack::{Laid, Packed};
-use eyerays::view::Region;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
+use eyerays::view::Region;
 use eyerays_shader::real::Scalar;
 use eyerays_tests::{SHIPPED, pack, settings, shipped, traversals};
 use glam::Vec3;
@@ -38,7 +38,7 @@ fn stream() -> Stream {
 }
 
 /// What must not change: a split triangle may be met at any of its slots.
-fn settled(packed: &Packed, answers: Answers) -> Vec<[u32; 4]> {
+fn settled(packed: &DeviceScene, answers: Answers) -> Vec<[u32; 4]> {
     match answers {
         Answers::Closest(hits) => {
             let primitive = |slot: u32| packed.triangles().get(slot as usize).map_or(slot, |t| t.primitive());
@@ -80,7 +80,7 @@ fn every_isa_renders_the_same_tile() {
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (37, 29), 1));
         let region = Region { x: 3, y: 2, width: 33, height: 26 };
         let tile = |isa, method| {
-            let planned = cpu::Planned::new(Laid::new(&packed, Traversal::from(method)), isa);
+            let planned = cpu::Planned::new(SceneView::new(&packed, Traversal::from(method)), isa);
             let mut film = planned.film::<f32>(region);
             let secondary = planned.add::<f32>(&packed.view, region, 0..1, &mut film, &());
             (film.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)

@@ -3,15 +3,17 @@
 use std::sync::Mutex;
 
 use eyerays::cpu::{self, Observer, Records};
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::Traversal;
-use eyerays::pack::Packed;
 use eyerays_shader::camera;
 use eyerays_shader::data::{Effects, Light};
+use eyerays_shader::geometry::SurfaceInteraction;
+use eyerays_shader::light::LightSample;
+use eyerays_shader::material::{Surface, refract};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::Scalar;
-use eyerays_shader::scene::{Looks, TraceContext};
-use eyerays_shader::shade::{Contact, Incidence, Surface, refract};
+use eyerays_shader::scene::{ShadingData, TraceContext};
 use eyerays_shader::stage::{Path, REACHED};
 use eyerays_tests::{Posed, differences, pack, shipped};
 
@@ -32,7 +34,7 @@ struct Story {
 
 /// Writes the stories of a picture.
 struct Log<'a> {
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     stories: Mutex<Vec<Story>>,
 }
 
@@ -58,10 +60,11 @@ impl Log<'_> {
             return story.events.push(triangle_index);
         }
         let packed = self.packed;
-        let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
+        let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
         let triangle = &geometry.triangle(triangle_index);
-        let contact = Contact::new(triangle, hit.y, hit.z, path.direction);
-        let surface = Surface::new(geometry.base.spec.effects, &looks, triangle_index, triangle, path.direction, &contact);
+        let contact = SurfaceInteraction::new(triangle, hit.y, hit.z, path.direction);
+        let surface =
+            Surface::new(geometry.base.spec.effects, &looks, triangle_index, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.primitive(), u32::from(contact.front)]);
@@ -74,7 +77,7 @@ impl Log<'_> {
             }
         }
         if !surface.ior.eq(R::splat(0.0)) {
-            let eta = if contact.front { R::splat(1.0).div(surface.ior) } else { surface.ior };
+            let eta = contact.relative_ior(surface.ior);
             let at = refract(path.direction, surface.normal, eta);
             story.events.push(u32::from(at.total));
             story.critical |= !at.total && at.cos_out.to_f32() < CRITICAL;
@@ -83,8 +86,8 @@ impl Log<'_> {
 }
 
 /// The part of a spot's cone that a place is in: full light, the rim or none.
-fn cone<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<R>) -> u32 {
-    let colour = Incidence::new(effects, light, contact.position).colour;
+fn cone<R: Scalar>(effects: Effects, light: &Light, contact: &SurfaceInteraction<R>) -> u32 {
+    let colour = LightSample::new(effects, light, contact.position).colour;
     let all = f32::from_bits(light.colour.x);
     match colour.x.to_f32() {
         0.0 => 0,

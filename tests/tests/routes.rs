@@ -1,6 +1,6 @@
 //! Fast precision by both routes to the driver: passthrough, and naga's, which machines without Vulkan take.
 
-use eyerays::gpu::{Gpu, Renderer, Route, Want};
+use eyerays::gpu::{AdapterRequest, Gpu, Renderer, Route};
 use eyerays::method::{Method, Traversal};
 use eyerays::scene::Settings;
 use eyerays_shader::modules;
@@ -19,7 +19,7 @@ fn assert_near(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
 }
 
 fn assert_scenes_near(naga: bool) {
-    let Some(gpu) = gpu(&Want { naga, ..Want::default() }) else { return };
+    let Some(gpu) = gpu(&AdapterRequest { naga, ..AdapterRequest::default() }) else { return };
     assert!(!naga || gpu.route == Route::Naga);
     for name in SHIPPED {
         let scene = shipped(name);
@@ -41,7 +41,7 @@ fn through_naga() {
 /// Primary rays alone, since every method compiles kernels of its own.
 #[test]
 fn methods_through_naga() {
-    let Some(gpu) = gpu(&Want { naga: true, ..Want::default() }) else { return };
+    let Some(gpu) = gpu(&AdapterRequest { naga: true, ..AdapterRequest::default() }) else { return };
     let mut scene = shipped("whitted");
     scene.lights.clear();
     let packed = pack(&scene, &scene.cameras[0], Settings { bounces: 0, ..settings(&scene, (160, 120), 1) });

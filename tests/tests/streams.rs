@@ -1,19 +1,19 @@
 //! Every kind of ray by every method gets the same answers from GPU and CPU.
 
 use eyerays::cpu;
-use eyerays::gpu::{Caster, Gpu, Want};
+use eyerays::device_scene::DeviceScene;
+use eyerays::gpu::{AdapterRequest, Caster, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
-use eyerays::pack::Packed;
 use eyerays::stream::{Answers, Question, Stream};
 use eyerays_command::bench::Kind;
 use eyerays_command::bench::answers::first_difference;
-use eyerays_command::bench::rays::{CameraRays, Sight, diagonal};
+use eyerays_command::bench::rays::{CameraRays, PrimaryHits, diagonal};
 use eyerays_tests::{Posed, SHIPPED, gpu, pack, settings, shipped, traversals};
 
 /// Rays through the middle of this many pixels.
 const SIZE: (u32, u32) = (40, 30);
 
-fn on_cpu(packed: &Packed, traversal: Traversal, stream: &Stream, question: Question) -> Answers {
+fn on_cpu(packed: &DeviceScene, traversal: Traversal, stream: &Stream, question: Question) -> Answers {
     cpu::cast(packed, traversal, 0, stream, question).unwrap().0
 }
 
@@ -33,7 +33,7 @@ fn assert_gpu(gpu: &Gpu, packed: &Posed, how: &[Traversal], layout: Layout, what
 }
 
 fn streams(packed: &Posed) -> Vec<(Kind, Stream)> {
-    let sight = Sight::new(packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
     let length = 0.2 * diagonal(packed) as f32;
     Kind::ALL
         .into_iter()
@@ -59,7 +59,7 @@ fn every_kind_by_every_method_on_the_cpu() {
 
 #[test]
 fn every_kind_by_every_method_on_the_gpu() {
-    let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) else { return };
+    let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
     for name in SHIPPED {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));

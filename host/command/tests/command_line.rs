@@ -5,8 +5,8 @@ mod program;
 use std::collections::HashMap;
 use std::fs;
 
+use eyerays::device_scene::DeviceScene;
 use eyerays::image;
-use eyerays::pack::Packed;
 use eyerays::scene;
 use eyerays_bvh::Quality;
 use program::{Place, SCENE, TRIANGLE, has_gpu, shipped};
@@ -230,7 +230,7 @@ fn info_tells_the_hierarchies_of_a_scene() {
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
     {
-        let want = Packed::new(&scene, scene.settings, quality).unwrap();
+        let want = DeviceScene::new(&scene, scene.settings, quality).unwrap();
         let want = want.statistics();
         let counts = [want.triangles, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
         assert_eq!(rows[row][0], name);

@@ -5,16 +5,16 @@ use std::time::{Duration, Instant};
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::Asking;
+use eyerays_shader::stage::ShadowInputs;
 use glam::UVec4;
 use rayon::prelude::*;
 
 use super::follow::{Job, follow};
 use super::isa::Isa;
 use super::pool::pool;
+use crate::device_scene::{DeviceScene, SceneView};
 use crate::error::Result;
 use crate::method::{Method, Traversal};
-use crate::pack::{Laid, Packed};
 use crate::stream::{Answers, Question, Stream};
 
 /// Neighbouring rays that a task follows; a multiple of the rays that are followed together.
@@ -26,7 +26,7 @@ const TASK: usize = 1024;
 /// # Errors
 /// If the threads can't be had.
 pub fn cast(
-    packed: &Packed,
+    packed: &DeviceScene,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,
@@ -41,20 +41,20 @@ pub fn cast(
 /// As [`cast`].
 pub fn cast_by(
     isa: Isa,
-    packed: &Packed,
+    packed: &DeviceScene,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,
     question: Question,
 ) -> Result<(Answers, Duration)> {
-    let (laid, frame) = (Laid::new(packed, traversal), packed.stream_frame(stream.len()));
+    let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let mut answers = match question {
         Question::Closest => Answers::Closest(vec![UVec4::ZERO; stream.len()]),
         Question::Occlusion => Answers::Occlusion(vec![0; stream.len()]),
     };
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
-    let asking = Asking { lights: &[], paths: stream.words(), hits: &[] };
+    let asking = ShadowInputs { lights: &[], paths: stream.words(), hits: &[] };
     let time = pool(threads)?.install(|| {
         let start = Instant::now();
         match &mut answers {
@@ -73,11 +73,11 @@ pub fn cast_by(
 ///
 /// # Errors
 /// As [`cast`].
-pub fn closest<R>(packed: &Packed, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
+pub fn closest<R>(packed: &DeviceScene, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
 where
     R: Scalar<Record: Send + Sync>,
 {
-    let (laid, frame) = (Laid::new(packed, traversal), packed.stream_frame(stream.len()));
+    let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
     let rays: Vec<R::Record> = stream.words().iter().map(|&word| R::store(V3::splat(numbers(word)), word.w)).collect();
     let mut hits = vec![R::Record::default(); stream.len()];

@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{self, Asking, FACES_AWAY, Segment};
+use eyerays_shader::stage::{self, FACES_AWAY, Segment, ShadowInputs};
 use eyerays_shader::traverse::{
     self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
 };
@@ -18,7 +18,7 @@ pub enum Job<'a, R: Scalar> {
     /// Their closest hits, of paths or a stream's rays.
     Trace(&'a [R::Record], &'a mut [R::Record]),
     /// Whether something is on their way to a light, or before the ends of a stream's rays.
-    Shadow(Asking<'a, R>, u32, &'a mut [u32]),
+    Shadow(ShadowInputs<'a, R>, u32, &'a mut [u32]),
 }
 
 /// The way of a method on a CPU, from the shader's table.
@@ -130,7 +130,7 @@ impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
                     segments.clear();
                     places.clear();
                     for (&slot, answer) in rays.by_ref() {
-                        let (segment, faces) = stage::asked(&geometry, asking, slot, light);
+                        let (segment, faces) = stage::shadow_ray(&geometry, asking, slot, light);
                         *answer = FACES_AWAY;
                         if faces {
                             segments.push(segment);

@@ -10,10 +10,10 @@ use rayon::prelude::*;
 use super::isa::Isa;
 use super::pool::pool;
 use super::tile::{Observer, Planned};
+use crate::device_scene::{DeviceScene, SceneView};
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
-use crate::pack::{Laid, Packed};
 use crate::rays::Rays;
 use crate::scene::Light;
 use crate::view::{Region, View};
@@ -48,17 +48,17 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// If the threads can't be started.
-    pub fn new(packed: &'a Packed, traversal: impl Into<Traversal>, threads: usize) -> Result<Self> {
+    pub fn new(packed: &'a DeviceScene, traversal: impl Into<Traversal>, threads: usize) -> Result<Self> {
         let threads = pool(threads)?;
         let traversal = traversal.into();
-        let laid = threads.install(|| Laid::new(packed, traversal));
+        let laid = threads.install(|| SceneView::new(packed, traversal));
         Ok(Renderer { planned: Planned::new(laid, Isa::best()), threads })
     }
 
     /// Goes on with other lights: as many as the scene's, of the same kinds.
     ///
     /// # Errors
-    /// As [`Packed::relit`].
+    /// As [`DeviceScene::relit`].
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
         self.planned.laid.set_lights(lights)
     }
@@ -167,7 +167,7 @@ impl<R: Scalar> Picture<R> {
 /// # Errors
 /// If the film or the threads can't be had.
 pub fn render<R>(
-    packed: &Packed,
+    packed: &DeviceScene,
     view: &View,
     traversal: impl Into<Traversal>,
     threads: usize,

@@ -7,14 +7,14 @@ use eyerays_shader::data::Frame;
 use eyerays_shader::integrator::{self, Wave};
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::resources::binding;
-use eyerays_shader::scene::{Looks, TraceContext};
-use eyerays_shader::stage::{self, Asking};
+use eyerays_shader::scene::{ShadingData, TraceContext};
+use eyerays_shader::stage::{self, ShadowInputs};
 
 use super::follow::{Job, follow};
 use super::isa::Isa;
+use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::method::{Method, Processor};
-use crate::pack::Laid;
 use crate::plan::{self, Executor, Plan, Stage, Step};
 use crate::view::{Region, View};
 
@@ -58,14 +58,14 @@ impl<R: Scalar> Records<R> {
 /// A scene with the plan of its pictures.
 pub struct Planned<'a> {
     /// The scene.
-    pub laid: Laid<'a>,
+    pub laid: SceneView<'a>,
     pub(super) plan: Plan,
     pub(super) isa: Isa,
 }
 
 impl<'a> Planned<'a> {
     /// Plans pictures of a scene, with the instructions of an Isa.
-    pub fn new(laid: Laid<'a>, isa: Isa) -> Self {
+    pub fn new(laid: SceneView<'a>, isa: Isa) -> Self {
         let traversal = laid.traversal;
         let plan = Plan::new(laid.packed, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
         Planned { laid, plan: plan.expect("a CPU has every method"), isa }
@@ -151,7 +151,7 @@ impl<R: Scalar> Launch<'_, '_, R> {
         let Records { paths, hits, shadows, .. } = &mut self.records;
         let mut answers = vec![0; self.queue.len()];
         for light in 0..self.frame.shadow_rays {
-            let asking = Asking { lights: self.planned.laid.lights(), paths, hits };
+            let asking = ShadowInputs { lights: self.planned.laid.lights(), paths, hits };
             let job = Job::Shadow(asking, light, &mut answers);
             follow::<R>(self.planned.isa, method, scene, &self.queue, job);
             for (&slot, &answer) in self.queue.iter().zip(&answers) {
@@ -165,7 +165,7 @@ impl<R: Scalar> Launch<'_, '_, R> {
         self.observer.wave(scene, &self.queue, &self.records);
         let Records { paths, hits, shadows, sums } = &mut self.records;
         let (laid, packed) = (&self.planned.laid, self.planned.laid.packed);
-        let looks = Looks { normals: packed.normals(), materials: packed.materials(), lights: laid.lights() };
+        let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: laid.lights() };
         self.queue.retain(|&slot| {
             let wave = Wave::<R> { paths: &mut *paths, hits, shadows, sums: &mut *sums };
             integrator::shade(&scene.base, &looks, slot, wave)

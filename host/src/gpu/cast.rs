@@ -18,9 +18,9 @@ use super::recipe::Recipe;
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
 use super::warm::warm;
+use crate::device_scene::DeviceScene;
 use crate::error::{Content, Error, Result};
 use crate::method::{Coherence, Layout, Traversal};
-use crate::pack::Packed;
 use crate::plan::{Stage, Step};
 use crate::stream::{Answers, Question, Stream};
 
@@ -37,7 +37,7 @@ const LEAST_WARMING: Duration = Duration::from_millis(100);
 /// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
 pub struct Caster<'a> {
     gpu: &'a Gpu,
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     layout: Layout,
     scene: SceneBuffers,
     kernels: RefCell<HashMap<Key, Rc<Kernel>>>,
@@ -55,7 +55,7 @@ impl<'a> Caster<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Packed, layout: Layout) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, layout: Layout) -> Result<Self> {
         let scene = SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: true })?;
         Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
     }

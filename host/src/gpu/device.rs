@@ -19,7 +19,7 @@ pub enum Route {
 
 /// What a caller asks of a GPU.
 #[derive(Debug, Clone, Default)]
-pub struct Want {
+pub struct AdapterRequest {
     /// A number or part of a name.
     pub adapter: Option<String>,
     /// Is a software adapter welcome?
@@ -46,7 +46,7 @@ impl Gpu {
     ///
     /// # Errors
     /// If there is none; the message names the remedy.
-    pub fn open(want: &Want) -> Result<Gpu> {
+    pub fn open(want: &AdapterRequest) -> Result<Gpu> {
         let _hush = Hush::new();
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
@@ -67,7 +67,8 @@ impl Gpu {
             required_limits: adapter.limits(),
             // SAFETY: passthrough is the one experimental feature in use; `module` says why it is sound.
             experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
-            memory_hints: wgpu::MemoryHints::Performance,
+            // Of the larger blocks that `Performance` begins with, the first that the host reads takes 25 ms (an H200).
+            memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..256 << 20 },
             trace: wgpu::Trace::Off,
         });
         let (device, queue) = pollster::block_on(request)

@@ -21,7 +21,7 @@ mod warm;
 pub use adapter::{AdapterReport, adapters};
 pub use cast::{Cast, Caster};
 pub use cost::{Cost, KernelCost};
-pub use device::{Gpu, Route, Want};
+pub use device::{AdapterRequest, Gpu, Route};
 pub use recipe::{Recipe, Target};
 pub use render::{GpuRendering, Renderer};
 pub use warm::warm;

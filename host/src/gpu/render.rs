@@ -17,10 +17,10 @@ use super::launch::{Launch, Queue};
 use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::scene::SceneBuffers;
+use crate::device_scene::DeviceScene;
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Traversal;
-use crate::pack::Packed;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
 use crate::scene::Light;
@@ -43,7 +43,7 @@ pub struct GpuRendering {
 /// neither geometry nor kernels move for that.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     order: Order,
     plan: Plan,
     /// By the plan's steps.
@@ -82,7 +82,7 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a Packed, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
         let plan = Plan::new(packed, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
         let most_slots = most_slots(gpu, &plan)?;
@@ -97,7 +97,7 @@ impl<'a> Renderer<'a> {
     /// Goes on with other lights: as many as the scene's, of the same kinds.
     ///
     /// # Errors
-    /// As [`Packed::relit`].
+    /// As [`DeviceScene::relit`].
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
         let records = self.packed.relit(lights)?;
         if let Some(buffer) = self.scene.find(binding::LIGHTS) {
@@ -200,8 +200,7 @@ impl<'a> Renderer<'a> {
                 bytes <= READ
             };
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
-            let films: Vec<_> =
-                now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels())).collect();
+            let films: Vec<_> = now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels())).collect();
             let read = self.queue.read(&counters, &films, |i, bytes| {
                 let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
                 let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);

@@ -4,14 +4,14 @@ use eyerays_shader::data::Effects;
 use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::device::Gpu;
+use crate::device_scene::{DeviceScene, NodeWords, TriangleWords};
 use crate::error::{Content, Error, Result};
 use crate::method::Layout;
-use crate::pack::{NodeWords, Packed, TriangleWords};
 use crate::plan::Plan;
 
 /// The records of a scene as kernels read them, before they are uploaded.
 pub(super) struct SceneRecords<'a> {
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     nodes: Option<NodeWords<'a>>,
     triangles: TriangleWords<'a>,
     wide: bool,
@@ -19,7 +19,7 @@ pub(super) struct SceneRecords<'a> {
 
 impl<'a> SceneRecords<'a> {
     /// A scene in one of its layouts. A hierarchy that no method walks is left out.
-    pub fn new(packed: &'a Packed, layout: Layout, hierarchies: Hierarchies) -> Self {
+    pub fn new(packed: &'a DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Self {
         let nodes = hierarchies.binary.then(|| NodeWords::of(packed, layout));
         SceneRecords { packed, nodes, triangles: TriangleWords::of(packed, layout), wide: hierarchies.wide }
     }
@@ -50,10 +50,12 @@ impl SceneBuffers {
     ///
     /// # Errors
     /// If a part is larger than a buffer, or what the GPU reports.
-    pub fn new(gpu: &Gpu, packed: &Packed, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
+    pub fn new(gpu: &Gpu, packed: &DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
         let records = SceneRecords::new(packed, layout, hierarchies);
         let used = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty());
-        used.map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?))).collect::<Result<_>>().map(SceneBuffers)
+        used.map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?)))
+            .collect::<Result<_>>()
+            .map(SceneBuffers)
     }
 
     /// The buffer of a resource.

@@ -8,10 +8,10 @@ use eyerays_shader::stage::RECORDS;
 
 pub use run::{Executor, run};
 
+use crate::device_scene::DeviceScene;
 use crate::error::Result;
 use crate::integrator::{Needs, Waves, whitted};
 use crate::method::{Coherence, Method, Traversal};
-use crate::pack::Packed;
 
 /// Bytes of a record of three numbers and an integer.
 const RECORD: u64 = 16;
@@ -81,7 +81,7 @@ impl Plan {
     /// # Errors
     /// Those of `resolve`.
     pub fn new(
-        packed: &Packed,
+        packed: &DeviceScene,
         traversal: &Traversal,
         resolve: impl Fn(Coherence) -> Result<Traversal>,
     ) -> Result<Plan> {

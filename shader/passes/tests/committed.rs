@@ -4,18 +4,31 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Features, Tuning};
-use eyerays_shader::launch::{FEATURES_ID, TUNING_ID};
+use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
 use eyerays_shader::modules;
 
 const MODULES: [&[u8]; 4] = [modules::EXACT, modules::FAST, modules::EXACT_SUBGROUP, modules::FAST_SUBGROUP];
 
-/// None, all, and those together that make the kernels of most branches.
-fn effects() -> Vec<u32> {
-    let all_of_the_camera = Features::SECONDARY - 1;
-    let stream = Features::STREAM | Features::SPLIT | Features::MOLLER;
-    let wave = Features::SECONDARY | Features::REFLECTION | Features::REFRACTION | Features::SMOOTH;
-    vec![0, all_of_the_camera, stream, wave, wave | Features::SPLIT | Features::INDEXED, Features::COMPACT]
+fn effects(bits: u32) -> Specialisation {
+    Specialisation { effects: Effects(bits), ..Specialisation::default() }
+}
+
+/// Nothing, everything, and what together makes the kernels of most branches.
+fn specialisations() -> Vec<Specialisation> {
+    let all = effects(u32::MAX);
+    let stream = effects(0).with_launch(Launch::STREAM | Launch::MOLLER);
+    let wave = effects(Effects::REFLECTION | Effects::REFRACTION | Effects::SMOOTH).with_launch(Launch::SECONDARY);
+    let layout = |spec, bits| Specialisation { layout: Layout(bits), ..spec };
+    let order = Specialisation { order: Order(Order::MORTON), ..effects(Effects::LIT) };
+    vec![
+        effects(0),
+        all,
+        layout(stream, Layout::SPLIT),
+        wave,
+        layout(wave, Layout::SPLIT | Layout::INDEXED),
+        layout(effects(0), Layout::COMPACT),
+        order,
+    ]
 }
 
 fn is_valid(words: &[u32]) -> Result<(), String> {
@@ -36,9 +49,9 @@ fn every_kernel_is_valid_whatever_is_folded() {
     for module in MODULES {
         let kernels = Kernels::parse(module).unwrap();
         for entry in kernels.names() {
-            for features in effects() {
-                let kernel = kernels.cut(&entry, &[(FEATURES_ID, features), (TUNING_ID, Tuning::default().0)]).unwrap();
-                is_valid(&kernel.words()).unwrap_or_else(|fault| panic!("{entry}, {features:#x}: {fault}"));
+            for spec in specialisations() {
+                let kernel = kernels.cut(&entry, &spec.constants()).unwrap();
+                is_valid(&kernel.words()).unwrap_or_else(|fault| panic!("{entry}, {spec:?}: {fault}"));
             }
         }
     }
@@ -48,38 +61,39 @@ fn every_kernel_is_valid_whatever_is_folded() {
 #[test]
 fn an_effect_costs_instructions_only_where_it_is_asked_for() {
     let kernels = Kernels::parse(modules::EXACT).unwrap();
-    let count = |entry: &str, features: u32| kernels.cut(entry, &[(FEATURES_ID, features)]).unwrap().instructions();
-    let bare = count("exact_shade", 0);
-    for effect in [
-        Features::SMOOTH,
-        Features::CHECKER,
-        Features::REFLECTION,
-        Features::REFRACTION,
-        Features::SPOT,
-        Features::DIRECTIONAL,
-        Features::SPECULAR,
-        Features::GRADIENT,
-    ] {
-        assert!(count("exact_shade", effect) > bare, "{effect:#x} is nothing, or its branch is not folded");
-        assert_eq!(
-            count("exact_trace_while_while", effect & !Features::REFRACTION),
-            count("exact_trace_while_while", 0)
-        );
+    let count = |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().instructions();
+    let trace = |spec| count("exact::while_while::trace", spec);
+    let bare = count("exact::shade", effects(0));
+    for effect in
+        [Effects::SMOOTH, Effects::CHECKER, Effects::REFLECTION, Effects::REFRACTION, Effects::LIT, Effects::GRADIENT]
+    {
+        let with = count("exact::shade", effects(effect));
+        assert!(with > bare, "{effect:#x} is nothing, or its branch is not folded");
+        assert_eq!(trace(effects(effect & !Effects::REFRACTION)), trace(effects(0)));
     }
-    assert_ne!(count("exact_trace_while_while", Features::SPLIT), count("exact_trace_while_while", 0));
+    let lit = count("exact::shade", effects(Effects::LIT));
+    for effect in [Effects::SPOT, Effects::DIRECTIONAL, Effects::SPECULAR] {
+        assert_eq!(count("exact::shade", effects(effect)), bare, "{effect:#x} without a light");
+        assert!(count("exact::shade", effects(Effects::LIT | effect)) > lit, "{effect:#x}");
+    }
+    let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
+    assert_ne!(trace(split), trace(effects(0)));
 }
 
 #[test]
 fn a_kernel_binds_what_it_reads_and_writes() {
-    use eyerays_shader::launch::binding::*;
+    use eyerays_shader::resources::binding::*;
     let kernels = Kernels::parse(modules::EXACT).unwrap();
-    let bindings = |entry: &str, features: u32| kernels.cut(entry, &[(FEATURES_ID, features)]).unwrap().bindings();
-    assert_eq!(bindings("exact_advance", 0), [FRAME, COUNTERS]);
-    assert_eq!(bindings("exact_trace_if_if", 0), [FRAME, NODES, TRIANGLES, HITS]);
-    assert_eq!(bindings("exact_trace_if_if", Features::SPLIT), [FRAME, NODES, TRIANGLES, HITS, BOUNDS]);
+    let bindings =
+        |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().bindings().to_vec();
+    let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
+    assert_eq!(bindings("exact::advance", effects(0)), [FRAME, COUNTERS, ARGUMENTS]);
+    assert_eq!(bindings("exact::gather", effects(0)), [FRAME, SUMS, FILM]);
+    assert_eq!(bindings("exact::if_if::trace", effects(0)), [FRAME, NODES, TRIANGLES, HITS]);
+    assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, TRIANGLES, HITS, BOUNDS]);
     let further = [FRAME, NODES, TRIANGLES, PATHS, HITS, QUEUE, COUNTERS];
-    assert_eq!(bindings("exact_trace_if_if", Features::SECONDARY), further);
-    let shade = bindings("exact_shade", 0);
-    assert!(!shade.contains(&NORMALS) && !shade.contains(&PATHS) && !shade.contains(&QUEUE), "{shade:?}");
-    assert!(bindings("exact_shade", Features::SMOOTH).contains(&NORMALS));
+    assert_eq!(bindings("exact::if_if::trace", effects(0).with_launch(Launch::SECONDARY)), further);
+    assert_eq!(bindings("exact::shade", effects(0)), [FRAME, TRIANGLES, MATERIALS, HITS, SUMS]);
+    let lit = [FRAME, TRIANGLES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
+    assert_eq!(bindings("exact::shade", effects(Effects::SMOOTH | Effects::LIT)), lit);
 }

@@ -1,8 +1,8 @@
 //! What changes from launch to launch.
 
 use super::{numbers, pack};
-use crate::real::V3;
 use crate::real::Scalar;
+use crate::real::V3;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 

@@ -6,20 +6,20 @@
 //! a power of two so that every coordinate, cameras included, lies in [-1, 1].
 
 mod compact;
+mod cwbvh;
 mod frame;
-mod look;
 mod node;
+mod shading;
 mod specialisation;
 mod triangle;
-mod cwbvh;
 
 pub use compact::CompactPair;
+pub use cwbvh::CwbvhNode;
 pub use frame::{Frame, Lens};
-pub use look::{Light, Material, Normals};
 pub use node::{CentredPair, NodePair, NodeRef};
+pub use shading::{Light, Material, Normals};
 pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
 pub use triangle::{Bounds, Triangle};
-pub use cwbvh::CwbvhNode;
 
 use glam::{UVec4, Vec3};
 
@@ -39,5 +39,5 @@ pub fn numbers(q: UVec4) -> Vec3 {
 pub const MAX_LEAF: u32 = 5;
 /// Entries of a traversal stack; `eyerays-bvh` builds no tree that needs more.
 pub const STACK: usize = 64;
-/// Half a box's padding in the normalised scene; see `intersect::triangle` for the bound it covers.
+/// Half a box's padding in the normalised scene; see `geometry::triangle` for the bound it covers.
 pub const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;

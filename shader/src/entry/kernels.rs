@@ -6,11 +6,11 @@ use crate::integrator::{self, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::real::Fast;
 use crate::resources::resources;
-use crate::scene::{LaunchContext, Looks, TraceContext};
-use crate::stage::{self, Asking};
+use crate::scene::{LaunchContext, ShadingData, TraceContext};
+use crate::stage::{self, ShadowInputs};
 use crate::traverse::{
-    Closest, Cut, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax, WhileWhile,
-    CwbvhMethod,
+    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax,
+    WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, take};
 use glam::{UVec3, UVec4};

@@ -79,7 +79,7 @@ macro_rules! shading {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, triangles };
-                let looks = Looks { normals, materials, lights };
+                let looks = ShadingData { normals, materials, lights };
                 if integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums }) {
                     enqueue(slot, next, counters);
                 }
@@ -116,7 +116,7 @@ macro_rules! voting_shading {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, triangles };
-                let looks = Looks { normals, materials, lights };
+                let looks = ShadingData { normals, materials, lights };
                 let goes_on = integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums });
                 if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
                     let position = take(goes_on, lane, counters, counter::NEXT);
@@ -155,7 +155,7 @@ macro_rules! tracing {
                 }
                 let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
                 let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
-                let answer = stage::shadow::<$R, $method>(&scene, Asking { lights, paths, hits }, slot, light);
+                let answer = stage::shadow::<$R, $method>(&scene, ShadowInputs { lights, paths, hits }, slot, light);
                 write(shadows, light * frame.slots + slot, answer);
             }
         }
@@ -188,7 +188,7 @@ macro_rules! persistent_tracing {
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
             [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
                 let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
-                let asking = Asking { lights, paths: &*paths, hits: &*hits };
+                let asking = ShadowInputs { lights, paths: &*paths, hits: &*hits };
                 let (count, queue) = (slots(spec, frame, counters), &*queue);
                 // A launch without slots takes no number; the guard spares the division's panic.
                 let row = if count == 0 { 1 } else { count };
@@ -197,9 +197,9 @@ macro_rules! persistent_tracing {
                     &scene,
                     count * rows,
                     move |wants| take(wants, lane, counters, counter::ASKED),
-                    move |number| stage::asked(&scene, asking, queued(spec, number % row, queue), number / row),
+                    move |number| stage::shadow_ray(&scene, asking, queued(spec, number % row, queue), number / row),
                     move |number, traced, _, hit| {
-                        let answer = if traced { stage::answered(hit) } else { stage::FACES_AWAY };
+                        let answer = if traced { stage::visibility(hit) } else { stage::FACES_AWAY };
                         let slot = queued(spec, number % row, queue);
                         write(shadows, number / row * frame.slots + slot, answer);
                     },

@@ -1,13 +1,16 @@
 //! Whitted's shading: the light of a slot's hit, added to the slot's sum, and the rays that go on from there.
 
-use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
+use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::{Effects, Launch, Light};
+use crate::geometry::SurfaceInteraction;
+use crate::light::LightSample;
+use crate::material::{Surface, eval_phong, fresnel, reflect, refract};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::scene::{LaunchContext, Looks};
-use crate::shade::{Contact, Incidence, Surface, background, fresnel, illuminate, reflect, refract};
+use crate::scene::{LaunchContext, ShadingData};
+use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
 
 /// The records that the stages of a wave exchange.
 pub struct Wave<'a, R: Scalar> {
@@ -29,7 +32,7 @@ struct Branches<R: Real> {
 
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
-pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &Looks<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
+pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, sums } = wave;
     if !camera::pixel(launch.frame, launch.spec.order, slot).inside {
         return false;
@@ -42,7 +45,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &Looks<'_>, slot: u32
         return pop(launch, slot, &path, paths);
     }
     let triangle = launch.triangle(triangle_index);
-    let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
+    let contact = SurfaceInteraction::new(&triangle, hit.y, hit.z, path.direction);
     let surface = Surface::new(effects, looks, triangle_index, &triangle, path.direction, &contact);
     let (light, rays) = lit(launch, looks.lights, slot, path.direction, (&contact, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
@@ -59,7 +62,7 @@ fn lit<R: Scalar>(
     lights: &[Light],
     slot: u32,
     direction: V3<R>,
-    lit: (&Contact<R>, &Surface<R>),
+    lit: (&SurfaceInteraction<R>, &Surface<R>),
     shadows: &[u32],
 ) -> (V3<R>, u32) {
     let (contact, surface) = lit;
@@ -75,8 +78,8 @@ fn lit<R: Scalar>(
             rays += 1;
         }
         if answer == REACHED {
-            let incidence = Incidence::new(launch.spec.effects, &read(lights, index), contact.position);
-            sum = sum + illuminate(launch.spec.effects, surface, direction, &incidence);
+            let incidence = LightSample::new(launch.spec.effects, &read(lights, index), contact.position);
+            sum = sum + eval_phong(launch.spec.effects, surface, direction, &incidence);
         }
         index += 1;
     }
@@ -110,7 +113,7 @@ fn branch<R: Scalar>(
     launch: &LaunchContext<'_>,
     path: &Path<R>,
     source_primitive: u32,
-    (contact, surface): (&Contact<R>, &Surface<R>),
+    (contact, surface): (&SurfaceInteraction<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
@@ -118,20 +121,26 @@ fn branch<R: Scalar>(
     let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
     let none = path.on(source_primitive, contact.position, mirrored, V3::zero());
     if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.eq(zero) {
-        let reflected = path.on(source_primitive, contact.leave(mirrored), mirrored, surface.reflection);
+        let reflected = path.on(source_primitive, contact.offset_ray_origin(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
-    let eta = if contact.front { one.div(surface.ior) } else { surface.ior };
+    let eta = contact.relative_ior(surface.ior);
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
     // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
-    let reflected = path.on(source_primitive, contact.leave_along(mirrored), mirrored, V3::new(share, share, share));
+    let reflected =
+        path.on(source_primitive, contact.offset_ray_origin_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
-    let refracted = path.on(source_primitive, contact.leave_along(inwards), inwards, surface.transmission * (one - share));
+    let refracted = path.on(
+        source_primitive,
+        contact.offset_ray_origin_along(inwards),
+        inwards,
+        surface.transmission * (one - share),
+    );
     // Likewise an interpolated normal may refract a ray back out.
     Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
 }

@@ -18,7 +18,7 @@ pub use gather::gather;
 pub use path::{Path, RECORDS};
 pub use persistent::persistent;
 pub use segment::Segment;
-pub use shadow::{Asking, FACES_AWAY, REACHED, SHADOWED, answered, asked, shadow};
+pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};
 #[cfg(not(target_arch = "spirv"))]
 pub use together::{most, shadow_together, trace_together};
 pub use trace::{found, trace, traced};

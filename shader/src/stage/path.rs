@@ -64,3 +64,29 @@ impl<R: Scalar> Path<R> {
         write(paths, at(2), R::store(self.weight, self.source_primitive));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn paths_at_every_level_of_every_slot_lie_apart() {
+        let (slots, levels) = (5, 3);
+        let path = |n: u32| {
+            let v = |k: u32| V3::<f32>::splat(Vec3::splat((10 * n + k) as f32));
+            Path { origin: v(0), direction: v(1), weight: v(2), bounces: n, pending: n + 1, source_primitive: n + 2 }
+        };
+        let mut memory = vec![f32::store(V3::zero(), 0); (levels * RECORDS * slots) as usize];
+        let all = || (0..slots).flat_map(|slot| (0..levels).map(move |level| (slot, level)));
+        for (slot, level) in all() {
+            path(slot * levels + level).store(slots, slot, level, &mut memory);
+        }
+        for (slot, level) in all() {
+            let (got, want) = (Path::<f32>::load(slots, slot, level, &memory), path(slot * levels + level));
+            assert_eq!((got.origin, got.direction, got.weight), (want.origin, want.direction, want.weight));
+            let words = |p: &Path<f32>| (p.bounces, p.pending, p.source_primitive);
+            assert_eq!(words(&got), words(&want));
+        }
+    }
+}

@@ -3,10 +3,11 @@
 use super::{Path, Segment};
 use crate::buffer::read;
 use crate::data::{Launch, Light};
+use crate::geometry::SurfaceInteraction;
+use crate::light::ray_to_light;
 use crate::ray::Hit;
 use crate::real::Scalar;
 use crate::scene::TraceContext;
-use crate::shade::{Contact, shadow_ray};
 use crate::traverse::{Method, Occlusion, step};
 
 /// The light reaches the place.
@@ -18,7 +19,7 @@ pub const FACES_AWAY: u32 = 2;
 
 /// What asks for shadow rays.
 #[derive(Clone, Copy)]
-pub struct Asking<'a, R: Scalar> {
+pub struct ShadowInputs<'a, R: Scalar> {
     /// Lights in file order.
     pub lights: &'a [Light],
     /// Paths by level, record and slot, or the stream's rays.
@@ -29,7 +30,12 @@ pub struct Asking<'a, R: Scalar> {
 
 /// The ray from a slot's hit towards light `index`, and whether it is to be traced at all.
 #[inline(always)]
-pub fn asked<R: Scalar>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> (Segment<R>, bool) {
+pub fn shadow_ray<R: Scalar>(
+    geometry: &TraceContext<'_>,
+    asking: ShadowInputs<'_, R>,
+    slot: u32,
+    index: u32,
+) -> (Segment<R>, bool) {
     if geometry.base.spec.launch.has(Launch::STREAM) {
         return (Segment::load(geometry, slot, asking.paths), true);
     }
@@ -45,27 +51,32 @@ pub fn asked<R: Scalar>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot
         return (nowhere, false);
     }
     let triangle = geometry.triangle(triangle_index);
-    let contact = Contact::new(&triangle, hit.y, hit.z, path.direction);
+    let contact = SurfaceInteraction::new(&triangle, hit.y, hit.z, path.direction);
     let light = read(asking.lights, index);
-    let (origin, direction, limit) = shadow_ray(geometry.base.spec.effects, &light, &contact);
+    let (origin, direction, limit) = ray_to_light(geometry.base.spec.effects, &light, &contact);
     (Segment { origin, direction, limit, source_primitive: triangle.primitive() }, contact.faces(direction))
 }
 
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
-pub fn shadow<R: Scalar, M: Method<R>>(geometry: &TraceContext<'_>, asking: Asking<'_, R>, slot: u32, index: u32) -> u32 {
-    let (segment, faces) = asked(geometry, asking, slot, index);
+pub fn shadow<R: Scalar, M: Method<R>>(
+    geometry: &TraceContext<'_>,
+    asking: ShadowInputs<'_, R>,
+    slot: u32,
+    index: u32,
+) -> u32 {
+    let (segment, faces) = shadow_ray(geometry, asking, slot, index);
     if !faces {
         return FACES_AWAY;
     }
     let mut hit = Hit::none(segment.limit);
     M::traverse::<Occlusion>(geometry, &segment.ray(), &mut hit);
-    answered(&hit)
+    visibility(&hit)
 }
 
 /// The answer of a ray that was traced.
 #[inline(always)]
-pub fn answered<R: Scalar>(hit: &Hit<R>) -> u32 {
+pub fn visibility<R: Scalar>(hit: &Hit<R>) -> u32 {
     answer(step::occluded(hit))
 }
 

@@ -168,7 +168,13 @@ fn alone<Q: Query, R: Real>(geometry: &TraceContext<'_>, node: NodeRef, rays: R:
 
 /// Traces every ray by itself through what the packet has left to visit.
 #[inline(always)]
-fn part<Q: Query, R: Real>(geometry: &TraceContext<'_>, cursor: &Cursor, shared: &Stack, ray: &Ray<R>, hit: &mut Hit<R>) {
+fn part<Q: Query, R: Real>(
+    geometry: &TraceContext<'_>,
+    cursor: &Cursor,
+    shared: &Stack,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
     Q::on_parted(true);
     R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
         let mut stack = Stack::new();

@@ -24,7 +24,13 @@ impl<R: Scalar> Resumable<R> for IfIf {
 
     /// The two ifs.
     #[inline(always)]
-    fn step<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+    fn step<Q: Query>(
+        geometry: &TraceContext<'_>,
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+        cursor: &mut Cursor,
+        stack: &mut Stack,
+    ) {
         if !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);
         }

@@ -5,7 +5,7 @@ use super::cursor::{Cursor, Stack};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Triangle4;
 use crate::data::{CentredPair, Effects, Launch, NodeRef, Triangle, numbers};
-use crate::intersect::{Candidate, Span, intersect_moller_trumbore, intersect_watertight, slab, straddles_origin};
+use crate::geometry::{Candidate, Span, intersect_moller_trumbore, intersect_watertight, slab, straddles_origin};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;

@@ -1,18 +1,22 @@
 //! The same hit as brute force, on triangles that tie, overlap and degenerate.
 
+use super::resumable::Resumable;
 use super::step::{self, occluded};
 use super::{
     Bvh8Method, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential,
     Speculative, StackMax, WhileWhile,
 };
 use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
-use crate::data::{CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Triangle, Tuning};
+use crate::data::{
+    CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Triangle, Tuning,
+};
 use crate::ray::{Hit, Ray};
 use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
 use crate::scene::{LaunchContext, TraceContext};
-use crate::stage::{SHADOWED, Segment, shadow_together, trace_together};
+use crate::stage::{SHADOWED, Segment, persistent, shadow_together, trace_together};
 use crate::warp::Alone;
 use bytemuck::Zeroable;
+use core::cell::{Cell, RefCell};
 use glam::{UVec4, Vec3};
 use proptest::prelude::*;
 
@@ -344,9 +348,48 @@ fn light_passes_transparent_triangles_only() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
     for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
-        let world =
-            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::REFRACTION);
+        let world = World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::REFRACTION);
         assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
         assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
+    }
+}
+
+/// Persistent lanes take rays until none is left: each is answered once, as a thread a ray answers it.
+fn persistent_lanes<M: Method<f32> + Resumable<f32>>(world: &World, rays: &[Segment<f32>]) {
+    let (next, seen) = (Cell::new(0), RefCell::new(vec![None; rays.len()]));
+    let take = |wants: bool| if wants { next.replace(next.get() + 1) } else { u32::MAX };
+    // Every third ray is not to be traced.
+    let load = |number: u32| (rays[number as usize], number % 3 != 2);
+    let store = |number: u32, traced: bool, _: &Ray<f32>, hit: &Hit<f32>| {
+        let before = seen.borrow_mut()[number as usize].replace((traced, hit.t, hit.primitive));
+        assert!(before.is_none(), "{number} is answered twice");
+    };
+    persistent::<f32, M, Closest, Alone>(&world.geometry(), rays.len() as u32, take, load, store);
+    for (number, answer) in seen.into_inner().into_iter().enumerate() {
+        let (segment, wanted) = load(number as u32);
+        let want = world.trace::<M, Closest, f32>(&segment.ray(), segment.limit);
+        let want = if wanted { (true, want.t, want.primitive) } else { (false, segment.limit, Hit::<f32>::NOTHING) };
+        assert_eq!(answer, Some(want), "{number}");
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    #[test]
+    fn persistent_lanes_find_what_a_thread_a_ray_finds(
+        triangles in soup(), rays in prop::collection::vec((grid(), grid()), 0..40),
+    ) {
+        let world = World::new(triangles, 0);
+        let segment = |(origin, direction): ([f32; 3], [f32; 3])| Segment {
+            origin: V3::splat(Vec3::from(origin)),
+            direction: V3::splat(Vec3::from(direction) + Vec3::new(0.01, 0.02, 0.03)),
+            limit: 2.0,
+            source_primitive: Hit::<f32>::NOTHING,
+        };
+        let rays: Vec<Segment<f32>> = rays.into_iter().map(segment).collect();
+        persistent_lanes::<IfIf>(&world, &rays);
+        persistent_lanes::<WhileWhile<Alone>>(&world, &rays);
+        persistent_lanes::<CwbvhMethod>(&world, &rays);
     }
 }

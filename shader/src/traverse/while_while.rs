@@ -30,7 +30,13 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 
     /// The two inner whiles.
     #[inline(always)]
-    fn step<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>, cursor: &mut Cursor, stack: &mut Stack) {
+    fn step<Q: Query>(
+        geometry: &TraceContext<'_>,
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+        cursor: &mut Cursor,
+        stack: &mut Stack,
+    ) {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
             pair::<Q, R>(geometry, ray, hit, cursor, stack);

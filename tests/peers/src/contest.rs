@@ -23,7 +23,7 @@ impl std::ops::Add for Found {
 }
 
 /// Somebody who follows rays.
-pub trait Contestant: Sync {
+pub trait RayTracer: Sync {
     fn name(&self) -> &'static str;
     /// Does it follow neighbours together?
     fn is_packet(&self) -> bool {

@@ -4,11 +4,11 @@ use embree3::{
     BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, Hit16, IntersectContext, Ray, Ray16, RayHit,
     RayHit16, Scene, SceneFlags, ValidMask, ValidMaskN,
 };
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
 use eyerays_shader::data::numbers;
 
-use crate::contest::{Contestant, Found, tasks};
+use crate::contest::{RayTracer, Found, tasks};
 
 const PACKET: usize = 16;
 
@@ -19,7 +19,7 @@ pub struct Embree {
 
 impl Embree {
     /// Triangles in the order of their primitives.
-    pub fn new(packed: &Packed, quality: BuildQuality) -> Result<Embree, embree3::Error> {
+    pub fn new(packed: &DeviceScene, quality: BuildQuality) -> Result<Embree, embree3::Error> {
         let device = Device::new()?;
         let mut triangles: Vec<_> = packed.triangles().iter().collect();
         triangles.sort_unstable_by_key(|t| t.primitive());
@@ -52,7 +52,7 @@ fn ray(stream: &Stream, i: usize) -> Ray {
     Ray::segment(r.origin.to_array(), r.direction.to_array(), 0.0, r.limit)
 }
 
-impl Contestant for Single<'_> {
+impl RayTracer for Single<'_> {
     fn name(&self) -> &'static str {
         "Embree rtcIntersect1"
     }
@@ -98,7 +98,7 @@ fn packet(stream: &Stream, first: usize, count: usize) -> (Ray16, ValidMaskN<PAC
     (packet, ValidMaskN::new(valid))
 }
 
-impl Contestant for Packet<'_> {
+impl RayTracer for Packet<'_> {
     fn name(&self) -> &'static str {
         "Embree rtcIntersect16"
     }

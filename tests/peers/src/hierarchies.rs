@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
 use eyerays_bvh::Quality;
 use eyerays_shader::data::numbers;
@@ -13,9 +13,9 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle;
 
-use crate::contest::{Contestant, Found, tasks};
+use crate::contest::{RayTracer, Found, tasks};
 
-fn triangles(packed: &Packed) -> Vec<Triangle> {
+fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
     let mut all: Vec<_> = packed.triangles().iter().collect();
     all.sort_unstable_by_key(|t| t.primitive());
     all.dedup_by_key(|t| t.primitive());
@@ -45,7 +45,7 @@ pub struct Compressed {
 }
 
 impl Binary {
-    pub fn new(packed: &Packed, quality: Quality) -> Self {
+    pub fn new(packed: &DeviceScene, quality: Quality) -> Self {
         let all = triangles(packed);
         let bvh = build_bvh2_from_tris(&all, parameters(quality), &mut Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| all[i as usize]).collect();
@@ -54,7 +54,7 @@ impl Binary {
 }
 
 impl Compressed {
-    pub fn new(packed: &Packed, quality: Quality) -> Self {
+    pub fn new(packed: &DeviceScene, quality: Quality) -> Self {
         let all = triangles(packed);
         let bvh = build_cwbvh_from_tris(&all, parameters(quality), &mut Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| all[i as usize]).collect();
@@ -93,7 +93,7 @@ macro_rules! contestant {
             }
         }
 
-        impl Contestant for $type {
+        impl RayTracer for $type {
             fn name(&self) -> &'static str {
                 $name
             }

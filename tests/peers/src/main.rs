@@ -10,12 +10,12 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Parser;
-use contest::{Contestant, Found};
+use contest::{RayTracer, Found};
 use embree3::BuildQuality;
 use eyerays_command::bench::Kind;
-use eyerays_command::bench::rays::{AO_SHARE, Sight, View, diagonal};
+use eyerays_command::bench::rays::{AO_SHARE, PrimaryHits, View, diagonal};
 use eyerays::method::{Method, Order, Traversal};
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Settings};
 use eyerays_bvh::Quality;
 use own::Own;
@@ -74,7 +74,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         "medium" => (Quality::Medium, BuildQuality::MEDIUM),
         _ => (Quality::High, BuildQuality::HIGH),
     };
-    let mut packed = Packed::new(&scene, settings, quality)?;
+    let mut packed = DeviceScene::new(&scene, settings, quality)?;
     let ao_length =
         options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
@@ -94,12 +94,12 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
             own("Eyerays packet", Method::Packet, true),
         ];
         let (single, packet) = (embree::Single(&embree), embree::Packet(&embree));
-        let mut all: Vec<&dyn Contestant> = vec![&single, &packet, &binary, &compressed];
-        all.extend(methods.iter().map(|m| m as &dyn Contestant));
+        let mut all: Vec<&dyn RayTracer> = vec![&single, &packet, &binary, &compressed];
+        all.extend(methods.iter().map(|m| m as &dyn RayTracer));
         all.retain(|c| c.name().contains(&options.only));
         names = all.iter().map(|c| (c.name(), c.is_packet())).collect();
         scores.resize(all.len(), Score::new());
-        let sight = Sight::new(&packed, &View::of(&packed, Order::Tiled), options.threads)?;
+        let sight = PrimaryHits::new(&packed, &View::of(&packed, Order::Tiled), options.threads)?;
         for (k, kind) in kinds.iter().enumerate().filter(|(_, k)| k.name().contains(&options.kind)) {
             let stream = sight.rays(*kind, ao_length)?;
             let mut times = vec![Vec::new(); all.len()];

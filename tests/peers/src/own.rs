@@ -2,21 +2,21 @@
 
 use eyerays::cpu;
 use eyerays::method::Traversal;
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::stage::SHADOWED;
 
-use crate::contest::{Contestant, Found};
+use crate::contest::{RayTracer, Found};
 
 /// One of its methods.
 pub struct Own<'a> {
     pub name: &'static str,
-    pub packed: &'a Packed,
+    pub packed: &'a DeviceScene,
     pub traversal: Traversal,
     pub packet: bool,
 }
 
-impl Contestant for Own<'_> {
+impl RayTracer for Own<'_> {
     fn name(&self) -> &'static str {
         self.name
     }

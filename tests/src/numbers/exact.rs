@@ -11,7 +11,7 @@ use num_traits::{Signed, ToPrimitive, Zero};
 /// Every finite `f32` is a whole multiple of 2^-149.
 const GRID: i32 = 149;
 
-/// Sheared vertices are off by less than this on each axis; see `intersect::triangle`.
+/// Sheared vertices are off by less than this on each axis; see `geometry::triangle`.
 pub const SHEAR: f64 = 16.0 * ROUNDOFF;
 /// Half the distance from 1 to the next `f32`.
 pub const ROUNDOFF: f64 = <f32 as Real>::ROUNDOFF as f64;

@@ -2,10 +2,10 @@
 
 use std::fmt::Write as _;
 
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Scene, Settings};
-use eyerays_bvh::Quality;
 use eyerays::view::View;
+use eyerays_bvh::Quality;
 use eyerays_tests::Posed;
 use eyerays_tests::count;
 use eyerays_tests::machine::Machine;
@@ -64,7 +64,7 @@ struct Drawn {
 fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
     let mut drawn = Drawn::default();
     for scene in scenes {
-        match Packed::new(&scene, scene.settings, Quality::Medium) {
+        match DeviceScene::new(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
                 let Ok(view) = View::new(&packed, &scene.cameras[0]) else { continue };
                 let (film, rays) = machine.render(&Posed { packed, view });

@@ -4,13 +4,13 @@
 //! as much, times how thin the triangle is; both move the hit along the plane, and the ray by as much over its cosine.
 
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::{Method, Order};
-use eyerays::pack::Packed;
 use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_command::bench::Kind;
-use eyerays_command::bench::rays::{CameraRays, Sight};
+use eyerays_command::bench::rays::{CameraRays, PrimaryHits};
 use eyerays_shader::data::Triangle;
 use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;
@@ -62,7 +62,7 @@ struct Apart {
     rays: usize,
 }
 
-fn compare(machine: Machine, packed: &Packed, stream: &Stream) -> Apart {
+fn compare(machine: Machine, packed: &DeviceScene, stream: &Stream) -> Apart {
     let truth = cpu::closest::<f64>(packed, Method::IfIf.into(), 0, stream).expect("threads");
     let got = machine.tracer(packed).closest(Method::Packet.into(), stream);
     let mut apart = Apart { others: 0, error: 0.0, rays: stream.len() };
@@ -95,7 +95,7 @@ fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
         scene.settings.size = (640, 480);
         packed = pack(&scene, &scene.cameras[0], scene.settings);
     }
-    let sight = Sight::new(&packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
     let truth = on_cpu::<f64>(&packed).0;
     for machine in Machine::all() {
         if machine.is_software() && is_crowded(&packed) {

@@ -1,12 +1,12 @@
 //! Rays that leave a surface do not meet it again (PBRT's reintersection test), and light does not leak.
 
-use eyerays::pack::{Laid, Packed};
+use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::scene::{Scene, Settings};
 use eyerays::stream::StreamRay;
 use eyerays_shader::data::{NodeRef, Triangle};
+use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Fast, Scalar, V3};
-use eyerays_shader::shade::Contact;
 use eyerays_shader::traverse::{Closest, step};
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, add_box, empty, glowing, lamp, matt};
@@ -19,7 +19,7 @@ use glam::{DMat3, DVec3, Vec3};
 const POWERS: (f64, f64) = (-8.0, 8.0);
 
 /// A triangle alone in a scene that reaches as far as `end`: to a triangle without extent, which no ray meets.
-fn alone(vertices: [Vec3; 3], end: Vec3) -> Packed {
+fn alone(vertices: [Vec3; 3], end: Vec3) -> DeviceScene {
     let mut scene = empty();
     add(&mut scene, matt(Vec3::ONE), &vertices, &[[0, 1, 2]]);
     add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
@@ -39,7 +39,7 @@ struct Returned {
     rays: usize,
 }
 
-/// Is a triangle's height at least a fifth of its length? A start's clearance is made for such. The normal of a thinner
+/// Is a triangle's height at least a fifth of its length? A start's error_offset is made for such. The normal of a thinner
 /// one, whose edges nearly cancel in its product, may be any, and a step along it lead nowhere off the plane: it is
 /// the number of the triangle that a ray can't meet again.
 fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
@@ -48,8 +48,8 @@ fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// Does a ray meet the only triangle of a scene?
-fn meets<R: Scalar>(packed: &Packed, ray: Ray<R>) -> bool {
-    let (laid, frame) = (Laid::new(packed, Default::default()), packed.stream_frame(1));
+fn meets<R: Scalar>(packed: &DeviceScene, ray: Ray<R>) -> bool {
+    let (laid, frame) = (SceneView::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &ray, &mut hit);
     hit.triangle_index != StreamRay::NOWHERE
@@ -67,18 +67,18 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let origin = packed.normalisation().place(eye);
     let direction = (a * u + b * v + c * w - origin.as_dvec3()).normalize().as_vec3();
     let (origin, direction) = (V3::<R>::splat(origin), V3::<R>::splat(direction));
-    let (laid, frame) = (Laid::new(&packed, Default::default()), packed.stream_frame(1));
+    let (laid, frame) = (SceneView::new(&packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &Ray::new(origin, direction), &mut hit);
     if hit.triangle_index == StreamRay::NOWHERE {
         return;
     }
     let (u, v) = hit.weights();
-    let contact = Contact::new(&triangle, u, v, direction);
+    let contact = SurfaceInteraction::new(&triangle, u, v, direction);
     let is_stout = is_stout([a, b, c]);
     for _ in 0..count {
         let out = V3::<R>::splat(random.direction().as_vec3()).normalised().0;
-        for start in [contact.leave(out), contact.leave_along(out)] {
+        for start in [contact.offset_ray_origin(out), contact.offset_ray_origin_along(out)] {
             let by_start = usize::from(meets(&packed, Ray::new(start, out)));
             returned.by_start += by_start;
             returned.by_start_of_stout += if is_stout { by_start } else { 0 };

@@ -2,10 +2,10 @@
 
 use eyerays::scene::Settings;
 use eyerays_shader::data::{BOX_PADDING, CentredPair, NodePair, NodeRef, Triangle};
-use eyerays_shader::intersect::{sheared, slab};
+use eyerays_shader::geometry::SurfaceInteraction;
+use eyerays_shader::geometry::{sheared, slab};
 use eyerays_shader::ray::Ray;
 use eyerays_shader::real::V3;
-use eyerays_shader::shade::Contact;
 use eyerays_shader::traverse::step;
 use eyerays_tests::numbers::exact::{self, ROUNDOFF};
 use eyerays_tests::numbers::{Interval, picture};
@@ -29,7 +29,7 @@ fn pairs(mut f: impl FnMut(&Ray<Interval>, [Vec3; 3], &mut Rng)) {
     }
 }
 
-/// `intersect::triangle`: a sheared vertex is off by less than 16 roundoffs on each axis.
+/// `geometry::triangle`: a sheared vertex is off by less than 16 roundoffs on each axis.
 #[test]
 fn sheared_vertices() {
     let (mut most, mut vertices) = (0f64, 0);
@@ -44,7 +44,7 @@ fn sheared_vertices() {
     assert!(most <= exact::SHEAR && most > ROUNDOFF);
 }
 
-/// `intersect::slab`: an entry errs by less than gamma(3), and the widened exit is never too near. Then the boxes of
+/// `geometry::slab`: an entry errs by less than gamma(3), and the widened exit is never too near. Then the boxes of
 /// nodes by centre and half their extent: a plane's distance is worth a shift of less than 7 roundoffs.
 #[test]
 fn boxes() {
@@ -105,7 +105,7 @@ fn own_boxes_are_padded() {
     }
 }
 
-/// `shade::contact`: a place errs by less than gamma(7) of its coordinates, its clearance covers what of that lies
+/// `geometry::interaction`: a place errs by less than gamma(7) of its coordinates, its error_offset covers what of that lies
 /// across the surface, and where a ray leaves is exactly on its own side.
 #[test]
 fn places_and_clearances() {
@@ -124,7 +124,7 @@ fn places_and_clearances() {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5).normalize();
         let splat = |x: f32| Interval::exact(x);
-        let at = Contact::new(&Triangle::new(triangle, 0, 0, 0), splat(u), splat(v), V::splat(direction));
+        let at = SurfaceInteraction::new(&Triangle::new(triangle, 0, 0, 0), splat(u), splat(v), V::splat(direction));
         let reach = a.abs().max(b.abs()).max(c.abs()).as_dvec3().to_array();
         let (position, normal) =
             ([at.position.x, at.position.y, at.position.z], [at.normal.x, at.normal.y, at.normal.z]);
@@ -133,8 +133,8 @@ fn places_and_clearances() {
             place = place.max(position[axis].error() / reach[axis]);
             across += position[axis].error() * f64::from(normal[axis].value.abs());
         }
-        share = share.max(across / f64::from(at.clearance.value));
-        let leaves = at.leave(V::splat(-direction));
+        share = share.max(across / f64::from(at.error_offset.value));
+        let leaves = at.offset_ray_origin(V::splat(-direction));
         let origin = Vec3::new(leaves.x.value, leaves.y.value, leaves.z.value);
         let side = exact::side(triangle, origin);
         let viewer = exact::side(triangle, a - direction * 4.0);
@@ -142,7 +142,7 @@ fn places_and_clearances() {
         sides += 1;
     });
     println!(
-        "places: largest error {:.2} roundoffs of 7; {:.3} of the clearance; {sides} origins on their own side, \
+        "places: largest error {:.2} roundoffs of 7; {:.3} of the error_offset; {sides} origins on their own side, \
         {thin} triangles too thin to ask",
         place / ROUNDOFF,
         share

@@ -1,6 +1,6 @@
 //! The scenes and rays that all oracles are asked about, with fixed seeds.
 
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
@@ -85,7 +85,8 @@ fn point(rng: &mut Rng) -> Vec3 {
 /// The camera's.
 fn primary(posed: &Posed) -> Vec<StreamRay> {
     let frame = posed.view.launch(posed.view.region(), 0, 1, Order::default());
-    let pixels = (0..frame.slots).map(|slot| camera::pixel(&frame, Order::default(), slot)).filter(|pixel| pixel.inside);
+    let pixels =
+        (0..frame.slots).map(|slot| camera::pixel(&frame, Order::default(), slot)).filter(|pixel| pixel.inside);
     let ray = |pixel| {
         let (origin, direction) = camera::ray::<f32>(&frame, pixel);
         let vector = |v: eyerays_shader::real::V3<f32>| Vec3::new(v.x, v.y, v.z);
@@ -100,7 +101,7 @@ fn primary(posed: &Posed) -> Vec<StreamRay> {
 }
 
 /// At vertices, at edges, into triangles, along axes, along a triangle's plane, and anywhere.
-fn aimed(packed: &Packed, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
+fn aimed(packed: &DeviceScene, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
     let triangles: Vec<[Vec3; 3]> = packed.triangles().iter().map(|t| t.vertices()).collect();
     let ray = |i: usize| {
         let [a, b, c] = triangles[rng.usize(0..triangles.len())];

@@ -1,10 +1,10 @@
 //! Shading where renderers break: finite, as physics has it, and the same bits on the GPU.
 
-use eyerays::gpu::{Renderer, Want};
+use eyerays::gpu::{AdapterRequest, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{self, Background, Light, Material, Scene, Settings};
+use eyerays_shader::material::{fresnel, refract};
 use eyerays_shader::real::{Real, Scalar, V3};
-use eyerays_shader::shade::{fresnel, refract};
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt};
 use eyerays_tests::numbers::picture;
 use eyerays_tests::{Posed, assert_same_bits, count, gpu, on_cpu, pack};
@@ -15,7 +15,7 @@ fn films(packed: &Posed, what: &str) -> Vec<Vec3> {
     let (film, rays) = on_cpu::<f32>(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()), "{what}");
-    if let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) {
+    if let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) {
         let mut renderer = Renderer::new(&gpu, packed, true, Traversal::default()).unwrap();
         let rendering = renderer.render(&packed.view, &|_| ()).unwrap();
         assert_same_bits(&rendering.film, &film, what);

@@ -1,6 +1,6 @@
 //! Division, roots and powers: their largest errors, and the same bits on the GPU.
 
-use eyerays::gpu::{Gpu, Want, numerics};
+use eyerays::gpu::{AdapterRequest, Gpu, numerics};
 use eyerays_shader::numerics::{evaluate, function};
 use eyerays_shader::real::{power, soft};
 use eyerays_tests::{count, gpu};
@@ -140,7 +140,7 @@ fn same(a: u32, b: u32) -> bool {
 
 #[test]
 fn the_gpu_has_the_same_bits() {
-    let Some(gpu) = gpu(&Want { exact: true, ..Want::default() }) else { return };
+    let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
     let names = ["div", "reciprocal", "sqrt", "pow", "log2", "exp2"];
     for (name, function) in names.iter().zip(function::QUOTIENT..) {
         let count = count::of(1 << 20, 1 << 27);

@@ -3,7 +3,7 @@
 use eyerays::cpu;
 use eyerays::method::Method;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
-use eyerays_shader::intersect::intersect_watertight;
+use eyerays_shader::geometry::intersect_watertight;
 use eyerays_shader::ray::Ray;
 use eyerays_shader::real::{Real, V3};
 use eyerays_tests::count;
@@ -180,7 +180,7 @@ fn intervals_hold_exact_crossings() {
 }
 
 /// Crosses a triangle with a ray by the kernels' own test.
-pub fn crossed<R: Real>(triangle: [Vec3; 3], ray: &StreamRay) -> eyerays_shader::intersect::Candidate<R> {
+pub fn crossed<R: Real>(triangle: [Vec3; 3], ray: &StreamRay) -> eyerays_shader::geometry::Candidate<R> {
     let ray = Ray::<R>::new(V3::splat(ray.origin), V3::splat(ray.direction));
     let [a, b, c] = triangle.map(|p| ray.seen(p));
     intersect_watertight(a, b, c, ray.slopes(), ray.along())

@@ -1,8 +1,8 @@
 //! What the test of Moeller and Trumbore lets through, beside the watertight one.
 
-use eyerays::gpu::{Caster, Want};
+use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::gpu::{AdapterRequest, Caster};
 use eyerays::method::{Layout, Method, Traversal, TriangleTest};
-use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Fast, Scalar};
@@ -15,7 +15,7 @@ use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
 /// A closed ball around the origin, in rings of `steps` and twice as many around.
-fn ball(steps: u32) -> Packed {
+fn ball(steps: u32) -> DeviceScene {
     let around = 2 * steps;
     let mut corners = vec![Vec3::Y, Vec3::NEG_Y];
     for ring in 1..steps {
@@ -43,7 +43,7 @@ fn ball(steps: u32) -> Packed {
 }
 
 /// From inside to edges and vertices.
-fn rays(packed: &Packed, count: usize) -> Stream {
+fn rays(packed: &DeviceScene, count: usize) -> Stream {
     let mut rng = Rng::with_seed(17);
     let ray = |i: usize| {
         let [a, b, _] = packed.triangles()[rng.usize(0..packed.triangles().len())].vertices();
@@ -56,11 +56,11 @@ fn rays(packed: &Packed, count: usize) -> Stream {
 }
 
 fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
-    packed: &Packed,
+    packed: &DeviceScene,
     stream: &Stream,
     triangle: TriangleTest,
 ) -> usize {
-    let laid = Laid::new(packed, Traversal { triangle, ..Traversal::default() });
+    let laid = SceneView::new(packed, Traversal { triangle, ..Traversal::default() });
     let frame = packed.stream_frame(stream.len());
     let geometry = laid.stream(&frame);
     let misses = |i: &u32| {
@@ -94,7 +94,7 @@ fn moller_leaks_and_the_watertight_test_does_not() {
 /// On the GPU, whose fast arithmetic is its own.
 #[test]
 fn moller_on_the_gpu() {
-    let Some(gpu) = gpu(&Want::default()) else { return };
+    let Some(gpu) = gpu(&AdapterRequest::default()) else { return };
     let packed = ball(40);
     let stream = rays(&packed, 1 << 16);
     let caster = Caster::new(&gpu, &packed, Layout::Gathered).unwrap();

@@ -1,7 +1,7 @@
 //! No subnormal number is used but where it is flushed, so that a device which flushes all gives the same picture.
 
+use eyerays::device_scene::SceneView;
 use eyerays::method::Traversal;
-use eyerays::pack::Laid;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
@@ -23,7 +23,7 @@ fn bits<R: Scalar>(packed: &Posed) -> Vec<[u32; 3]> {
 /// The bits of (t, u, v) and the primitive of each ray.
 fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<UVec4> {
     let stream = Stream::new(case.rays.iter().copied());
-    let (laid, frame) = (Laid::new(&case.packed, Traversal::default()), case.packed.stream_frame(stream.len()));
+    let (laid, frame) = (SceneView::new(&case.packed, Traversal::default()), case.packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     // Parts of a split triangle are hit alike, so the slot is no part of the answer.
     let primitive = |slot: u32| case.packed.triangles().get(slot as usize).map_or(slot, |t| t.primitive());

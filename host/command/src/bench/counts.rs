@@ -18,8 +18,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use eyerays::cpu;
+use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::method::{Layout, Method, Traversal};
-use eyerays::pack::{Laid, Packed};
 use eyerays::stream::{Question, Stream, StreamRay};
 
 /// Rays of a packet: a subgroup of most GPUs.
@@ -143,7 +143,7 @@ fn follower(method: Method) -> Follow {
 /// # Errors
 /// If the threads can't be had.
 pub fn counts(
-    packed: &Packed,
+    packed: &DeviceScene,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,
@@ -151,7 +151,7 @@ pub fn counts(
 ) -> Result<Counts> {
     // The layout of triangles does not change which tests are made; the format of boxes does.
     let layout = if traversal.layout == Layout::Compact { Layout::Compact } else { Layout::Gathered };
-    let laid = Laid::new(packed, Traversal { layout, ..traversal });
+    let laid = SceneView::new(packed, Traversal { layout, ..traversal });
     let frame = packed.stream_frame(stream.len());
     in_scene(&laid.stream(&frame), traversal.method, threads, stream, question)
 }

@@ -5,16 +5,18 @@ use std::borrow::Cow;
 
 use eyerays_shader::camera::{self, Pixel};
 use eyerays_shader::data::{Frame, Order as OrderBits, Triangle};
+use eyerays_shader::geometry::SurfaceInteraction;
+use eyerays_shader::light::ray_to_light;
+use eyerays_shader::material::{reflect, refract};
 use eyerays_shader::real::V3;
-use eyerays_shader::shade::{Contact, reflect, refract, shadow_ray};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
 use super::{Kind, sample};
 use crate::error::Result;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
-use eyerays::pack::Packed;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays::view::View;
 
@@ -51,7 +53,7 @@ impl CameraRays {
 }
 
 /// The diagonal of the box around a scene's triangles, in the normalised scene.
-pub fn diagonal(packed: &Packed) -> f64 {
+pub fn diagonal(packed: &DeviceScene) -> f64 {
     let vertices = || packed.triangles().iter().flat_map(Triangle::vertices);
     let least = vertices().fold(Vec3::INFINITY, Vec3::min);
     let greatest = vertices().fold(Vec3::NEG_INFINITY, Vec3::max);
@@ -59,8 +61,8 @@ pub fn diagonal(packed: &Packed) -> f64 {
 }
 
 /// What a view sees: its primary rays and their hits, where rays of every other kind start.
-pub struct Sight<'a> {
-    packed: &'a Packed,
+pub struct PrimaryHits<'a> {
+    packed: &'a DeviceScene,
     primary: Stream,
     /// By primary ray: where its pixel lies in the image.
     pixels: Vec<u32>,
@@ -73,7 +75,7 @@ pub struct Sight<'a> {
 struct Place {
     pixel: u32,
     direction: V3<f32>,
-    contact: Contact<f32>,
+    contact: SurfaceInteraction<f32>,
     primitive: u32,
 }
 
@@ -84,20 +86,20 @@ impl Place {
 
     fn reflected(&self) -> StreamRay {
         let mirrored = reflect(self.direction, self.contact.normal);
-        self.ray(self.contact.leave(mirrored), mirrored, f32::MAX)
+        self.ray(self.contact.offset_ray_origin(mirrored), mirrored, f32::MAX)
     }
 
     fn refracted(&self) -> Option<StreamRay> {
-        let eta = if self.contact.front { 1.0 / IOR } else { IOR };
+        let eta = self.contact.relative_ior(IOR);
         let passed = refract(self.direction, self.contact.normal, eta);
         let inwards = passed.direction.normalised().0;
-        (!passed.total).then(|| self.ray(self.contact.leave_along(inwards), inwards, f32::MAX))
+        (!passed.total).then(|| self.ray(self.contact.offset_ray_origin_along(inwards), inwards, f32::MAX))
     }
 
     /// A sample by the cosine; the kinds that take some differ in their seed.
     fn sampled(&self, sample: u32, kind: Kind, limit: f32) -> StreamRay {
         let direction = sample::about(self.contact.normal, sample::cosine(self.pixel, sample, kind as u32));
-        self.ray(self.contact.leave(direction), direction, limit)
+        self.ray(self.contact.offset_ray_origin(direction), direction, limit)
     }
 }
 
@@ -105,12 +107,12 @@ fn vector(v: V3<f32>) -> Vec3 {
     Vec3::new(v.x, v.y, v.z)
 }
 
-impl<'a> Sight<'a> {
+impl<'a> PrimaryHits<'a> {
     /// Makes the primary rays and traces them, with `threads` threads (0: one a core).
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &'a Packed, view: &CameraRays, threads: usize) -> Result<Self> {
+    pub fn new(packed: &'a DeviceScene, view: &CameraRays, threads: usize) -> Result<Self> {
         let pixels: Vec<Pixel> = view.pixels().collect();
         let rays: Vec<StreamRay> = pixels
             .par_iter()
@@ -124,7 +126,7 @@ impl<'a> Sight<'a> {
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Primary);
         let (answers, _) = cpu::cast(packed, traversal, threads, &primary, Question::Closest)?;
         let Answers::Closest(hits) = answers else { unreachable!("this was asked for the closest hits") };
-        Ok(Sight { packed, primary, pixels: pixels.iter().map(|p| p.index).collect(), hits, threads })
+        Ok(PrimaryHits { packed, primary, pixels: pixels.iter().map(|p| p.index).collect(), hits, threads })
     }
 
     /// How many primary rays hit something.
@@ -161,7 +163,7 @@ impl<'a> Sight<'a> {
         let mut parts = Vec::new();
         for light in &self.packed.lights()[..self.lights()] {
             parts.extend(self.spawned(|place, rays| {
-                let (origin, direction, limit) = shadow_ray(self.packed.effects(), light, &place.contact);
+                let (origin, direction, limit) = ray_to_light(self.packed.effects(), light, &place.contact);
                 if place.contact.faces(direction) {
                     rays.push(place.ray(origin, direction, limit));
                 }
@@ -185,7 +187,7 @@ impl<'a> Sight<'a> {
     fn place(&self, i: usize, hit: UVec4) -> Place {
         let triangle = &self.packed.triangles()[hit.w as usize];
         let direction = V3::splat(self.primary.ray(i).direction);
-        let contact = Contact::new(triangle, f32::from_bits(hit.y), f32::from_bits(hit.z), direction);
+        let contact = SurfaceInteraction::new(triangle, f32::from_bits(hit.y), f32::from_bits(hit.z), direction);
         Place { pixel: self.pixels[i], direction, contact, primitive: triangle.primitive() }
     }
 }

@@ -7,16 +7,16 @@ use super::answers::{self, Hash};
 use super::counts::{Counts, counts};
 use super::device::{OnGpu, Run, Uploaded, on_cpu};
 use super::plan::Trial;
-use super::rays::{AO_SHARE, CameraRays, Sight, diagonal};
+use super::rays::{AO_SHARE, CameraRays, PrimaryHits, diagonal};
 use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
 use crate::error::Result;
 use crate::preset::name;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::method::{Coherence, Layout, Method, Order, Processor, Traversal};
-use eyerays::pack::Packed;
-use eyerays::view::View;
 use eyerays::scene::{Camera, Settings};
 use eyerays::stream::{Answers, Question, Stream};
+use eyerays::view::View;
 
 /// Measures all that is planned. `begins` is called with every stream before it is traced.
 ///
@@ -37,7 +37,7 @@ pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<R
 
 fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
     let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-    let packed = Packed::new(&subject.scene, settings, plan.quality)?;
+    let packed = DeviceScene::new(&subject.scene, settings, plan.quality)?;
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
@@ -58,7 +58,7 @@ pub fn streams(plan: &Plan, subjects: &[Subject]) -> usize {
 struct Bench<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
-    packed: &'a Packed,
+    packed: &'a DeviceScene,
     gpu: Option<OnGpu<'a>>,
     /// In the normalised scene.
     ao_length: f32,
@@ -75,7 +75,7 @@ struct Asked<'s> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a Packed, report: &mut Report) -> Result<Self> {
+    fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a DeviceScene, report: &mut Report) -> Result<Self> {
         let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.normalisation().scale);
         let statistics = &packed.statistics();
         report.scenes.push(SceneRow {
@@ -109,7 +109,7 @@ impl<'a> Bench<'a> {
         begins: &dyn Fn(&str),
     ) -> Result<()> {
         let place = format!("{} {}", self.subject.name, camera.name);
-        let sight = Sight::new(self.packed, view, self.plan.threads)?;
+        let sight = PrimaryHits::new(self.packed, view, self.plan.threads)?;
         let (mut hash, mut rays) = (Hash::default(), 0);
         for &kind in &self.plan.kinds {
             begins(&format!("{place} {}", kind.name()));
@@ -265,10 +265,10 @@ mod tests {
     #[test]
     fn another_answer_in_exact_precision_is_a_fault_that_names_the_ray() {
         let (plan, subject, mut report) = (plan(), subject(), Report::default());
-        let packed = Packed::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
+        let packed = DeviceScene::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
         let view = View::new(&packed, &subject.cameras[0]).unwrap();
-        let sight = Sight::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
+        let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
         let stream = sight.rays(Kind::Ao, bench.ao_length).unwrap();
         let trial = plan.trials(&packed, Kind::Ao, Order::Tiled, &mut |_| ())[4];
         let asked = bench.asked(Kind::Ao, &subject.cameras[0], &stream, &[trial]).unwrap();

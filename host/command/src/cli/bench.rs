@@ -15,7 +15,7 @@ use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination, write_error};
 use eyerays::film::Film;
-use eyerays::gpu::{Gpu, Want};
+use eyerays::gpu::{AdapterRequest, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::scene::{Camera, Scene};
@@ -287,7 +287,7 @@ impl Devices {
         }
         let asked = self.device.is_some() || self.adapter.is_some();
         let exact = self.precision.contains(&Precision::Exact);
-        let want = Want { adapter: self.adapter.clone(), software: asked, naga: false, exact };
+        let want = AdapterRequest { adapter: self.adapter.clone(), software: asked, naga: false, exact };
         match Gpu::open(&want) {
             Ok(gpu) => Ok(Some(gpu)),
             Err(error) if asked => Err(error.into()),

@@ -10,7 +10,7 @@ use super::options::Read;
 use super::outline::Outline;
 use super::{console, plural, progress};
 use crate::error::Result;
-use eyerays::pack::Packed;
+use eyerays::device_scene::DeviceScene;
 use eyerays::view::View;
 
 #[derive(Args)]
@@ -23,7 +23,7 @@ impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
         let named = |e: eyerays::error::Error| e.of(&self.scene);
-        let pack = || Packed::new(&scene, scene.settings, Quality::Fast);
+        let pack = || DeviceScene::new(&scene, scene.settings, Quality::Fast);
         let packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
             View::new(&packed, camera).map_err(named)?;

@@ -8,14 +8,14 @@ use clap::Args;
 use serde_json::json;
 
 use super::console;
-use super::options::{Effort, On, Read, View};
+use super::options::{DeviceArgs, Effort, Read, View};
 use super::progress;
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::compare::{Comparison, compare, heat_map};
 use eyerays::film::Film;
 use eyerays::image::{self, Encoding};
-use eyerays::render::{Chosen, DeviceWish, Precision, Rendering};
+use eyerays::render::{Backend, DeviceWish, Precision, Rendering};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -47,7 +47,7 @@ pub(super) struct Diff {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    on: On,
+    on: DeviceArgs,
     #[command(flatten)]
     view: View,
     #[command(flatten)]
@@ -111,7 +111,7 @@ impl Diff {
         let (width, height) = loaded.packed.settings().size;
         let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);
         let render = |choice| -> Result<Rendering> {
-            Ok(Chosen::new(choice)?.render(&loaded.packed, &loaded.view, 1, &|pixels| progress.inc(pixels))?)
+            Ok(Backend::new(choice)?.render(&loaded.packed, &loaded.view, 1, &|pixels| progress.inc(pixels))?)
         };
         let renderings = render(&gpu_choice).and_then(|gpu| Ok((gpu, render(&cpu_choice)?)));
         progress.finish_and_clear();

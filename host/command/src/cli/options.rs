@@ -14,9 +14,9 @@ use crate::error::{Error, Result, within};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
-use eyerays::pack::Packed;
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
 use eyerays::scene::{self, Camera, Scene, Settings};
@@ -85,7 +85,7 @@ impl Effort {
 /// Which device, and its arithmetic.
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Device")]
-pub(super) struct On {
+pub(super) struct DeviceArgs {
     /// Exact: the same bits everywhere; fast: the device's own arithmetic; reference: double precision
     /// [default: exact]
     #[arg(long, value_parser = choice::<Precision>())]
@@ -143,7 +143,7 @@ impl<'a> Read<'a> {
 
 /// A scene, packed, and what that took.
 pub(super) struct Loaded {
-    pub packed: Packed,
+    pub packed: DeviceScene,
     pub view: eyerays::view::View,
     pub read_time: Duration,
     pub build_time: Duration,
@@ -161,7 +161,7 @@ impl View {
         let settings = self.settings(&scene, effort)?;
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;
         let threads = cpu::pool(threads)?;
-        let pack = || threads.install(|| Packed::new(&scene, settings, effort.quality()));
+        let pack = || threads.install(|| DeviceScene::new(&scene, settings, effort.quality()));
         let start = Instant::now();
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         let view = eyerays::view::View::new(&packed, &camera).map_err(|e| e.of(path))?;
@@ -208,12 +208,12 @@ impl View {
     }
 }
 
-impl On {
+impl DeviceArgs {
     /// With a settings file below the command line, whose precision also undoes the file's triangle test: exact
     /// precision has only one.
-    pub fn over(&self, file: &Preset) -> On {
+    pub fn over(&self, file: &Preset) -> DeviceArgs {
         let triangle = file.triangle.filter(|_| self.precision.is_none_or(|own| Some(own) == file.precision));
-        On {
+        DeviceArgs {
             precision: self.precision.or(file.precision),
             method: self.method.or(file.method),
             layout: self.layout.or(file.layout),

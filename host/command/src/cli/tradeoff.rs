@@ -15,7 +15,7 @@ use crate::output::{self, Destination, write_error};
 use crate::tradeoff::{self, Axes, Plan, Record, Report, Subject, Wish};
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
-use eyerays::render::{Choice, Chosen, DeviceWish};
+use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::Settings;
 
 pub(super) const EXAMPLES: &str = "\
@@ -140,7 +140,7 @@ impl Tradeoff {
         let choice = self.choice()?;
         let subject = self.subject(quiet)?;
         let plan = self.plan(&subject, wish)?;
-        let device = Chosen::new(&choice)?;
+        let device = Backend::new(&choice)?;
         let progress = progress::steps(tradeoff::steps(&plan), quiet);
         let report = tradeoff::run(&plan, &subject, device, &|step| console::step(&progress, step));
         progress.finish_and_clear();

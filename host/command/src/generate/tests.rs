@@ -8,9 +8,9 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::{Files, Kind, Recipe, obj};
-use eyerays::pack::Packed;
-use eyerays::view::View;
+use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Background, Scene};
+use eyerays::view::View;
 use eyerays::{cpu, film::Film};
 
 const KINDS: [Kind; 3] = [Kind::Hall, Kind::Forest, Kind::Cathedral];
@@ -148,7 +148,7 @@ fn load(kind: Kind, triangles: u64, seed: u64) -> Scene {
 fn film(scene: &Scene, camera: usize, around: Vec3) -> Film {
     let scene = Scene { background: Background::Colour(around), ..scene.clone() };
     let settings = scene::Settings { size: (72, 72), ..scene.settings };
-    let packed = Packed::new(&scene, settings, Quality::Fast).unwrap();
+    let packed = DeviceScene::new(&scene, settings, Quality::Fast).unwrap();
     let view = View::new(&packed, &scene.cameras[camera]).unwrap();
     cpu::render::<f32>(&packed, &view, eyerays::method::Method::IfIf, 0, &|_| ()).unwrap().0
 }

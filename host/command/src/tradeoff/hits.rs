@@ -4,13 +4,13 @@ use eyerays_shader::real::{Fast, Scalar};
 use glam::UVec4;
 
 use crate::bench::answers::primitive;
-use crate::bench::rays::{CameraRays, Sight};
+use crate::bench::rays::{CameraRays, PrimaryHits};
 use crate::bench::{Kind, OnGpu};
 use crate::error::Result;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::Gpu;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
-use eyerays::pack::Packed;
 use eyerays::render::{Choice, Precision};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays::view::View;
@@ -61,12 +61,16 @@ impl Primary {
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &Packed, view: &View, threads: usize) -> Result<Primary> {
-        let sight = Sight::new(packed, &CameraRays::of(view, Order::Tiled), threads)?;
+    pub fn new(packed: &DeviceScene, view: &View, threads: usize) -> Result<Primary> {
+        let sight = PrimaryHits::new(packed, &CameraRays::of(view, Order::Tiled), threads)?;
         let stream = sight.rays(Kind::Primary, 0.0)?.into_owned();
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
         let hits = cpu::closest::<f64>(packed, traversal, threads, &stream)?;
-        let truth = hits.into_iter().map(f64::load).map(|(place, slot)| (place.x, primitive(packed.triangles(), slot))).collect();
+        let truth = hits
+            .into_iter()
+            .map(f64::load)
+            .map(|(place, slot)| (place.x, primitive(packed.triangles(), slot)))
+            .collect();
         Ok(Primary { stream, truth })
     }
 
@@ -74,7 +78,7 @@ impl Primary {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn errors(&self, packed: &Packed, gpu: Option<&Gpu>, choice: &Choice) -> Result<HitErrors> {
+    pub fn errors(&self, packed: &DeviceScene, gpu: Option<&Gpu>, choice: &Choice) -> Result<HitErrors> {
         let fast = choice.precision == Precision::Fast;
         let on_cpu = choice.traversal.resolved(Processor::Cpu, Coherence::Primary);
         let hits = match gpu {
@@ -82,11 +86,12 @@ impl Primary {
             None if fast => cpu::closest::<Fast>(packed, on_cpu, choice.threads, &self.stream)?,
             None => cpu::closest::<f32>(packed, on_cpu, choice.threads, &self.stream)?,
         };
-        let found: Vec<_> = hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed.triangles(), hit.w))).collect();
+        let found: Vec<_> =
+            hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed.triangles(), hit.w))).collect();
         Ok(HitErrors::of(&found, &self.truth))
     }
 
-    fn on_gpu(&self, gpu: &Gpu, packed: &Packed, exact: bool, wanted: Traversal) -> Result<Vec<UVec4>> {
+    fn on_gpu(&self, gpu: &Gpu, packed: &DeviceScene, exact: bool, wanted: Traversal) -> Result<Vec<UVec4>> {
         let how = gpu.resolved(wanted, Coherence::Primary)?;
         let held = OnGpu::new(gpu, packed, &[how.layout])?;
         match held.once(&held.upload(&self.stream)?, exact, how, Question::Closest)? {

@@ -10,13 +10,13 @@ use crate::error::{Error, Result};
 use crate::remedy;
 use eyerays::compare::compare;
 use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::{Processor, Traversal};
-use eyerays::pack::Packed;
-use eyerays::view::View;
 use eyerays::quality::Bvh;
-use eyerays::render::Chosen;
+use eyerays::render::Backend;
 use eyerays::scene::{Camera, Scene, Settings};
+use eyerays::view::View;
 
 /// What is measured, and how thoroughly.
 #[derive(Debug, Clone)]
@@ -56,7 +56,7 @@ pub fn steps(plan: &Plan) -> usize {
 /// # Errors
 /// A scene that can't be packed, or the base, which all is compared with, fails on the device. Other settings that
 /// fail are left out with a note.
-pub fn run(plan: &Plan, subject: &Subject, device: Chosen, begins: &dyn Fn(&str)) -> Result<Report> {
+pub fn run(plan: &Plan, subject: &Subject, device: Backend, begins: &dyn Fn(&str)) -> Result<Report> {
     let base = plan.axes.base(Setting::of(&subject.settings));
     let mut judge = Judge::new(plan, subject, device, begins).map_err(|error| error.of(&subject.file))?;
     let (mut records, stopped) = search(&plan.axes, base, plan.trials, &mut |setting| {
@@ -88,8 +88,8 @@ struct Place {
 struct Judge<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
-    device: Chosen,
-    packed: Packed,
+    device: Backend,
+    packed: DeviceScene,
     bvh: Bvh,
     primary: Primary,
     /// By samples along a pixel's edge.
@@ -102,11 +102,11 @@ struct Judge<'a> {
 }
 
 impl<'a> Judge<'a> {
-    fn new(plan: &'a Plan, subject: &'a Subject, device: Chosen, begins: &dyn Fn(&str)) -> Result<Self> {
+    fn new(plan: &'a Plan, subject: &'a Subject, device: Backend, begins: &dyn Fn(&str)) -> Result<Self> {
         let best = plan.axes.reference(subject.settings);
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
         let once = Settings { samples: 1, ..best };
-        let mut packed = Packed::new(&subject.scene, once, bvh.quality())?;
+        let mut packed = DeviceScene::new(&subject.scene, once, bvh.quality())?;
         let primary = Primary::new(&packed, &View::new(&packed, &subject.camera)?, threads)?;
         let mut references = Vec::new();
         for &samples in &plan.axes.samples {
@@ -182,7 +182,7 @@ impl<'a> Judge<'a> {
         let Subject { scene, .. } = self.subject;
         let settings = setting.settings(self.subject.settings);
         if self.bvh != setting.bvh {
-            self.packed = Packed::new(scene, settings, setting.bvh.quality())?;
+            self.packed = DeviceScene::new(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
         Ok(self.packed.set(scene, settings)?)

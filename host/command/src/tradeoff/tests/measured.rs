@@ -4,13 +4,14 @@ use std::path::Path;
 
 use super::*;
 use eyerays::compare::compare;
+use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::Processor;
-use eyerays::render::{Choice, Chosen, DeviceWish};
+use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{self, Settings};
 use eyerays::stream::StreamRay;
 use eyerays::view::View;
-use eyerays::{cpu, pack::Packed};
 
 const NOWHERE: u32 = StreamRay::NOWHERE;
 
@@ -38,14 +39,14 @@ fn plan(axes: Axes) -> Plan {
     Plan { axes, repeat: 1, trials: 60, wish: None }
 }
 
-fn on_cpu() -> Chosen {
-    Chosen::new(&Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() }).unwrap()
+fn on_cpu() -> Backend {
+    Backend::new(&Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() }).unwrap()
 }
 
 /// The picture of a setting, straight from the executor.
 fn picture(subject: &Subject, setting: &Setting) -> Film {
     let settings = setting.settings(subject.settings);
-    let packed = Packed::new(&subject.scene, settings, setting.bvh.quality()).unwrap();
+    let packed = DeviceScene::new(&subject.scene, settings, setting.bvh.quality()).unwrap();
     let choice = Choice {
         device: DeviceWish::Cpu,
         precision: setting.precision,
@@ -53,12 +54,12 @@ fn picture(subject: &Subject, setting: &Setting) -> Film {
         ..Choice::default()
     };
     let view = View::new(&packed, &subject.camera).unwrap();
-    Chosen::new(&choice).unwrap().render(&packed, &view, 1, &|_| ()).unwrap().film
+    Backend::new(&choice).unwrap().render(&packed, &view, 1, &|_| ()).unwrap().film
 }
 
 fn reference(subject: &Subject, samples: u32) -> Film {
     let settings = Settings { samples, ..subject.settings };
-    let packed = Packed::new(&subject.scene, settings, Bvh::High.quality()).unwrap();
+    let packed = DeviceScene::new(&subject.scene, settings, Bvh::High.quality()).unwrap();
     let view = View::new(&packed, &subject.camera).unwrap();
     cpu::render::<f64>(&packed, &view, Method::IfIf, 0, &|_| ()).unwrap().0
 }
@@ -115,14 +116,14 @@ fn what_is_free_changes_no_error_and_what_trades_does() {
 fn exact_hits_are_right_but_for_edges() {
     let subject = subject();
     let settings = Settings { samples: 1, ..subject.settings };
-    let packed = Packed::new(&subject.scene, settings, Bvh::Medium.quality()).unwrap();
+    let packed = DeviceScene::new(&subject.scene, settings, Bvh::Medium.quality()).unwrap();
     let view = View::new(&packed, &subject.camera).unwrap();
     let primary = super::super::hits::Primary::new(&packed, &view, 2).unwrap();
     let errors = primary.errors(&packed, None, &Choice::default()).unwrap();
     assert!(errors.wrong < 0.01, "{errors:?}");
     assert!(errors.max_ulp.unwrap() < 64.0 && errors.median_ulp.unwrap() < 2.0, "{errors:?}");
     let rays = crate::bench::rays::CameraRays::of(&view, eyerays::method::Order::Tiled);
-    let sight = crate::bench::rays::Sight::new(&packed, &rays, 2).unwrap();
+    let sight = crate::bench::rays::PrimaryHits::new(&packed, &rays, 2).unwrap();
     let stream = sight.rays(crate::bench::Kind::Primary, 0.0).unwrap();
     let [first, second] =
         [Method::IfIf, Method::Wide].map(|method| cpu::closest::<f64>(&packed, method.into(), 2, &stream).unwrap());

@@ -5,11 +5,11 @@ use crate::real::{Real, SMALL, Scalar, TINY, V3};
 
 /// A point on a surface.
 #[derive(Clone, Copy)]
-pub struct Contact<R: Real> {
+pub struct SurfaceInteraction<R: Real> {
     /// The point, computed from the triangle's vertices (nearer to the surface than a point along the ray).
     pub position: V3<R>,
-    /// How far a ray must start from the surface to be on the right side of it, see [`Contact::leave`].
-    pub clearance: R,
+    /// How far a ray must start from the surface to be on the right side of it, see [`SurfaceInteraction::offset_ray_origin`].
+    pub error_offset: R,
     /// The triangle's unit normal, on the viewer's side.
     pub normal: V3<R>,
     /// Does the viewer see the front (counter-clockwise) side?
@@ -23,10 +23,10 @@ pub struct Contact<R: Real> {
 /// thinner than a fifth of its length the error of its vertices (4) and edge functions (9) times that shape.
 const ROUNDOFFS: f32 = 64.0;
 
-/// A ray whose cosine is less than this would have to go too far along its direction to reach its clearance.
+/// A ray whose cosine is less than this would have to go too far along its direction to reach its error_offset.
 const GRAZING: f32 = 1.0 / 32.0;
 
-impl<R: Scalar> Contact<R> {
+impl<R: Scalar> SurfaceInteraction<R> {
     /// The point with weights `u` and `v` of the second and third vertex, seen along `direction`.
     #[inline(always)]
     pub fn new(triangle: &Triangle, u: R, v: R, direction: V3<R>) -> Self {
@@ -40,15 +40,21 @@ impl<R: Scalar> Contact<R> {
         let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
         let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
         let front = normal.dot(direction).le(R::splat(0.0));
-        Contact {
+        SurfaceInteraction {
             position: position.map(|x| x.flush(TINY)),
             // The position's error across the surface grows with its coordinates along the normal; the triangle
             // test's error grows with the triangle's extent in every direction.
-            clearance: (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF),
+            error_offset: (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF),
             normal: V3::select(front, normal, -normal),
             front,
             weights: (u, v),
         }
+    }
+
+    /// The index of refraction on the viewer's side over that on the other, of a body of index `ior` in a vacuum.
+    #[inline(always)]
+    pub fn relative_ior(&self, ior: R) -> R {
+        if self.front { R::splat(1.0).div(ior) } else { ior }
     }
 
     /// Is a direction on the viewer's side?
@@ -61,27 +67,27 @@ impl<R: Scalar> Contact<R> {
     /// 6.8.6), so that it can't hit a neighbour in the same plane. The triangle itself is skipped by
     /// its number, since a ray can't hit a plane twice.
     #[inline(always)]
-    pub fn leave(&self, direction: V3<R>) -> V3<R> {
-        let side = R::select(self.faces(direction), self.clearance, -self.clearance);
+    pub fn offset_ray_origin(&self, direction: V3<R>) -> V3<R> {
+        let side = R::select(self.faces(direction), self.error_offset, -self.error_offset);
         (self.position + self.normal * side).map(|x| x.flush(TINY))
     }
 
-    /// As [`Contact::leave`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
+    /// As [`SurfaceInteraction::offset_ray_origin`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
     /// offset sideways sees another point, which lenses magnify.
     #[inline(always)]
-    pub fn leave_along(&self, direction: V3<R>) -> V3<R> {
+    pub fn offset_ray_origin_along(&self, direction: V3<R>) -> V3<R> {
         let cosine = self.normal.dot(direction).abs();
         let grazes = cosine.lt(R::splat(GRAZING));
-        let step = self.clearance.div(R::select(grazes, R::splat(1.0), cosine));
+        let step = self.error_offset.div(R::select(grazes, R::splat(1.0), cosine));
         let along = (self.position + direction * step).map(|x| x.flush(TINY));
-        V3::select(grazes, self.leave(direction), along)
+        V3::select(grazes, self.offset_ray_origin(direction), along)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::intersect::intersect_watertight;
+    use crate::geometry::intersect_watertight;
     use crate::ray::Ray;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -101,12 +107,12 @@ mod tests {
     ) -> Result<(), TestCaseError> {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = V3::<f32>::new(d[0], d[1], d[2]).normalised().0;
-        let contact = Contact::new(&Triangle::new(vertices, 0, 0, 0), u, v, -direction);
+        let contact = SurfaceInteraction::new(&Triangle::new(vertices, 0, 0, 0), u, v, -direction);
         for graze in [1.0, 1e-2, 1e-4, 1e-6] {
             let across = contact.normal * contact.normal.dot(direction);
             let direction = (direction - across + across * graze).normalised().0;
             if contact.faces(direction) {
-                for origin in [contact.leave(direction), contact.leave_along(direction)] {
+                for origin in [contact.offset_ray_origin(direction), contact.offset_ray_origin_along(direction)] {
                     for other in others {
                         prop_assert!(!meets(*other, origin, direction), "graze {graze}");
                     }
@@ -117,9 +123,9 @@ mod tests {
     }
 
     /// On a triangle that faces up the z axis.
-    fn flat_seen_along(direction: V3<f64>) -> Contact<f64> {
+    fn flat_seen_along(direction: V3<f64>) -> SurfaceInteraction<f64> {
         let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
-        Contact::new(&flat, 0.25, 0.25, direction)
+        SurfaceInteraction::new(&flat, 0.25, 0.25, direction)
     }
 
     #[test]
@@ -128,8 +134,8 @@ mod tests {
         for (z, side) in [(1.0, 1.0), (-1.0, -1.0)] {
             let direction = V3::new(0.6, 0.0, 0.8 * z);
             assert_eq!(contact.faces(direction), z > 0.0);
-            let off = contact.leave(direction) - contact.position;
-            assert_eq!((off.x, off.y, off.z), (0.0, 0.0, side * contact.clearance));
+            let off = contact.offset_ray_origin(direction) - contact.position;
+            assert_eq!((off.x, off.y, off.z), (0.0, 0.0, side * contact.error_offset));
         }
     }
 
@@ -139,7 +145,7 @@ mod tests {
         let contact = flat_seen_along(V3::splat(-Vec3::Z));
         let off = |cosine: f64| {
             let direction = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-            (contact.leave_along(direction) - contact.position).x / contact.clearance
+            (contact.offset_ray_origin_along(direction) - contact.position).x / contact.error_offset
         };
         assert!((off(0.04) - (1.0f64 - 0.0016).sqrt() / 0.04).abs() < 0.1);
         assert_eq!(off(0.03), 0.0);

@@ -28,7 +28,7 @@ pub fn intersect_moller_trumbore<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::intersect::intersect_watertight;
+    use crate::geometry::intersect_watertight;
     use crate::ray::Ray;
     use crate::real::Fast;
     use glam::Vec3;

@@ -55,7 +55,7 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
-    use crate::pack::Packed;
+    use crate::device_scene::DeviceScene;
 
     fn whitted() -> Scene {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
@@ -63,7 +63,7 @@ mod tests {
     }
 
     fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
-        let packed = Packed::new(scene, settings, Quality::Fast);
+        let packed = DeviceScene::new(scene, settings, Quality::Fast);
         packed.err().map(|error| error.message())
     }
 
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn settings_beyond_their_limits_are_refused_when_they_are_taken_too() {
         let scene = whitted();
-        let mut packed = Packed::new(&scene, scene.settings, Quality::Fast).unwrap();
+        let mut packed = DeviceScene::new(&scene, scene.settings, Quality::Fast).unwrap();
         for beyond in [
             Settings { size: (0, 4), ..scene.settings },
             Settings { samples: 0, ..scene.settings },

@@ -2,19 +2,19 @@
 
 use std::borrow::Cow;
 
-use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::bvh8::Bvh8View;
+use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::scene::{LaunchContext, TraceContext};
 
-use super::{NodeWords, Packed, TriangleWords};
+use super::{DeviceScene, NodeWords, TriangleWords};
 use crate::error::Result;
 use crate::method::{Method, Traversal};
 use crate::scene::Light;
 
 /// A scene laid out for a traversal, once for all launches.
-pub struct Laid<'a> {
+pub struct SceneView<'a> {
     /// The scene.
-    pub packed: &'a Packed,
+    pub packed: &'a DeviceScene,
     /// How its rays are followed.
     pub traversal: Traversal,
     nodes: NodeWords<'a>,
@@ -23,15 +23,15 @@ pub struct Laid<'a> {
     lights: Cow<'a, [LightRecord]>,
 }
 
-impl<'a> Laid<'a> {
+impl<'a> SceneView<'a> {
     /// Lays out what the traversal does not take as it is packed.
-    pub fn new(packed: &'a Packed, traversal: Traversal) -> Self {
+    pub fn new(packed: &'a DeviceScene, traversal: Traversal) -> Self {
         let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
         let bvh8 = match traversal.method {
             Method::Auto | Method::Wide => packed.bvh8().borrow(),
             _ => Bvh8View::default(),
         };
-        Laid { packed, traversal, nodes, triangles, bvh8, lights: Cow::Borrowed(packed.lights()) }
+        SceneView { packed, traversal, nodes, triangles, bvh8, lights: Cow::Borrowed(packed.lights()) }
     }
 
     /// Lights in file order.
@@ -42,7 +42,7 @@ impl<'a> Laid<'a> {
     /// Takes other lights.
     ///
     /// # Errors
-    /// As [`Packed::relit`].
+    /// As [`DeviceScene::relit`].
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
         self.lights = Cow::Owned(self.packed.relit(lights)?);
         Ok(())
@@ -64,7 +64,7 @@ impl<'a> Laid<'a> {
         }
     }
 
-    /// The scene for a launch of a stream's rays, see [`Packed::stream_frame`].
+    /// The scene for a launch of a stream's rays, see [`DeviceScene::stream_frame`].
     pub fn stream<'g>(&'g self, frame: &'g Frame) -> TraceContext<'g> {
         self.context(frame, self.specialisation().with_launch(Launch::STREAM))
     }

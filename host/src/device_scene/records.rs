@@ -78,9 +78,7 @@ pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecor
 /// A light's record; `index` is for the message.
 pub(super) fn light(light: &Light, index: usize, normalisation: &Normalisation) -> Result<LightRecord> {
     let far = || Error::new(format!("light {} is too far away: move it nearer to the scene", index + 1));
-    let at = |p: Vec3| -> Result<Vec3> {
-        normalisation.place_anywhere(p).ok_or_else(far)
-    };
+    let at = |p: Vec3| -> Result<Vec3> { normalisation.place_anywhere(p).ok_or_else(far) };
     let record = |position, kind, light: Vec3, axis: Vec3, (inner, outer): (f32, f32)| LightRecord {
         position: pack(position, kind),
         colour: colour(light, inner.to_bits()),

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use eyerays_shader::data::{CompactPair, Triangle};
 use glam::UVec4;
 
-use super::Packed;
+use super::DeviceScene;
 use crate::method::Layout;
 
 /// The words of all triangles in one of their layouts, see [`eyerays_shader::scene::LaunchContext::triangle`].
@@ -14,7 +14,7 @@ pub struct TriangleWords<'a>(pub Cow<'a, [UVec4]>);
 
 impl<'a> TriangleWords<'a> {
     /// The triangles of a scene.
-    pub fn of(packed: &'a Packed, layout: Layout) -> Self {
+    pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
         TriangleWords(match layout {
             Layout::Gathered | Layout::Compact => Cow::Borrowed(bytemuck::cast_slice(&packed.triangles)),
             Layout::Indexed => Cow::Owned(indexed(&packed.triangles)),
@@ -27,7 +27,7 @@ pub struct NodeWords<'a>(pub Cow<'a, [UVec4]>);
 
 impl<'a> NodeWords<'a> {
     /// The hierarchy of a scene.
-    pub fn of(packed: &'a Packed, layout: Layout) -> Self {
+    pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
         NodeWords(match layout {
             Layout::Compact => {
                 let pairs: Vec<CompactPair> = packed.nodes.iter().map(CompactPair::from).collect();

@@ -1,7 +1,7 @@
-//! Lights without extent, and their reflection: Lambert and Phong (thesis 3.1).
+//! Lights without extent: how they reach a place, and the shadow rays that ask whether they do (thesis 3.1, 3.2).
 
-use super::{Contact, Surface, reflect};
 use crate::data::{Effects, Light, numbers};
+use crate::geometry::SurfaceInteraction;
 use crate::real::{FAINT, Real, Scalar, V3};
 
 /// A shadow ray stops short of its light by this share, so that a light that lies on a surface is
@@ -15,12 +15,12 @@ fn is(effects: Effects, light: &Light, feature: u32, kind: u32) -> bool {
 
 /// Where a shadow ray starts, its unit direction and its limit.
 #[inline(always)]
-pub fn shadow_ray<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<R>) -> (V3<R>, V3<R>, R) {
+pub fn ray_to_light<R: Scalar>(effects: Effects, light: &Light, contact: &SurfaceInteraction<R>) -> (V3<R>, V3<R>, R) {
     let place = V3::<R>::splat(numbers(light.position));
     if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
-        (contact.leave(place), place, R::splat(f32::MAX))
+        (contact.offset_ray_origin(place), place, R::splat(f32::MAX))
     } else {
-        let origin = contact.leave(place - contact.position);
+        let origin = contact.offset_ray_origin(place - contact.position);
         let (direction, distance) = (place - origin).normalised();
         (origin, direction, distance * R::splat(1.0 - SHORT))
     }
@@ -28,28 +28,28 @@ pub fn shadow_ray<R: Scalar>(effects: Effects, light: &Light, contact: &Contact<
 
 /// The light that reaches a point that nothing shadows.
 #[derive(Clone, Copy)]
-pub struct Incidence<R: Real> {
+pub struct LightSample<R: Real> {
     /// Unit direction towards the light.
     pub direction: V3<R>,
     /// Linear RGB that arrives.
     pub colour: V3<R>,
 }
 
-impl<R: Scalar> Incidence<R> {
+impl<R: Scalar> LightSample<R> {
     /// A light as seen from `position`.
     #[inline(always)]
     pub fn new(effects: Effects, light: &Light, position: V3<R>) -> Self {
         let place = V3::<R>::splat(numbers(light.position));
         let colour = V3::splat(numbers(light.colour));
         if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
-            return Incidence { direction: place, colour };
+            return LightSample { direction: place, colour };
         }
         let direction = (place - position).normalised().0;
         if is(effects, light, Effects::SPOT, Light::SPOT) {
             let share = spot(light, direction);
-            return Incidence { direction, colour: (colour * share).map(|c| c.flush(FAINT)) };
+            return LightSample { direction, colour: (colour * share).map(|c| c.flush(FAINT)) };
         }
-        Incidence { direction, colour }
+        LightSample { direction, colour }
     }
 }
 
@@ -70,26 +70,6 @@ fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
     x * x * (R::splat(3.0) - R::splat(2.0) * x)
 }
 
-/// Light that a surface sends along `-direction`: Lambert's law and Phong's highlight.
-#[inline(always)]
-pub fn illuminate<R: Scalar>(
-    effects: Effects,
-    surface: &Surface<R>,
-    direction: V3<R>,
-    incidence: &Incidence<R>,
-) -> V3<R> {
-    let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let cosine = surface.normal.dot(incidence.direction).max(zero).min(one);
-    let mut answer = surface.diffuse * cosine;
-    if effects.has(Effects::SPECULAR) && zero.lt(cosine) {
-        // The light's mirrored direction against the direction to the viewer.
-        let mirrored = reflect(-incidence.direction, surface.normal);
-        let highlight = (-mirrored.dot(direction)).max(zero).min(one);
-        answer = answer + surface.specular * highlight.pow(surface.shininess);
-    }
-    answer.times(incidence.colour).map(|c| c.flush(FAINT))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -106,51 +86,9 @@ mod tests {
         }
     }
 
-    fn surface() -> Surface<f64> {
-        Surface {
-            normal: V3::splat(Vec3::Y),
-            ambient: V3::zero(),
-            diffuse: V3::splat(Vec3::new(0.5, 0.5, 0.5)),
-            specular: V3::splat(Vec3::ONE),
-            shininess: 10.0,
-            reflection: V3::zero(),
-            transmission: V3::zero(),
-            ior: 0.0,
-        }
-    }
-
-    #[test]
-    fn lambert_falls_with_the_cosine_and_phong_with_its_power() {
-        let view = V3::splat(-Vec3::Y);
-        for angle in [0.0f64, 0.3, 1.0, 1.5] {
-            let direction = V3::new(angle.sin(), angle.cos(), 0.0);
-            let got = illuminate(ALL, &surface(), view, &Incidence { direction, colour: V3::splat(Vec3::X) });
-            assert!((got.x - (0.5 * angle.cos() + angle.cos().powi(10))).abs() < 1e-12);
-            assert_eq!((got.y, got.z), (0.0, 0.0));
-        }
-        let below = Incidence { direction: view, colour: V3::splat(Vec3::ONE) };
-        assert_eq!(illuminate(ALL, &surface(), view, &below), V3::zero());
-    }
-
-    #[test]
-    fn a_highlight_is_where_the_light_is_mirrored() {
-        let direction = V3::new(0.6, 0.8, 0.0);
-        let white = Incidence { direction, colour: V3::splat(Vec3::ONE) };
-        let seen = |view: V3<f64>| illuminate(ALL, &surface(), view, &white).x - 0.4;
-        assert!((seen(V3::new(0.6, -0.8, 0.0)) - 1.0).abs() < 1e-12, "the mirrored view");
-        assert!(seen(V3::new(-0.6, -0.8, 0.0)) < 0.1, "the view along the light");
-    }
-
-    #[test]
-    fn a_matt_surface_has_no_highlight() {
-        let white = Incidence { direction: V3::splat(Vec3::Y), colour: V3::splat(Vec3::ONE) };
-        let matt = Effects(Effects::SPECULAR ^ u32::MAX);
-        assert_eq!(illuminate(matt, &surface(), V3::splat(-Vec3::Y), &white), V3::splat(Vec3::splat(0.5)));
-    }
-
     fn spot(x: f32) -> f64 {
         let from = V3::<f64>::splat(Vec3::new(x, 0.0, 0.0));
-        Incidence::new(ALL, &light(Light::SPOT, Vec3::Y), from).colour.x
+        LightSample::new(ALL, &light(Light::SPOT, Vec3::Y), from).colour.x
     }
 
     #[test]
@@ -172,27 +110,30 @@ mod tests {
 
     #[test]
     fn shadow_rays_end_short_of_a_place_and_never_for_a_direction() {
-        let contact = Contact::<f64> {
+        let contact = SurfaceInteraction::<f64> {
             position: V3::zero(),
-            clearance: 1e-6,
+            error_offset: 1e-6,
             normal: V3::splat(Vec3::Y),
             front: true,
             weights: (0.0, 0.0),
         };
         let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));
-        let (origin, direction, _) =
-            shadow_ray(ALL, &light(Light::POINT, Vec3::new(3.0, 4.0, 0.0)), &Contact { position: beside, ..contact });
+        let (origin, direction, _) = ray_to_light(
+            ALL,
+            &light(Light::POINT, Vec3::new(3.0, 4.0, 0.0)),
+            &SurfaceInteraction { position: beside, ..contact },
+        );
         assert!((origin - beside).dot(origin - beside) < 1e-11 && (direction.y - 1.0).abs() < 1e-12);
         // The light lies below the surface, so the ray must leave towards that side.
-        let (origin, ..) = shadow_ray(
+        let (origin, ..) = ray_to_light(
             ALL,
             &light(Light::POINT, Vec3::Y),
-            &Contact { position: V3::splat(Vec3::new(0.0, 2.0, 0.0)), ..contact },
+            &SurfaceInteraction { position: V3::splat(Vec3::new(0.0, 2.0, 0.0)), ..contact },
         );
         assert!(origin.y < 2.0, "off the side that the light is on");
-        let (origin, direction, limit) = shadow_ray(ALL, &light(Light::POINT, Vec3::Y), &contact);
+        let (origin, direction, limit) = ray_to_light(ALL, &light(Light::POINT, Vec3::Y), &contact);
         assert!(origin.y > 0.0 && (direction.y - 1.0).abs() < 1e-12 && limit < 1.0 && limit > 0.999);
-        let (_, direction, limit) = shadow_ray(ALL, &light(Light::DIRECTIONAL, Vec3::Y), &contact);
+        let (_, direction, limit) = ray_to_light(ALL, &light(Light::DIRECTIONAL, Vec3::Y), &contact);
         assert_eq!((direction, limit), (V3::splat(Vec3::Y), f64::from(f32::MAX)));
     }
 }

@@ -5,19 +5,19 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord, Normals,
-    Specialisation, Triangle, CwbvhNode,
+    Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
+    Normals, Specialisation, Triangle,
 };
 
 mod check;
-mod laid;
 mod normalisation;
 mod records;
+mod view;
 mod words;
 
-pub use laid::Laid;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
+pub use view::SceneView;
 pub use words::{NodeWords, TriangleWords};
 
 use crate::error::{Error, Result};
@@ -29,7 +29,7 @@ const SPLIT_BUDGET: f32 = 0.3;
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
-pub struct Packed {
+pub struct DeviceScene {
     nodes: Vec<CentredPair>,
     wide: Vec<CwbvhNode>,
     triangles: Vec<Triangle>,
@@ -46,13 +46,13 @@ pub struct Packed {
     bvh8: OnceLock<Bvh8>,
 }
 
-impl Packed {
+impl DeviceScene {
     /// Normalises, builds the hierarchy and packs.
     ///
     /// # Errors
     /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
     /// or no ray meet: too many triangles, a light too far away for the scene's numbers.
-    pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<Packed> {
+    pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
         check::scene(scene)?;
         check::settings(&settings)?;
         let effects = records::effects(scene, &settings);
@@ -67,7 +67,7 @@ impl Packed {
         let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
-        Ok(Packed {
+        Ok(DeviceScene {
             statistics: Statistics::of(&bvh, &triangles),
             triangles: bvh.gather(&triangles),
             normals: if effects.has(Effects::SMOOTH) { bvh.gather(&records::normals(scene)) } else { Vec::new() },

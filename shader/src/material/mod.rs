@@ -1,10 +1,16 @@
-//! The material of a surface at a point, and the background.
+//! What a surface is made of at a place: its colours and its shading normal. How it answers light is a file a model.
 
-use super::Contact;
+mod optics;
+mod phong;
+
+pub use optics::{Refraction, fresnel, reflect, refract};
+pub use phong::eval_phong;
+
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Material, Triangle, numbers};
+use crate::data::{Effects, Material, Triangle, numbers};
+use crate::geometry::SurfaceInteraction;
 use crate::real::{Real, Scalar, V3};
-use crate::scene::Looks;
+use crate::scene::ShadingData;
 
 /// A material at a contact, with the normal that light sees.
 #[derive(Clone, Copy)]
@@ -32,11 +38,11 @@ impl<R: Scalar> Surface<R> {
     #[inline(always)]
     pub fn new(
         effects: Effects,
-        looks: &Looks<'_>,
+        looks: &ShadingData<'_>,
         triangle_index: u32,
         triangle: &Triangle,
         direction: V3<R>,
-        contact: &Contact<R>,
+        contact: &SurfaceInteraction<R>,
     ) -> Self {
         let material: Material = read(looks.materials, triangle.material());
         let colour = |record| V3::<R>::splat(numbers(record));
@@ -64,7 +70,12 @@ impl<R: Scalar> Surface<R> {
 /// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,
 /// or faces away from the viewer, the triangle's own normal replaces it.
 #[inline(always)]
-fn interpolated<R: Scalar>(looks: &Looks<'_>, triangle_index: u32, direction: V3<R>, contact: &Contact<R>) -> V3<R> {
+fn interpolated<R: Scalar>(
+    looks: &ShadingData<'_>,
+    triangle_index: u32,
+    direction: V3<R>,
+    contact: &SurfaceInteraction<R>,
+) -> V3<R> {
     let (u, v) = contact.weights;
     let normals = read(looks.normals, triangle_index);
     let normal = |record| V3::<R>::splat(numbers(record));
@@ -77,7 +88,7 @@ fn interpolated<R: Scalar>(looks: &Looks<'_>, triangle_index: u32, direction: V3
 
 /// Cells of a checkerboard over the two axes that the surface faces least.
 #[inline(always)]
-fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
+fn odd_cell<R: Scalar>(contact: &SurfaceInteraction<R>, cells: R) -> bool {
     let n = contact.normal.abs();
     let p = contact.position;
     let (a, b) = if n.y.le(n.x) && n.z.le(n.x) {
@@ -90,27 +101,16 @@ fn odd_cell<R: Scalar>(contact: &Contact<R>, cells: R) -> bool {
     ((a * cells).floor_index() ^ (b * cells).floor_index()) & 1 != 0
 }
 
-/// The colour of a ray that hits nothing: constant, or a gradient over the height of its direction.
-#[inline(always)]
-pub fn background<R: Scalar>(effects: Effects, frame: &Frame, direction: V3<R>) -> V3<R> {
-    let bottom = V3::splat(numbers(frame.horizon));
-    if !effects.has(Effects::GRADIENT) {
-        return bottom;
-    }
-    let height = direction.y.max(R::splat(0.0)).min(R::splat(1.0));
-    bottom * (R::splat(1.0) - height) + V3::splat(numbers(frame.zenith)) * height
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::data::{Normals, pack};
     use glam::Vec3;
 
-    fn contact(normal: Vec3, position: [f32; 3]) -> Contact<f32> {
-        Contact {
+    fn contact(normal: Vec3, position: [f32; 3]) -> SurfaceInteraction<f32> {
+        SurfaceInteraction {
             position: V3::splat(position.into()),
-            clearance: 0.0,
+            error_offset: 0.0,
             normal: V3::splat(normal),
             front: true,
             weights: (0.0, 0.0),
@@ -135,8 +135,8 @@ mod tests {
     /// The shading normal where vertices have these.
     fn smooth_of(normals: [Vec3; 3], weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
         let [a, b, c] = normals.map(|n| pack(n, 0));
-        let looks = Looks { normals: &[Normals { a, b, c }], materials: &[], lights: &[] };
-        let contact = Contact { weights, ..contact(own, [0.0; 3]) };
+        let looks = ShadingData { normals: &[Normals { a, b, c }], materials: &[], lights: &[] };
+        let contact = SurfaceInteraction { weights, ..contact(own, [0.0; 3]) };
         interpolated(&looks, 0, V3::splat(from), &contact)
     }
 
@@ -166,15 +166,5 @@ mod tests {
         assert!(is_near(smooth((0.0, 0.0), grazing, Vec3::Z), Vec3::Z), "turned away from the viewer");
         let lost = smooth_of([Vec3::X, -Vec3::X, Vec3::X], (0.5, 0.0), -Vec3::Z, Vec3::Z);
         assert!(is_near(lost, Vec3::Z), "no direction is left");
-    }
-
-    #[test]
-    fn a_gradient_runs_from_the_horizon_up() {
-        let frame = Frame { horizon: pack(Vec3::X, 0), zenith: pack(Vec3::Y, 0), ..Frame::default() };
-        let seen = |y: f64, effects| background(Effects(effects), &frame, V3::new(0.0, y, 0.0));
-        let red = V3::splat(Vec3::X);
-        assert_eq!(seen(-0.5, Effects::GRADIENT), red);
-        assert_eq!(seen(0.25, Effects::GRADIENT), V3::new(0.75, 0.25, 0.0));
-        assert_eq!(seen(1.0, 0), red);
     }
 }

@@ -16,6 +16,8 @@ pub enum Access {
 pub struct Resource {
     /// Its number in the modules, and its place in [`RESOURCES`].
     pub binding: u32,
+    /// What kernels call it.
+    pub parameter: &'static str,
     /// What people call it.
     pub name: &'static str,
     /// Who may do what with it.
@@ -59,7 +61,7 @@ macro_rules! list {
 
         /// Every resource, by its number.
         pub const RESOURCES: &[Resource] =
-            &[$(Resource { binding: $binding, name: $name, access: Access::$access }),*];
+            &[$(Resource { binding: $binding, parameter: stringify!($parameter), name: $name, access: Access::$access }),*];
     };
 }
 resources!(list $);

@@ -5,6 +5,7 @@ use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::integrator;
 use eyerays::method::{Method, Traversal};
 use eyerays::scene::{Background, Light, Material, Scene, Settings};
+use eyerays::view::View;
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{Posed, assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
 use glam::Vec3;
@@ -208,5 +209,72 @@ fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
     let size = size_of_val(packed.nodes()).to_string();
     for part in ["hierarchy", &size, "1000", &gpu.report.name, "--device cpu"] {
         assert!(error.contains(part), "{error}: no {part}");
+    }
+}
+
+/// However samples come, in flight together or one by one, all at once or in parts.
+#[test]
+fn samples_in_parts() {
+    let Some(mut gpu) = exact() else { return };
+    let scene = still_life();
+    let packed = pack(&scene, &scene.cameras[0], Settings { samples: 3, bounces: 4, ..scene.settings });
+    let (film, rays) = on_cpu::<f32>(&packed);
+    let all = u64::from(integrator::whitted(&packed).paths) * 3 * 16 * 61 * 45;
+    for (max_binding, parts) in
+        [(u64::MAX, &[9][..]), (u64::MAX, &[1, 2, 6]), (3 * all, &[9]), (2 * all, &[4, 5]), (all / 2, &[2, 7])]
+    {
+        gpu.report.max_binding = gpu.report.max_buffer.min(max_binding);
+        let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+        renderer.start(&packed.view).unwrap();
+        parts.iter().for_each(|&count| renderer.add(count, &|_| ()).unwrap());
+        let rendering = renderer.film().unwrap();
+        assert_same_bits(&rendering.film, &film, &format!("{parts:?}, {max_binding}"));
+        assert_eq!(rendering.rays, rays, "{parts:?}, {max_binding}");
+    }
+}
+
+/// One upload for every camera, size, number of samples and light that follows.
+#[test]
+fn views_of_one_upload() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = shipped("lights");
+    let packed = pack(&scene, &scene.cameras[0], settings(&scene, (40, 30), 1));
+    let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+    for (camera, size, samples) in
+        [(0, (40, 30), 1), (1, (40, 30), 1), (1, (13, 70), 2), (0, (8, 8), 1), (0, (50, 9), 3)]
+    {
+        let view = View::of(&packed, &scene.cameras[camera], size, samples).unwrap();
+        let rendering = renderer.render(&view, &|_| ()).unwrap();
+        let want = pack(&scene, &scene.cameras[camera], settings(&scene, size, samples));
+        let (film, rays) = on_cpu::<f32>(&want);
+        assert_same_bits(&rendering.film, &film, &format!("camera {camera}, {size:?}"));
+        assert_eq!(rendering.rays, rays);
+    }
+    for light in &mut scene.lights {
+        let (Light::Point { colour, .. } | Light::Spot { colour, .. } | Light::Directional { colour, .. }) = light;
+        *colour *= 0.25;
+    }
+    renderer.set_lights(&scene.lights).unwrap();
+    let dimmed = pack(&scene, &scene.cameras[0], settings(&scene, (40, 30), 1));
+    let rendering = renderer.render(&dimmed.view, &|_| ()).unwrap();
+    assert_same_bits(&rendering.film, &on_cpu::<f32>(&dimmed).0, "dimmed");
+}
+
+/// Cameras far outside the scene, whose rays first come close to it.
+#[test]
+fn cameras_from_afar() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = still_life();
+    let ahead = Vec3::new(0.0, -0.2, -3.5);
+    for distance in [5.0f32, 60.0, 4000.0, 1e6] {
+        let aside = Vec3::new(0.4, 0.6, 1.0).normalize();
+        let camera = &mut scene.cameras[0];
+        (camera.eye, camera.target) = (ahead + aside * distance, ahead);
+        camera.fov = 2.0 * (4.0 / distance).atan().to_degrees();
+        let packed = pack(&scene, &scene.cameras[0], scene.settings);
+        assert_same(&gpu, &packed, &format!("{distance} away"));
+        let (film, rays) = on_cpu::<f32>(&packed);
+        assert!(rays.shadow > u64::from(61 * 45u32) / 2, "{distance} away, the scene fills the picture");
+        assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()));
     }
 }

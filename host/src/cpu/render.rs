@@ -178,3 +178,83 @@ where
 {
     Renderer::new(packed, traversal, threads)?.render::<R>(view, done, &())
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::quality::Bvh;
+    use crate::scene::{self, Scene, Settings};
+
+    fn lights() -> Scene {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
+        scene::load(path.as_ref()).unwrap().0
+    }
+
+    fn packed(scene: &Scene, settings: Settings) -> DeviceScene {
+        DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap()
+    }
+
+    /// Three threads, a picture of whole and broken tiles, and reflected rays.
+    #[test]
+    fn samples_in_parts_are_the_samples_at_once() {
+        let scene = lights();
+        let packed = packed(&scene, Settings { size: (45, 37), samples: 3, ..scene.settings });
+        let view = View::new(&packed, &scene.cameras[0]).unwrap();
+        let renderer = Renderer::new(&packed, Traversal::default(), 3).unwrap();
+        let (whole, rays) = renderer.render::<f32>(&view, &|_| (), &()).unwrap();
+        for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3, 99]] {
+            let mut picture = renderer.start::<f32>(&view);
+            parts.iter().for_each(|&count| renderer.add(&mut picture, count));
+            let (film, counted) = picture.film().unwrap();
+            assert!(picture.samples() == 9 && film.bits_equal(&whole), "{parts:?}");
+            assert_eq!(counted, rays, "{parts:?}");
+        }
+    }
+
+    #[test]
+    fn a_picture_of_some_samples_is_their_mean_and_of_none_black() {
+        let scene = lights();
+        let packed = packed(&scene, Settings { size: (16, 12), samples: 2, bounces: 0, ..scene.settings });
+        let view = View::new(&packed, &scene.cameras[0]).unwrap();
+        let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
+        let mut picture = renderer.start::<f32>(&view);
+        assert!(picture.film().unwrap().0.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        renderer.add(&mut picture, 1);
+        let one = picture.film().unwrap().0;
+        renderer.add(&mut picture, 3);
+        let four = picture.film().unwrap().0;
+        let brightness = |film: &Film| film.pixels.as_flattened().iter().sum::<f32>() / film.pixels.len() as f32;
+        assert!(brightness(&one) > 0.1 && (brightness(&one) / brightness(&four) - 1.0).abs() < 0.05);
+        assert!(!one.bits_equal(&four));
+    }
+
+    /// Cameras, sizes and lights' values change without another scene.
+    #[test]
+    fn what_changes_from_frame_to_frame_needs_no_other_scene() {
+        let mut scene = lights();
+        let settings = Settings { size: (24, 18), samples: 1, ..scene.settings };
+        let first = packed(&scene, settings);
+        let mut renderer = Renderer::new(&first, Traversal::default(), 2).unwrap();
+        for (size, camera) in [((24, 18), 1), ((7, 40), 0), ((24, 18), 0)] {
+            let view = View::of(&first, &scene.cameras[camera], size, 1).unwrap();
+            let film = renderer.render::<f32>(&view, &|_| (), &()).unwrap().0;
+            let fresh = packed(&scene, Settings { size, ..settings });
+            let view = View::new(&fresh, &scene.cameras[camera]).unwrap();
+            assert!(film.bits_equal(&render::<f32>(&fresh, &view, Traversal::default(), 1, &|_| ()).unwrap().0));
+        }
+        for light in &mut scene.lights {
+            if let Light::Point { position, colour } | Light::Spot { position, colour, .. } = light {
+                (*position, *colour) = (*position + Vec3::Y * 0.1, *colour * 0.5);
+            }
+        }
+        renderer.set_lights(&scene.lights).unwrap();
+        let view = View::new(&first, &scene.cameras[0]).unwrap();
+        let film = renderer.render::<f32>(&view, &|_| (), &()).unwrap().0;
+        let fresh = packed(&scene, settings);
+        assert!(film.bits_equal(&render::<f32>(&fresh, &view, Traversal::default(), 1, &|_| ()).unwrap().0));
+        scene.lights.pop();
+        assert!(renderer.set_lights(&scene.lights).unwrap_err().to_string().contains("lights of other kinds"));
+    }
+}

@@ -97,3 +97,40 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     let lit = [FRAME, TRIANGLES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
     assert_eq!(bindings("exact::shade", effects(Effects::SMOOTH | Effects::LIT)), lit);
 }
+
+/// The list of what a stage binds is what its kernels reach for some scene, no less and no more.
+#[test]
+fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
+    use eyerays_shader::entry::bound;
+    use eyerays_shader::resources::RESOURCES;
+    for module in MODULES {
+        let kernels = Kernels::parse(module).unwrap();
+        for entry in kernels.names() {
+            let (votes, persistent) = (entry.starts_with("subgroup_"), entry.contains("::persistent::"));
+            let named: &[&str] = match entry.rsplit("::").next().unwrap() {
+                "trace" if persistent => bound::persistent::trace,
+                "shadow" if persistent => bound::persistent::shadow,
+                "trace" => bound::trace,
+                "shadow" => bound::shadow,
+                "shade" if votes => bound::voting::shade,
+                "shade" => bound::shade,
+                "advance" => bound::advance,
+                "gather" => bound::gather,
+                other => panic!("a stage {other}"),
+            };
+            let mut reached: Vec<&str> = Vec::new();
+            for spec in specialisations() {
+                let kernel = kernels.cut(&entry, &spec.constants()).unwrap();
+                reached.extend(kernel.bindings().iter().map(|&binding| RESOURCES[binding as usize].parameter));
+            }
+            reached.sort_unstable();
+            reached.dedup();
+            let mut named = named.to_vec();
+            named.sort_unstable();
+            // A method walks one of the hierarchies, and the stages of all share a list.
+            let other = if entry.contains("::wide::") { "nodes" } else { "wide" };
+            named.retain(|resource| *resource != other);
+            assert_eq!(reached, named, "{entry}");
+        }
+    }
+}

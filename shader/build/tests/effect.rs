@@ -1,0 +1,171 @@
+//! An effect that no scene has costs nothing: a copy of the kernels with another one gives the same folded modules.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use eyerays::device_scene::DeviceScene;
+use eyerays::gpu::{Recipe, Target};
+use eyerays::method::{Processor, Traversal};
+use eyerays::plan::{Plan, Stage};
+use eyerays::quality::Bvh;
+use eyerays::scene;
+use eyerays_passes::{Kernel, Kernels};
+use eyerays_shader::data::{Effects, Specialisation};
+use eyerays_spirv::compiler::Compiler;
+use eyerays_spirv::table::{MODULES, Module};
+use eyerays_spirv::{compile, pass, source};
+
+const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
+
+/// An edit of a source file.
+type Edit = (&'static str, &'static str, &'static str);
+
+/// Leaves out what takes long to compile and `auto` never takes: fast precision, and most methods.
+const SHORTER: [Edit; 2] = [
+    ("src/entry/kernels.rs", "precision!(Fast, fast, subgroup_fast);\n", ""),
+    (
+        "src/entry/kernels.rs",
+        "        $(methods! { @$only $lanes $R, $module, $method, $($persistent)? })*\n",
+        "        methods! { @$only alone $R, if_if, IfIf, }\n        methods! { @$only alone $R, while_while, WhileWhile<Alone>, }\n",
+    ),
+];
+
+/// A resource, an effect that asks for it, and what it does to a surface.
+const DUMMY: [Edit; 5] = [
+    (
+        "src/resources.rs",
+        "            16 arguments ARGUMENTS: Write u32, \"arguments\";\n",
+        "            16 arguments ARGUMENTS: Write u32, \"arguments\";\n            17 dummy DUMMY: Read UVec4, \"dummy\";\n",
+    ),
+    (
+        "src/data/specialisation.rs",
+        "        LIT = 9;\n",
+        "        LIT = 9;\n        /// Twice as bright where the dummy says so.\n        DUMMY = 10;\n",
+    ),
+    (
+        "src/entry/mod.rs",
+        "[frame triangles normals materials lights paths hits shadows sums queue next counters] {",
+        "[frame triangles normals materials lights paths hits shadows sums queue next counters dummy] {",
+    ),
+    (
+        "src/entry/mod.rs",
+        "let looks = ShadingData { normals, materials, lights };",
+        "let looks = ShadingData { normals, materials, lights, dummy };",
+    ),
+    (
+        "src/integrator/whitted.rs",
+        "    add(launch, sums, slot, &path, light, rays);\n    if",
+        "    let mut light = light;\n    if launch.spec.effects.has(Effects::DUMMY) {\n        light = light * R::splat(f32::from_bits(read(looks.dummy, 0).x));\n    }\n    add(launch, sums, slot, &path, light, rays);\n    if",
+    ),
+];
+
+/// The field that hands the dummy on.
+const FIELD: Edit = (
+    "src/scene.rs",
+    "    /// Lights in file order.\n    pub lights: &'a [Light],\n",
+    "    /// Lights in file order.\n    pub lights: &'a [Light],\n    /// The dummy.\n    pub dummy: &'a [UVec4],\n",
+);
+
+/// The compiler, where there is one.
+fn compiler() -> Option<Compiler> {
+    let toolchain = std::env::var("EYERAYS_SPIRV_TOOLCHAIN").ok();
+    match Compiler::find(toolchain, std::env::var_os("EYERAYS_SPIRV_CODEGEN").map(PathBuf::from)) {
+        Ok(compiler) => Some(compiler),
+        Err(error) => {
+            eprintln!("skipped: {error}");
+            None
+        }
+    }
+}
+
+/// The shader's crate with edits, as a workspace of its own that shares the outputs of dependencies with this one.
+fn copied(folder: &Path, edits: &[Edit]) -> PathBuf {
+    let (shader, root) = (source::shader(), source::shader().join(".."));
+    let copy = folder.join("shader");
+    copy_folder(&shader.join("src"), &copy.join("src"));
+    copy_folder(&shader.join("spirv"), &copy.join("spirv"));
+    fs::copy(shader.join("Cargo.toml"), copy.join("Cargo.toml")).unwrap();
+    fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
+    let workspace = fs::read_to_string(root.join("Cargo.toml")).unwrap();
+    let members =
+        "members = [\"shader\", \"shader/build\", \"shader/passes\", \"bvh\", \"host\", \"host/command\", \"tests\"]";
+    let rest = workspace.split_once("[workspace.package]").expect("the workspace's own keys").1;
+    assert!(workspace.contains(members), "the members have changed");
+    fs::write(
+        folder.join("Cargo.toml"),
+        format!("[workspace]\nresolver = \"3\"\nmembers = [\"shader\"]\n[workspace.package]{rest}"),
+    )
+    .unwrap();
+    fs::create_dir(folder.join(".cargo")).unwrap();
+    let target = root.canonicalize().unwrap().join("target");
+    fs::write(folder.join(".cargo/config.toml"), format!("[build]\ntarget-dir = {:?}\n", target.join("effect")))
+        .unwrap();
+    for (file, old, new) in edits {
+        let path = copy.join(file);
+        let text = fs::read_to_string(&path).unwrap();
+        assert!(text.contains(old), "{file} has no longer: {old}");
+        fs::write(path, text.replace(old, new)).unwrap();
+    }
+    copy
+}
+
+fn copy_folder(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap() {
+        let entry = entry.unwrap();
+        let to = to.join(entry.file_name());
+        if entry.file_type().unwrap().is_dir() {
+            copy_folder(&entry.path(), &to);
+        } else {
+            fs::copy(entry.path(), to).unwrap();
+        }
+    }
+}
+
+/// The exact kernels of a copy with these edits: those of lanes alone, and those that vote.
+fn kernels(compiler: &Compiler, edits: &[Edit]) -> [Kernels; 2] {
+    let folder = tempfile::tempdir().unwrap();
+    let words = compile::compile(compiler, &copied(folder.path(), edits)).unwrap_or_else(|e| panic!("{e}"));
+    let of = |prefix: &str| {
+        let table: &Module = MODULES.iter().find(|module| module.prefix == prefix).expect("a module of exact kernels");
+        let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
+        Kernels::parse(&compile::bytes(&finished.words())).unwrap()
+    };
+    ["exact::", "subgroup_exact::"].map(of)
+}
+
+/// What each step of a scene's pictures runs by default.
+fn recipes(name: &str) -> Vec<(String, Specialisation, Stage)> {
+    let path = source::shader().join("../scenes").join(name).with_extension("toml");
+    let (scene, _) = scene::load(&path).unwrap();
+    let scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+    let traversal = Traversal::default();
+    let plan = Plan::new(&scene, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence))).unwrap();
+    let target = Target { exact: true, subgroups: true };
+    plan.steps().map(|&step| (Recipe::new(step, target).name, step.spec, step.stage)).collect()
+}
+
+fn cut(kernels: &[Kernels; 2], name: &str, spec: Specialisation) -> Kernel {
+    kernels[usize::from(name.starts_with("subgroup_"))].cut(name, &spec.constants()).unwrap_or_else(|e| panic!("{e}"))
+}
+
+#[test]
+fn an_effect_that_no_scene_has_changes_no_kernel() {
+    let Some(compiler) = compiler() else { return };
+    let before = kernels(&compiler, &SHORTER);
+    let edits: Vec<Edit> = SHORTER.into_iter().chain(DUMMY).chain([FIELD]).collect();
+    let after = kernels(&compiler, &edits);
+    for scene in SHIPPED {
+        for (name, spec, stage) in recipes(scene) {
+            let [old, new] = [&before, &after].map(|kernels| cut(kernels, &name, spec));
+            assert_eq!(old.bindings(), new.bindings(), "{scene}: {name}");
+            assert!(old.words() == new.words(), "{scene}: {name} has other instructions");
+            // And the effect is there for those that ask for it.
+            if stage == Stage::Shade {
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 10), ..spec };
+                let dummy = cut(&after, &name, asked);
+                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&17), "{scene}: {name}");
+            }
+        }
+    }
+}

@@ -1,6 +1,6 @@
 //! Rays of one's own, in the scene's units, traced many at once.
 
-use eyerays_shader::camera;
+use eyerays_shader::ray;
 use eyerays_shader::real::V3;
 use glam::{DVec3, UVec4, Vec3};
 
@@ -30,6 +30,20 @@ pub struct Hit {
 }
 
 /// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
+///
+/// ```
+/// # use eyerays::{cpu, device_scene::DeviceScene, method::Method, quality::Bvh, scene, stream::Question};
+/// use eyerays::batch::{Batch, Ray};
+/// # fn main() -> eyerays::error::Result<()> {
+/// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
+/// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let down = Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into());
+/// let batch = Batch::new(&device_scene, &[down]);
+/// let (answers, _time) = cpu::cast(&device_scene, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
+/// assert!(batch.hits(&device_scene, &answers)[0].is_some_and(|hit| hit.distance <= 1.0));
+/// # Ok(())
+/// # }
+/// ```
 pub struct Batch {
     stream: Stream,
     /// How far each ray was moved along itself towards the scene, in the scene's units.
@@ -87,7 +101,7 @@ fn placed(packed: &DeviceScene, ray: &Ray) -> (StreamRay, f64) {
         _ => (Vec3::ZERO, -1.0),
     };
     let vector = |v: Vec3| V3::<f32>::splat(v);
-    let near = camera::approach(vector(origin), vector(direction));
+    let near = ray::Ray::from_afar(vector(origin), vector(direction)).origin;
     let near = Vec3::new(near.x, near.y, near.z);
     let moved = DVec3::distance(near.as_dvec3(), origin.as_dvec3()) / normalisation.scale;
     let limit = ((length - moved) * normalisation.scale).clamp(-1.0, f64::from(f32::MAX)) as f32;

@@ -1,4 +1,27 @@
-//! Eyerays: scenes, packing, the CPU and GPU executors, films and images.
+//! Eyerays: a ray tracer whose kernels are written once, for the CPU and for GPUs, with the same bits on both.
+//!
+//! A [`scene`] becomes a [`device_scene::DeviceScene`]: normalised, checked, with its hierarchy. A [`view::View`] says from
+//! where it is seen. [`render::Backend`] renders on the device that fits; [`cpu::Renderer`] and [`gpu::Renderer`] keep a
+//! scene for many pictures.
+//!
+//! ```
+//! use eyerays::device_scene::DeviceScene;
+//! use eyerays::quality::Bvh;
+//! use eyerays::render::{Backend, Choice, DeviceWish};
+//! use eyerays::scene::{self, Settings};
+//! use eyerays::view::View;
+//!
+//! # fn main() -> eyerays::error::Result<()> {
+//! let (scene, _warnings) = scene::load("../scenes/cornell.toml".as_ref())?;
+//! let settings = Settings { size: (32, 32), samples: 1, ..scene.settings };
+//! let device_scene = DeviceScene::new(&scene, settings, Bvh::Medium.quality())?;
+//! let view = View::new(&device_scene, &scene.cameras[0])?;
+//! let backend = Backend::new(&Choice { device: DeviceWish::Cpu, ..Choice::default() })?;
+//! let rendering = backend.render(&device_scene, &view, 1, &|_pixels| ())?;
+//! assert_eq!(rendering.film.pixels.len(), 32 * 32);
+//! # Ok(())
+//! # }
+//! ```
 
 // A library says nothing; and a closed standard error makes these panic.
 #![cfg_attr(not(test), warn(clippy::print_stderr, clippy::print_stdout))]

@@ -94,10 +94,10 @@ impl View {
             left: region.x,
             top: region.y,
             columns: region.width,
+            across: camera::across(region.width, order),
             rows: region.height,
             pixel_slots,
             slots: count * pixel_slots,
-            restart: u32::from(first == 0),
             ..self.frame
         }
     }

@@ -1,7 +1,7 @@
 //! Pixels to rays.
 
 use crate::data::{Frame, Order, numbers};
-use crate::real::{Scalar, TINY, V3};
+use crate::real::{Scalar, V3};
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
 /// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
@@ -20,6 +20,11 @@ pub fn blocks(order: Order) -> (u32, u32) {
 pub fn slots(width: u32, height: u32, order: Order) -> u32 {
     let (columns, rows) = blocks(order);
     width.next_multiple_of(columns) * height.next_multiple_of(rows)
+}
+
+/// Blocks that lie beside each other in a region of so many columns.
+pub fn across(width: u32, order: Order) -> u32 {
+    width.div_ceil(blocks(order).0)
 }
 
 /// A slot's sample: a pixel within the launch's region, and which of its samples.
@@ -43,9 +48,8 @@ pub struct Pixel {
 pub fn pixel(frame: &Frame, order: Order, slot: u32) -> Pixel {
     let (width, height) = (frame.columns, frame.rows);
     let (columns, rows) = blocks(order);
-    let across = width.div_ceil(columns);
     // A host never launches an empty region; these keep divisions by zero out of the kernel.
-    let across = if across == 0 { 1 } else { across };
+    let across = if frame.across == 0 { 1 } else { frame.across };
     let pixel_slots = if frame.pixel_slots == 0 { 1 } else { frame.pixel_slots };
     let (sample, slot) = (frame.sample + slot / pixel_slots, slot % pixel_slots);
     let (block, lane) = (slot / (columns * rows), slot % (columns * rows));
@@ -54,28 +58,6 @@ pub fn pixel(frame: &Frame, order: Order, slot: u32) -> Pixel {
     let (x, y) = (block % across * columns + right, block / across * rows + down);
     Pixel { x, y, inside: x < width && y < height, index: y * width + x, sample }
 }
-
-/// Where a ray that starts outside the cube [-1, 1], in which the scene lies, comes close to it: the errors of the tests
-/// of boxes and triangles are bounded for coordinates of that size (docs/numerics.md). It stops short of the cube by more
-/// than the step errs, so that nothing on the cube's faces is passed.
-#[inline(always)]
-pub fn approach<R: Scalar>(origin: V3<R>, direction: V3<R>) -> V3<R> {
-    let one = R::splat(1.0);
-    if origin.abs().greatest().le(one) {
-        return origin;
-    }
-    let entry = |origin: R, direction: R| {
-        let along = if direction.lt(R::splat(0.0)) { -origin } else { origin };
-        if direction.abs().le(R::splat(TINY)) { R::splat(0.0) } else { (-one - along).div(direction.abs()) }
-    };
-    let (x, y, z) = (entry(origin.x, direction.x), entry(origin.y, direction.y), entry(origin.z, direction.z));
-    let distance = x.max(y).max(z) * R::splat(1.0 - SHORT_SHARE) - R::splat(SHORT);
-    if R::splat(0.0).lt(distance) { origin + direction * distance } else { origin }
-}
-
-/// How far before the cube a ray stops, and which share of its way: a step of length D errs by some D * 2^-24.
-const SHORT: f32 = 1.0 / 64.0;
-const SHORT_SHARE: f32 = 1.0 / (1 << 20) as f32;
 
 /// The even bits of a 12-bit number, put together: a coordinate of a place on a Morton curve.
 #[inline(always)]
@@ -121,6 +103,7 @@ mod tests {
             sample,
             columns: width,
             rows: height,
+            across: across(width, order),
             pixel_slots,
             slots: batch * pixel_slots,
             ..Frame::default()
@@ -163,32 +146,5 @@ mod tests {
             .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
             .collect();
         assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);
-    }
-
-    #[test]
-    fn rays_from_afar_come_close_to_the_scene_and_others_stay() {
-        let vector = |v: Vec3| V3::<f32>::new(v.x, v.y, v.z);
-        let approached = |origin: Vec3, direction: Vec3| {
-            let near = approach(vector(origin), vector(direction));
-            Vec3::new(near.x, near.y, near.z)
-        };
-        for inside in [Vec3::ZERO, Vec3::ONE, Vec3::new(-1.0, 0.5, 0.25)] {
-            assert_eq!(approached(inside, Vec3::X), inside);
-        }
-        for distance in [1.5f32, 3.0, 100.0, 1e4, 1e6] {
-            for target in [Vec3::ZERO, Vec3::new(0.9, -0.9, 0.3), Vec3::new(-1.0, 1.0, 0.0)] {
-                let direction = Vec3::new(0.3, -0.5, -0.8).normalize();
-                let origin = target - direction * (2.0 * distance);
-                let near = approached(origin, direction);
-                let size = near.abs().max_element();
-                // Outside, so that nothing is passed, and at a distance that the errors are bounded for.
-                assert!(size > 1.0 && size < 1.0 + 2.0 * SHORT + 2e-6 * distance, "{distance}, {target}: {near}");
-                let beside = (near - target) - direction * (near - target).dot(direction);
-                assert!(beside.length() < 1e-6 * distance.max(1.0), "{distance}, {target}: {near} is beside the ray");
-            }
-        }
-        let away = Vec3::new(3.0, 0.0, 0.0);
-        assert_eq!(approached(away, Vec3::X), away, "what goes away stays");
-        assert_eq!(approached(away, Vec3::Y), away, "and what passes by in parallel");
     }
 }

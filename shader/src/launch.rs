@@ -9,9 +9,9 @@ pub const ROW: u32 = 1 << 21;
 
 /// Places in the buffer of a wave's indirect dispatches.
 pub mod argument {
-    /// Three words: a thread a slot.
+    /// Three words: a thread a slot. A wave changes the first of them.
     pub const SLOTS: u32 = 0;
-    /// Three words: a thread for each shadow ray that a slot may ask for.
+    /// Three words: a thread for each shadow ray that a slot may ask for. A wave changes the first of them.
     pub const SHADOWS: u32 = 4;
     /// Words in all.
     pub const LENGTH: u32 = 8;
@@ -31,8 +31,8 @@ pub mod counter {
     pub const WAVES: u32 = 4;
     /// Words that every launch starts with as zeros.
     pub const LAUNCH: u32 = 5;
-    /// Secondary rays of all launches since the buffer was cleared: 64 bits, the lower word first.
-    pub const RAYS: u32 = 6;
+    /// Secondary rays of all launches since the host set it to 0, which it does before there may be 2^32.
+    pub const RAYS: u32 = 5;
     /// Words in all.
     pub const LENGTH: u32 = 8;
 }

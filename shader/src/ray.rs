@@ -44,6 +44,20 @@ impl<R: Real> Ray<R> {
     /// A ray that starts on a triangle.
     #[inline(always)]
     pub fn leaving(source_primitive: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
+        Self::prepared(source_primitive, origin, direction, false)
+    }
+
+    /// A ray from a finite place that may lie outside the cube [-1, 1]. The scene lies in that cube, and the errors of the tests of
+    /// boxes and triangles are bounded for coordinates of its size (docs/numerics.md): if it starts outside, the ray starts
+    /// from where it comes close to the cube instead, and t counts from there. It stops short of the cube by more than the
+    /// step errs, so that nothing on its faces is passed.
+    #[inline(always)]
+    pub fn from_afar(origin: V3<R>, direction: V3<R>) -> Self {
+        Self::prepared(R::index(Hit::<R>::NOTHING), origin, direction, true)
+    }
+
+    #[inline(always)]
+    pub(crate) fn prepared(source_primitive: R::Index, origin: V3<R>, direction: V3<R>, from_afar: bool) -> Self {
         // NaN counts as zero too, since its reciprocal differs between devices.
         let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
         let size = d.abs();
@@ -54,7 +68,11 @@ impl<R: Real> Ray<R> {
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
         shear.y = (cycled.y * along).flush(TINY);
-        let origin = V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z));
+        let origin = if from_afar {
+            origin + approach(inverse, origin.times(inverse), d)
+        } else {
+            V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z))
+        };
         Ray { origin, inverse, offset: origin.times(inverse), shear, source_primitive }
     }
 
@@ -83,6 +101,21 @@ fn inverted<R: Real>(component: R) -> R {
     let least = R::select(component.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
     R::select(component.eq(R::splat(0.0)), least, component).reciprocal()
 }
+
+/// The step that takes a ray along its direction close to the cube [-1, 1]: none if it starts inside.
+#[inline(always)]
+fn approach<R: Real>(inverse: V3<R>, offset: V3<R>, direction: V3<R>) -> V3<R> {
+    // Minus the distances at which the ray enters the slabs between the cube's faces; the last counts.
+    let entry = inverse.abs() + offset;
+    let distance = entry.x.min(entry.y).min(entry.z) * R::splat(SHORT_SHARE - 1.0) - R::splat(SHORT);
+    // What is added is no tinier than what the host gives, so that no coordinate is subnormal.
+    (direction * distance.max(R::splat(0.0))).map(|c| c.flush(TINY))
+}
+
+/// How far before the cube a ray that comes from outside stops, in lengths of its direction, and by which share of its
+/// way: a step of length D errs by some D * 2^-24.
+const SHORT: f32 = 1.0 / 64.0;
+const SHORT_SHARE: f32 = 1.0 / (1 << 20) as f32;
 
 /// Far outside of a scene within [-1, 1], without overflow when squared.
 const BEYOND: f32 = 1.0 / SMALL;
@@ -172,5 +205,37 @@ impl<const N: usize> Shear<crate::real::F32xN<N>> {
     pub(crate) fn lane(&self, i: usize) -> Shear<f32> {
         let (x_major, y_major) = (self.x_major.0[i] != 0, self.y_major.0[i] != 0);
         Shear { x: self.x.0[i], y: self.y.0[i], x_major, y_major }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rays_from_afar_come_close_to_the_scene_and_others_stay() {
+        let vector = |v: Vec3| V3::<f32>::new(v.x, v.y, v.z);
+        let approached = |origin: Vec3, direction: Vec3| {
+            let near = Ray::from_afar(vector(origin), vector(direction)).origin;
+            Vec3::new(near.x, near.y, near.z)
+        };
+        for inside in [Vec3::ZERO, Vec3::ONE, Vec3::new(-1.0, 0.5, 0.25)] {
+            assert_eq!(approached(inside, Vec3::X), inside);
+        }
+        for distance in [1.5f32, 3.0, 100.0, 1e4, 1e6] {
+            for target in [Vec3::ZERO, Vec3::new(0.9, -0.9, 0.3), Vec3::new(-1.0, 1.0, 0.0)] {
+                let direction = Vec3::new(0.3, -0.5, -0.8).normalize();
+                let origin = target - direction * (2.0 * distance);
+                let near = approached(origin, direction);
+                let size = near.abs().max_element();
+                // Outside, so that nothing is passed, and at a distance that the errors are bounded for.
+                assert!(size > 1.0 && size < 1.0 + 2.0 * SHORT + 2e-6 * distance, "{distance}, {target}: {near}");
+                let beside = (near - target) - direction * (near - target).dot(direction);
+                assert!(beside.length() < 1e-6 * distance.max(1.0), "{distance}, {target}: {near} is beside the ray");
+            }
+        }
+        let away = Vec3::new(3.0, 0.0, 0.0);
+        assert_eq!(approached(away, Vec3::X), away, "what goes away stays");
+        assert_eq!(approached(away, Vec3::Y), away, "and what passes by in parallel");
     }
 }

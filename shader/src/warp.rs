@@ -83,3 +83,26 @@ pub fn take(wants: bool, lane: u32, counters: &mut [u32], counter: u32) -> u32 {
     }
     subgroup_broadcast_first(first) + before
 }
+
+/// Positions for the lanes of a subgroup that want one at the end of a list whose length a counter in device memory
+/// keeps: one atomic addition for all of them.
+#[cfg(target_arch = "spirv")]
+#[inline(always)]
+pub fn append(wants: bool, counters: &mut [u32], counter: u32) -> u32 {
+    use spirv_std::arch::{
+        atomic_i_add, subgroup_broadcast_first, subgroup_elect, subgroup_exclusive_i_add, subgroup_i_add,
+    };
+    use spirv_std::memory::{Scope, Semantics};
+    let own = if wants { 1 } else { 0 };
+    let (before, count) = (subgroup_exclusive_i_add(own), subgroup_i_add(own));
+    let mut first = 0;
+    if subgroup_elect() {
+        // SAFETY: the host sizes the counters; the addition is atomic.
+        first = unsafe {
+            use spirv_std::arch::IndexUnchecked;
+            let length = counters.index_unchecked_mut(counter as usize);
+            atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(length, count)
+        };
+    }
+    subgroup_broadcast_first(first) + before
+}

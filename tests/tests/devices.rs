@@ -207,7 +207,7 @@ fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
     gpu.report.max_binding = 1000;
     let error = Renderer::new(&gpu, &packed, true, Traversal::default()).err().expect("it does not fit").to_string();
     let size = size_of_val(packed.nodes()).to_string();
-    for part in ["hierarchy", &size, "1000", &gpu.report.name, "--device cpu"] {
+    for part in ["hierarchy", &size, "1000", &gpu.report.name] {
         assert!(error.contains(part), "{error}: no {part}");
     }
 }

@@ -24,6 +24,24 @@ const PATH_MEMORY: u64 = 64 << 20;
 const TILE: u32 = 32;
 
 /// A scene laid out for the CPU, with the threads to render it: made once for any number of pictures.
+///
+/// Samples can be added to a picture bit by bit, with the bits of all at once:
+///
+/// ```
+/// # use eyerays::{cpu::Renderer, device_scene::DeviceScene, method::Traversal, quality::Bvh, scene, view::View};
+/// # fn main() -> eyerays::error::Result<()> {
+/// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
+/// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let view = View::of(&device_scene, &scene.cameras[0], (16, 16), 2)?;
+/// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
+/// let mut picture = renderer.start::<f32>(&view);
+/// while picture.samples() < view.samples() {
+///     renderer.add(&mut picture, 1);
+///     let (_so_far, _rays) = picture.film()?;
+/// }
+/// # Ok(())
+/// # }
+/// ```
 pub struct Renderer<'a> {
     planned: Planned<'a>,
     threads: rayon::ThreadPool,

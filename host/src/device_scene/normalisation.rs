@@ -42,7 +42,7 @@ impl Normalisation {
     /// far away for the kernel's numbers.
     pub fn place_anywhere(&self, p: Vec3) -> Option<Vec3> {
         let placed = self.place(p);
-        (placed.abs().max_element() < FARTHEST).then_some(placed)
+        placed.to_array().iter().all(|x| x.abs() < FARTHEST).then_some(placed)
     }
 
     /// A place as a kernel takes it; coordinates below 2^-60 are zero (no subnormals).

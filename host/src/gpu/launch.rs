@@ -1,6 +1,5 @@
 //! One launch on the GPU, and the queue of those that are under way.
 
-use std::cell::Cell;
 use std::collections::VecDeque;
 use std::time::Duration;
 
@@ -42,16 +41,21 @@ pub(super) struct Queue<'a> {
     /// Passes since the times were read.
     passes: u32,
     time: Duration,
+    /// Secondary rays that were taken from the device.
+    rays: u64,
+    /// The most that the device may have counted since.
+    uncounted: u64,
     /// Submissions with the pixels that each finishes.
     under_way: VecDeque<(wgpu::SubmissionIndex, u64)>,
     done: u64,
     /// The most waves that a launch of branching rays took so far.
-    waves: Cell<u32>,
+    waves: u32,
 }
 
 /// What [`Queue::read`] brings.
 pub(super) struct Read {
-    pub counters: Vec<u32>,
+    /// Secondary rays since [`Queue::restart`].
+    pub rays: u64,
     /// Of all passes since [`Queue::restart`].
     pub device_time: Option<Duration>,
 }
@@ -65,9 +69,11 @@ impl<'a> Queue<'a> {
             counters: Readback::new(gpu, COUNTERS),
             passes: 0,
             time: Duration::ZERO,
+            rays: 0,
+            uncounted: 0,
             under_way: VecDeque::new(),
             done: 0,
-            waves: Cell::new(0),
+            waves: 0,
         }
     }
 
@@ -80,6 +86,7 @@ impl<'a> Queue<'a> {
     pub fn restart(&mut self, counters: &wgpu::Buffer) {
         self.gpu.queue.write_buffer(counters, 0, &[0; COUNTERS as usize]);
         (self.passes, self.time) = (0, Duration::ZERO);
+        (self.rays, self.uncounted) = (0, 0);
     }
 
     /// Pixels that were finished since this was asked last. Waits while too many launches are under way.
@@ -122,7 +129,7 @@ impl<'a> Queue<'a> {
             offset += size;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let counters = readback.read(self.gpu, size, |bytes| {
+        let words: Vec<u32> = readback.read(self.gpu, size, |bytes| {
             let (counters, mut rest) = bytes.split_at(COUNTERS as usize);
             if let (Some(timer), Some((_, size))) = (&self.timer, timed) {
                 let (times, films) = rest.split_at(size as usize);
@@ -137,8 +144,16 @@ impl<'a> Queue<'a> {
             readback::words(counters).collect()
         })?;
         (self.readback, self.passes) = (Some(readback), 0);
+        self.count(counters, words[counter::RAYS as usize]);
         self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
-        Ok(Read { counters, device_time: self.has_clock().then_some(self.time) })
+        Ok(Read { rays: self.rays, device_time: self.has_clock().then_some(self.time) })
+    }
+
+    /// Takes what the device has counted of secondary rays, and lets it count anew.
+    fn count(&mut self, counters: &wgpu::Buffer, rays: u32) {
+        self.gpu.queue.write_buffer(counters, 4 * u64::from(counter::RAYS), &[0; 4]);
+        self.rays += u64::from(rays);
+        self.uncounted = 0;
     }
 
     /// Begins the pass of a submission.
@@ -185,15 +200,22 @@ impl<'l, 'a> Launch<'l, 'a> {
         queue: &'l mut Queue<'a>,
     ) -> Result<Self> {
         let gpu = queue.gpu;
-        if queue.passes + MOST_PASSES > PASSES && queue.has_clock() {
+        let rays = match plan.waves {
+            Waves::AtMost(count) => u64::from(count) * u64::from(frame.slots),
+            // Counted whenever the waves are looked at.
+            Waves::Branching => 0,
+        };
+        let is_timed_out = queue.passes + MOST_PASSES > PASSES && queue.has_clock();
+        if is_timed_out || queue.uncounted + rays > u64::from(u32::MAX) {
             queue.read(memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
+        queue.uncounted += rays;
         gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
         let mut encoder = gpu.device.create_command_encoder(&Default::default());
         encoder.clear_buffer(memory.buffers.of(binding::COUNTERS), 0, Some(4 * u64::from(counter::LAUNCH)));
         let unseen = match plan.waves {
             Waves::AtMost(count) if count <= UNSEEN => count,
-            _ => queue.waves.get().max(FEW),
+            _ => queue.waves.max(FEW),
         };
         Ok(Launch {
             kernels,
@@ -233,8 +255,11 @@ impl<'l, 'a> Launch<'l, 'a> {
         self.flush();
         let look = |bytes: &[u8]| readback::words(bytes).collect::<Vec<u32>>();
         let counters = self.queue.counters.read(self.queue.gpu, COUNTERS, look)?;
+        if counters[counter::RAYS as usize] > u32::MAX / 2 {
+            self.queue.count(self.memory.buffers.of(binding::COUNTERS), counters[counter::RAYS as usize]);
+        }
         let waves = counters[counter::WAVES as usize];
-        self.queue.waves.set(self.queue.waves.get().max(waves));
+        self.queue.waves = self.queue.waves.max(waves);
         Ok(counters[counter::NEXT as usize] > 0)
     }
 }

@@ -69,7 +69,7 @@ impl LaunchBuffers {
         ];
         let usage = |binding| match binding {
             binding::FRAME => Use::UNIFORM | Use::COPY_DST,
-            binding::ARGUMENTS => Use::STORAGE | Use::INDIRECT,
+            binding::ARGUMENTS => Use::STORAGE | Use::INDIRECT | Use::COPY_DST,
             _ => Use::STORAGE | Use::COPY_SRC | Use::COPY_DST,
         };
         let buffers = exchanged.chain(own).map(|(binding, size)| (binding, buffer(gpu, binding, size, usage(binding))));

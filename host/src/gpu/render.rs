@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use eyerays_shader::camera;
 use eyerays_shader::data::Order;
-use eyerays_shader::launch::counter;
+use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
 use glam::UVec4;
 use wgpu::BufferUsages as Use;
@@ -206,9 +206,7 @@ impl<'a> Renderer<'a> {
                 let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
                 film.develop::<f32>(now[i].region, &records, *samples, &mut rays);
             })?;
-            let [low, high] = [0, 1].map(|i| u64::from(read.counters[(counter::RAYS + i) as usize]));
-            rays.secondary = high << 32 | low;
-            device_time = read.device_time;
+            (rays.secondary, device_time) = (read.rays, read.device_time);
             rest = later;
         }
         rays.primary = view.region().pixels() * u64::from(*samples);
@@ -232,19 +230,26 @@ impl<'a> Renderer<'a> {
         let buffers = loop {
             match LaunchBuffers::new(self.gpu, &self.plan.slot_bytes, slots) {
                 Ok(buffers) => break buffers,
-                Err(_) if slots > LEAST_SLOTS => slots = (slots / 2).next_multiple_of(32),
+                Err(_) if slots > LEAST_SLOTS => {
+                    slots = (slots / 2).next_multiple_of(32);
+                    self.most_slots = slots;
+                }
                 Err(error) => return Err(error),
             }
         };
+        // The kernels write how many groups there are in a row, and no more.
+        let mut arguments = [0; argument::LENGTH as usize];
+        for (of, rows) in [(argument::SLOTS, 1), (argument::SHADOWS, self.plan.shadow_rays)] {
+            (arguments[of as usize + 1], arguments[of as usize + 2]) = (rows, 1);
+        }
+        self.gpu.queue.write_buffer(buffers.of(binding::ARGUMENTS), 0, bytemuck::cast_slice::<u32, u8>(&arguments));
         let group = |kernel: &Kernel, is_second| {
             kernel.group(self.gpu, |binding| self.scene.find(binding).or_else(|| buffers.find(binding, is_second)))
         };
         let both = |kernel: &Kernel| [group(kernel, false), group(kernel, true)];
         let groups = self.kernels.iter().map(|kernel| (!kernel.binds(binding::FILM)).then(|| both(kernel))).collect();
         self.gpu.check()?;
-        // What is remembered of other buffers' launches holds for these.
         self.memory = Some(Memory { buffers, groups });
-        self.most_slots = self.most_slots.min(slots.max(self.most_slots));
         Ok(())
     }
 

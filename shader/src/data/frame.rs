@@ -22,7 +22,7 @@ pub struct Frame {
     pub height: u32,
     /// Samples along a pixel's edge.
     pub samples: u32,
-    /// The launch's first sample within each pixel.
+    /// The launch's first sample within each pixel; number 0 starts the film anew.
     pub sample: u32,
     /// The region's left column.
     pub left: u32,
@@ -32,20 +32,20 @@ pub struct Frame {
     pub columns: u32,
     /// The region's rows.
     pub rows: u32,
+    /// Blocks of pixels that lie beside each other in the region, see [`crate::camera::across`].
+    pub across: u32,
     /// Slots for one sample of every pixel of the region.
     pub pixel_slots: u32,
     /// Slots of the launch, which takes several samples at once: a multiple of `pixel_slots`. Of a stream, its rays.
     pub slots: u32,
     /// How often a ray is reflected or refracted at most.
     pub bounces: u32,
-    /// The least share of its pixel that a ray is followed for.
+    /// The least share of its sample that a ray is followed for.
     pub min_contribution: f32,
     /// How many lights there are.
     pub lights: u32,
     /// The word at which the vertices of indexed triangles start.
     pub vertices: u32,
-    /// Not 0 if the film holds nothing yet that the launch's samples are added to.
-    pub restart: u32,
     /// Shadow rays that a slot asks for in a wave.
     pub shadow_rays: u32,
 }

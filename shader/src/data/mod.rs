@@ -3,7 +3,7 @@
 //! A record is made of 16-byte words of three numbers and an integer. Numbers travel as their bits,
 //! so that an index never passes through a float register (a small integer is a subnormal float,
 //! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
-//! a power of two so that every coordinate, cameras included, lies in [-1, 1].
+//! a power of two so that every vertex lies in [-1, 1].
 
 mod compact;
 mod cwbvh;

@@ -12,7 +12,7 @@ use crate::traverse::{
     Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax,
     WhileWhile,
 };
-use crate::warp::{Alone, Subgroup, take};
+use crate::warp::{Alone, Subgroup, append, take};
 use glam::{UVec3, UVec4};
 use spirv_std::arch::{IndexUnchecked, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
@@ -56,32 +56,21 @@ fn enqueue(slot: u32, next: &mut [u32], counters: &mut [u32]) {
     write(next, position, slot);
 }
 
-/// The arguments of an indirect dispatch.
+/// Starts the next wave: its count, the widths of its dispatches, and what has been traced so far.
 #[inline(always)]
-fn dispatch(at: u32, groups_x: u32, groups_y: u32, arguments: &mut [u32]) {
-    write(arguments, at, groups_x);
-    write(arguments, at + 1, groups_y);
-    write(arguments, at + 2, 1);
-}
-
-/// Starts the next wave: its count, its dispatches, and the rays so far.
-#[inline(always)]
-fn advance_wave(shadow_rays: u32, counters: &mut [u32], arguments: &mut [u32]) {
+fn advance_wave(counters: &mut [u32], arguments: &mut [u32]) {
     let count = read(counters, counter::NEXT);
     let groups = count.div_ceil(WORKGROUP);
-    dispatch(argument::SLOTS, groups, 1, arguments);
-    dispatch(argument::SHADOWS, groups, shadow_rays, arguments);
+    write(arguments, argument::SLOTS, groups);
+    write(arguments, argument::SHADOWS, groups);
     write(counters, counter::COUNT, count);
     write(counters, counter::NEXT, 0);
     write(counters, counter::TRACED, 0);
     write(counters, counter::ASKED, 0);
     let waves = read(counters, counter::WAVES);
     write(counters, counter::WAVES, if count > 0 { waves + 1 } else { waves });
-    let rays = read(counters, counter::RAYS).wrapping_add(count);
-    write(counters, counter::RAYS, rays);
-    if rays < count {
-        write(counters, counter::RAYS + 1, read(counters, counter::RAYS + 1) + 1);
-    }
+    let rays = read(counters, counter::RAYS);
+    write(counters, counter::RAYS, rays.wrapping_add(count));
 }
 
 resources!(declare_entry $);

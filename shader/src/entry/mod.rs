@@ -88,8 +88,8 @@ macro_rules! shading {
 
         entry! {
             /// Turns to the next wave.
-            advance<1>() _spec [frame counters arguments] {
-                advance_wave(frame.shadow_rays, counters, arguments);
+            advance<1>() _spec [counters arguments] {
+                advance_wave(counters, arguments);
             }
         }
 
@@ -107,10 +107,7 @@ macro_rules! voting_shading {
     ($R:ty) => {
         entry! {
             /// Shades the slots of a wave.
-            shade<64>(
-                #[spirv(global_invocation_id)] id: UVec3,
-                #[spirv(subgroup_local_invocation_id)] lane: u32,
-            ) spec [frame triangles normals materials lights paths hits shadows sums queue next counters] {
+            shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame triangles normals materials lights paths hits shadows sums queue next counters] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
@@ -119,7 +116,7 @@ macro_rules! voting_shading {
                 let looks = ShadingData { normals, materials, lights };
                 let goes_on = integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums });
                 if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
-                    let position = take(goes_on, lane, counters, counter::NEXT);
+                    let position = append(goes_on, counters, counter::NEXT);
                     if goes_on {
                         write(next, position, slot);
                     }
@@ -175,7 +172,10 @@ macro_rules! persistent_tracing {
                     &scene,
                     count,
                     move |wants| take(wants, lane, counters, counter::TRACED),
-                    move |number| (stage::traced::<$R>(&scene, queued(spec, number, queue), paths), true),
+                    move |number| {
+                        let (ray, limit) = stage::ray::<$R>(&scene, queued(spec, number, queue), paths);
+                        (ray, limit, true)
+                    },
                     move |number, _, ray, hit| {
                         write(hits, queued(spec, number, queue), stage::found(&scene, ray, hit));
                     },
@@ -188,7 +188,7 @@ macro_rules! persistent_tracing {
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
             [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
                 let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
-                let asking = ShadowInputs { lights, paths: &*paths, hits: &*hits };
+                let inputs = ShadowInputs { lights, paths: &*paths, hits: &*hits };
                 let (count, queue) = (slots(spec, frame, counters), &*queue);
                 // A launch without slots takes no number; the guard spares the division's panic.
                 let row = if count == 0 { 1 } else { count };
@@ -197,7 +197,11 @@ macro_rules! persistent_tracing {
                     &scene,
                     count * rows,
                     move |wants| take(wants, lane, counters, counter::ASKED),
-                    move |number| stage::shadow_ray(&scene, asking, queued(spec, number % row, queue), number / row),
+                    move |number| {
+                        let slot = queued(spec, number % row, queue);
+                        let (segment, faces) = stage::shadow_ray(&scene, inputs, slot, number / row);
+                        (segment.ray(), segment.limit, faces)
+                    },
                     move |number, traced, _, hit| {
                         let answer = if traced { stage::visibility(hit) } else { stage::FACES_AWAY };
                         let slot = queued(spec, number % row, queue);

@@ -34,7 +34,9 @@ struct Branches<R: Real> {
 #[inline(always)]
 pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, sums } = wave;
-    if !camera::pixel(launch.frame, launch.spec.order, slot).inside {
+    // A queue holds no slot of a pixel outside.
+    let is_first = !launch.spec.launch.has(Launch::SECONDARY);
+    if is_first && !camera::pixel(launch.frame, launch.spec.order, slot).inside {
         return false;
     }
     let effects = launch.spec.effects;
@@ -55,7 +57,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &ShadingData<'_>, slo
     follow(launch, slot, &path, branch(launch, &path, triangle.primitive(), (&contact, &surface)), paths)
 }
 
-/// Ambient light and every light that reaches the triangle_index, in file order; and how many were asked.
+/// Ambient light and every light that reaches the place, in file order; and how many were asked.
 #[inline(always)]
 fn lit<R: Scalar>(
     launch: &LaunchContext<'_>,

@@ -15,7 +15,7 @@ pub fn gather<R: Scalar>(frame: &Frame, order: Order, slot: u32, sums: &[R::Reco
         return;
     }
     let (mut colour, mut word) = (V3::zero(), 0);
-    if frame.restart == 0 {
+    if frame.sample > 0 {
         (colour, word) = R::load(read(film, pixel.index));
     }
     let mut at = slot;
@@ -42,14 +42,15 @@ mod tests {
     }
 
     /// `batch` samples in flight of a region of 9x5 pixels.
-    fn frame(batch: u32, restart: bool) -> Frame {
+    fn frame(batch: u32, sample: u32) -> Frame {
         let pixel_slots = camera::slots(9, 5, Order(0));
         Frame {
             columns: 9,
             rows: 5,
+            across: camera::across(9, Order(0)),
             pixel_slots,
             slots: batch * pixel_slots,
-            restart: u32::from(restart),
+            sample,
             ..Frame::default()
         }
     }
@@ -68,7 +69,7 @@ mod tests {
             let mut film = vec![record(9.0, 9); 45];
             let mut first = 0;
             for &batch in batches {
-                let frame = frame(batch, first == 0);
+                let frame = frame(batch, first as u32);
                 let of = |slot: u32| record(values[first + (slot / frame.pixel_slots) as usize], 2);
                 let sums: Vec<Record> = (0..frame.slots).map(of).collect();
                 gathered(&frame, &sums, &mut film);
@@ -80,7 +81,7 @@ mod tests {
 
     #[test]
     fn every_pixel_has_its_own_slots_and_those_outside_have_none() {
-        let frame = frame(2, true);
+        let frame = frame(2, 0);
         let sums: Vec<Record> = (0..frame.slots).map(|slot| record(slot as f32, 1)).collect();
         let mut film = vec![record(0.0, 0); 45];
         gathered(&frame, &sums, &mut film);
@@ -94,7 +95,7 @@ mod tests {
 
     #[test]
     fn what_was_left_out_is_remembered_and_counts_still_add_up() {
-        let frame = frame(3, true);
+        let frame = frame(3, 0);
         let words = [3 | NON_FINITE, 4 | NON_FINITE, 5];
         let sums: Vec<Record> =
             (0..frame.slots).map(|slot| record(1.0, words[(slot / frame.pixel_slots) as usize])).collect();

@@ -21,7 +21,7 @@ pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};
 #[cfg(not(target_arch = "spirv"))]
 pub use together::{most, shadow_together, trace_together};
-pub use trace::{found, trace, traced};
+pub use trace::{found, ray, trace, traced};
 
 /// In the integer of a sum or a film record: some contribution was not finite (infinite or NaN) and was left out.
 pub const NON_FINITE: u32 = 1 << 31;

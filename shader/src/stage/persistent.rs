@@ -1,7 +1,6 @@
 //! Persistent subgroups (thesis 6.1, Aila and Laine 2009): as many as the device runs at once, whose
 //! lanes take another ray when they are done with theirs.
 
-use super::Segment;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
@@ -13,14 +12,14 @@ use crate::warp::Warp;
 const IDLE: u32 = u32::MAX;
 
 /// Follows rays until none is left. `take` gives each lane that wants a ray the number of one, `count` or
-/// more if there is none; `load` reads it, with whether it is to be traced at all; `store` is told the
+/// more if there is none; `load` reads it, with its limit and whether it is to be traced at all; `store` is told the
 /// outcome.
 #[inline(always)]
 pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
     geometry: &TraceContext<'_>,
     count: u32,
     mut take: impl FnMut(bool) -> u32,
-    load: impl Fn(u32) -> (Segment<R>, bool),
+    load: impl Fn(u32) -> (Ray<R>, R, bool),
     mut store: impl FnMut(u32, bool, &Ray<R>, &Hit<R>),
 ) {
     let enough = (W::count(true) * geometry.base.spec.tuning.busy()).div_ceil(100).max(1);
@@ -40,10 +39,9 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
             let next = take(number == IDLE);
             if number == IDLE && next < count {
                 number = next;
-                let (segment, wanted) = load(next);
-                traced = wanted;
-                ray = segment.ray();
-                hit = Hit::none(segment.limit);
+                let (own, limit, wanted) = load(next);
+                (ray, traced) = (own, wanted);
+                hit = Hit::none(limit);
                 cursor = if wanted { M::Cursor::start() } else { M::Cursor::finished() };
             }
             // Once a lane has found none left, all see their rays to the end.

@@ -66,7 +66,9 @@ fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
         let vector = |of: fn(&Segment<S>) -> V3<S>| {
             V3::new(P::of(|i| of(at(first + i)).x), P::of(|i| of(at(first + i)).y), P::of(|i| of(at(first + i)).z))
         };
-        Ray::leaving(P::indices(|i| at(first + i).source_primitive), vector(|s| s.origin), vector(|s| s.direction))
+        let source_primitive = P::indices(|i| at(first + i).source_primitive);
+        let from_afar = !Q::ANY && trace::is_of_camera(geometry.base.spec.launch);
+        Ray::prepared(source_primitive, vector(|s| s.origin), vector(|s| s.direction), from_afar)
     });
     let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOTHING) };
     let mut hits: [Hit<P>; VALUES] = from_fn(|value| Hit::none(P::of(|i| limit(value * lanes + i))));

@@ -1,7 +1,6 @@
 //! The closest hit of a slot's ray, primary, secondary or of a stream.
 
 use super::{Path, Segment};
-use crate::camera;
 use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
@@ -15,13 +14,27 @@ pub fn traced<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Rec
         return Segment::load(geometry, slot, paths);
     }
     let path = Path::<R>::current(&geometry.base, slot, paths);
-    let is_secondary = geometry.base.spec.launch.has(Launch::SECONDARY);
     Segment {
-        origin: if is_secondary { path.origin } else { camera::approach(path.origin, path.direction) },
+        origin: path.origin,
         direction: path.direction,
         limit: R::splat(f32::MAX),
         source_primitive: path.source_primitive,
     }
+}
+
+/// Does a launch follow the camera's rays, which may start far from the scene?
+#[inline(always)]
+pub(super) fn is_of_camera(launch: Launch) -> bool {
+    !launch.has(Launch::SECONDARY | Launch::STREAM)
+}
+
+/// A slot's ray, ready for boxes and triangles, and its limit.
+#[inline(always)]
+pub fn ray<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> (Ray<R>, R) {
+    let segment = traced::<R>(geometry, slot, paths);
+    let from_afar = is_of_camera(geometry.base.spec.launch);
+    let source_primitive = R::index(segment.source_primitive);
+    (Ray::prepared(source_primitive, segment.origin, segment.direction, from_afar), segment.limit)
 }
 
 /// What is kept of a ray's hit: (t, u, v) and the triangle index, or [`Hit::NOTHING`].
@@ -40,9 +53,8 @@ pub(super) fn record<R: Scalar>(place: V3<R>, triangle_index: u32) -> R::Record 
 /// Traces a slot's ray; returns what [`found`] does.
 #[inline(always)]
 pub fn trace<R: Scalar, M: Method<R>>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
-    let segment = traced::<R>(geometry, slot, paths);
-    let mut hit = Hit::none(segment.limit);
-    let ray = segment.ray();
+    let (ray, limit) = ray::<R>(geometry, slot, paths);
+    let mut hit = Hit::none(limit);
     M::traverse::<Closest>(geometry, &ray, &mut hit);
     found(geometry, &ray, &hit)
 }

@@ -359,16 +359,16 @@ fn persistent_lanes<M: Method<f32> + Resumable<f32>>(world: &World, rays: &[Segm
     let (next, seen) = (Cell::new(0), RefCell::new(vec![None; rays.len()]));
     let take = |wants: bool| if wants { next.replace(next.get() + 1) } else { u32::MAX };
     // Every third ray is not to be traced.
-    let load = |number: u32| (rays[number as usize], number % 3 != 2);
+    let load = |number: u32| (rays[number as usize].ray(), rays[number as usize].limit, number % 3 != 2);
     let store = |number: u32, traced: bool, _: &Ray<f32>, hit: &Hit<f32>| {
         let before = seen.borrow_mut()[number as usize].replace((traced, hit.t, hit.primitive));
         assert!(before.is_none(), "{number} is answered twice");
     };
     persistent::<f32, M, Closest, Alone>(&world.geometry(), rays.len() as u32, take, load, store);
     for (number, answer) in seen.into_inner().into_iter().enumerate() {
-        let (segment, wanted) = load(number as u32);
-        let want = world.trace::<M, Closest, f32>(&segment.ray(), segment.limit);
-        let want = if wanted { (true, want.t, want.primitive) } else { (false, segment.limit, Hit::<f32>::NOTHING) };
+        let (ray, limit, wanted) = load(number as u32);
+        let want = world.trace::<M, Closest, f32>(&ray, limit);
+        let want = if wanted { (true, want.t, want.primitive) } else { (false, limit, Hit::<f32>::NOTHING) };
         assert_eq!(answer, Some(want), "{number}");
     }
 }

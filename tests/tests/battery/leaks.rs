@@ -112,10 +112,10 @@ fn sphere_far_away() {
     assert_sphere("sphere far away", FAR, FAR, COUNTS);
 }
 
-/// A camera at zero, so that the scene is not moved. Each ray meets most boxes, whose padding is wider than a triangle.
+/// A scene that reaches to the origin, so that it is not moved. Each ray meets most boxes, whose padding is wider than a triangle.
 #[test]
-fn sphere_far_from_its_camera() {
-    assert_sphere("sphere far from its camera", FAR, DVec3::ZERO, (2_000, 20_000));
+fn sphere_far_from_the_origin() {
+    assert_sphere("sphere far from the origin", FAR, DVec3::ZERO, (2_000, 20_000));
 }
 
 /// Rays at all but the outermost cells, which have nothing beside them.

@@ -6,6 +6,7 @@ use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
 use eyerays_shader::camera;
 use eyerays_shader::data::Order;
+use eyerays_shader::ray::Ray;
 use eyerays_tests::model::{add, empty, matt};
 use eyerays_tests::{Posed, SHIPPED, pack, settings, shipped};
 use fastrand::Rng;
@@ -91,7 +92,7 @@ fn primary(posed: &Posed) -> Vec<StreamRay> {
         let (origin, direction) = camera::ray::<f32>(&frame, pixel);
         let vector = |v: eyerays_shader::real::V3<f32>| Vec3::new(v.x, v.y, v.z);
         StreamRay {
-            origin: vector(camera::approach(origin, direction)),
+            origin: vector(Ray::from_afar(origin, direction).origin),
             direction: vector(direction),
             limit: f32::MAX,
             source_primitive: StreamRay::NOWHERE,

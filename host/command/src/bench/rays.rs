@@ -8,6 +8,7 @@ use eyerays_shader::data::{Frame, Order as OrderBits, Triangle};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::ray_to_light;
 use eyerays_shader::material::{reflect, refract};
+use eyerays_shader::ray::Ray;
 use eyerays_shader::real::V3;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -118,7 +119,7 @@ impl<'a> PrimaryHits<'a> {
             .par_iter()
             .map(|&pixel| {
                 let (origin, direction) = camera::ray::<f32>(&view.frame, pixel);
-                let (origin, direction) = (vector(camera::approach(origin, direction)), vector(direction));
+                let (origin, direction) = (vector(Ray::from_afar(origin, direction).origin), vector(direction));
                 StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })
             .collect();

@@ -58,7 +58,7 @@ pub(super) struct Effort {
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
-    /// Least share of its pixel that a ray is followed for [default: the scene's]
+    /// Least share of its sample that a ray is followed for [default: the scene's]
     #[arg(long, value_name = "SHARE")]
     min_contribution: Option<f32>,
     /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: medium]

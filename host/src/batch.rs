@@ -97,7 +97,7 @@ fn placed(packed: &DeviceScene, ray: &Ray) -> (StreamRay, f64) {
     let normalisation = packed.normalisation();
     let direction = ray.direction.as_dvec3().normalize_or_zero().as_vec3();
     let (origin, length) = match normalisation.place_anywhere(ray.origin) {
-        Some(origin) if direction != Vec3::ZERO => (origin, f64::from(ray.length)),
+        Some(origin) if direction != Vec3::ZERO && !ray.length.is_nan() => (origin, f64::from(ray.length)),
         _ => (Vec3::ZERO, -1.0),
     };
     let vector = |v: Vec3| V3::<f32>::splat(v);
@@ -133,6 +133,7 @@ mod tests {
         rays.push(Ray::new(up(1e3), Vec3::Y));
         rays.push(Ray::new(up(1e3), Vec3::ZERO));
         rays.push(Ray::new(Vec3::splat(f32::NAN), Vec3::Y));
+        rays.push(Ray { length: f32::NAN, ..rays[2] });
         let batch = Batch::new(&packed, &rays);
         let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
         let hits = batch.hits(&packed, &answers);
@@ -145,6 +146,9 @@ mod tests {
                     .all(|&v| scene.mesh.positions[v as usize].y == bottom)
             );
         }
-        assert_eq!(hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(), [false, true, false, false, false]);
+        assert_eq!(
+            hits[4..].iter().map(Option::is_some).collect::<Vec<_>>(),
+            [false, true, false, false, false, false]
+        );
     }
 }

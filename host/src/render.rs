@@ -210,6 +210,7 @@ impl Backend {
     ) -> Result<Rendering> {
         let mut renderer =
             Renderer::new(gpu, packed, self.choice.precision == Precision::Exact, self.choice.traversal)?;
+        renderer.start(view)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         if runs.warm_up {
             warm(LEAST_WARMING, || {

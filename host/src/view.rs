@@ -33,8 +33,12 @@ impl Region {
 /// A camera, the size of its image, and the samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// Every launch's record but for its region and samples.
-    frame: Frame,
+    /// In the normalised scene.
+    lens: Lens,
+    width: u32,
+    height: u32,
+    /// Along a pixel's edge.
+    samples: u32,
 }
 
 impl View {
@@ -67,29 +71,33 @@ impl View {
         let step = half_height / f64::from(height * samples);
         let vector = |v: DVec3| flushed(v.as_vec3());
         let lens = Lens::new(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
-        Ok(View { frame: Frame { lens, width, height, samples, ..packed.frame() } })
+        Ok(View { lens, width, height, samples })
     }
 
     /// The image's width and height in pixels.
     pub fn size(&self) -> (u32, u32) {
-        (self.frame.width, self.frame.height)
+        (self.width, self.height)
     }
 
     /// The whole image.
     pub fn region(&self) -> Region {
-        Region { x: 0, y: 0, width: self.frame.width, height: self.frame.height }
+        Region { x: 0, y: 0, width: self.width, height: self.height }
     }
 
     /// Samples of a pixel, in both directions together.
     pub fn samples(&self) -> u32 {
-        self.frame.samples * self.frame.samples
+        self.samples * self.samples
     }
 
-    /// The record of a launch of `count` samples of a region, from sample `first` on. The film is started anew by
+    /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The film is started anew by
     /// sample 0.
-    pub fn launch(&self, region: Region, first: u32, count: u32, order: Order) -> Frame {
+    pub fn launch(&self, scene: &DeviceScene, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
         Frame {
+            lens: self.lens,
+            width: self.width,
+            height: self.height,
+            samples: self.samples,
             sample: first,
             left: region.x,
             top: region.y,
@@ -98,7 +106,7 @@ impl View {
             rows: region.height,
             pixel_slots,
             slots: count * pixel_slots,
-            ..self.frame
+            ..scene.frame()
         }
     }
 }

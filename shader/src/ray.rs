@@ -234,8 +234,11 @@ mod tests {
                 assert!(beside.length() < 1e-6 * distance.max(1.0), "{distance}, {target}: {near} is beside the ray");
             }
         }
-        let away = Vec3::new(3.0, 0.0, 0.0);
-        assert_eq!(approached(away, Vec3::X), away, "what goes away stays");
-        assert_eq!(approached(away, Vec3::Y), away, "and what passes by in parallel");
+        for side in [-3.0, 3.0] {
+            let aside = Vec3::new(side, 0.0, 0.0);
+            assert_eq!(approached(aside, Vec3::X * side.signum()), aside, "what goes away stays");
+            let passing = approached(aside, Vec3::Y);
+            assert!(passing.abs().max_element() >= 3.0 && passing.is_finite(), "what passes by stays outside");
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! The vote across lanes that share a stack.
 //!
 //! On the GPU the lanes of a packet are a subgroup, each with its own `f32`; on the CPU they are the
-//! lanes of one value. Votes are the only place where lanes hear of each other.
+//! lanes of one value. Only the functions here let lanes hear of each other.
 
 use crate::real::Mask;
 
@@ -85,18 +85,16 @@ pub fn take(wants: bool, lane: u32, counters: &mut [u32], counter: u32) -> u32 {
 }
 
 /// Positions for the lanes of a subgroup that want one at the end of a list whose length a counter in device memory
-/// keeps: one atomic addition for all of them.
+/// keeps: one atomic addition for all of them. By scans, which naga reads; it does not read an election.
 #[cfg(target_arch = "spirv")]
 #[inline(always)]
 pub fn append(wants: bool, counters: &mut [u32], counter: u32) -> u32 {
-    use spirv_std::arch::{
-        atomic_i_add, subgroup_broadcast_first, subgroup_elect, subgroup_exclusive_i_add, subgroup_i_add,
-    };
+    use spirv_std::arch::{atomic_i_add, subgroup_broadcast_first, subgroup_exclusive_i_add, subgroup_i_add};
     use spirv_std::memory::{Scope, Semantics};
     let own = if wants { 1 } else { 0 };
     let (before, count) = (subgroup_exclusive_i_add(own), subgroup_i_add(own));
     let mut first = 0;
-    if subgroup_elect() {
+    if subgroup_exclusive_i_add(1) == 0 {
         // SAFETY: the host sizes the counters; the addition is atomic.
         first = unsafe {
             use spirv_std::arch::IndexUnchecked;

@@ -100,19 +100,21 @@ fn tiles((width, height): (u32, u32), (columns, rows): (u32, u32)) -> Vec<Region
 fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
     for name in SHIPPED {
         let scene = shipped(name);
-        let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 2));
+        let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 3));
         let (whole, rays) = render::<f32>(&packed, 2);
         let planned = Planned::new(SceneView::new(&packed, Traversal::default()), Isa::best());
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
             let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
             for tile in tiles(SIZE, size) {
                 let mut records = planned.film::<f32>(tile);
-                counted.secondary += planned.add::<f32>(&packed.view, tile, 0..4, &mut records, &());
-                counted.primary += u64::from(tile.width * tile.height * 4);
+                counted.secondary +=
+                    planned.add::<f32>(&packed.view, tile, 0..packed.view.samples(), &mut records, &());
+                counted.primary += u64::from(tile.width * tile.height * packed.view.samples());
                 for (record, at) in records.into_iter().zip(0..) {
                     let (colour, word) = f32::load(record);
                     let (x, y) = (tile.x + at % tile.width, tile.y + at / tile.width);
-                    film.pixels[(y * SIZE.0 + x) as usize] = [colour.x, colour.y, colour.z].map(|sum| sum / 4.0);
+                    film.pixels[(y * SIZE.0 + x) as usize] =
+                        [colour.x, colour.y, colour.z].map(|sum| sum / packed.view.samples() as f32);
                     counted.shadow += u64::from(word & !NON_FINITE);
                     counted.non_finite += u64::from(word & NON_FINITE != 0);
                 }

@@ -3,7 +3,7 @@
 use eyerays::error::{Content, Error};
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::integrator;
-use eyerays::method::{Method, Traversal};
+use eyerays::method::{Method, Order, Traversal};
 use eyerays::scene::{Background, Light, Material, Scene, Settings};
 use eyerays::view::View;
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
@@ -95,6 +95,7 @@ fn every_setting() {
         ("one row", &scene, Settings { size: (301, 1), ..own }),
         ("one column", &scene, Settings { size: (1, 301), ..own }),
         ("no lights", &dark, own),
+        ("glass without bounces", &shipped("glass"), Settings { bounces: 0, size: (40, 30), ..own }),
     ] {
         assert_same(&gpu, &pack(scene, &scene.cameras[0], settings), what);
     }
@@ -149,6 +150,12 @@ fn bands() {
     let error = Renderer::new(&gpu, &packed, true, Traversal::default()).err().expect("not even a block fits");
     let (device, limit) = (gpu.report.name.clone(), block - 1);
     assert_eq!(error, Error::TooLarge { device, what: Content::Block, bytes: block, limit });
+    // The squares of a Morton curve are larger blocks.
+    let (morton, block) = (Traversal { order: Order::Morton, ..Traversal::default() }, 128 * block);
+    gpu.report.max_binding = block;
+    assert_same_by(&gpu, &packed, &[morton], "one square");
+    gpu.report.max_binding = block - 1;
+    assert!(Renderer::new(&gpu, &packed, true, morton).is_err());
 }
 
 /// So many lights that a launch has few pixels. Lavapipe ends loops after 65,535 rounds in all, which would
@@ -225,8 +232,15 @@ fn samples_in_parts() {
     {
         gpu.report.max_binding = gpu.report.max_buffer.min(max_binding);
         let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+        // A picture that was started before, and films in between, change nothing.
         renderer.start(&packed.view).unwrap();
-        parts.iter().for_each(|&count| renderer.add(count, &|_| ()).unwrap());
+        renderer.add(1, &|_| ()).unwrap();
+        renderer.start(&packed.view).unwrap();
+        assert!(renderer.film().unwrap().film.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        for &count in parts {
+            renderer.add(count, &|_| ()).unwrap();
+            renderer.film().unwrap();
+        }
         let rendering = renderer.film().unwrap();
         assert_same_bits(&rendering.film, &film, &format!("{parts:?}, {max_binding}"));
         assert_eq!(rendering.rays, rays, "{parts:?}, {max_binding}");

@@ -77,7 +77,10 @@ impl<'a> Planned<'a> {
     }
 
     /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays), and
-    /// returns how many secondary rays they took.
+    /// returns how many secondary rays they took. Samples that the view does not have are left out.
+    ///
+    /// # Panics
+    /// If the film is not the region's.
     pub fn add<R: Scalar>(
         &self,
         view: &View,
@@ -87,11 +90,11 @@ impl<'a> Planned<'a> {
         observer: &dyn Observer<R>,
     ) -> u64 {
         let order = self.laid.specialisation().order;
-        let slots = view.launch(region, 0, 1, order).slots;
+        let slots = view.launch(self.laid.packed, region, 0, 1, order).slots;
         let mut records = Records::new(&self.plan, slots);
         let mut secondary = 0;
-        for sample in samples {
-            let frame = view.launch(region, sample, 1, order);
+        for sample in samples.start..samples.end.min(view.samples()) {
+            let frame = view.launch(self.laid.packed, region, sample, 1, order);
             let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
             let queue = pixels.collect();
             let mut launch = Launch { planned: self, frame: &frame, queue, records, film, observer, secondary: 0 };

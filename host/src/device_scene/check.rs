@@ -95,7 +95,7 @@ mod tests {
             Settings { min_contribution: f32::NAN, ..scene.settings },
         ] {
             assert!(refusal(&scene, beyond).is_some(), "{beyond:?}");
-            assert!(packed.set(&scene, beyond).is_err(), "{beyond:?}");
+            assert!(packed.set(beyond).is_err(), "{beyond:?}");
         }
         assert_eq!(*packed.settings(), scene.settings);
     }

@@ -37,6 +37,7 @@ pub struct DeviceScene {
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
     lights: Vec<LightRecord>,
+    /// Those of any settings.
     effects: Effects,
     background: Background,
     settings: Settings,
@@ -55,7 +56,7 @@ impl DeviceScene {
     pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
         check::scene(scene)?;
         check::settings(&settings)?;
-        let effects = records::effects(scene, &settings);
+        let effects = records::effects(scene);
         // The cells of a checkerboard are counted from the world's origin.
         let positions = scene.mesh.positions.iter().copied();
         let normalisation = Normalisation::of(positions, !effects.has(Effects::CHECKER));
@@ -127,7 +128,7 @@ impl DeviceScene {
 
     /// The effects that the scene asks for.
     pub fn effects(&self) -> Effects {
-        self.effects
+        records::asked(self.effects, &self.settings)
     }
 
     /// How much of it is rendered.
@@ -152,14 +153,14 @@ impl DeviceScene {
 
     /// Can a primary ray's light come from further rays?
     pub fn has_secondary_rays(&self) -> bool {
-        self.settings.bounces > 0 && self.effects.has(Effects::REFLECTION | Effects::REFRACTION)
+        self.effects().has(Effects::REFLECTION | Effects::REFRACTION)
     }
 
     /// What kernels are compiled for that follow the camera's rays by a traversal.
     pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
         let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
-            effects: self.effects,
+            effects: self.effects(),
             launch: Launch(traversal.triangle.bits()),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
@@ -171,11 +172,8 @@ impl DeviceScene {
     ///
     /// # Errors
     /// Settings out of range.
-    pub fn set(&mut self, scene: &Scene, settings: Settings) -> Result<()> {
+    pub fn set(&mut self, settings: Settings) -> Result<()> {
         check::settings(&settings)?;
-        // What was packed stays packed.
-        let smooth = self.effects.0 & Effects::SMOOTH;
-        self.effects = Effects(records::effects(scene, &settings).0 & !Effects::SMOOTH | smooth);
         self.settings = settings;
         Ok(())
     }

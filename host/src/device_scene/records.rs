@@ -13,21 +13,27 @@ pub(super) fn colour(c: Vec3, word: u32) -> glam::UVec4 {
     pack(flushed(c), word)
 }
 
-/// The effects that a scene asks for.
-pub(super) fn effects(scene: &Scene, settings: &Settings) -> Effects {
+/// The effects that a scene asks for, of those that it has, under some settings.
+pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
+    let bounced = if settings.bounces > 0 { 0 } else { Effects::REFLECTION | Effects::REFRACTION };
+    let culled = if settings.culling { Effects::CULLING } else { 0 };
+    Effects(effects.0 & !bounced | culled)
+}
+
+/// The effects that a scene has, if rays may bounce.
+pub(super) fn effects(scene: &Scene) -> Effects {
     let used = |m: &dyn Fn(&Material) -> bool| scene.materials.iter().any(m);
     let lit = !scene.lights.is_empty();
     let mut bits = 0;
     let mut ask = |bit: u32, asked: bool| bits |= if asked { bit } else { 0 };
-    let bounces = settings.bounces > 0;
     ask(Effects::SMOOTH, !scene.mesh.normals.is_empty());
     ask(Effects::CHECKER, used(&|m| m.checker.is_some()));
-    ask(Effects::REFLECTION, bounces && used(&|m| m.reflection != Vec3::ZERO || is_transparent(m)));
+    ask(Effects::REFLECTION, used(&|m| m.reflection != Vec3::ZERO || is_transparent(m)));
+    ask(Effects::TRANSPARENT, used(&is_transparent));
     ask(Effects::REFRACTION, used(&is_transparent));
     ask(Effects::SPOT, scene.lights.iter().any(|l| matches!(l, Light::Spot { .. })));
     ask(Effects::DIRECTIONAL, scene.lights.iter().any(|l| matches!(l, Light::Directional { .. })));
     ask(Effects::SPECULAR, lit && used(&|m| m.specular != Vec3::ZERO));
-    ask(Effects::CULLING, settings.culling);
     ask(Effects::LIT, lit);
     ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
     Effects(bits)
@@ -43,7 +49,7 @@ pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation, effects: E
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
     let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
         let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-        let passes = effects.has(Effects::REFRACTION) && clear[material as usize];
+        let passes = effects.has(Effects::TRANSPARENT) && clear[material as usize];
         Triangle::new(vertices, primitive, material, if passes { Triangle::TRANSPARENT } else { 0 })
     });
     records.collect()

@@ -8,9 +8,9 @@ use crate::error::{Error, Result};
 /// What an adapter offers, for people and machines.
 #[derive(Debug, Clone, Serialize)]
 pub struct AdapterReport {
-    /// By this number `--adapter` picks it.
+    /// By this number it can be asked for.
     pub index: usize,
-    /// By a part of this name `--adapter` picks it.
+    /// By a part of this name it can be asked for.
     pub name: String,
     /// Vulkan, Metal or Direct3D 12.
     pub backend: String,
@@ -95,7 +95,7 @@ pub(super) fn all(instance: &wgpu::Instance) -> Vec<wgpu::Adapter> {
     adapters
 }
 
-/// What the adapters of this machine offer, in the order that `--adapter` counts.
+/// What the adapters of this machine offer, in the order of their numbers.
 pub fn adapters() -> Vec<AdapterReport> {
     let _hush = Hush::new();
     all(&instance()).iter().enumerate().map(|(i, a)| AdapterReport::of(i, a)).collect()

@@ -130,4 +130,31 @@ mod tests {
         assert_eq!(names(&dark), [TRACE, "exact::shade", "exact::gather"]);
         assert_eq!((used(&dark.sample), used(&dark.scene).contains(&"lights")), (vec!["hits", "sums"], false));
     }
+
+    /// Whatever a scene asks for, its kernels bind nothing that its plan or its records do not have.
+    #[test]
+    fn every_kernel_binds_what_there_is() {
+        for name in ["cornell", "whitted", "glass", "lights"] {
+            let whole = shipped(name);
+            let mut dark = whole.clone();
+            dark.lights.clear();
+            let mut flat = whole.clone();
+            flat.mesh.normals.clear();
+            let mut unbounced = whole.clone();
+            unbounced.settings.bounces = 0;
+            for (what, scene) in [("whole", whole), ("dark", dark), ("flat", flat), ("unbounced", unbounced)] {
+                let cost = cost(&scene);
+                let own = ["frame", "counters", "arguments", "film"];
+                let there = [used(&cost.scene), used(&cost.sample), own.to_vec()].concat();
+                for kernel in &cost.kernels {
+                    let missing = kernel.buffers.iter().find(|buffer| !there.contains(buffer));
+                    assert_eq!(missing, None, "{name}, {what}: {}", kernel.name);
+                }
+                let needless = used(&cost.scene).into_iter().chain(used(&cost.sample));
+                let bound = |buffer: &str| cost.kernels.iter().any(|kernel| kernel.buffers.contains(&buffer));
+                let needless: Vec<&str> = needless.filter(|buffer| !bound(buffer)).collect();
+                assert!(needless.is_empty(), "{name}, {what}: nothing reads {needless:?}");
+            }
+        }
+    }
 }

@@ -45,7 +45,7 @@ impl Gpu {
     /// Opens the GPU that fits.
     ///
     /// # Errors
-    /// If there is none; the message names the remedy.
+    /// If there is none.
     pub fn open(want: &AdapterRequest) -> Result<Gpu> {
         let _hush = Hush::new();
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;

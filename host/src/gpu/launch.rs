@@ -28,8 +28,8 @@ const UNDER_WAY: usize = 2;
 const COUNTERS: u64 = 4 * counter::LENGTH as u64;
 /// Passes whose times are kept until they are read.
 const PASSES: u32 = 256;
-/// Passes of a launch, at most: each of [`MOST_WAVES`] waves. A tree of more waves than those is not timed to its end.
-const MOST_PASSES: u32 = 64;
+/// Passes of a launch between two looks, at most.
+const MOST_PASSES: u32 = 4;
 
 /// What was submitted, and what of it is known to be done.
 pub(super) struct Queue<'a> {
@@ -215,7 +215,7 @@ impl<'l, 'a> Launch<'l, 'a> {
         encoder.clear_buffer(memory.buffers.of(binding::COUNTERS), 0, Some(4 * u64::from(counter::LAUNCH)));
         let unseen = match plan.waves {
             Waves::AtMost(count) if count <= UNSEEN => count,
-            _ => queue.waves.max(FEW),
+            _ => queue.waves.clamp(FEW, MOST_WAVES),
         };
         Ok(Launch {
             kernels,
@@ -257,6 +257,9 @@ impl<'l, 'a> Launch<'l, 'a> {
         let counters = self.queue.counters.read(self.queue.gpu, COUNTERS, look)?;
         if counters[counter::RAYS as usize] > u32::MAX / 2 {
             self.queue.count(self.memory.buffers.of(binding::COUNTERS), counters[counter::RAYS as usize]);
+        }
+        if self.queue.passes + MOST_PASSES > PASSES && self.queue.has_clock() {
+            self.queue.read(self.memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         let waves = counters[counter::WAVES as usize];
         self.queue.waves = self.queue.waves.max(waves);

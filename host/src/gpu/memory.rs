@@ -1,6 +1,7 @@
 //! Device memory of launches.
 
-use eyerays_shader::data::Frame;
+use eyerays_shader::camera;
+use eyerays_shader::data::{Frame, Order};
 use eyerays_shader::launch::{WORKGROUP, argument, counter};
 use eyerays_shader::resources::{RESOURCES, binding};
 use wgpu::BufferUsages as Use;
@@ -21,7 +22,9 @@ const RAYS: u64 = 1 << 24;
 ///
 /// # Errors
 /// If not even a block of pixels fits.
-pub(super) fn most_slots(gpu: &Gpu, plan: &Plan) -> Result<u32> {
+pub(super) fn most_slots(gpu: &Gpu, plan: &Plan, order: Order) -> Result<u32> {
+    let (columns, block_rows) = camera::blocks(order);
+    let block = u64::from(columns * block_rows);
     let limit = gpu.report.max_binding.min(gpu.report.max_buffer);
     let most = gpu.device.limits().max_compute_workgroups_per_dimension;
     let rows = plan.shadow_rays;
@@ -32,12 +35,12 @@ pub(super) fn most_slots(gpu: &Gpu, plan: &Plan) -> Result<u32> {
     let share = plan.slot_bytes.iter().map(|&(_, bytes)| bytes).max().unwrap_or(1);
     let memory = limit.min(MOST) / share;
     let threads = u64::from(most) * u64::from(WORKGROUP);
-    let slots = memory.min(threads).min(SLOTS).min(RAYS / u64::from(rows).max(1)) / 32 * 32;
-    if memory < 32 {
+    let slots = memory.min(threads).min(SLOTS).min(RAYS / u64::from(rows).max(1)) / block * block;
+    if memory < block {
         let device = gpu.report.name.clone();
-        return Err(Error::TooLarge { device, what: Content::Block, bytes: 32 * share, limit });
+        return Err(Error::TooLarge { device, what: Content::Block, bytes: block * share, limit });
     }
-    Ok(slots.max(32) as u32)
+    Ok(slots.max(block) as u32)
 }
 
 /// A buffer of a resource.

@@ -33,7 +33,7 @@ impl Readback {
     /// Waits for all that was submitted, and shows the first `size` bytes to `look`.
     pub fn read<T>(&self, gpu: &Gpu, size: u64, look: impl FnOnce(&[u8]) -> T) -> Result<T> {
         self.staging.map_async(wgpu::MapMode::Read, ..size, |_| {});
-        gpu.wait()?;
+        let done = gpu.wait();
         let seen = match self.staging.get_mapped_range(..size) {
             Ok(view) => Ok(look(&view)),
             Err(e) => {
@@ -42,7 +42,7 @@ impl Readback {
             }
         };
         self.staging.unmap();
-        seen
+        done.and(seen)
     }
 }
 

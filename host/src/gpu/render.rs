@@ -85,7 +85,7 @@ impl<'a> Renderer<'a> {
     pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
         let plan = Plan::new(packed, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
-        let most_slots = most_slots(gpu, &plan)?;
+        let most_slots = most_slots(gpu, &plan, traversal.order.bits())?;
         let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
         let kernels = compile(gpu, &recipes);
         gpu.check()?;
@@ -113,9 +113,9 @@ impl<'a> Renderer<'a> {
     pub fn render(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<GpuRendering> {
         self.start(view)?;
         self.add(view.samples(), done)?;
-        let rendering = self.film();
+        let rendering = self.film()?;
         done(self.queue.forget());
-        rendering
+        Ok(rendering)
     }
 
     /// Starts a picture without any sample. Memory is taken if no picture before needed as much.
@@ -132,6 +132,7 @@ impl<'a> Renderer<'a> {
             _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
         };
         self.picture = Some(Picture { view: *view, bands, samples: 0 });
+        self.queue.forget();
         let memory = self.memory.as_ref().expect("it was reserved");
         self.queue.restart(memory.buffers.of(binding::COUNTERS));
         Ok(())
@@ -139,19 +140,20 @@ impl<'a> Renderer<'a> {
 
     /// Adds the next `count` samples of each pixel, or as many as the view has: n and then n more give the bits of 2n at
     /// once. Does not wait for the GPU, unless it has enough to do, or reflected and refracted rays branch, where the end of
-    /// each launch is waited for. `done` hears of finished shares of the pixels, sooner or later.
+    /// each launch is waited for. `done` hears of shares of the pixels that are known to be finished; after
+    /// [`Renderer::film`] all are.
     ///
     /// # Errors
-    /// What the GPU reports.
+    /// What the GPU reports; the picture must then be started again.
     ///
     /// # Panics
     /// If no picture was started.
     pub fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
         let mut picture = self.picture.take().expect("a picture was started");
-        let result = self.add_to(&picture, count, done);
+        self.add_to(&picture, count, done)?;
         picture.samples = picture.samples.saturating_add(count).min(picture.view.samples());
         self.picture = Some(picture);
-        result
+        Ok(())
     }
 
     fn add_to(&mut self, picture: &Picture, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
@@ -163,7 +165,7 @@ impl<'a> Renderer<'a> {
             let mut first = *samples;
             while first < end {
                 let count = batch.min(end - first);
-                let frame = view.launch(band.region, first, count, self.order);
+                let frame = view.launch(self.packed, band.region, first, count, self.order);
                 let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
                 let memory = self.memory.as_ref().expect("it was reserved");
                 let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
@@ -226,15 +228,20 @@ impl<'a> Renderer<'a> {
         if self.memory.as_ref().is_some_and(|memory| memory.buffers.slots >= slots) {
             return Ok(());
         }
+        // What launches under way use is given back only when they are done.
+        self.gpu.wait()?;
         (self.memory, self.picture) = (None, None);
+        let (columns, rows) = camera::blocks(self.order);
+        let mut refusal = None;
         let buffers = loop {
             match LaunchBuffers::new(self.gpu, &self.plan.slot_bytes, slots) {
                 Ok(buffers) => break buffers,
-                Err(_) if slots > LEAST_SLOTS => {
-                    slots = (slots / 2).next_multiple_of(32);
+                Err(error) if slots > LEAST_SLOTS => {
+                    refusal.get_or_insert(error);
+                    slots = (slots / 2).next_multiple_of(columns * rows);
                     self.most_slots = slots;
                 }
-                Err(error) => return Err(error),
+                Err(error) => return Err(refusal.unwrap_or(error)),
             }
         };
         // The kernels write how many groups there are in a row, and no more.

@@ -39,8 +39,8 @@ const DUMMY: [Edit; 5] = [
     ),
     (
         "src/data/specialisation.rs",
-        "        LIT = 9;\n",
-        "        LIT = 9;\n        /// Twice as bright where the dummy says so.\n        DUMMY = 10;\n",
+        "        TRANSPARENT = 10;\n",
+        "        TRANSPARENT = 10;\n        /// As bright as the dummy says.\n        DUMMY = 11;\n",
     ),
     (
         "src/entry/mod.rs",
@@ -162,7 +162,7 @@ fn an_effect_that_no_scene_has_changes_no_kernel() {
             assert!(old.words() == new.words(), "{scene}: {name} has other instructions");
             // And the effect is there for those that ask for it.
             if stage == Stage::Shade {
-                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 10), ..spec };
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 11), ..spec };
                 let dummy = cut(&after, &name, asked);
                 assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&17), "{scene}: {name}");
             }

@@ -34,7 +34,7 @@ bits! {
         CHECKER = 1;
         /// Some material is a mirror or reflects as glass, and bounces are allowed.
         REFLECTION = 2;
-        /// Some material lets light pass.
+        /// Some material lets light pass, and bounces are allowed.
         REFRACTION = 3;
         /// Some light is a spot.
         SPOT = 4;
@@ -48,6 +48,8 @@ bits! {
         GRADIENT = 8;
         /// There are lights.
         LIT = 9;
+        /// Some material lets light pass: its triangles cast no shadow.
+        TRANSPARENT = 10;
     }
 }
 

@@ -18,7 +18,7 @@ use spirv_std::arch::{IndexUnchecked, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
 use spirv_std::spirv;
 
-/// What a slot index beyond the wave stands for.
+/// The slot of a thread that has none, since the wave has fewer.
 const IDLE: u32 = u32::MAX;
 
 /// How many slots the wave has: those of the launch in the first wave, those of the queue later.

@@ -23,7 +23,7 @@ pub struct SurfaceInteraction<R: Real> {
 /// thinner than a fifth of its length the error of its vertices (4) and edge functions (9) times that shape.
 const ROUNDOFFS: f32 = 64.0;
 
-/// A ray whose cosine is less than this would have to go too far along its direction to reach its error_offset.
+/// A ray whose cosine is less than this would have to go too far along its direction to get as far off the surface.
 const GRAZING: f32 = 1.0 / 32.0;
 
 impl<R: Scalar> SurfaceInteraction<R> {

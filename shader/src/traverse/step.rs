@@ -187,7 +187,7 @@ const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 /// Does the query consider this triangle? Only opaque objects cast shadows (thesis 3.2).
 #[inline(always)]
 fn counts<Q: Query>(effects: Effects, triangle: &Triangle) -> bool {
-    !(Q::ANY && effects.has(Effects::REFRACTION) && triangle.is_transparent())
+    !(Q::ANY && effects.has(Effects::TRANSPARENT) && triangle.is_transparent())
 }
 
 /// Rejects misses of triangles seen edge-on, divides, moves the hit behind the entry to the triangle's own box, and

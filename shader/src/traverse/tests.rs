@@ -206,7 +206,7 @@ proptest! {
     ) {
         let direction: [f32; 3] = std::array::from_fn(|k| target[k] - origin[k]);
         prop_assume!(direction != [0.0; 3]);
-        let effects = Effects::REFRACTION | if culling { Effects::CULLING } else { 0 };
+        let effects = Effects::TRANSPARENT | if culling { Effects::CULLING } else { 0 };
         let world = World::new(triangles, effects);
         let beside: [f32; 3] = std::array::from_fn(|k| direction[k] + nudge[k]);
         for direction in [direction, beside] {
@@ -292,7 +292,7 @@ proptest! {
         triangles in soup(), ends in prop::array::uniform8((grid(), grid())), same_origin: bool, count in 1usize..=32,
     ) {
         let rays = rays_of(ends, same_origin);
-        let world = World::new(triangles, Effects::REFRACTION);
+        let world = World::new(triangles, Effects::TRANSPARENT);
         check_packets::<4>(&world, &rays);
         check_packets::<8>(&world, &rays);
         check_packets::<16>(&world, &rays);
@@ -312,7 +312,7 @@ proptest! {
         type Register = <Avx2 as SimdIsa<f32>>::Eight;
         if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
             let rays = rays_of(ends, false);
-            let world = World::new(triangles, Effects::REFRACTION);
+            let world = World::new(triangles, Effects::TRANSPARENT);
             for (origin, direction) in &rays {
                 check::<Bvh8Method<Avx2>, f32>(&world, *origin, *direction);
             }
@@ -348,7 +348,8 @@ fn light_passes_transparent_triangles_only() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
     for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
-        let world = World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::REFRACTION);
+        let world =
+            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::TRANSPARENT);
         assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
         assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
     }

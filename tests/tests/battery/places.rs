@@ -95,7 +95,7 @@ fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
         scene.settings.size = (640, 480);
         packed = pack(&scene, &scene.cameras[0], scene.settings);
     }
-    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed.view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &packed.view, Order::Tiled), 0).unwrap();
     let truth = on_cpu::<f64>(&packed).0;
     for machine in Machine::all() {
         if machine.is_software() && is_crowded(&packed) {

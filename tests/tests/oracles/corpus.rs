@@ -85,7 +85,7 @@ fn point(rng: &mut Rng) -> Vec3 {
 
 /// The camera's.
 fn primary(posed: &Posed) -> Vec<StreamRay> {
-    let frame = posed.view.launch(posed.view.region(), 0, 1, Order::default());
+    let frame = posed.view.launch(posed, posed.view.region(), 0, 1, Order::default());
     let pixels =
         (0..frame.slots).map(|slot| camera::pixel(&frame, Order::default(), slot)).filter(|pixel| pixel.inside);
     let ray = |pixel| {

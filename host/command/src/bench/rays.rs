@@ -42,8 +42,8 @@ pub struct CameraRays {
 
 impl CameraRays {
     /// Those of a view with one sample a pixel.
-    pub fn of(view: &View, order: Order) -> CameraRays {
-        CameraRays { frame: view.launch(view.region(), 0, 1, order.bits()), order: order.bits() }
+    pub fn of(scene: &DeviceScene, view: &View, order: Order) -> CameraRays {
+        CameraRays { frame: view.launch(scene, view.region(), 0, 1, order.bits()), order: order.bits() }
     }
 
     /// The pixels of its slots in order.

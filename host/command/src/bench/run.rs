@@ -41,7 +41,7 @@ fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&s
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
-            views.push((camera, order, CameraRays::of(&View::new(&packed, camera)?, order)));
+            views.push((camera, order, CameraRays::of(&packed, &View::new(&packed, camera)?, order)));
         }
     }
     let bench = Bench::new(plan, subject, &packed, report)?;
@@ -268,7 +268,7 @@ mod tests {
         let packed = DeviceScene::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
         let view = View::new(&packed, &subject.cameras[0]).unwrap();
-        let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
+        let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();
         let stream = sight.rays(Kind::Ao, bench.ao_length).unwrap();
         let trial = plan.trials(&packed, Kind::Ao, Order::Tiled, &mut |_| ())[4];
         let asked = bench.asked(Kind::Ao, &subject.cameras[0], &stream, &[trial]).unwrap();

@@ -45,7 +45,7 @@ fn hash(stream: &Stream) -> Hash {
 #[test]
 fn rays_have_the_same_bits_everywhere() {
     let (packed, view) = cornell((64, 48));
-    let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 1).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 1).unwrap();
     let hashes: Vec<String> =
         Kind::ALL.iter().map(|&kind| hash(&sight.rays(kind, 0.125).unwrap()).to_string()).collect();
     let recorded = [
@@ -57,7 +57,7 @@ fn rays_have_the_same_bits_everywhere() {
         "29d8cfac5edd829f",
     ];
     assert_eq!(hashes, recorded);
-    let threads = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 3).unwrap();
+    let threads = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 3).unwrap();
     for (&kind, expected) in Kind::ALL.iter().zip(&hashes) {
         assert_eq!(hash(&threads.rays(kind, 0.125).unwrap()).to_string(), *expected, "{kind:?}");
     }
@@ -66,7 +66,7 @@ fn rays_have_the_same_bits_everywhere() {
 #[test]
 fn rays_are_unit_and_leave_what_they_start_from() {
     let (packed, view) = cornell((64, 48));
-    let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();
     for kind in Kind::ALL {
         for ray in rays(&sight, kind) {
             assert!((ray.direction.length() - 1.0).abs() < 1e-6, "{kind:?}: {ray:?}");
@@ -79,7 +79,7 @@ fn rays_are_unit_and_leave_what_they_start_from() {
 #[test]
 fn every_hit_has_its_rays() {
     let (packed, view) = cornell((64, 48));
-    let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();
     let count = |kind| rays(&sight, kind).len();
     let hits = sight.hits();
     assert!(hits > 64 * 48 / 2);
@@ -98,7 +98,7 @@ fn every_hit_has_its_rays() {
 #[test]
 fn rays_go_to_their_side() {
     let (packed, view) = cornell((48, 48));
-    let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();
     let slots = packed.triangles().iter().map(|t| (t.primitive(), t.vertices()));
     let by_primitive: HashMap<u32, [Vec3; 3]> = slots.collect();
     let primary = rays(&sight, Kind::Primary);
@@ -119,7 +119,7 @@ fn rays_go_to_their_side() {
 fn every_order_has_the_same_rays() {
     let (packed, view) = cornell((70, 50));
     let all = |order| {
-        let sight = PrimaryHits::new(&packed, &CameraRays::of(&view, order), 0).unwrap();
+        let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, order), 0).unwrap();
         let key = |ray: &StreamRay| [ray.origin, ray.direction].map(|v| v.to_array().map(f32::to_bits));
         Kind::ALL.map(|kind| rays(&sight, kind).iter().map(key).collect::<BTreeSet<_>>())
     };

@@ -62,7 +62,7 @@ impl Primary {
     /// # Errors
     /// If the threads can't be had.
     pub fn new(packed: &DeviceScene, view: &View, threads: usize) -> Result<Primary> {
-        let sight = PrimaryHits::new(packed, &CameraRays::of(view, Order::Tiled), threads)?;
+        let sight = PrimaryHits::new(packed, &CameraRays::of(packed, view, Order::Tiled), threads)?;
         let stream = sight.rays(Kind::Primary, 0.0)?.into_owned();
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
         let hits = cpu::closest::<f64>(packed, traversal, threads, &stream)?;

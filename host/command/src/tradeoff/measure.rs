@@ -111,7 +111,7 @@ impl<'a> Judge<'a> {
         let mut references = Vec::new();
         for &samples in &plan.axes.samples {
             begins(&format!("reference, {samples}x{samples} samples"));
-            packed.set(&subject.scene, Settings { samples, ..best })?;
+            packed.set(Settings { samples, ..best })?;
             let view = View::new(&packed, &subject.camera)?;
             references.push((samples, cpu::render::<f64>(&packed, &view, Traversal::default(), threads, &|_| ())?.0));
         }
@@ -185,7 +185,7 @@ impl<'a> Judge<'a> {
             self.packed = DeviceScene::new(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
-        Ok(self.packed.set(scene, settings)?)
+        Ok(self.packed.set(settings)?)
     }
 
     fn reference(&self, samples: u32) -> &Film {

@@ -122,7 +122,7 @@ fn exact_hits_are_right_but_for_edges() {
     let errors = primary.errors(&packed, None, &Choice::default()).unwrap();
     assert!(errors.wrong < 0.01, "{errors:?}");
     assert!(errors.max_ulp.unwrap() < 64.0 && errors.median_ulp.unwrap() < 2.0, "{errors:?}");
-    let rays = crate::bench::rays::CameraRays::of(&view, eyerays::method::Order::Tiled);
+    let rays = crate::bench::rays::CameraRays::of(&packed, &view, eyerays::method::Order::Tiled);
     let sight = crate::bench::rays::PrimaryHits::new(&packed, &rays, 2).unwrap();
     let stream = sight.rays(crate::bench::Kind::Primary, 0.0).unwrap();
     let [first, second] =

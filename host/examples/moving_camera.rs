@@ -1,7 +1,6 @@
 //! A camera that moves over a scene which is uploaded once: `moving_camera SCENE.toml [FRAMES] [SIZE]`.
 
 use std::error::Error;
-use std::f32::consts::TAU;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
@@ -50,9 +49,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A camera that looks to one side, to the other and back over a whole turn.
+/// A camera that looks to one side, to the other and back while `turn` goes from 0 to 1.
 fn turned(camera: &Camera, turn: f32) -> Camera {
     let ahead = camera.target - camera.eye;
     let aside: Vec3 = ahead.cross(camera.up).normalize() * ahead.length();
-    Camera { target: camera.target + aside * 0.1 * (turn * TAU).sin(), ..camera.clone() }
+    // From -1 to 1 and back.
+    let share = 1.0 - 4.0 * (turn - 0.5).abs();
+    Camera { target: camera.target + aside * 0.1 * share, ..camera.clone() }
 }

@@ -17,14 +17,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
     let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
 
-    // On a sphere around the middle of the room, evenly: a spiral by the golden angle.
-    let count = 10_000;
-    let middle = Vec3::new(0.0, 1.0, 0.0);
-    let ray = |i: u32| {
-        let (height, turn) = (1.0 - (2 * i + 1) as f32 / count as f32, i as f32 * 2.399_963);
-        let radius = (1.0 - height * height).sqrt();
-        Ray::new(middle, Vec3::new(radius * turn.cos(), height, radius * turn.sin()))
-    };
+    // From the middle of the room through the cells of a cube around it.
+    let (edge, middle) = (22, Vec3::new(0.0, 1.0, 0.0));
+    let cell = |i: u32| Vec3::new((i % edge) as f32, (i / edge % edge) as f32, (i / edge / edge) as f32);
+    let ray = |i: u32| Ray::new(middle, cell(i) - Vec3::splat((edge - 1) as f32 / 2.0));
+    let count = edge * edge * edge;
     let rays: Vec<Ray> = (0..count).map(ray).collect();
     let batch = Batch::new(&packed, &rays);
 

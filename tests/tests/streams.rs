@@ -33,7 +33,7 @@ fn assert_gpu(gpu: &Gpu, packed: &Posed, how: &[Traversal], layout: Layout, what
 }
 
 fn streams(packed: &Posed) -> Vec<(Kind, Stream)> {
-    let sight = PrimaryHits::new(packed, &CameraRays::of(&packed, &packed.view, Order::Tiled), 0).unwrap();
+    let sight = PrimaryHits::new(packed, &CameraRays::of(packed, &packed.view, Order::Tiled), 0).unwrap();
     let length = 0.2 * diagonal(packed) as f32;
     Kind::ALL
         .into_iter()

@@ -251,13 +251,13 @@ fn info_tells_the_hierarchies_of_a_scene() {
     // What a GPU would run and hold for it.
     let last = table.text().lines().skip_while(|line| !line.starts_with("kernel of a GPU")).collect::<Vec<_>>();
     let kernels = json["gpu"]["kernels"].as_array().unwrap();
-    assert_eq!((kernels.len(), last.len()), (7, 1 + 7 + 3), "{last:?}");
+    assert_eq!((kernels.len(), last.len()), (8, 1 + 8 + 3), "{last:?}");
     for (kernel, line) in kernels.iter().zip(&last[1..]) {
         assert!(line.contains(kernel["name"].as_str().unwrap()), "{line}");
         assert!(line.contains(&kernel["instructions"].to_string()), "{line}");
     }
     let nodes = json["gpu"]["scene_bytes"]["hierarchy"].as_u64().unwrap();
-    assert!(nodes > 0 && last[9].contains(&format!("hierarchy {nodes}")), "{last:?}");
+    assert!(nodes > 0 && last[10].contains(&format!("hierarchy {nodes}")), "{last:?}");
 }
 
 /// Users place cameras and lights by these figures.

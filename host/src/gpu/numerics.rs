@@ -64,7 +64,7 @@ fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 }
 
 fn pipeline(gpu: &Gpu, bindings: &wgpu::BindGroupLayout) -> wgpu::ComputePipeline {
-    let name = "numerics_evaluate";
+    let name = "numerics::evaluate";
     let words: Vec<u32> = readback::words(modules::NUMERICS).collect();
     let module = module::create(gpu, &words, name);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {

@@ -30,7 +30,7 @@ const SHORTER: [Edit; 2] = [
     ),
 ];
 
-/// A resource, an effect that asks for it, and what it does to a surface.
+/// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
 const DUMMY: [Edit; 5] = [
     (
         "src/resources.rs",
@@ -40,7 +40,7 @@ const DUMMY: [Edit; 5] = [
     (
         "src/data/specialisation.rs",
         "        TRANSPARENT = 10;\n",
-        "        TRANSPARENT = 10;\n        /// As bright as the dummy says.\n        DUMMY = 11;\n",
+        "        TRANSPARENT = 10;\n        /// Surfaces have the dummy's light.\n        DUMMY = 11;\n",
     ),
     (
         "src/entry/mod.rs",
@@ -55,7 +55,7 @@ const DUMMY: [Edit; 5] = [
     (
         "src/integrator/whitted.rs",
         "    add(launch, sums, slot, &path, light, rays);\n    if",
-        "    let mut light = light;\n    if launch.spec.effects.has(Effects::DUMMY) {\n        light = light * R::splat(f32::from_bits(read(looks.dummy, 0).x));\n    }\n    add(launch, sums, slot, &path, light, rays);\n    if",
+        "    add(launch, sums, slot, &path, light, rays);\n    if effects.has(Effects::DUMMY) {\n        write(sums, slot, R::store(V3::splat(crate::data::numbers(read(looks.dummy, 0))), 0));\n    }\n    if",
     ),
 ];
 

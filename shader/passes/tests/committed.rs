@@ -87,7 +87,7 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     let bindings =
         |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().bindings().to_vec();
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
-    assert_eq!(bindings("exact::advance", effects(0)), [FRAME, COUNTERS, ARGUMENTS]);
+    assert_eq!(bindings("exact::advance", effects(0)), [COUNTERS, ARGUMENTS]);
     assert_eq!(bindings("exact::gather", effects(0)), [FRAME, SUMS, FILM]);
     assert_eq!(bindings("exact::if_if::trace", effects(0)), [FRAME, NODES, TRIANGLES, HITS]);
     assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, TRIANGLES, HITS, BOUNDS]);

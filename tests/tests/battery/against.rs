@@ -2,8 +2,7 @@
 
 use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Stream, StreamRay};
-use eyerays_command::bench::rays::diagonal;
-use eyerays_shader::data::BOX_PADDING;
+use eyerays_shader::data::{BOX_PADDING, Triangle};
 use eyerays_shader::real::Fast;
 use eyerays_tests::brute_force::{Found, brute_force, brute_force_of, found};
 use eyerays_tests::count;
@@ -48,7 +47,14 @@ pub fn rays(packed: &DeviceScene, count: usize) -> Stream {
 /// Is the mesh so small beside its distance from zero that the padding of boxes makes them one? A ray then meets most
 /// triangles, and software, which ends loops after 65,535 rounds, can't follow it.
 pub fn is_crowded(packed: &DeviceScene) -> bool {
-    diagonal(packed) < 1024.0 * f64::from(BOX_PADDING)
+    is_crowd(packed.triangles().iter().flat_map(Triangle::vertices))
+}
+
+/// The same of some of its vertices.
+pub fn is_crowd(vertices: impl Iterator<Item = Vec3>) -> bool {
+    let none = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let (least, greatest) = vertices.fold(none, |(least, greatest), v| (least.min(v), greatest.max(v)));
+    (greatest.as_dvec3() - least.as_dvec3()).length() < 1024.0 * f64::from(BOX_PADDING)
 }
 
 /// Is an answer a miss, or a place on a triangle?

@@ -73,8 +73,8 @@ mod tests {
             b.store_output(y);
         });
         kernel.name(root, "real::div");
-        kernel.entry("entry::exact_a", |b| b.call(root));
-        kernel.entry("entry::fast_a", |b| {
+        kernel.entry("entry::kernels::exact::a", |b| b.call(root));
+        kernel.entry("entry::kernels::fast::a", |b| {
             let x = b.load_input();
             let y = b.f_div(x, x);
             b.store_output(y);
@@ -82,7 +82,7 @@ mod tests {
         let words = kernel.module().assemble();
         for (name, policy, protected) in [("exact", Policy::Exact, vec!["real::div"]), ("fast", Policy::Fast, vec![])] {
             let table =
-                Module { name, prefix: if name == "exact" { "exact_" } else { "fast_" }, policy, protects: &[] };
+                Module { name, prefix: if name == "exact" { "exact::" } else { "fast::" }, policy, protects: &[] };
             let finished = finish(&words, &table).unwrap();
             assert_eq!(finished.protected, protected);
             let bytes = compile::bytes(&finished.words());

@@ -8,7 +8,7 @@ use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
 use eyerays_shader::data::numbers;
 
-use crate::contest::{RayTracer, Found, tasks};
+use crate::contest::{Found, RayTracer, tasks};
 
 const PACKET: usize = 16;
 

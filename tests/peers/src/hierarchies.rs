@@ -13,7 +13,7 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle;
 
-use crate::contest::{RayTracer, Found, tasks};
+use crate::contest::{Found, RayTracer, tasks};
 
 fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
     let mut all: Vec<_> = packed.triangles().iter().collect();

@@ -10,14 +10,15 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Parser;
-use contest::{RayTracer, Found};
+use contest::{Found, RayTracer};
 use embree3::BuildQuality;
-use eyerays_command::bench::Kind;
-use eyerays_command::bench::rays::{AO_SHARE, PrimaryHits, View, diagonal};
-use eyerays::method::{Method, Order, Traversal};
 use eyerays::device_scene::DeviceScene;
+use eyerays::method::{Method, Order, Traversal};
 use eyerays::scene::{self, Settings};
+use eyerays::view::View;
 use eyerays_bvh::Quality;
+use eyerays_command::bench::Kind;
+use eyerays_command::bench::rays::{AO_SHARE, CameraRays, PrimaryHits, diagonal};
 use own::Own;
 
 #[derive(Parser)]
@@ -74,7 +75,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         "medium" => (Quality::Medium, BuildQuality::MEDIUM),
         _ => (Quality::High, BuildQuality::HIGH),
     };
-    let mut packed = DeviceScene::new(&scene, settings, quality)?;
+    let packed = DeviceScene::new(&scene, settings, quality)?;
     let ao_length =
         options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
@@ -85,7 +86,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
     let kinds = [Kind::Primary, Kind::Shadow, Kind::Ao, Kind::Diffuse];
     let mut scores: Vec<Score> = Vec::new();
     for camera in scene.cameras.iter().take(options.views) {
-        packed.look(&scene, camera)?;
+        let rays = CameraRays::of(&packed, &View::new(&packed, camera)?, Order::Tiled);
         let own = |name, method, packet| Own { name, packed: &packed, traversal: Traversal::from(method), packet };
         let methods = [
             own("Eyerays if-if", Method::IfIf, false),
@@ -99,7 +100,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         all.retain(|c| c.name().contains(&options.only));
         names = all.iter().map(|c| (c.name(), c.is_packet())).collect();
         scores.resize(all.len(), Score::new());
-        let sight = PrimaryHits::new(&packed, &View::of(&packed, Order::Tiled), options.threads)?;
+        let sight = PrimaryHits::new(&packed, &rays, options.threads)?;
         for (k, kind) in kinds.iter().enumerate().filter(|(_, k)| k.name().contains(&options.kind)) {
             let stream = sight.rays(*kind, ao_length)?;
             let mut times = vec![Vec::new(); all.len()];

@@ -1,12 +1,12 @@
 //! Eyerays itself.
 
 use eyerays::cpu;
-use eyerays::method::Traversal;
 use eyerays::device_scene::DeviceScene;
+use eyerays::method::Traversal;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::stage::SHADOWED;
 
-use crate::contest::{RayTracer, Found};
+use crate::contest::{Found, RayTracer};
 
 /// One of its methods.
 pub struct Own<'a> {

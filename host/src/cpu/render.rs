@@ -133,9 +133,8 @@ impl<'a> Renderer<'a> {
 
     fn tiles(&self, view: &View) -> Vec<Region> {
         let (width, height) = view.size();
-        let paths = self.planned.plan.slot_bytes.iter().find(|(binding, _)| *binding == binding::PATHS);
         // Records of numbers of 64 bits take twice as much.
-        let slot = paths.map_or(0, |&(_, bytes)| 2 * bytes);
+        let slot = 2 * self.planned.plan.bytes_of(binding::PATHS);
         let mut edge = TILE;
         while edge > 8 && u64::from(edge * edge) * slot > PATH_MEMORY {
             edge /= 2;

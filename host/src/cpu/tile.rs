@@ -43,8 +43,7 @@ pub struct Records<R: Scalar> {
 
 impl<R: Scalar> Records<R> {
     fn new(plan: &Plan, slots: u32) -> Self {
-        let of = |wanted: u32| plan.slot_bytes.iter().find(|(binding, _)| *binding == wanted).map_or(0, |(_, b)| *b);
-        let count = |binding, bytes| (of(binding) / bytes) as usize * slots as usize;
+        let count = |binding, bytes| (plan.bytes_of(binding) / bytes) as usize * slots as usize;
         let records = |binding| vec![R::store(V3::zero(), 0); count(binding, 16)];
         Records {
             paths: records(binding::PATHS),

@@ -60,7 +60,7 @@ impl DeviceScene {
         // The cells of a checkerboard are counted from the world's origin.
         let positions = scene.mesh.positions.iter().copied();
         let normalisation = Normalisation::of(positions, !effects.has(Effects::CHECKER));
-        let triangles = records::triangles(scene, &normalisation, effects);
+        let triangles = records::triangles(scene, &normalisation);
         let start = Instant::now();
         let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
         let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;

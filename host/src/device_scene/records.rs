@@ -44,13 +44,13 @@ fn is_transparent(m: &Material) -> bool {
 }
 
 /// Its triangles in the normalised scene.
-pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation, effects: Effects) -> Vec<Triangle> {
+pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation) -> Vec<Triangle> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
     let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
         let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-        let passes = effects.has(Effects::TRANSPARENT) && clear[material as usize];
-        Triangle::new(vertices, primitive, material, if passes { Triangle::TRANSPARENT } else { 0 })
+        let flags = if clear[material as usize] { Triangle::TRANSPARENT } else { 0 };
+        Triangle::new(vertices, primitive, material, flags)
     });
     records.collect()
 }

@@ -156,6 +156,11 @@ impl<'a> Queue<'a> {
         self.uncounted = 0;
     }
 
+    /// Must the times be read before more passes are timed?
+    fn is_timer_full(&self) -> bool {
+        self.has_clock() && self.passes + MOST_PASSES > PASSES
+    }
+
     /// Begins the pass of a submission.
     fn pass(&mut self, encoder: &mut wgpu::CommandEncoder) -> wgpu::ComputePass<'static> {
         let timestamp_writes =
@@ -205,8 +210,7 @@ impl<'l, 'a> Launch<'l, 'a> {
             // Counted whenever the waves are looked at.
             Waves::Branching => 0,
         };
-        let is_timed_out = queue.passes + MOST_PASSES > PASSES && queue.has_clock();
-        if is_timed_out || queue.uncounted + rays > u64::from(u32::MAX) {
+        if queue.is_timer_full() || queue.uncounted + rays > u64::from(u32::MAX) {
             queue.read(memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         queue.uncounted += rays;
@@ -258,7 +262,7 @@ impl<'l, 'a> Launch<'l, 'a> {
         if counters[counter::RAYS as usize] > u32::MAX / 2 {
             self.queue.count(self.memory.buffers.of(binding::COUNTERS), counters[counter::RAYS as usize]);
         }
-        if self.queue.passes + MOST_PASSES > PASSES && self.queue.has_clock() {
+        if self.queue.is_timer_full() {
             self.queue.read(self.memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         let waves = counters[counter::WAVES as usize];

@@ -129,6 +129,11 @@ impl Plan {
         })
     }
 
+    /// Bytes that a sample in flight takes of a resource, 0 if the plan has not got it.
+    pub fn bytes_of(&self, binding: u32) -> u64 {
+        self.slot_bytes.iter().find(|(own, _)| *own == binding).map_or(0, |&(_, bytes)| bytes)
+    }
+
     /// Every step, in the order of the first launches.
     pub fn steps(&self) -> impl Iterator<Item = &Step> {
         self.first.iter().chain(&self.further).chain(&self.last)

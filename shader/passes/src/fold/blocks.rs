@@ -21,6 +21,11 @@ pub fn has_merge(block: &Block) -> bool {
     merge(block).is_some()
 }
 
+/// The blocks where a selection or loop ends that begins with this one, and where the loop goes round.
+pub fn ends_named(block: &Block) -> impl Iterator<Item = Word> {
+    merge(block).into_iter().flat_map(|merge| merge.operands.iter().filter_map(|operand| operand.id_ref_any()))
+}
+
 fn merge(block: &Block) -> Option<&Instruction> {
     let before = block.instructions.iter().rev().nth(1)?;
     matches!(before.class.opcode, Op::SelectionMerge | Op::LoopMerge).then_some(before)

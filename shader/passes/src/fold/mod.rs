@@ -6,15 +6,17 @@ mod blocks;
 mod branch;
 mod constants;
 mod evaluate;
+mod join;
 mod value;
 
 use rspirv::dr::Module;
 
 use crate::dead;
 
-/// Folds until nothing more follows, and removes what is then dead.
+/// Folds until nothing more follows, joins the blocks that then follow one another, and removes what is dead.
 pub fn fold(module: &mut Module) {
     while value::fold(module) | branch::fold(module) {}
+    join::join(module);
     dead::remove(module);
 }
 

@@ -38,6 +38,34 @@ fn what_a_constant_rules_out_is_gone_and_its_branch_too() {
     assert_eq!(folded(12, body), [Op::Load, Op::FMul, Op::Store, Op::Store]);
 }
 
+/// What is left of a way around nothing are no blocks of their own, so that it leaves no trace.
+#[test]
+fn blocks_that_only_follow_one_another_become_one() {
+    let blocks = |value, body: fn(&mut Body, u32)| {
+        let mut kernel = Kernel::new();
+        let special = kernel.spec_constant(1, 0);
+        kernel.entry("kernel", |b| body(b, special));
+        let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
+        let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap();
+        dr::load_words(cut.words()).unwrap().functions[0].blocks.len()
+    };
+    let choices: fn(&mut Body, u32) = |b, special| {
+        let x = b.load_input();
+        b.if_has(special, 4, |b| b.if_has(special, 8, |b| b.store_output(x)));
+        b.store_output(x);
+    };
+    assert_eq!([0, 4, 12].map(|value| blocks(value, choices)), [1, 1, 1]);
+    // Where a selection ends that is still one, a block begins.
+    let open: fn(&mut Body, u32) = |b, special| {
+        let word = b.load_counter(rspirv::spirv::MemoryAccess::NONE);
+        b.if_has(word, 1, |b| {
+            let x = b.load_input();
+            b.if_has(special, 1, |b| b.store_output(x));
+        });
+    };
+    assert_eq!([0, 1].map(|value| blocks(value, open)), [3, 3]);
+}
+
 #[test]
 fn a_value_that_is_not_constant_decides_nothing() {
     let ops = folded(0, |b, _| {
@@ -87,7 +115,11 @@ fn a_counter_keeps_a_value_for_every_way_into_its_loop() {
     let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, 1)]).unwrap();
     let module = dr::load_words(cut.words()).unwrap();
     let function = &module.functions[0];
-    assert_eq!(function.blocks.len(), 5, "one of two blocks is left of the way back");
+    assert_eq!(
+        function.blocks.len(),
+        4,
+        "one of two blocks is left of the way back, and one of the two before the loop"
+    );
     let phi = function.all_inst_iter().find(|inst| inst.class.opcode == Op::Phi).unwrap();
     assert_eq!(phi.operands.len(), 4, "two ways in");
 }

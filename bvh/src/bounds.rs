@@ -1,6 +1,6 @@
 //! Axis-aligned boxes, made by exact operations only, so that containment is exact.
 
-use eyerays_shader::data::{Bounds as Record, NodeRef, Triangle, numbers, pack};
+use eyerays_shader::data::{Bounds as Record, NodeRef, Primitive, numbers, pack};
 use glam::Vec3;
 
 /// A closed box; the least and greatest corner.
@@ -14,9 +14,9 @@ impl Bounds {
     /// The neutral element of [`Bounds::union`].
     pub const EMPTY: Bounds = Bounds { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
 
-    /// A triangle's own box, padding included.
-    pub fn of(triangle: &Triangle) -> Self {
-        let (min, max) = triangle.bounds();
+    /// A primitive's own box, padding included.
+    pub fn of(primitive: &Primitive) -> Self {
+        let (min, max) = primitive.bounds();
         Bounds::new(min, max)
     }
 

@@ -13,31 +13,31 @@ use crate::{
     wide::{validate_wide, wide},
 };
 
-/// A validated hierarchy, as pairs and as wide nodes. Both have the same triangles at the same slots.
+/// A validated hierarchy, as pairs and as wide nodes. Both have the same primitives at the same slots.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     /// The node pairs, the root's first, then in depth-first order.
     pub nodes: Vec<NodePair>,
     /// The wide nodes, the root first.
     pub wide: Vec<CwbvhNode>,
-    /// The triangle at each slot of a leaf, as an index into the triangles of the references.
+    /// The primitive at each slot of a leaf, as an index into the primitives of the references.
     pub order: Vec<u32>,
-    /// The own box at each slot: that of the triangle, or of the part that the slot stands for.
+    /// The own box at each slot: that of the primitive, or of the part that the slot stands for.
     pub bounds: Vec<Record>,
 }
 
 impl Bvh {
-    /// Brings the triangles, or one item a triangle, into the order of slots.
+    /// Brings the primitives, or one item a primitive, into the order of slots.
     ///
     /// # Panics
     ///
-    /// If there are fewer items than triangles.
+    /// If there are fewer items than primitives.
     pub fn gather<T: Copy>(&self, items: &[T]) -> Vec<T> {
         self.order.iter().map(|&i| items[i as usize]).collect()
     }
 }
 
-/// Builds the hierarchy of references to triangles in the normalised scene.
+/// Builds the hierarchy of references to primitives in the normalised scene.
 ///
 /// The same references give the same hierarchy, whatever the number of rayon's threads. Every box of
 /// a pair contains exactly what is below it, no leaf has more than [`MAX_LEAF`] references, and no path
@@ -45,7 +45,7 @@ impl Bvh {
 ///
 /// # Errors
 ///
-/// [`BuildError::NoTriangles`], [`BuildError::TooManyTriangles`], and [`BuildError::Reference`] if a
+/// [`BuildError::NoPrimitives`], [`BuildError::TooManyPrimitives`], and [`BuildError::Reference`] if a
 /// box is empty, or not in [-1, 1] except for its padding. Any other error is a defect of the builder that
 /// its validation found.
 pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
@@ -68,7 +68,7 @@ pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildErro
     let bvh = Bvh {
         nodes,
         wide: wide.nodes,
-        order: order.iter().map(|slot| at(slot).triangle).collect(),
+        order: order.iter().map(|slot| at(slot).primitive).collect(),
         bounds: order.iter().map(|slot| at(slot).bounds).collect(),
     };
     validate(&bvh.nodes, &bvh.bounds)?;
@@ -103,15 +103,17 @@ fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topolog
 /// The number of references, if a node reference can index so many.
 pub(crate) fn check_count(count: usize) -> Result<u32, BuildError> {
     match u32::try_from(count) {
-        Ok(0) => Err(BuildError::NoTriangles),
+        Ok(0) => Err(BuildError::NoPrimitives),
         Ok(fits) if fits <= NodeRef::MAX_INDEX => Ok(fits),
-        _ => Err(BuildError::TooManyTriangles { count }),
+        _ => Err(BuildError::TooManyPrimitives { count }),
     }
 }
 
+/// The greatest coordinate of an own box.
+pub(crate) const MOST: f32 = 1.0 + BOX_PADDING;
+
 /// obvhs can handle neither NaN nor areas that overflow.
 fn check_boxes(references: &[Reference]) -> Result<(), BuildError> {
-    const MOST: f32 = 1.0 + BOX_PADDING;
     let normalised = |reference: &Reference| {
         let Bounds { min, max } = Bounds::read(&reference.bounds);
         (0..3).all(|i| -MOST <= min[i] && min[i] <= max[i] && max[i] <= MOST)
@@ -130,10 +132,10 @@ mod tests {
     fn counts_are_limited_by_what_a_reference_holds() {
         let most = NodeRef::MAX_INDEX as usize;
         assert_eq!(check_count(most), Ok(NodeRef::MAX_INDEX));
-        assert_eq!(check_count(0), Err(BuildError::NoTriangles));
+        assert_eq!(check_count(0), Err(BuildError::NoPrimitives));
         for count in [most + 1, 1 << 33] {
             let error = check_count(count).unwrap_err();
-            assert_eq!(error, BuildError::TooManyTriangles { count });
+            assert_eq!(error, BuildError::TooManyPrimitives { count });
             let message = error.to_string();
             assert!(message.contains(&count.to_string()) && message.contains("536870911"));
         }

@@ -1,4 +1,4 @@
-//! Which triangles are grouped into one primitive for obvhs.
+//! Which primitives are grouped into one primitive for obvhs.
 //!
 //! PLOC merges two neighbours when each is the other's best partner. Among duplicates, evenly
 //! spaced rows and boxes nested in one another all prefer the same side, so that one pair merges a
@@ -16,16 +16,16 @@ const RUN: usize = 256;
 /// merge.
 const FEW: usize = 8;
 
-/// Triangles in groups. A group is a primitive of the search.
+/// Primitives in groups. A group is a primitive of the search.
 pub(crate) struct Clusters {
-    /// Triangle numbers, group by group.
+    /// Primitive numbers, group by group.
     order: Vec<u32>,
     /// Where each group starts in `order`, and its length at the end.
     starts: Vec<u32>,
 }
 
 impl Clusters {
-    /// Groups triangles by their boxes. Most groups have one triangle.
+    /// Groups primitives by their boxes. Most groups have one primitive.
     pub fn of(bounds: &[Bounds]) -> Self {
         let order = morton::sorted(bounds);
         let mut glued = vec![false; order.len()];
@@ -39,7 +39,7 @@ impl Clusters {
         Clusters { order, starts }
     }
 
-    /// Groups of triangles that are in a row already: where each starts, and the number of triangles at
+    /// Groups of primitives that are in a row already: where each starts, and the number of primitives at
     /// the end.
     pub fn between(starts: &[u32]) -> Self {
         let count = starts.last().copied().unwrap_or(0);
@@ -51,7 +51,7 @@ impl Clusters {
         self.starts.len() - 1
     }
 
-    /// The triangles of a group.
+    /// The primitives of a group.
     pub fn members(&self, group: u32) -> &[u32] {
         let group = group as usize;
         &self.order[self.starts[group] as usize..self.starts[group + 1] as usize]
@@ -92,7 +92,7 @@ fn pass(nodes: &[Node], glued: &mut [bool]) -> Vec<Node> {
     next
 }
 
-/// One node instead of a stalled run, all of whose triangles become one group.
+/// One node instead of a stalled run, all of whose primitives become one group.
 fn glue(nodes: &[Node], glued: &mut [bool]) -> Node {
     let node = join(nodes);
     glued[node.1.start as usize + 1..node.1.end as usize].fill(true);

@@ -63,14 +63,14 @@ mod tests {
     use super::*;
     use crate::topology::Node;
 
-    /// Each inner node has a leaf of one triangle on the left and the rest on the right.
-    fn chain(triangles: u32) -> Topology {
-        let mut topology = Topology::run(triangles);
+    /// Each inner node has a leaf of one primitive on the left and the rest on the right.
+    fn chain(primitives: u32) -> Topology {
+        let mut topology = Topology::run(primitives);
         topology.nodes.clear();
-        for first in 0..triangles {
+        for first in 0..primitives {
             let number = topology.nodes.len() as u32;
-            let inner = first + 1 < triangles;
-            let count = triangles - first;
+            let inner = first + 1 < primitives;
+            let count = primitives - first;
             if inner {
                 let kind = Kind::Inner(number + 1, number + 2);
                 topology.nodes.push(Node { kind, first, count });
@@ -101,7 +101,7 @@ mod tests {
         assert_eq!(topology.heights()[0], 999);
         topology.limit_depth(20);
         assert_eq!(topology.heights()[0], 20);
-        // 989 triangles need 8 levels, so 12 levels of the chain stay.
+        // 989 primitives need 8 levels, so 12 levels of the chain stay.
         assert_eq!(reached(&topology), 2 * 12 + 1);
     }
 

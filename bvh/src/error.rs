@@ -9,16 +9,16 @@ use crate::{MAX_DEPTH, MAX_WIDE_DEPTH};
 /// others mean that a hierarchy must not be traversed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
-    /// There are no triangles to build a tree over.
-    #[error("the scene has no triangles: add a mesh, or skip tracing and draw the background")]
-    NoTriangles,
-    /// A node reference cannot number so many triangles.
+    /// There are no primitives to build a tree over.
+    #[error("the scene has no primitives: add a mesh, or skip tracing and draw the background")]
+    NoPrimitives,
+    /// A node reference cannot number so many primitives.
     #[error(
-        "the scene has {count} triangles or parts of them, but a node reference holds {most}: split the scene or simplify its meshes",
+        "the scene has {count} primitives or parts of them, but a node reference holds {most}: split the scene or simplify its meshes",
         most = NodeRef::MAX_INDEX
     )]
-    TooManyTriangles {
-        /// Triangles or references given.
+    TooManyPrimitives {
+        /// Primitives or references given.
         count: usize,
     },
     /// A coordinate is NaN, infinite or outside the normalised scene.
@@ -30,7 +30,7 @@ pub enum BuildError {
         primitive: u32,
     },
     /// A reference's box is empty or does not lie in the normalised scene.
-    #[error("reference {reference} has a box that does not lie in [-1, 1]: split the normalised scene's triangles")]
+    #[error("reference {reference} has a box that does not lie in [-1, 1]: split the normalised scene's primitives")]
     Reference {
         /// The reference's place among those given.
         reference: u32,
@@ -57,9 +57,9 @@ pub enum BuildError {
         /// The least such pair.
         pair: u32,
     },
-    /// A leaf's run is too long or leads past the end of the triangles.
+    /// A leaf's run is too long or leads past the end of the primitives.
     #[error(
-        "pair {pair} has a leaf of {count} triangles from {first} on, but there are {triangles} and a leaf holds {most}: rebuild the hierarchy",
+        "pair {pair} has a leaf of {count} primitives from {first} on, but there are {primitives} and a leaf holds {most}: rebuild the hierarchy",
         most = MAX_LEAF
     )]
     LeafOutOfRange {
@@ -69,22 +69,22 @@ pub enum BuildError {
         first: u32,
         /// Length of the run.
         count: u32,
-        /// Triangles there are.
-        triangles: usize,
+        /// Primitives there are.
+        primitives: usize,
     },
-    /// Two leaves share a slot, or two slots a triangle.
-    #[error("triangle {triangle} sits in two places: rebuild the hierarchy")]
-    TriangleTwice {
-        /// The slot, or the triangle.
-        triangle: u32,
+    /// Two leaves share a slot, or two slots a primitive.
+    #[error("primitive {primitive} sits in two places: rebuild the hierarchy")]
+    PrimitiveTwice {
+        /// The slot, or the primitive.
+        primitive: u32,
     },
-    /// No leaf holds a slot, or no slot a triangle.
-    #[error("triangle {triangle} sits in no leaf: rebuild the hierarchy")]
-    TriangleLost {
-        /// The least such slot or triangle.
-        triangle: u32,
+    /// No leaf holds a slot, or no slot a primitive.
+    #[error("primitive {primitive} sits in no leaf: rebuild the hierarchy")]
+    PrimitiveLost {
+        /// The least such slot or primitive.
+        primitive: u32,
     },
-    /// A box does not contain its triangles or its children.
+    /// A box does not contain its primitives or its children.
     #[error("a box of pair {pair} does not contain what is below it: rebuild the hierarchy")]
     BoxTooSmall {
         /// The pair.
@@ -124,9 +124,9 @@ pub enum BuildError {
         /// The least such node.
         node: u32,
     },
-    /// A wide node's leaf leads past the end of the triangles.
+    /// A wide node's leaf leads past the end of the primitives.
     #[error(
-        "wide node {node} has a leaf of {count} triangles from {first} on, but there are {triangles}: rebuild the hierarchy"
+        "wide node {node} has a leaf of {count} primitives from {first} on, but there are {primitives}: rebuild the hierarchy"
     )]
     WideLeafOutOfRange {
         /// The node that has the leaf.
@@ -135,8 +135,8 @@ pub enum BuildError {
         first: u64,
         /// Length of the run.
         count: u32,
-        /// Triangles there are.
-        triangles: usize,
+        /// Primitives there are.
+        primitives: usize,
     },
     /// A child's quantised box does not contain what is below it with the margin it must have.
     #[error("a box of wide node {node} does not contain what is below it by the margin: rebuild the hierarchy")]

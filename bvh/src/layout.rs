@@ -16,14 +16,14 @@ enum Subtree {
     Run(u32, u32),
 }
 
-/// Lays out a topology of at least two triangles as node pairs in depth-first order, the root
-/// first. Reorders `topology.order` within runs. `bounds` are those of all triangles.
+/// Lays out a topology of at least two primitives as node pairs in depth-first order, the root
+/// first. Reorders `topology.order` within runs. `bounds` are those of all primitives.
 pub(crate) fn pairs(topology: &mut Topology, bounds: &[Bounds]) -> Vec<NodePair> {
     let references = number(topology, bounds);
     boxes(&references, &topology.order, bounds)
 }
 
-/// The only pair of a tree of one triangle.
+/// The only pair of a tree of one primitive.
 pub(crate) fn single(bounds: Bounds) -> NodePair {
     NodePair::new(bounds.child(NodeRef::leaf(0, 1)), NodePair::EMPTY)
 }

@@ -1,6 +1,6 @@
 //! What a hierarchy looks like (thesis table 7.1) and what it costs.
 
-use eyerays_shader::data::{NodePair, NodeRef, Triangle};
+use eyerays_shader::data::{NodePair, NodeRef, Primitive};
 
 use crate::{
     Bvh,
@@ -48,7 +48,7 @@ impl Statistics {
     pub const INTERSECTION: f64 = 1.0;
 
     /// The figures of `bvh`, which was built over `triangles`.
-    pub fn of(bvh: &Bvh, triangles: &[Triangle]) -> Self {
+    pub fn of(bvh: &Bvh, triangles: &[Primitive]) -> Self {
         let mut statistics = Statistics {
             triangles: triangles.len(),
             references: bvh.order.len(),
@@ -61,7 +61,7 @@ impl Statistics {
             wide_depth: 0,
             wide_sah_cost: 0.0,
             wide_bytes: size_of_val(&bvh.wide[..]),
-            triangle_bytes: size_of::<Triangle>() * bvh.order.len(),
+            triangle_bytes: size_of::<Primitive>() * bvh.order.len(),
         };
         let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
         let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
@@ -146,7 +146,7 @@ mod tests {
             order: (0..9).collect(),
             bounds: vec![Bounds::EMPTY.write(); 9],
         };
-        let triangles = [Triangle::new([Vec3::ZERO; 3], 0, 0, 0); 9];
+        let triangles = [Primitive::triangle([Vec3::ZERO; 3], 0, 0, 0); 9];
         let statistics = Statistics::of(&bvh, &triangles);
         // Half areas: root 9, inner node 5, each leaf 3.
         let cost = 1.0 + 5.0 / 9.0 + (2.0 + 3.0 + 4.0) * 3.0 / 9.0;
@@ -172,7 +172,7 @@ mod tests {
 
     #[test]
     fn an_empty_sibling_counts_for_nothing() {
-        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
+        let triangle = Primitive::triangle([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
         let bvh = crate::build(&crate::split(&[triangle], 0.0).unwrap(), crate::Quality::Medium).unwrap();
         let statistics = Statistics::of(&bvh, &[triangle]);
         assert_eq!((statistics.nodes, statistics.leaves, statistics.depth), (2, 1, 1));

@@ -1,4 +1,4 @@
-//! A tree over triangles, without boxes.
+//! A tree over primitives, without boxes.
 
 use obvhs::bvh2::Bvh2;
 
@@ -9,11 +9,11 @@ use crate::cluster::Clusters;
 pub(crate) enum Kind {
     /// Left and right child, by their numbers.
     Inner(u32, u32),
-    /// Triangles in no order yet; a leaf if they are few, otherwise to be split at medians.
+    /// Primitives in no order yet; a leaf if they are few, otherwise to be split at medians.
     Run,
 }
 
-/// A node and the triangles below it.
+/// A node and the primitives below it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Node {
     pub kind: Kind,
@@ -27,18 +27,18 @@ pub(crate) struct Node {
 /// slots. Node 0 is the root.
 pub(crate) struct Topology {
     pub nodes: Vec<Node>,
-    /// The triangle at each slot.
+    /// The primitive at each slot.
     pub order: Vec<u32>,
 }
 
 impl Topology {
-    /// One run of all triangles.
-    pub fn run(triangles: u32) -> Self {
-        let node = Node { kind: Kind::Run, first: 0, count: triangles };
-        Topology { nodes: vec![node], order: (0..triangles).collect() }
+    /// One run of all primitives.
+    pub fn run(primitives: u32) -> Self {
+        let node = Node { kind: Kind::Run, first: 0, count: primitives };
+        Topology { nodes: vec![node], order: (0..primitives).collect() }
     }
 
-    /// The tree that obvhs found over clusters, in depth-first order, with the clusters' triangles
+    /// The tree that obvhs found over clusters, in depth-first order, with the clusters' primitives
     /// in the leaves.
     pub fn of(tree: &Bvh2, clusters: &Clusters) -> Self {
         let mut topology = Topology { nodes: Vec::with_capacity(tree.nodes.len()), order: Vec::new() };

@@ -12,15 +12,15 @@ use crate::{BuildError, MAX_DEPTH, bounds::Bounds};
 ///
 /// The first rule broken in depth-first order; pairs and slots that are never reached come last.
 pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError> {
-    let triangles = bounds.len();
-    if triangles == 0 {
-        return Err(BuildError::NoTriangles);
+    let primitives = bounds.len();
+    if primitives == 0 {
+        return Err(BuildError::NoPrimitives);
     }
-    let mut walk = Walk { nodes, bounds, pairs: Once::new(nodes.len()), slots: Once::new(triangles), open: Vec::new() };
+    let mut walk = Walk { nodes, bounds, pairs: Once::new(nodes.len()), slots: Once::new(primitives), open: Vec::new() };
     walk.enter(0, NodeRef::ROOT, 0)?;
     while let Some((pair, level)) = walk.open.pop() {
         for (bounds, reference) in children(&nodes[pair as usize]) {
-            if triangles == 1 && is_empty(bounds, reference) {
+            if primitives == 1 && is_empty(bounds, reference) {
                 continue;
             }
             walk.child(pair, level, bounds, reference)?;
@@ -30,7 +30,7 @@ pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError>
         return Err(BuildError::PairUnreached { pair });
     }
     match walk.slots.missing() {
-        Some(triangle) => Err(BuildError::TriangleLost { triangle }),
+        Some(primitive) => Err(BuildError::PrimitiveLost { primitive }),
         None => Ok(()),
     }
 }
@@ -38,13 +38,13 @@ pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError>
 /// Checks that `order` names each of `count` references exactly once.
 pub(crate) fn order(order: &[u32], count: usize) -> Result<(), BuildError> {
     let mut once = Once::new(count);
-    for &triangle in order {
-        if !once.meet(triangle) {
-            return Err(BuildError::TriangleTwice { triangle });
+    for &primitive in order {
+        if !once.meet(primitive) {
+            return Err(BuildError::PrimitiveTwice { primitive });
         }
     }
     match once.missing() {
-        Some(triangle) => Err(BuildError::TriangleLost { triangle }),
+        Some(primitive) => Err(BuildError::PrimitiveLost { primitive }),
         None => Ok(()),
     }
 }
@@ -102,16 +102,16 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Marks the slots of a leaf and returns the box around their triangles.
+    /// Marks the slots of a leaf and returns the box around their primitives.
     fn leaf(&mut self, pair: u32, leaf: NodeRef) -> Result<Bounds, BuildError> {
         let (first, count) = (leaf.index(), leaf.count());
         let slots = first..first + count;
-        let triangles = self.bounds.len();
-        if count > MAX_LEAF || slots.end as usize > triangles {
-            return Err(BuildError::LeafOutOfRange { pair, first, count, triangles });
+        let primitives = self.bounds.len();
+        if count > MAX_LEAF || slots.end as usize > primitives {
+            return Err(BuildError::LeafOutOfRange { pair, first, count, primitives });
         }
         match slots.clone().find(|&slot| !self.slots.meet(slot)) {
-            Some(triangle) => Err(BuildError::TriangleTwice { triangle }),
+            Some(primitive) => Err(BuildError::PrimitiveTwice { primitive }),
             None => Ok(Bounds::around(slots.map(|slot| Bounds::read(&self.bounds[slot as usize])))),
         }
     }
@@ -147,9 +147,9 @@ mod tests {
     #[test]
     fn an_order_is_a_permutation() {
         assert_eq!(order(&[2, 0, 1], 3), Ok(()));
-        let twice = |triangle| Err(BuildError::TriangleTwice { triangle });
+        let twice = |primitive| Err(BuildError::PrimitiveTwice { primitive });
         assert_eq!(order(&[2, 0, 2], 3), twice(2));
-        let lost = |triangle| Err(BuildError::TriangleLost { triangle });
+        let lost = |primitive| Err(BuildError::PrimitiveLost { primitive });
         assert_eq!(order(&[2, 0], 3), lost(1));
     }
 }

@@ -72,7 +72,7 @@ fn pair_that_nothing_refers_to() {
 #[test]
 fn leaf_out_of_range() {
     let error = after(|_, bounds| bounds.truncate(299));
-    assert!(matches!(error, BuildError::LeafOutOfRange { triangles: 299, .. }));
+    assert!(matches!(error, BuildError::LeafOutOfRange { primitives: 299, .. }));
     for count in [6, 7] {
         let error = after(|nodes, _| {
             let pair = left(nodes, true);
@@ -85,12 +85,12 @@ fn leaf_out_of_range() {
 #[test]
 fn triangle_in_no_leaf() {
     let error = after(|_, bounds| bounds.push(bounds[0]));
-    assert_eq!(error, BuildError::TriangleLost { triangle: 300 });
+    assert_eq!(error, BuildError::PrimitiveLost { primitive: 300 });
     let error = after(|nodes, _| {
         let pair = nodes.iter().position(|n| n.left().count() > 1).unwrap();
         nodes[pair].left_min.w -= 1;
     });
-    assert!(matches!(error, BuildError::TriangleLost { .. }));
+    assert!(matches!(error, BuildError::PrimitiveLost { .. }));
 }
 
 #[test]
@@ -100,7 +100,7 @@ fn triangle_in_two_leaves() {
         nodes[pair].right_min = nodes[pair].left_min;
         nodes[pair].right_max = nodes[pair].left_max;
     });
-    assert!(matches!(error, BuildError::TriangleTwice { .. }));
+    assert!(matches!(error, BuildError::PrimitiveTwice { .. }));
 }
 
 /// Moves one face of one box inwards by the least step there is.
@@ -164,11 +164,11 @@ fn empty_sibling_belongs_to_one_triangle_only() {
     let bounds = [references.list[0].bounds, references.list[1].bounds];
     let one = build(&references.list[..1].to_vec().into(), Quality::Medium).unwrap().nodes;
     assert_eq!(validate(&one, &bounds[..1]), Ok(()));
-    let error = BuildError::TriangleTwice { triangle: 0 };
+    let error = BuildError::PrimitiveTwice { primitive: 0 };
     assert_eq!(validate(&one, &bounds), Err(error.clone()));
 
     let mut moved = one.clone();
     moved[0].right_max.x = 1.0f32.to_bits();
     assert_eq!(validate(&moved, &bounds[..1]), Err(error));
-    assert_eq!(validate(&one, &[]), Err(BuildError::NoTriangles));
+    assert_eq!(validate(&one, &[]), Err(BuildError::NoPrimitives));
 }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use common::*;
 use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, Reference, Statistics, build, split};
-use eyerays_shader::data::{Bounds, NodePair, Triangle, pack};
+use eyerays_shader::data::{Bounds, NodePair, Primitive, pack};
 use glam::{Vec3, vec3};
 
 /// Many times what these builds take on a busy machine. Where clusters are not kept away from obvhs,
@@ -14,7 +14,7 @@ use glam::{Vec3, vec3};
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Builds at every quality within [`PATIENCE`] and returns the greatest depth.
-fn depth(triangles: &[Triangle]) -> u32 {
+fn depth(triangles: &[Primitive]) -> u32 {
     let depth = |quality| {
         let start = Instant::now();
         let bvh = build_and_check(&whole(triangles), quality);
@@ -27,9 +27,9 @@ fn depth(triangles: &[Triangle]) -> u32 {
 #[test]
 fn no_triangles() {
     for quality in QUALITIES {
-        assert_eq!(build(&Vec::new().into(), quality), Err(BuildError::NoTriangles));
+        assert_eq!(build(&Vec::new().into(), quality), Err(BuildError::NoPrimitives));
     }
-    assert_eq!(split(&[], 0.0), Err(BuildError::NoTriangles));
+    assert_eq!(split(&[], 0.0), Err(BuildError::NoPrimitives));
 }
 
 #[test]
@@ -131,7 +131,7 @@ fn coordinates_outside_the_scene_are_refused_by_primitive() {
         let mut triangles = scattered(50, 9);
         let mut vertices = triangles[31].vertices();
         vertices[2][axis] = fault;
-        triangles[31] = Triangle::new(vertices, 4711, 0, 0);
+        triangles[31] = Primitive::triangle(vertices, 4711, 0, 0);
         let error = split(&triangles, 0.0).unwrap_err();
         assert_eq!(error, BuildError::Coordinate { primitive: 4711 });
         assert!(error.to_string().contains("primitive 4711"));

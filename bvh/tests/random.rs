@@ -4,7 +4,7 @@ mod common;
 
 use common::*;
 use eyerays_bvh::{Bvh, Quality, build, split};
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::Primitive;
 use glam::Vec3;
 use proptest::{
     collection::vec,
@@ -28,7 +28,7 @@ fn vertex() -> impl Strategy<Value = Vec3> {
 }
 
 /// Triangles, each repeated a number of times.
-fn any_mesh() -> impl Strategy<Value = Vec<Triangle>> {
+fn any_mesh() -> impl Strategy<Value = Vec<Primitive>> {
     let repeated = ([vertex(), vertex(), vertex()], prop_oneof![9 => 1..2usize, 1 => 1..400usize]);
     vec(repeated, 1..400)
         .prop_map(|all| mesh(all.into_iter().flat_map(|(vertices, times)| std::iter::repeat_n(vertices, times))))
@@ -58,7 +58,7 @@ proptest! {
 }
 
 /// Builds on a pool of so many threads.
-fn build_with(threads: usize, triangles: &[Triangle], budget: f32, quality: Quality) -> Bvh {
+fn build_with(threads: usize, triangles: &[Primitive], budget: f32, quality: Quality) -> Bvh {
     let pool = ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
     pool.install(|| build(&split(triangles, budget).unwrap(), quality).unwrap())
 }

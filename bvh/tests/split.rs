@@ -4,12 +4,12 @@ mod common;
 
 use common::*;
 use eyerays_bvh::{Reference, Statistics, split};
-use eyerays_shader::data::{BOX_PADDING, Triangle, numbers};
+use eyerays_shader::data::{BOX_PADDING, Primitive, numbers};
 use glam::{Vec3, vec3};
 use proptest::{collection::vec, prelude::*};
 
 /// A point of a triangle, by weights from 0 to 1.
-fn point(triangle: &Triangle, [u, v]: [f64; 2]) -> [f64; 3] {
+fn point(triangle: &Primitive, [u, v]: [f64; 2]) -> [f64; 3] {
     let [a, b, c] = triangle.vertices().map(|v| v.as_dvec3());
     let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
     (a + (b - a) * u + (c - a) * v).to_array()
@@ -21,16 +21,16 @@ fn contains(reference: &Reference, point: [f64; 3]) -> bool {
 }
 
 /// Checks that references are few enough, inside own boxes, and cover points with padding around.
-fn check(triangles: &[Triangle], budget: f32, weights: &[[f64; 2]]) -> usize {
+fn check(triangles: &[Primitive], budget: f32, weights: &[[f64; 2]]) -> usize {
     let references = split(triangles, budget).unwrap();
     let most = triangles.len() + (budget * triangles.len() as f32) as usize;
     assert!((triangles.len()..=most).contains(&references.list.len()));
     let mut of: Vec<Vec<Reference>> = vec![Vec::new(); triangles.len()];
     for reference in &references.list {
-        let (least, greatest) = triangles[reference.triangle as usize].bounds();
+        let (least, greatest) = triangles[reference.primitive as usize].bounds();
         let (low, high) = (numbers(reference.bounds.least), numbers(reference.bounds.greatest));
         assert!(least.cmple(low).all() && low.cmple(high).all() && high.cmple(greatest).all());
-        of[reference.triangle as usize].push(*reference);
+        of[reference.primitive as usize].push(*reference);
     }
     // Less by the rounding of own boxes.
     let pad = f64::from(BOX_PADDING) * 0.8;
@@ -59,7 +59,7 @@ fn without_a_budget_each_triangle_is_whole() {
         let references = split(&triangles, budget).unwrap().list;
         assert_eq!(references.len(), 1000);
         for (i, reference) in references.iter().enumerate() {
-            assert_eq!(reference.triangle, i as u32);
+            assert_eq!(reference.primitive, i as u32);
             let own = (numbers(reference.bounds.least), numbers(reference.bounds.greatest));
             assert_eq!(own, triangles[i].bounds());
         }

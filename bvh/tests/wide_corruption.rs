@@ -49,7 +49,7 @@ fn is_leaf(node: &CwbvhNode, slot: usize) -> bool {
 fn no_nodes() {
     let error = after(|nodes, _| nodes.clear());
     assert!(matches!(error, BuildError::WideNodeOutOfRange { nodes: 0, .. }));
-    assert_eq!(validate_wide(&valid().0, &[]), Err(BuildError::NoTriangles));
+    assert_eq!(validate_wide(&valid().0, &[]), Err(BuildError::NoPrimitives));
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn node_that_nothing_refers_to() {
 #[test]
 fn leaf_out_of_range() {
     let error = after(|_, bounds| bounds.truncate(299));
-    assert!(matches!(error, BuildError::WideLeafOutOfRange { triangles: 299, .. }));
+    assert!(matches!(error, BuildError::WideLeafOutOfRange { primitives: 299, .. }));
     for first in [300, u32::MAX] {
         let error = after(|nodes, _| {
             let (node, _) = find(nodes, is_leaf);
@@ -104,18 +104,18 @@ fn leaf_out_of_range() {
 #[test]
 fn triangle_in_no_leaf_and_in_two() {
     let error = after(|_, bounds| bounds.push(bounds[0]));
-    assert_eq!(error, BuildError::TriangleLost { triangle: 300 });
+    assert_eq!(error, BuildError::PrimitiveLost { primitive: 300 });
     let error = after(|nodes, _| {
         let (node, slot) = find(nodes, is_leaf);
         let fewer = leaf(&nodes[node], slot) >> 1;
         set_leaf(&mut nodes[node], slot, fewer);
     });
-    assert!(matches!(error, BuildError::TriangleLost { .. } | BuildError::WideNodeMalformed { .. }), "{error}");
+    assert!(matches!(error, BuildError::PrimitiveLost { .. } | BuildError::WideNodeMalformed { .. }), "{error}");
     let error = after(|nodes, _| {
         let (node, _) = find(nodes, |n, slot| is_leaf(n, slot) && n.children.y > 0);
         nodes[node].children.y -= 1;
     });
-    assert!(matches!(error, BuildError::TriangleTwice { .. }), "{error}");
+    assert!(matches!(error, BuildError::PrimitiveTwice { .. }), "{error}");
 }
 
 #[test]

@@ -86,7 +86,7 @@ impl Batch {
     }
 
     fn hit(&self, packed: &DeviceScene, record: UVec4, moved: f64) -> Option<Hit> {
-        let triangle = packed.triangles().get(record.w as usize)?.primitive();
+        let triangle = packed.primitives().get(record.w as usize)?.primitive();
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
         Some(Hit { distance: moved + f64::from(t) / self.scale, triangle, weights: [u, v] })
     }

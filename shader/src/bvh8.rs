@@ -1,9 +1,9 @@
-//! The wide hierarchy as a CPU's vectors load it: boxes in full precision and triangles, as structures of arrays, with
-//! nothing to decode or to shuffle. The same triangles have the same indices as in the other hierarchies.
+//! The wide hierarchy as a CPU's vectors load it: boxes in full precision, triangles and spheres, as structures of arrays, with
+//! nothing to decode or to shuffle. The same primitives have the same indices as in the other hierarchies.
 
-use crate::data::Triangle;
+use crate::data::Primitive;
 
-/// Eight siblings. A box is wider than the triangles' own boxes below it by [`Bvh8Node::MARGIN`] on every side.
+/// Eight siblings. A box is wider than the primitives' own boxes below it by [`Bvh8Node::MARGIN`] on every side.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(32))]
 pub struct Bvh8Node {
@@ -18,18 +18,33 @@ impl Bvh8Node {
     pub const MARGIN: f32 = 1.0 / (1 << 19) as f32;
     /// A pair of planes that no ray is between: the box of a missing child.
     pub const NOWHERE: [f32; 2] = [4.0, -4.0];
-    /// No child, no triangle.
+    /// No child.
     pub const EMPTY: Bvh8Node =
         Bvh8Node { planes: [[[Self::NOWHERE[0]; 8], [Self::NOWHERE[1]; 8]]; 3], children: [Bvh8Ref(0); 8] };
 }
 
-/// A reference to a node, or to a leaf: up to four triangles.
+/// What a leaf holds: up to four triangles or spheres, which are tested side by side, or primitives that are tested one after
+/// the other.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum LeafKind {
+    /// A [`Triangle4`].
+    Triangles,
+    /// A [`Sphere4`].
+    Spheres,
+    /// A [`Mixed4`].
+    Mixed,
+}
+
+/// A reference to a node, or to a leaf.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(transparent)]
 pub struct Bvh8Ref(pub u32);
 
 impl Bvh8Ref {
     const LEAF: u32 = 1 << 31;
+    const SPHERES: u32 = 1 << 30;
+    const MIXED: u32 = 1 << 29;
+    const INDEX: u32 = Self::MIXED - 1;
     /// The node that a traversal starts with.
     pub const ROOT: Bvh8Ref = Bvh8Ref(0);
 
@@ -38,9 +53,14 @@ impl Bvh8Ref {
         Bvh8Ref(node)
     }
 
-    /// The leaf of the [`Triangle4`] of this number.
-    pub fn leaf(block: u32) -> Self {
-        Bvh8Ref(block | Self::LEAF)
+    /// The leaf of the block of this number among those of its kind.
+    pub fn leaf(kind: LeafKind, block: u32) -> Self {
+        let bits = match kind {
+            LeafKind::Triangles => 0,
+            LeafKind::Spheres => Self::SPHERES,
+            LeafKind::Mixed => Self::MIXED,
+        };
+        Bvh8Ref(block | bits | Self::LEAF)
     }
 
     /// Is this a leaf?
@@ -49,34 +69,45 @@ impl Bvh8Ref {
         self.0 & Self::LEAF != 0
     }
 
-    /// The number of the node or of the [`Triangle4`].
+    /// What a leaf holds.
+    #[inline(always)]
+    pub fn kind(self) -> LeafKind {
+        match self.0 & (Self::SPHERES | Self::MIXED) {
+            0 => LeafKind::Triangles,
+            Self::SPHERES => LeafKind::Spheres,
+            _ => LeafKind::Mixed,
+        }
+    }
+
+    /// The number of the node, or of the leaf's block among those of its kind.
     #[inline(always)]
     pub fn index(self) -> usize {
-        (self.0 & !Self::LEAF) as usize
+        (self.0 & Self::INDEX) as usize
     }
 }
+
+/// The most primitives of a leaf.
+pub const MOST: usize = 4;
 
 /// Up to four triangles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(16))]
 pub struct Triangle4 {
     /// By vertex and axis a coordinate of each triangle; NaN, which is never hit, where there is none.
-    pub vertices: [[[f32; 4]; 3]; 3],
+    pub vertices: [[[f32; MOST]; 3]; 3],
     /// The index of each triangle.
-    pub triangle_indices: [u32; 4],
+    pub primitive_indices: [u32; MOST],
 }
 
 impl Triangle4 {
-    /// The most triangles.
-    pub const TRIANGLES: usize = 4;
     /// No triangle.
-    pub const EMPTY: Triangle4 = Triangle4 { vertices: [[[f32::NAN; 4]; 3]; 3], triangle_indices: [0; 4] };
+    pub const EMPTY: Triangle4 = Triangle4 { vertices: [[[f32::NAN; MOST]; 3]; 3], primitive_indices: [0; MOST] };
 
     /// Triangles, each with its index.
     ///
     /// # Panics
-    /// If there are more than [`Triangle4::TRIANGLES`].
-    pub fn of<'t>(triangles: impl Iterator<Item = (u32, &'t Triangle)>) -> Self {
+    /// If there are more than [`MOST`].
+    pub fn of<'t>(triangles: impl Iterator<Item = (u32, &'t Primitive)>) -> Self {
         let mut block = Triangle4::EMPTY;
         for (lane, (index, triangle)) in triangles.enumerate() {
             for (vertex, place) in triangle.vertices().iter().enumerate() {
@@ -84,9 +115,78 @@ impl Triangle4 {
                     block.vertices[vertex][axis][lane] = place[axis];
                 }
             }
-            block.triangle_indices[lane] = index;
+            block.primitive_indices[lane] = index;
         }
         block
+    }
+}
+
+/// Up to four spheres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C, align(16))]
+pub struct Sphere4 {
+    /// By axis a coordinate of each centre; NaN, which is never hit, where there is none.
+    pub centres: [[f32; MOST]; 3],
+    /// The radius of each.
+    pub radii: [f32; MOST],
+    /// The index of each.
+    pub primitive_indices: [u32; MOST],
+    /// The number of each in the scene.
+    pub numbers: [u32; MOST],
+}
+
+impl Sphere4 {
+    /// No sphere.
+    pub const EMPTY: Sphere4 = Sphere4 {
+        centres: [[f32::NAN; MOST]; 3],
+        radii: [0.0; MOST],
+        primitive_indices: [0; MOST],
+        numbers: [u32::MAX; MOST],
+    };
+
+    /// Spheres, each with its index.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST`].
+    pub fn of<'s>(spheres: impl Iterator<Item = (u32, &'s Primitive)>) -> Self {
+        let mut block = Sphere4::EMPTY;
+        for (lane, (index, sphere)) in spheres.enumerate() {
+            for axis in 0..3 {
+                block.centres[axis][lane] = sphere.centre()[axis];
+            }
+            block.radii[lane] = sphere.radius();
+            block.primitive_indices[lane] = index;
+            block.numbers[lane] = sphere.number();
+        }
+        block
+    }
+}
+
+/// Up to four primitives of any kinds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mixed4 {
+    indices: [u32; MOST],
+    count: u32,
+}
+
+impl Mixed4 {
+    /// Primitives by their indices.
+    ///
+    /// # Panics
+    /// If there are more than [`MOST`].
+    pub fn of(primitives: impl Iterator<Item = u32>) -> Self {
+        let mut block = Mixed4 { indices: [0; MOST], count: 0 };
+        for index in primitives {
+            block.indices[block.count as usize] = index;
+            block.count += 1;
+        }
+        block
+    }
+
+    /// The index of each.
+    #[inline(always)]
+    pub fn indices(&self) -> &[u32] {
+        &self.indices[..self.count as usize]
     }
 }
 
@@ -95,6 +195,10 @@ impl Triangle4 {
 pub struct Bvh8View<'a> {
     /// Nodes, the root first.
     pub nodes: &'a [Bvh8Node],
-    /// The triangles of leaves.
-    pub blocks: &'a [Triangle4],
+    /// Leaves of triangles.
+    pub triangles: &'a [Triangle4],
+    /// Leaves of spheres.
+    pub spheres: &'a [Sphere4],
+    /// Leaves of other primitives, or of several kinds.
+    pub mixed: &'a [Mixed4],
 }

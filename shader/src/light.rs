@@ -15,12 +15,12 @@ fn is(effects: Effects, light: &Light, feature: u32, kind: u32) -> bool {
 
 /// Where a shadow ray starts, its unit direction and its limit.
 #[inline(always)]
-pub fn ray_to_light<R: Scalar>(effects: Effects, light: &Light, contact: &SurfaceInteraction<R>) -> (V3<R>, V3<R>, R) {
+pub fn ray_to_light<R: Scalar>(effects: Effects, light: &Light, interaction: &SurfaceInteraction<R>) -> (V3<R>, V3<R>, R) {
     let place = V3::<R>::splat(numbers(light.position));
     if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
-        (contact.offset_ray_origin(place), place, R::splat(f32::MAX))
+        (interaction.offset_ray_origin(place), place, R::splat(f32::MAX))
     } else {
-        let origin = contact.offset_ray_origin(place - contact.position);
+        let origin = interaction.offset_ray_origin(place - interaction.position);
         let (direction, distance) = (place - origin).normalised();
         (origin, direction, distance * R::splat(1.0 - SHORT))
     }
@@ -110,30 +110,32 @@ mod tests {
 
     #[test]
     fn shadow_rays_end_short_of_a_place_and_never_for_a_direction() {
-        let contact = SurfaceInteraction::<f64> {
+        let interaction = SurfaceInteraction::<f64> {
             position: V3::zero(),
             error_offset: 1e-6,
             normal: V3::splat(Vec3::Y),
             front: true,
-            weights: (0.0, 0.0),
+            coordinates: (0.0, 0.0),
+            number: 0,
+            is_curved: false,
         };
         let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));
         let (origin, direction, _) = ray_to_light(
             ALL,
             &light(Light::POINT, Vec3::new(3.0, 4.0, 0.0)),
-            &SurfaceInteraction { position: beside, ..contact },
+            &SurfaceInteraction { position: beside, ..interaction },
         );
         assert!((origin - beside).dot(origin - beside) < 1e-11 && (direction.y - 1.0).abs() < 1e-12);
         // The light lies below the surface, so the ray must leave towards that side.
         let (origin, ..) = ray_to_light(
             ALL,
             &light(Light::POINT, Vec3::Y),
-            &SurfaceInteraction { position: V3::splat(Vec3::new(0.0, 2.0, 0.0)), ..contact },
+            &SurfaceInteraction { position: V3::splat(Vec3::new(0.0, 2.0, 0.0)), ..interaction },
         );
         assert!(origin.y < 2.0, "off the side that the light is on");
-        let (origin, direction, limit) = ray_to_light(ALL, &light(Light::POINT, Vec3::Y), &contact);
+        let (origin, direction, limit) = ray_to_light(ALL, &light(Light::POINT, Vec3::Y), &interaction);
         assert!(origin.y > 0.0 && (direction.y - 1.0).abs() < 1e-12 && limit < 1.0 && limit > 0.999);
-        let (_, direction, limit) = ray_to_light(ALL, &light(Light::DIRECTIONAL, Vec3::Y), &contact);
+        let (_, direction, limit) = ray_to_light(ALL, &light(Light::DIRECTIONAL, Vec3::Y), &interaction);
         assert_eq!((direction, limit), (V3::splat(Vec3::Y), f64::from(f32::MAX)));
     }
 }

@@ -1,22 +1,25 @@
-//! A ray, prepared for box and triangle tests, and its hit.
+//! A ray, prepared for the tests of boxes and primitives, and its hit.
 
 #[cfg(not(target_arch = "spirv"))]
-use crate::real::Scalar;
+use crate::real::{Lanes, Scalar};
 use crate::real::{Real, SMALL, TINY, V3};
 use glam::Vec3;
 
-/// A ray (or one a lane) with the values that its box and triangle tests share.
+/// A ray (or one a lane) with the values that its tests of boxes and primitives share.
 #[derive(Clone, Copy)]
 pub struct Ray<R: Real> {
     /// Where it starts, in the normalised scene.
     pub origin: V3<R>,
+    /// Where it goes, without components below 2^-60.
+    pub direction: V3<R>,
     /// One over the direction; a component below 2^-60, or that is NaN, counts as 2^-60, so that no infinity arises.
     pub inverse: V3<R>,
     /// The origin times the inverse.
     pub offset: V3<R>,
     /// The shear that turns the direction into the third axis.
     pub shear: Shear<R>,
-    /// The primitive that it starts on, which it can't hit again; [`Hit::NOTHING`] for none.
+    /// The primitive that it starts on, which it can't hit again; [`Hit::NOTHING`] for none. With [`Ray::INSIDE`] it can, on
+    /// the far side.
     pub source_primitive: R::Index,
 }
 
@@ -34,14 +37,18 @@ pub struct Shear<R: Real> {
 }
 
 impl<R: Real> Ray<R> {
-    /// A ray that starts on no triangle; `direction` needs no unit length (t counts in its lengths), but must not be
+    /// The bit of [`Ray::source_primitive`] for a ray that starts on a sphere and goes through its inside, which it leaves
+    /// on the far side.
+    pub const INSIDE: u32 = 1 << 31;
+
+    /// A ray that starts on no primitive; `direction` needs no unit length (t counts in its lengths), but must not be
     /// zero.
     #[inline(always)]
     pub fn new(origin: V3<R>, direction: V3<R>) -> Self {
         Self::leaving(R::index(Hit::<R>::NOTHING), origin, direction)
     }
 
-    /// A ray that starts on a triangle.
+    /// A ray that starts on a primitive.
     #[inline(always)]
     pub fn leaving(source_primitive: R::Index, origin: V3<R>, direction: V3<R>) -> Self {
         Self::prepared(source_primitive, origin, direction, false)
@@ -73,7 +80,7 @@ impl<R: Real> Ray<R> {
         } else {
             V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z))
         };
-        Ray { origin, inverse, offset: origin.times(inverse), shear, source_primitive }
+        Ray { origin, direction: d, inverse, offset: origin.times(inverse), shear, source_primitive }
     }
 
     /// A vertex relative to the origin, its axes cycled.
@@ -142,21 +149,21 @@ impl<R: Real> Shear<R> {
 pub struct Hit<R: Real> {
     /// Distance in lengths of the ray's direction. Nothing beyond counts.
     pub t: R,
-    /// Weight of the triangle's second vertex, to be multiplied by `scale`. Both weights and the scale are kept on a
-    /// CPU only, see [`step::weights`](crate::traverse::step::weights).
+    /// The first coordinate of the place on the primitive, to be multiplied by `scale`. Both coordinates and the scale are
+    /// kept on a CPU only, see [`coordinates`](crate::traverse::leaf::coordinates).
     pub u: R,
-    /// Weight of the third, likewise.
+    /// The second, likewise.
     pub v: R,
-    /// The factor of the weights, see [`Hit::weights`].
+    /// Their factor, see [`Hit::coordinates`].
     pub scale: R,
-    /// The triangle's index in leaf order; [`Hit::NOTHING`] if there is no hit.
-    pub triangle_index: R::Index,
-    /// The triangle's number in the scene, which decides ties.
+    /// The primitive's index in leaf order; [`Hit::NOTHING`] if there is no hit.
+    pub primitive_index: R::Index,
+    /// The primitive's number in the scene, which decides ties.
     pub primitive: R::Index,
 }
 
 impl<R: Real> Hit<R> {
-    /// The triangle index of a miss.
+    /// The primitive index of a miss.
     pub const NOTHING: u32 = u32::MAX;
 
     /// No hit up to `limit`.
@@ -168,14 +175,15 @@ impl<R: Real> Hit<R> {
             u: R::splat(0.0),
             v: R::splat(0.0),
             scale: R::splat(1.0),
-            triangle_index: nothing,
+            primitive_index: nothing,
             primitive: nothing,
         }
     }
 
-    /// Weights of the triangle's second and third vertex.
+    /// Where on the primitive it is: the weights of a triangle's second and third vertex, or as
+    /// [`coordinates`](crate::traverse::leaf::coordinates) says.
     #[inline(always)]
-    pub fn weights(&self) -> (R, R) {
+    pub fn coordinates(&self) -> (R, R) {
         (self.u * self.scale, self.v * self.scale)
     }
 }
@@ -189,22 +197,16 @@ impl<R: Scalar> Shear<R> {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-impl<R: Real> Shear<R> {
-    /// The same shear of other numbers.
-    #[inline(always)]
-    pub(crate) fn each<T: Real>(&self, f: fn(R) -> T, mask: fn(R::Mask) -> T::Mask) -> Shear<T> {
-        Shear { x: f(self.x), y: f(self.y), x_major: mask(self.x_major), y_major: mask(self.y_major) }
-    }
-}
-
 #[cfg(not(target_arch = "spirv"))]
-impl<const N: usize> Shear<crate::real::F32xN<N>> {
+impl<R: Real> Shear<R> {
     /// One lane's shear.
     #[inline(always)]
-    pub(crate) fn lane(&self, i: usize) -> Shear<f32> {
-        let (x_major, y_major) = (self.x_major.0[i] != 0, self.y_major.0[i] != 0);
-        Shear { x: self.x.0[i], y: self.y.0[i], x_major, y_major }
+    pub(crate) fn lane<S: Scalar>(&self, i: usize) -> Shear<S>
+    where
+        R: Lanes<S>,
+    {
+        let holds = |mask| (R::bits(mask) >> i) & 1 == 1;
+        Shear { x: self.x.lane(i), y: self.y.lane(i), x_major: holds(self.x_major), y_major: holds(self.y_major) }
     }
 }
 

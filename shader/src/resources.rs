@@ -31,7 +31,7 @@ macro_rules! resources {
         $then! { $dollar
             0 frame FRAME: Uniform Frame, "frame";
             1 nodes NODES: Read UVec4, "hierarchy";
-            2 triangles TRIANGLES: Read UVec4, "triangles";
+            2 primitives PRIMITIVES: Read UVec4, "primitives";
             3 normals NORMALS: Read Normals, "normals";
             4 materials MATERIALS: Read Material, "materials";
             5 lights LIGHTS: Read Light, "lights";

@@ -4,36 +4,37 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Specialisation, Triangle,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Specialisation, Primitive,
     numbers,
 };
 use glam::{UVec4, Vec3};
 
-/// A launch, and the triangles of its scene.
+/// A launch, and the primitives of its scene.
 #[derive(Clone, Copy)]
 pub struct LaunchContext<'a> {
     /// What is rendered.
     pub frame: &'a Frame,
     /// What the kernel is compiled for; constants on the GPU.
     pub spec: Specialisation,
-    /// Triangles by slot: [`Triangle`]s, or their indices and vertices ([`Layout::INDEXED`]).
-    pub triangles: &'a [UVec4],
+    /// Primitives in leaf order: [`Primitive`]s, or their indices and vertices ([`Layout::INDEXED`]).
+    pub primitives: &'a [UVec4],
 }
 
 impl LaunchContext<'_> {
-    /// The triangle at a slot: a record of its own, gathered before; or a record of three vertices'
-    /// numbers and the primitive, whose vertices carry the material and the flags.
+    /// The primitive at an index: a record of its own, gathered before; or a record of the numbers of its three words but
+    /// for their integers, whose integer is its own number, and which carry the material and the flags.
     #[inline(always)]
-    pub fn triangle(&self, slot: u32) -> Triangle {
-        let word = |i| read(self.triangles, i);
+    pub fn primitive(&self, index: u32) -> Primitive {
+        let word = |i| read(self.primitives, i);
         if self.spec.layout.has(Layout::INDEXED) {
-            let corners = word(slot);
+            let corners = word(index);
             let vertex = |i: u32| word(self.frame.vertices + i);
             let (mut a, mut b, mut c) = (vertex(corners.x), vertex(corners.y), vertex(corners.z));
-            (a.w, b.w, c.w) = (corners.w, b.w & !Triangle::CLEAR_VERTEX, b.w >> 31);
-            Triangle { a, b, c }
+            let flags = b.w >> Primitive::FLAGS_SHIFT;
+            (a.w, b.w, c.w) = (corners.w, b.w & Primitive::MATERIAL, flags);
+            Primitive { a, b, c }
         } else {
-            Triangle { a: word(3 * slot), b: word(3 * slot + 1), c: word(3 * slot + 2) }
+            Primitive { a: word(3 * index), b: word(3 * index + 1), c: word(3 * index + 2) }
         }
     }
 }
@@ -41,7 +42,7 @@ impl LaunchContext<'_> {
 /// A launch and what its rays meet.
 #[derive(Clone, Copy)]
 pub struct TraceContext<'a> {
-    /// The launch and its triangles.
+    /// The launch and its primitives.
     pub base: LaunchContext<'a>,
     /// Words of child pairs, the root's first: [`CentredPair`]s, or [`CompactPair`]s ([`Layout::COMPACT`]).
     pub nodes: &'a [UVec4],
@@ -50,7 +51,7 @@ pub struct TraceContext<'a> {
     /// The same for a CPU. Empty unless the method is `wide`.
     #[cfg(not(target_arch = "spirv"))]
     pub bvh8: Bvh8View<'a>,
-    /// Bounds by slot ([`Layout::SPLIT`]).
+    /// Bounds in leaf order ([`Layout::SPLIT`]).
     pub bounds: &'a [Bounds],
 }
 
@@ -68,21 +69,21 @@ impl TraceContext<'_> {
         }
     }
 
-    /// The triangle at a slot.
+    /// The primitive at an index.
     #[inline(always)]
-    pub fn triangle(&self, slot: u32) -> Triangle {
-        self.base.triangle(slot)
+    pub fn primitive(&self, index: u32) -> Primitive {
+        self.base.primitive(index)
     }
 
-    /// The box (least, greatest corner) that a ray must meet for a hit at a slot to count: the triangle's own,
-    /// or that of the part that the slot stands for.
+    /// The box (least, greatest corner) that a ray must meet for a hit to count: that of the part of a triangle that is at
+    /// the index, or else the primitive's own.
     #[inline(always)]
-    pub fn bounds(&self, slot: u32, triangle: &Triangle) -> (Vec3, Vec3) {
+    pub fn bounds(&self, index: u32, own: impl FnOnce() -> (Vec3, Vec3)) -> (Vec3, Vec3) {
         if self.base.spec.layout.has(Layout::SPLIT) {
-            let bounds = read(self.bounds, slot);
+            let bounds = read(self.bounds, index);
             (numbers(bounds.least), numbers(bounds.greatest))
         } else {
-            triangle.bounds()
+            own()
         }
     }
 }

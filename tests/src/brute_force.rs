@@ -27,7 +27,7 @@ pub fn brute_force(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
         let source_primitive = U32xN(std::array::from_fn(|i| ray(i).source_primitive));
         let packet = Ray::leaving(source_primitive, vector(&|r| r.origin), vector(&|r| r.direction));
         let mut hit = Hit::none(F32xN(std::array::from_fn(|i| ray(i).limit)));
-        for slot in 0..packed.triangles().len() as u32 {
+        for slot in 0..packed.primitives().len() as u32 {
             step::triangle::<Closest, F32xN<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
         }
         (0..LANES.min(stream.len() - start)).map(move |i| {
@@ -47,7 +47,7 @@ pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<F
         let StreamRay { origin, direction, limit, source_primitive } = stream.ray(i);
         let ray = Ray::<R>::leaving(R::index(source_primitive), V3::splat(origin), V3::splat(direction));
         let mut hit = Hit::none(R::splat(limit));
-        for slot in 0..packed.triangles().len() as u32 {
+        for slot in 0..packed.primitives().len() as u32 {
             step::triangle::<Closest, R>(&geometry, NodeRef::leaf(slot, 1), &ray, &mut hit);
         }
         let (u, v) = hit.weights();
@@ -58,6 +58,6 @@ pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<F
 
 /// A hit as a traversal returns it: a split triangle may be met at any of its slots.
 pub fn found(packed: &DeviceScene, hit: UVec4) -> Found {
-    let primitive = packed.triangles().get(hit.w as usize).map_or(hit.w, |triangle| triangle.primitive());
+    let primitive = packed.primitives().get(hit.w as usize).map_or(hit.w, |triangle| triangle.primitive());
     [hit.x, hit.y, hit.z, primitive]
 }

@@ -5,7 +5,7 @@ use std::f64::consts::{PI, TAU};
 use eyerays::device_scene::DeviceScene;
 use eyerays::scene::Scene;
 use eyerays_bvh::Quality;
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::Primitive;
 use glam::{DVec3, Vec3};
 
 use crate::model::{add, empty, matt};
@@ -109,9 +109,9 @@ impl Surface {
 }
 
 /// The triangles of a packed scene, each once and in the scene's order, which no hierarchy changes.
-pub fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
-    let mut triangles = packed.triangles().to_vec();
-    triangles.sort_by_key(Triangle::primitive);
+pub fn triangles(packed: &DeviceScene) -> Vec<Primitive> {
+    let mut triangles = packed.primitives().to_vec();
+    triangles.sort_by_key(Primitive::number);
     triangles.dedup_by_key(|triangle| triangle.primitive());
     triangles
 }

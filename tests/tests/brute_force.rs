@@ -41,7 +41,7 @@ fn random(place: u32) -> f32 {
 fn rays(packed: &DeviceScene) -> Stream {
     let count = std::env::var("EYERAYS_RAYS").map_or(RAYS, |n| n.parse().expect("a number of rays"));
     // In the scene's order, which no hierarchy changes.
-    let mut triangles = packed.triangles().to_vec();
+    let mut triangles = packed.primitives().to_vec();
     triangles.sort_by_key(|t| t.primitive());
     triangles.dedup_by_key(|t| t.primitive());
     let vertices: Vec<Vec3> = triangles.iter().flat_map(|t| t.vertices()).collect();

@@ -55,16 +55,16 @@ impl Log<'_> {
     fn tell<R: Scalar>(&self, geometry: &TraceContext<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
         let path = Path::<R>::current(&geometry.base, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
-        let (hit, triangle_index) = R::load(records.hits[slot as usize]);
-        if triangle_index == Hit::<R>::NOTHING {
-            return story.events.push(triangle_index);
+        let (hit, primitive_index) = R::load(records.hits[slot as usize]);
+        if primitive_index == Hit::<R>::NOTHING {
+            return story.events.push(primitive_index);
         }
         let packed = self.packed;
         let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
-        let triangle = &geometry.triangle(triangle_index);
+        let triangle = &geometry.triangle(primitive_index);
         let contact = SurfaceInteraction::new(triangle, hit.y, hit.z, path.direction);
         let surface =
-            Surface::new(geometry.base.spec.effects, &looks, triangle_index, triangle, path.direction, &contact);
+            Surface::new(geometry.base.spec.effects, &looks, primitive_index, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.primitive(), u32::from(contact.front)]);

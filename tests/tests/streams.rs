@@ -27,7 +27,7 @@ fn assert_gpu(gpu: &Gpu, packed: &Posed, how: &[Traversal], layout: Layout, what
         for &traversal in how.iter().filter(|t| t.layout == layout && t.order == Order::Tiled) {
             caster.trace(&cast, true, traversal, kind.question()).unwrap();
             let got = caster.answers(&cast, kind.question()).unwrap();
-            assert_eq!(first_difference(packed.triangles(), &got, &want), None, "{what}, {kind:?}, {traversal:?}");
+            assert_eq!(first_difference(packed.primitives(), &got, &want), None, "{what}, {kind:?}, {traversal:?}");
         }
     }
 }
@@ -51,7 +51,7 @@ fn every_kind_by_every_method_on_the_cpu() {
             let want = on_cpu(&packed, Method::IfIf.into(), &stream, kind.question());
             for traversal in traversals() {
                 let got = on_cpu(&packed, traversal, &stream, kind.question());
-                assert_eq!(first_difference(packed.triangles(), &got, &want), None, "{name}, {kind:?}, {traversal:?}");
+                assert_eq!(first_difference(packed.primitives(), &got, &want), None, "{name}, {kind:?}, {traversal:?}");
             }
         }
     }

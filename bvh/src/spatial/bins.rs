@@ -1,6 +1,6 @@
 //! The cheapest plane, among those between bins.
 
-use eyerays_shader::data::{BOX_PADDING, Triangle};
+use eyerays_shader::data::{BOX_PADDING, Primitive};
 
 use super::part::Part;
 use crate::bounds::Bounds;
@@ -121,7 +121,7 @@ impl Objects {
 }
 
 /// The cheapest split through parts within `bounds`, and its plane.
-pub(super) fn through(triangles: &[Triangle], parts: &[Part], bounds: Bounds) -> Option<(Split, f32)> {
+pub(super) fn through(triangles: &[Primitive], parts: &[Part], bounds: Bounds) -> Option<(Split, f32)> {
     let along = |axis: usize| -> Option<(Split, f32)> {
         // Slabs thinner than padding would separate nothing.
         let extent = bounds.extent()[axis];
@@ -140,7 +140,7 @@ pub(super) fn through(triangles: &[Triangle], parts: &[Part], bounds: Bounds) ->
 }
 
 /// Puts a part into all bins that it overlaps, cut at their planes.
-fn chop(triangle: &Triangle, part: Part, axis: usize, along: Axis, bins: &mut [Bin; BINS]) {
+fn chop(triangle: &Primitive, part: Part, axis: usize, along: Axis, bins: &mut [Bin; BINS]) {
     let first = along.bin(part.bounds.min[axis]);
     let last = along.bin(part.bounds.max[axis]).max(first);
     let mut rest = Some(part);

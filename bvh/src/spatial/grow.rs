@@ -1,6 +1,6 @@
 //! The tree from the root down.
 
-use eyerays_shader::data::{MAX_LEAF, Triangle};
+use eyerays_shader::data::{MAX_LEAF, Primitive};
 
 use super::{
     bins::{Objects, Split, area, through},
@@ -19,13 +19,13 @@ const LEVELS: u32 = 56;
 const MANY: usize = 2048;
 
 /// Grows a tree over parts; splits may add `room` parts.
-pub(super) fn grow(triangles: &[Triangle], parts: Vec<Part>, room: usize) -> Branch {
+pub(super) fn grow(triangles: &[Primitive], parts: Vec<Part>, room: usize) -> Branch {
     let scene = area(around(&parts));
     Grower { triangles, least_overlap: OVERLAP * scene }.branch(parts, room, 0)
 }
 
 struct Grower<'a> {
-    triangles: &'a [Triangle],
+    triangles: &'a [Primitive],
     /// The least area of overlap for which a plane through triangles is tried.
     least_overlap: f32,
 }

@@ -15,19 +15,19 @@ mod tree;
 
 pub(crate) use tree::{Kind, Tree};
 
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::Primitive;
 
 use crate::{Reference, References};
 use part::Part;
 
 /// Splits triangles in the normalised scene into at most `room` references more than there are
 /// triangles.
-pub(crate) fn references(triangles: &[Triangle], room: usize) -> References {
+pub(crate) fn references(triangles: &[Primitive], room: usize) -> References {
     let whole = (0..).zip(triangles).map(|(number, triangle)| Part::whole(number, triangle)).collect();
     let branch = grow::grow(triangles, whole, room);
     let (tree, parts) = tree::flat(branch);
     let reference = |part: &Part| Reference {
-        triangle: part.triangle,
+        primitive: part.triangle,
         bounds: part.own_box(&triangles[part.triangle as usize]).write(),
     };
     References { list: parts.iter().map(reference).collect(), tree: Some(tree) }

@@ -1,6 +1,6 @@
 //! A part of a triangle, and where a plane cuts it.
 
-use eyerays_shader::data::{BOX_PADDING, Triangle};
+use eyerays_shader::data::{BOX_PADDING, Primitive};
 use glam::Vec3;
 
 use crate::bounds::Bounds;
@@ -18,14 +18,22 @@ pub(super) struct Part {
 const SLACK: f32 = 1.0 / (1u64 << 23) as f32;
 
 impl Part {
-    /// All of a triangle.
-    pub fn whole(number: u32, triangle: &Triangle) -> Self {
-        let corners = triangle.vertices().map(|v| Bounds::new(v, v));
-        Part { triangle: number, bounds: Bounds::around(corners) }
+    /// All of a primitive.
+    pub fn whole(number: u32, primitive: &Primitive) -> Self {
+        let bounds = if primitive.is_triangle() {
+            Bounds::around(primitive.vertices().map(|v| Bounds::new(v, v)))
+        } else {
+            Bounds::of(primitive)
+        };
+        Part { triangle: number, bounds }
     }
 
-    /// The parts on either side of a plane across `axis`; `None` for a side without a point.
-    pub fn cut(self, triangle: &Triangle, axis: usize, plane: f32) -> [Option<Part>; 2] {
+    /// The parts on either side of a plane across `axis`; `None` for a side without a point. What is no triangle is not cut:
+    /// it is whole on both sides, which never pays.
+    pub fn cut(self, triangle: &Primitive, axis: usize, plane: f32) -> [Option<Part>; 2] {
+        if !triangle.is_triangle() {
+            return [Some(self); 2];
+        }
         let mut sides = [Bounds::EMPTY; 2];
         let vertices = triangle.vertices();
         for (from, to) in [(0, 1), (1, 2), (2, 0)] {
@@ -51,7 +59,7 @@ impl Part {
     }
 
     /// The box with padding, inside the triangle's own.
-    pub fn own_box(&self, triangle: &Triangle) -> Bounds {
+    pub fn own_box(&self, triangle: &Primitive) -> Bounds {
         let Bounds { min, max } = self.bounds;
         let padded = Bounds { min: min.map(|c| c - BOX_PADDING), max: max.map(|c| c + BOX_PADDING) };
         padded.intersection(Bounds::of(triangle))
@@ -73,7 +81,7 @@ mod tests {
 
     #[test]
     fn a_triangle_is_cut_to_its_extent_on_either_side() {
-        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, vec3(0.0, 1.0, 0.5)], 0, 0, 0);
+        let triangle = Primitive::triangle([Vec3::ZERO, Vec3::X, vec3(0.0, 1.0, 0.5)], 0, 0, 0);
         let [left, right] = Part::whole(3, &triangle).cut(&triangle, 0, 0.75).map(Option::unwrap);
         assert_eq!((left.triangle, right.triangle), (3, 3));
         assert_eq!((left.bounds.min, left.bounds.max), ([0.0; 3], [0.75, 1.0, 0.5]));
@@ -84,7 +92,7 @@ mod tests {
 
     #[test]
     fn a_part_beside_the_plane_stays_whole() {
-        let triangle = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
+        let triangle = Primitive::triangle([Vec3::ZERO, Vec3::X, Vec3::Y], 0, 0, 0);
         let [left, right] = Part::whole(0, &triangle).cut(&triangle, 1, 2.0);
         assert!(right.is_none());
         assert_eq!(left.unwrap().bounds, Part::whole(0, &triangle).bounds);
@@ -92,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_whole_triangle_has_its_own_box() {
-        let triangle = Triangle::new([Vec3::ZERO, vec3(0.3, 0.1, -0.7), Vec3::Y], 0, 0, 0);
+        let triangle = Primitive::triangle([Vec3::ZERO, vec3(0.3, 0.1, -0.7), Vec3::Y], 0, 0, 0);
         assert_eq!(Part::whole(0, &triangle).own_box(&triangle), Bounds::of(&triangle));
     }
 }

@@ -1,8 +1,8 @@
 //! The wide hierarchy as a CPU loads it, see [`eyerays_shader::bvh8`]: nodes collapsed from the pairs for leaves
 //! that are tested four triangles at once.
 
-use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
-use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Triangle};
+use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, LeafKind, MOST, Mixed4, Sphere4, Triangle4};
+use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Primitive};
 
 use super::{
     binary::{Binary, Node},
@@ -13,27 +13,31 @@ use crate::bounds::Bounds;
 /// The cost of a [`Triangle4`] relative to that of a node, which tests eight boxes.
 const TRIANGLE4: f32 = 0.6;
 
-/// Nodes and triangles, owned.
+/// Nodes and leaves, owned.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bvh8 {
     /// Nodes, the root first, a parent before its children.
     pub nodes: Vec<Bvh8Node>,
-    /// The triangles of leaves, in the order of the nodes.
-    pub blocks: Vec<Triangle4>,
+    /// The leaves of triangles, in the order of the nodes.
+    pub triangles: Vec<Triangle4>,
+    /// The leaves of spheres.
+    pub spheres: Vec<Sphere4>,
+    /// The leaves of others, or of several kinds.
+    pub mixed: Vec<Mixed4>,
 }
 
 impl Bvh8 {
     /// Converts a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
     /// unless triangles are split.
-    pub fn of(pairs: &[CentredPair], triangles: &[Triangle], bounds: &[Record]) -> Self {
+    pub fn of(pairs: &[CentredPair], primitives: &[Primitive], bounds: &[Record]) -> Self {
         let bounds: Vec<Bounds> = match bounds {
-            [] => triangles.iter().map(Bounds::of).collect(),
+            [] => primitives.iter().map(Bounds::of).collect(),
             split => split.iter().map(Bounds::read).collect(),
         };
-        let leaves = Leaves { most: Triangle4::TRIANGLES as u32, fixed: TRIANGLE4, triangle: 0.0 };
+        let leaves = Leaves { most: MOST as u32, fixed: TRIANGLE4, triangle: 0.0 };
         let (tree, order) = binary(pairs, &bounds, leaves.most);
         let plan = Plan::of(&tree, leaves);
-        let mut bvh8 = Bvh8 { nodes: vec![Bvh8Node::EMPTY], blocks: Vec::new() };
+        let mut bvh8 = Bvh8 { nodes: vec![Bvh8Node::EMPTY], ..Bvh8::default() };
         let (mut open, mut children) = (vec![(0, 0, 0)], Vec::new());
         while let Some((number, node, level)) = open.pop() {
             plan.children_at(&tree, node, level, &mut children);
@@ -43,7 +47,7 @@ impl Bvh8 {
             for (i, &(child, is_leaf)) in children.iter().enumerate() {
                 let Node { bounds, first, count, .. } = tree.nodes[child as usize];
                 let reference = if is_leaf {
-                    bvh8.leaf(&order[first as usize..(first + count) as usize], triangles)
+                    bvh8.leaf(&order[first as usize..(first + count) as usize], primitives)
                 } else {
                     bvh8.nodes.push(Bvh8Node::EMPTY);
                     open.push((bvh8.nodes.len() - 1, child, level + 1));
@@ -56,15 +60,26 @@ impl Bvh8 {
         bvh8
     }
 
-    /// Adds the triangles of a leaf's slots.
-    fn leaf(&mut self, slots: &[u32], triangles: &[Triangle]) -> Bvh8Ref {
-        self.blocks.push(Triangle4::of(slots.iter().map(|&slot| (slot, &triangles[slot as usize]))));
-        Bvh8Ref::leaf(self.blocks.len() as u32 - 1)
+    /// Adds the primitives of a leaf, by their indices.
+    fn leaf(&mut self, indices: &[u32], primitives: &[Primitive]) -> Bvh8Ref {
+        let of = |index: &u32| &primitives[*index as usize];
+        let numbered = indices.iter().map(|index| (*index, of(index)));
+        let (kind, blocks) = if indices.iter().all(|index| of(index).is_triangle()) {
+            self.triangles.push(Triangle4::of(numbered));
+            (LeafKind::Triangles, self.triangles.len())
+        } else if indices.iter().all(|index| of(index).is_sphere()) {
+            self.spheres.push(Sphere4::of(numbered));
+            (LeafKind::Spheres, self.spheres.len())
+        } else {
+            self.mixed.push(Mixed4::of(indices.iter().copied()));
+            (LeafKind::Mixed, self.mixed.len())
+        };
+        Bvh8Ref::leaf(kind, blocks as u32 - 1)
     }
 
     /// What a launch borrows.
     pub fn borrow(&self) -> Bvh8View<'_> {
-        Bvh8View { nodes: &self.nodes, blocks: &self.blocks }
+        Bvh8View { nodes: &self.nodes, triangles: &self.triangles, spheres: &self.spheres, mixed: &self.mixed }
     }
 }
 

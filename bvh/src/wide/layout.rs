@@ -1,4 +1,4 @@
-//! Wide nodes, and the order of triangles that both hierarchies share.
+//! Wide nodes, and the order of primitives that both hierarchies share.
 
 use eyerays_shader::data::{CwbvhNode, NodePair, NodeRef};
 

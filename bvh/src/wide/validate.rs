@@ -18,7 +18,7 @@ use crate::{BuildError, bounds::Bounds, validate::Once};
 /// The first rule broken in depth-first order; then nodes and slots that are never reached; then boxes.
 pub fn validate_wide(nodes: &[CwbvhNode], bounds: &[BoundsRecord]) -> Result<(), BuildError> {
     if bounds.is_empty() {
-        return Err(BuildError::NoTriangles);
+        return Err(BuildError::NoPrimitives);
     }
     let mut walk =
         Walk { nodes, bounds, met: Once::new(nodes.len()), slots: Once::new(bounds.len()), order: Vec::new() };
@@ -42,7 +42,7 @@ impl Walk<'_> {
         let mut open = vec![(0, 0, 0)];
         while let Some((parent, node, level)) = open.pop() {
             let record = self.enter(parent, node, level)?;
-            let (mut child, mut triangle) = (record.first_child, u64::from(record.first_triangle));
+            let (mut child, mut primitive) = (record.first_child, u64::from(record.first_triangle));
             for (what, _) in record.children {
                 match what {
                     Child::None => {}
@@ -51,8 +51,8 @@ impl Walk<'_> {
                         child = child.saturating_add(1);
                     }
                     Child::Leaf { count } => {
-                        self.leaf(node, triangle, count)?;
-                        triangle += u64::from(count);
+                        self.leaf(node, primitive, count)?;
+                        primitive += u64::from(count);
                     }
                 }
             }
@@ -61,7 +61,7 @@ impl Walk<'_> {
             return Err(BuildError::WideNodeUnreached { node });
         }
         match self.slots.missing() {
-            Some(triangle) => Err(BuildError::TriangleLost { triangle }),
+            Some(primitive) => Err(BuildError::PrimitiveLost { primitive }),
             None => Ok(()),
         }
     }
@@ -85,13 +85,13 @@ impl Walk<'_> {
 
     /// Marks the slots of a leaf.
     fn leaf(&mut self, node: u32, first: u64, count: u32) -> Result<(), BuildError> {
-        let triangles = self.bounds.len();
-        if first + u64::from(count) > triangles as u64 {
-            return Err(BuildError::WideLeafOutOfRange { node, first, count, triangles });
+        let primitives = self.bounds.len();
+        if first + u64::from(count) > primitives as u64 {
+            return Err(BuildError::WideLeafOutOfRange { node, first, count, primitives });
         }
         let first = first as u32;
         match (first..first + count).find(|&slot| !self.slots.meet(slot)) {
-            Some(triangle) => Err(BuildError::TriangleTwice { triangle }),
+            Some(primitive) => Err(BuildError::PrimitiveTwice { primitive }),
             None => Ok(()),
         }
     }
@@ -100,7 +100,7 @@ impl Walk<'_> {
     fn boxes(&self) -> Result<(), BuildError> {
         let mut around = vec![Bounds::EMPTY; self.nodes.len()];
         for (node, record) in self.order.iter().rev() {
-            let (mut next, mut triangle) = (record.first_child as usize, record.first_triangle as usize);
+            let (mut next, mut primitive) = (record.first_child as usize, record.first_triangle as usize);
             for (what, planes) in record.children {
                 let below = match what {
                     Child::None => continue,
@@ -109,9 +109,9 @@ impl Walk<'_> {
                         around[next - 1]
                     }
                     Child::Leaf { count } => {
-                        let first = triangle;
-                        triangle += count as usize;
-                        Bounds::around(self.bounds[first..triangle].iter().map(Bounds::read))
+                        let first = primitive;
+                        primitive += count as usize;
+                        Bounds::around(self.bounds[first..primitive].iter().map(Bounds::read))
                     }
                 };
                 if !record.grid.contains(planes, below) {

@@ -1,29 +1,44 @@
 //! A check of what a CPU loads.
 
 use eyerays_bvh::{Bvh, Bvh8, MAX_WIDE_DEPTH};
-use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref};
-use eyerays_shader::data::{Bounds, CentredPair, Triangle, numbers};
+use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref, LeafKind, MOST, Sphere4, Triangle4};
+use eyerays_shader::data::{Bounds, CentredPair, Primitive, numbers};
 
 use super::{Corners, around, union};
 
-/// Lays out a hierarchy, each slot's triangle the diagonal of its box, and checks every promise.
+/// Lays out a hierarchy, each slot's primitive a triangle, the diagonal of its box, or in long runs also spheres and disks, and
+/// checks every promise.
 pub fn check(bvh: &Bvh) {
-    let pairs: Vec<CentredPair> = bvh.nodes.iter().map(CentredPair::from).collect();
     let diagonal = |b: &Bounds| [numbers(b.least), numbers(b.greatest), numbers(b.least)];
-    let triangles: Vec<Triangle> = bvh.bounds.iter().map(|b| Triangle::new(diagonal(b), 0, 0, 0)).collect();
-    let bvh8 = Bvh8::of(&pairs, &triangles, &bvh.bounds);
-    let (nodes, blocks) = (vec![false; bvh8.nodes.len()], vec![false; bvh8.blocks.len()]);
-    let mut walk = Walk { bvh, bvh8: &bvh8, nodes, blocks, slots: vec![false; bvh.bounds.len()] };
+    let triangle = |b: &Bounds| Primitive::triangle(diagonal(b), 0, 0, 0);
+    check_of(bvh, bvh.bounds.iter().map(triangle).collect());
+    let mixed = |(slot, b): (usize, &Bounds)| match slot / 7 % 4 {
+        0 => Primitive::sphere(numbers(b.least), 0.5, slot as u32, 0, 0),
+        1 => Primitive::disk(numbers(b.least), glam::Vec3::X, 0.5, slot as u32, 0, 0),
+        _ => triangle(b),
+    };
+    check_of(bvh, bvh.bounds.iter().enumerate().map(mixed).collect());
+}
+
+fn check_of(bvh: &Bvh, primitives: Vec<Primitive>) {
+    let pairs: Vec<CentredPair> = bvh.nodes.iter().map(CentredPair::from).collect();
+    let bvh8 = Bvh8::of(&pairs, &primitives, &bvh.bounds);
+    let blocks = [bvh8.triangles.len(), bvh8.spheres.len(), bvh8.mixed.len()].map(|count| vec![false; count]);
+    let (nodes, slots) = (vec![false; bvh8.nodes.len()], vec![false; bvh.bounds.len()]);
+    let mut walk = Walk { bvh, bvh8: &bvh8, primitives: &primitives, nodes, blocks, slots };
     walk.node(0, 1);
-    assert!(walk.nodes.iter().chain(&walk.blocks).chain(&walk.slots).all(|met| *met), "something is not reached");
+    let met = walk.nodes.iter().chain(walk.blocks.iter().flatten()).chain(&walk.slots);
+    assert!(met.into_iter().all(|met| *met), "something is not reached");
 }
 
 /// A walk and what it has met.
 struct Walk<'a> {
     bvh: &'a Bvh,
     bvh8: &'a Bvh8,
+    primitives: &'a [Primitive],
     nodes: Vec<bool>,
-    blocks: Vec<bool>,
+    /// By kind of leaf.
+    blocks: [Vec<bool>; 3],
     slots: Vec<bool>,
 }
 
@@ -58,20 +73,42 @@ impl Walk<'_> {
         if !child.is_leaf() {
             return self.node(child.index(), depth + 1);
         }
-        assert!(!std::mem::replace(&mut self.blocks[child.index()], true), "a block is met twice");
-        let block = self.bvh8.blocks[child.index()];
-        let mut bounds = Vec::new();
-        for (lane, &slot) in block.triangle_indices.iter().enumerate() {
+        assert!(!std::mem::replace(&mut self.blocks[child.kind() as usize][child.index()], true), "a leaf is met twice");
+        let slots = match child.kind() {
+            LeafKind::Triangles => self.triangles(&self.bvh8.triangles[child.index()]),
+            LeafKind::Spheres => self.spheres(&self.bvh8.spheres[child.index()]),
+            LeafKind::Mixed => self.bvh8.mixed[child.index()].indices().to_vec(),
+        };
+        let own = |slot: &u32| {
+            assert!(!std::mem::replace(&mut self.slots[*slot as usize], true), "a slot is met twice");
+            self.bvh.bounds[*slot as usize]
+        };
+        around(&slots.iter().map(own).collect::<Vec<_>>())
+    }
+
+    /// The slots of a leaf's triangles, whose vertices are those of the records.
+    fn triangles(&self, block: &Triangle4) -> Vec<u32> {
+        let lanes = (0..MOST).filter(|&lane| !block.vertices[0][0][lane].is_nan());
+        let slots = lanes.map(|lane| {
+            let slot = block.primitive_indices[lane];
             let vertex = |vertex: usize| [0, 1, 2].map(|axis| block.vertices[vertex][axis][lane]);
-            if vertex(0)[0].is_nan() {
-                continue;
-            }
-            assert!(!std::mem::replace(&mut self.slots[slot as usize], true), "a slot is met twice");
-            let own = self.bvh.bounds[slot as usize];
-            let corners = [own.least, own.greatest, own.least].map(|corner| numbers(corner).to_array());
+            let corners = self.primitives[slot as usize].vertices().map(|corner| corner.to_array());
             assert_eq!([0, 1, 2].map(vertex), corners, "a triangle's vertices");
-            bounds.push(own);
-        }
-        around(&bounds)
+            slot
+        });
+        slots.collect()
+    }
+
+    /// The slots of a leaf's spheres, which are those of the records.
+    fn spheres(&self, block: &Sphere4) -> Vec<u32> {
+        let lanes = (0..MOST).filter(|&lane| !block.centres[0][lane].is_nan());
+        let slots = lanes.map(|lane| {
+            let slot = block.primitive_indices[lane];
+            let sphere = &self.primitives[slot as usize];
+            assert_eq!([0, 1, 2].map(|axis| block.centres[axis][lane]), sphere.centre().to_array(), "a centre");
+            assert_eq!((block.radii[lane], block.numbers[lane]), (sphere.radius(), sphere.number()));
+            slot
+        });
+        slots.collect()
     }
 }

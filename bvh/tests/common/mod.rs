@@ -5,23 +5,23 @@
 mod bvh8;
 
 use eyerays_bvh::{Bvh, MAX_DEPTH, MAX_WIDE_DEPTH, Quality, References, build, split};
-use eyerays_shader::data::{Bounds, CwbvhNode, MAX_LEAF, NodePair, NodeRef, Triangle, numbers};
+use eyerays_shader::data::{Bounds, CwbvhNode, MAX_LEAF, NodePair, NodeRef, Primitive, numbers};
 use glam::{Vec3, vec3};
 
 pub const QUALITIES: [Quality; 3] = [Quality::Fast, Quality::Medium, Quality::High];
 
 /// Records of vertices, numbered from 0.
-pub fn mesh(vertices: impl IntoIterator<Item = [Vec3; 3]>) -> Vec<Triangle> {
+pub fn mesh(vertices: impl IntoIterator<Item = [Vec3; 3]>) -> Vec<Primitive> {
     let numbered = vertices.into_iter().zip(0..);
-    numbered.map(|(v, i)| Triangle::new(v, i, 0, 0)).collect()
+    numbered.map(|(v, i)| Primitive::triangle(v, i, 0, 0)).collect()
 }
 
-pub fn duplicates(count: u32) -> Vec<Triangle> {
+pub fn duplicates(count: u32) -> Vec<Primitive> {
     mesh((0..count).map(|_| [Vec3::ZERO, Vec3::X, Vec3::Y]))
 }
 
 /// Spokes of a wheel: all share the hub.
-pub fn fan(spokes: u32) -> Vec<Triangle> {
+pub fn fan(spokes: u32) -> Vec<Primitive> {
     let rim = |i: u32| {
         let angle = i as f32 / spokes as f32 * std::f32::consts::TAU;
         vec3(angle.cos(), angle.sin(), 0.0)
@@ -30,7 +30,7 @@ pub fn fan(spokes: u32) -> Vec<Triangle> {
 }
 
 /// Triangles that share a corner, each a little larger than the one before and around it.
-pub fn nested(count: u32) -> Vec<Triangle> {
+pub fn nested(count: u32) -> Vec<Primitive> {
     mesh((1..=count).map(|i| {
         let size = i as f32 / count as f32;
         [Vec3::ZERO, vec3(size, 0.0, 0.0), vec3(0.0, size, 0.0)]
@@ -38,7 +38,7 @@ pub fn nested(count: u32) -> Vec<Triangle> {
 }
 
 /// Triangles that share a corner, `each` of them per power of two.
-pub fn shrinking(scales: u32, each: u32) -> Vec<Triangle> {
+pub fn shrinking(scales: u32, each: u32) -> Vec<Primitive> {
     mesh((0..scales * each).map(|i| {
         let size = 0.5f32.powi((i / each) as i32) * (1.0 - 0.4 * (i % each) as f32 / each as f32);
         [vec3(size, 0.0, 0.0), vec3(0.0, size, 0.0), vec3(0.0, 0.0, size)]
@@ -46,7 +46,7 @@ pub fn shrinking(scales: u32, each: u32) -> Vec<Triangle> {
 }
 
 /// Triangles whose boxes have one centre and sizes of their own.
-pub fn concentric(count: u32) -> Vec<Triangle> {
+pub fn concentric(count: u32) -> Vec<Primitive> {
     mesh((1..=count).map(|i| {
         let size = i as f32 / count as f32;
         [vec3(-size, -size, -size), vec3(size, -size, 0.0), vec3(0.0, size, size)]
@@ -54,13 +54,13 @@ pub fn concentric(count: u32) -> Vec<Triangle> {
 }
 
 /// Triangles without area, evenly spaced along an axis.
-pub fn collinear(count: u32) -> Vec<Triangle> {
+pub fn collinear(count: u32) -> Vec<Primitive> {
     let at = |i: u32| vec3(i as f32 / (1 << 17) as f32, 0.0, 0.0);
     mesh((0..count).map(|i| [at(i), at(i + 1), at(i)]))
 }
 
 /// Two triangles a cell of a square grid: neighbours cost the same in every direction.
-pub fn grid(edge: u32) -> Vec<Triangle> {
+pub fn grid(edge: u32) -> Vec<Primitive> {
     let at = |x: u32, y: u32| vec3(x as f32, y as f32, 0.0) / 1024.0;
     mesh((0..edge * edge).flat_map(|i| {
         let (x, y) = (i % edge, i / edge);
@@ -70,7 +70,7 @@ pub fn grid(edge: u32) -> Vec<Triangle> {
 }
 
 /// Long thin triangles, as diagonals of the scene: their boxes overlap and they do not.
-pub fn slivers(count: u32) -> Vec<Triangle> {
+pub fn slivers(count: u32) -> Vec<Primitive> {
     let corner = |i: u32, z: f32| vec3(i as f32 / count as f32 - 1.0, 0.01 * z, z);
     mesh((0..count).map(|i| {
         let to = corner(i, 0.9) + vec3(1.0, 0.7, 0.0);
@@ -79,7 +79,7 @@ pub fn slivers(count: u32) -> Vec<Triangle> {
 }
 
 /// Small triangles all over, from a seed.
-pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
+pub fn scattered(count: u32, seed: u32) -> Vec<Primitive> {
     let mut state = seed;
     let mut next = move || {
         state = state.wrapping_mul(747_796_405).wrapping_add(2_891_336_453);
@@ -93,14 +93,14 @@ pub fn scattered(count: u32, seed: u32) -> Vec<Triangle> {
 }
 
 /// 300 triangles, some of which share leaves.
-pub fn mixed() -> Vec<Triangle> {
+pub fn mixed() -> Vec<Primitive> {
     let mut triangles = scattered(280, 29);
     triangles.extend(duplicates(20));
     triangles
 }
 
 /// A reference for each triangle, as a scene without split triangles has.
-pub fn whole(triangles: &[Triangle]) -> References {
+pub fn whole(triangles: &[Primitive]) -> References {
     split(triangles, 0.0).expect("a valid mesh")
 }
 
@@ -117,7 +117,7 @@ pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
     let key = |triangle: u32, b: Bounds| (triangle, b.least.to_array(), b.greatest.to_array());
     let mut slots: Vec<_> = bvh.order.iter().zip(&bvh.bounds).map(|(&t, &b)| key(t, b)).collect();
     slots.sort();
-    let mut expected: Vec<_> = references.list.iter().map(|r| key(r.triangle, r.bounds)).collect();
+    let mut expected: Vec<_> = references.list.iter().map(|r| key(r.primitive, r.bounds)).collect();
     expected.sort();
     assert_eq!(slots, expected, "slots lost or doubled a reference");
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    Normals, Specialisation, Triangle,
+    Normals, Specialisation, Primitive,
 };
 
 mod check;
@@ -32,7 +32,7 @@ const SPLIT_BUDGET: f32 = 0.3;
 pub struct DeviceScene {
     nodes: Vec<CentredPair>,
     wide: Vec<CwbvhNode>,
-    triangles: Vec<Triangle>,
+    triangles: Vec<Primitive>,
     bounds: Vec<Bounds>,
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
@@ -102,7 +102,7 @@ impl DeviceScene {
     }
 
     /// Triangles by slot, in the normalised scene; a split one has several slots.
-    pub fn triangles(&self) -> &[Triangle] {
+    pub fn triangles(&self) -> &[Primitive] {
         &self.triangles
     }
 

@@ -1,6 +1,6 @@
 //! The records of a scene's parts.
 
-use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Triangle, pack};
+use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Primitive, pack};
 use glam::Vec3;
 
 use super::normalisation::{Normalisation, flushed, flushed_number};
@@ -44,13 +44,13 @@ fn is_transparent(m: &Material) -> bool {
 }
 
 /// Its triangles in the normalised scene.
-pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation) -> Vec<Triangle> {
+pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
     let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
         let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-        let flags = if clear[material as usize] { Triangle::TRANSPARENT } else { 0 };
-        Triangle::new(vertices, primitive, material, flags)
+        let flags = if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
+        Primitive::triangle(vertices, primitive, material, flags)
     });
     records.collect()
 }

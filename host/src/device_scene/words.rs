@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::HashMap;
 
-use eyerays_shader::data::{CompactPair, Triangle};
+use eyerays_shader::data::{CompactPair, Primitive};
 use glam::UVec4;
 
 use super::DeviceScene;
@@ -40,12 +40,12 @@ impl<'a> NodeWords<'a> {
 
 /// A word of three vertices' numbers and the primitive for each triangle, then the vertices, each with its
 /// triangles' material and flag: corners that share both and their place are one.
-fn indexed(triangles: &[Triangle]) -> Vec<UVec4> {
+fn indexed(triangles: &[Primitive]) -> Vec<UVec4> {
     let mut numbers = HashMap::new();
     let mut words = Vec::with_capacity(2 * triangles.len());
     let mut vertices = Vec::new();
     for t in triangles {
-        let clear = if t.is_transparent() { Triangle::CLEAR_VERTEX } else { 0 };
+        let clear = if t.is_transparent() { Primitive::CLEAR_VERTEX } else { 0 };
         let corner = [t.a, t.b, t.c].map(|corner| {
             let vertex = corner.truncate().extend(t.material() | clear);
             *numbers.entry(vertex).or_insert_with(|| {

@@ -11,7 +11,7 @@ mod frame;
 mod node;
 mod shading;
 mod specialisation;
-mod triangle;
+mod primitive;
 
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
@@ -19,7 +19,7 @@ pub use frame::{Frame, Lens};
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use shading::{Light, Material, Normals};
 pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
-pub use triangle::{Bounds, Triangle};
+pub use primitive::{Bounds, Primitive};
 
 use glam::{UVec4, Vec3};
 

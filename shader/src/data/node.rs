@@ -57,7 +57,7 @@ impl NodeRef {
 }
 
 /// The boxes of two siblings in one 64-byte block (thesis figure 6.1). A leaf's box bounds its
-/// triangles' own boxes ([`Triangle::bounds`](super::Triangle::bounds)), an inner node's box bounds its children's.
+/// triangles' own boxes ([`Primitive::bounds`](super::Primitive::bounds)), an inner node's box bounds its children's.
 ///
 /// A tree of one triangle has one pair, whose right child is [`NodePair::EMPTY`].
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]

@@ -26,7 +26,7 @@ macro_rules! bits {
 }
 
 bits! {
-    /// What a scene looks like; a kernel holds no instruction for effects that it does not have.
+    /// What a scene shading like; a kernel holds no instruction for effects that it does not have.
     Effects {
         /// Some mesh has vertex normals.
         SMOOTH = 0;
@@ -48,8 +48,12 @@ bits! {
         GRADIENT = 8;
         /// There are lights.
         LIT = 9;
-        /// Some material lets light pass: its triangles cast no shadow.
+        /// Some material lets light pass: what is made of it casts no shadow.
         TRANSPARENT = 10;
+        /// Some primitives are spheres.
+        SPHERE = 11;
+        /// Some primitives are disks.
+        DISK = 12;
     }
 }
 
@@ -60,7 +64,7 @@ bits! {
         SECONDARY = 0;
         /// Rays that lie in memory as [`crate::stage::Segment`]s.
         STREAM = 1;
-        /// Triangles are met by the test of Moeller and Trumbore, where [`Real::CHOOSES`](crate::real::Real::CHOOSES).
+        /// Triangles are met by the test of Moeller and Trumbore, unless [`Real::EXACT`](crate::real::Real::EXACT).
         MOLLER = 2;
     }
 }
@@ -68,7 +72,7 @@ bits! {
 bits! {
     /// How the hierarchy and its triangles lie in memory; without any bit, each triangle with its vertices.
     Layout {
-        /// Triangles are given as indices of vertices, see [`crate::scene::TraceContext::triangle`].
+        /// Primitives are given as indices of vertices, see [`crate::scene::LaunchContext::primitive`].
         INDEXED = 0;
         /// Pairs of nodes are [`CompactPair`](super::CompactPair)s.
         COMPACT = 1;
@@ -134,7 +138,7 @@ impl Default for Tuning {
 /// Everything that a kernel is compiled for.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub struct Specialisation {
-    /// What the scene looks like.
+    /// What the scene shading like.
     pub effects: Effects,
     /// Which rays are followed.
     pub launch: Launch,

@@ -9,7 +9,7 @@ use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
 use crate::stage::{self, ShadowInputs};
 use crate::traverse::{
-    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Sequential, Speculative, StackMax,
+    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative, StackMax,
     WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, append, take};

@@ -73,14 +73,14 @@ macro_rules! shading {
         entry! {
             /// Shades the slots of a wave.
             shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame triangles normals materials lights paths hits shadows sums queue next counters] {
+            [frame primitives normals materials lights paths hits shadows sums queue next counters] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let launch = LaunchContext { frame, spec, triangles };
-                let looks = ShadingData { normals, materials, lights };
-                if integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums }) {
+                let launch = LaunchContext { frame, spec, primitives };
+                let shading = ShadingData { normals, materials, lights };
+                if integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums }) {
                     enqueue(slot, next, counters);
                 }
             }
@@ -107,14 +107,14 @@ macro_rules! voting_shading {
     ($R:ty) => {
         entry! {
             /// Shades the slots of a wave.
-            shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame triangles normals materials lights paths hits shadows sums queue next counters] {
+            shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame primitives normals materials lights paths hits shadows sums queue next counters] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let launch = LaunchContext { frame, spec, triangles };
-                let looks = ShadingData { normals, materials, lights };
-                let goes_on = integrator::shade::<$R>(&launch, &looks, slot, Wave { paths, hits, shadows, sums });
+                let launch = LaunchContext { frame, spec, primitives };
+                let shading = ShadingData { normals, materials, lights };
+                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums });
                 if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
                     let position = append(goes_on, counters, counter::NEXT);
                     if goes_on {
@@ -132,27 +132,27 @@ macro_rules! tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes triangles paths hits queue counters wide bounds] {
+            [frame nodes primitives paths hits queue counters wide bounds] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
-                write(hits, slot, stage::trace::<$R, $method>(&scene, slot, paths));
+                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
+                write(hits, slot, stage::trace::<$R, $method, Primitives>(&scene, slot, paths));
             }
         }
 
         entry! {
             /// Traces the shadow rays of a wave: one row of threads a light.
             shadow<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
+            [frame nodes primitives lights paths hits shadows queue counters wide bounds] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
                 let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
-                let answer = stage::shadow::<$R, $method>(&scene, ShadowInputs { lights, paths, hits }, slot, light);
+                let answer = stage::shadow::<$R, $method, Primitives>(&scene, ShadowInputs { lights, paths, hits }, slot, light);
                 write(shadows, light * frame.slots + slot, answer);
             }
         }
@@ -165,10 +165,10 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes triangles paths hits queue counters wide bounds] {
-                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+            [frame nodes primitives paths hits queue counters wide bounds] {
+                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
                 let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
-                stage::persistent::<$R, $method, Closest, Subgroup>(
+                stage::persistent::<$R, $method, Primitives, Closest, Subgroup>(
                     &scene,
                     count,
                     move |wants| take(wants, lane, counters, counter::TRACED),
@@ -186,14 +186,14 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the shadow rays of a wave, light after light.
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes triangles lights paths hits shadows queue counters wide bounds] {
-                let scene = TraceContext { base: LaunchContext { frame, spec, triangles }, nodes, wide, bounds };
+            [frame nodes primitives lights paths hits shadows queue counters wide bounds] {
+                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
                 let inputs = ShadowInputs { lights, paths: &*paths, hits: &*hits };
                 let (count, queue) = (slots(spec, frame, counters), &*queue);
                 // A launch without slots takes no number; the guard spares the division's panic.
                 let row = if count == 0 { 1 } else { count };
                 let rows = if spec.launch.has(Launch::STREAM) { 1 } else { frame.shadow_rays };
-                stage::persistent::<$R, $method, Occlusion, Subgroup>(
+                stage::persistent::<$R, $method, Primitives, Occlusion, Subgroup>(
                     &scene,
                     count * rows,
                     move |wants| take(wants, lane, counters, counter::ASKED),

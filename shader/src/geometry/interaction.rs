@@ -1,21 +1,27 @@
-//! The point where a ray hits a triangle, and its error bound.
+//! The point where a ray hits a primitive, and its error bound.
 
-use crate::data::Triangle;
+use super::{tangents, unit_of};
+use crate::data::{Effects, Primitive};
+use crate::ray::Ray;
 use crate::real::{Real, SMALL, Scalar, TINY, V3};
 
 /// A point on a surface.
 #[derive(Clone, Copy)]
 pub struct SurfaceInteraction<R: Real> {
-    /// The point, computed from the triangle's vertices (nearer to the surface than a point along the ray).
+    /// The point, computed from the primitive's record (nearer to the surface than a point along the ray).
     pub position: V3<R>,
     /// How far a ray must start from the surface to be on the right side of it, see [`SurfaceInteraction::offset_ray_origin`].
     pub error_offset: R,
-    /// The triangle's unit normal, on the viewer's side.
+    /// The surface's unit normal, on the viewer's side.
     pub normal: V3<R>,
-    /// Does the viewer see the front (counter-clockwise) side?
+    /// Does the viewer see the front: a triangle's counter-clockwise side, a sphere's outside, what a disk's normal is on?
     pub front: bool,
-    /// Weights of the triangle's second and third vertex.
-    pub weights: (R, R),
+    /// Where on the primitive it is, see [`coordinates`](crate::traverse::leaf::coordinates).
+    pub coordinates: (R, R),
+    /// The primitive's number in the scene.
+    pub number: u32,
+    /// May a ray that starts there meet the primitive again?
+    pub is_curved: bool,
 }
 
 /// Bounds the error of a point and of the triangle test of a ray that starts there, in roundoffs times the
@@ -23,13 +29,53 @@ pub struct SurfaceInteraction<R: Real> {
 /// thinner than a fifth of its length the error of its vertices (4) and edge functions (9) times that shape.
 const ROUNDOFFS: f32 = 64.0;
 
+/// Bounds the error of a point on a sphere, likewise: 4 for the unit normal, and one each for its product with the radius and
+/// the sum with the centre.
+const SPHERE_ROUNDOFFS: f32 = 8.0;
+
+/// The largest share of a sphere's radius that a ray starts off its surface. The ray knows by its source on which side it is,
+/// so a sphere that is not much larger than the roundoff of its coordinates needs no more.
+const OFF_SPHERE: f32 = 1.0 / 8.0;
+
 /// A ray whose cosine is less than this would have to go too far along its direction to get as far off the surface.
 const GRAZING: f32 = 1.0 / 32.0;
 
 impl<R: Scalar> SurfaceInteraction<R> {
-    /// The point with weights `u` and `v` of the second and third vertex, seen along `direction`.
+    /// The point at some [`coordinates`](crate::traverse::leaf::coordinates) of a primitive, seen along `direction`.
     #[inline(always)]
-    pub fn new(triangle: &Triangle, u: R, v: R, direction: V3<R>) -> Self {
+    pub fn new(effects: Effects, primitive: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
+        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+            Self::on_sphere(primitive, (u, v), direction)
+        } else if effects.has(Effects::DISK) && primitive.is_disk() {
+            Self::on_disk(primitive, (u, v), direction)
+        } else {
+            Self::on_triangle(primitive, (u, v), direction)
+        }
+    }
+
+    /// A point of the surface whose front has this normal.
+    #[inline(always)]
+    fn seen(
+        primitive: &Primitive,
+        coordinates: (R, R),
+        (position, error_offset): (V3<R>, R),
+        normal: V3<R>,
+        direction: V3<R>,
+    ) -> Self {
+        let front = normal.dot(direction).le(R::splat(0.0));
+        SurfaceInteraction {
+            position: position.map(|x| x.flush(TINY)),
+            error_offset,
+            normal: V3::select(front, normal, -normal),
+            front,
+            coordinates,
+            number: primitive.number(),
+            is_curved: false,
+        }
+    }
+
+    #[inline(always)]
+    fn on_triangle(triangle: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
         let [a, b, c] = triangle.vertices();
         let (a, b, c) = (V3::<R>::splat(a), V3::<R>::splat(b), V3::<R>::splat(c));
         let position = a * (R::splat(1.0) - u - v) + b * u + c * v;
@@ -39,16 +85,37 @@ impl<R: Scalar> SurfaceInteraction<R> {
         let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
         let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
         let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
-        let front = normal.dot(direction).le(R::splat(0.0));
-        SurfaceInteraction {
-            position: position.map(|x| x.flush(TINY)),
-            // The position's error across the surface grows with its coordinates along the normal; the triangle
-            // test's error grows with the triangle's extent in every direction.
-            error_offset: (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF),
-            normal: V3::select(front, normal, -normal),
-            front,
-            weights: (u, v),
-        }
+        // The position's error across the surface grows with its coordinates along the normal; the triangle
+        // test's error grows with the triangle's extent in every direction.
+        let error_offset = (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF);
+        Self::seen(triangle, (u, v), (position, error_offset), normal, direction)
+    }
+
+    #[inline(always)]
+    fn on_sphere(sphere: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
+        let (centre, radius) = (V3::<R>::splat(sphere.centre()), R::splat(sphere.radius()));
+        let normal = unit_of(u, v);
+        let reach = centre.abs().greatest() + radius;
+        let error_offset = (reach * (R::splat(SPHERE_ROUNDOFFS) * R::ROUNDOFF)).min(radius * R::splat(OFF_SPHERE));
+        let at = (centre + normal * radius, error_offset);
+        SurfaceInteraction { is_curved: true, ..Self::seen(sphere, (u, v), at, normal, direction) }
+    }
+
+    #[inline(always)]
+    fn on_disk(disk: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
+        let (centre, normal) = (V3::<R>::splat(disk.centre()), V3::<R>::splat(disk.normal()));
+        let radius = R::splat(disk.radius());
+        let [x, y] = tangents(normal);
+        let reach = normal.abs().dot(centre.abs()) + radius + radius;
+        let at = (centre + (x * u + y * v) * radius, reach * (R::splat(ROUNDOFFS) * R::ROUNDOFF));
+        Self::seen(disk, (u, v), at, normal, direction)
+    }
+
+    /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`].
+    #[inline(always)]
+    pub fn source_primitive(&self, direction: V3<R>) -> u32 {
+        let goes_inside = self.is_curved && self.faces(direction) != self.front;
+        if goes_inside { self.number | Ray::<R>::INSIDE } else { self.number }
     }
 
     /// The index of refraction on the viewer's side over that on the other, of a body of index `ior` in a vacuum.
@@ -64,8 +131,8 @@ impl<R: Scalar> SurfaceInteraction<R> {
     }
 
     /// The origin of a ray that leaves towards `direction`: off the surface along the normal (PBRT-v4
-    /// 6.8.6), so that it can't hit a neighbour in the same plane. The triangle itself is skipped by
-    /// its number, since a ray can't hit a plane twice.
+    /// 6.8.6), so that it can't hit a neighbour in the same plane. The primitive itself is skipped by
+    /// its number, see [`SurfaceInteraction::source_primitive`].
     #[inline(always)]
     pub fn offset_ray_origin(&self, direction: V3<R>) -> V3<R> {
         let side = R::select(self.faces(direction), self.error_offset, -self.error_offset);
@@ -107,12 +174,12 @@ mod tests {
     ) -> Result<(), TestCaseError> {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = V3::<f32>::new(d[0], d[1], d[2]).normalised().0;
-        let contact = SurfaceInteraction::new(&Triangle::new(vertices, 0, 0, 0), u, v, -direction);
+        let interaction = SurfaceInteraction::new(Effects(0), &Primitive::triangle(vertices, 0, 0, 0), (u, v), -direction);
         for graze in [1.0, 1e-2, 1e-4, 1e-6] {
-            let across = contact.normal * contact.normal.dot(direction);
+            let across = interaction.normal * interaction.normal.dot(direction);
             let direction = (direction - across + across * graze).normalised().0;
-            if contact.faces(direction) {
-                for origin in [contact.offset_ray_origin(direction), contact.offset_ray_origin_along(direction)] {
+            if interaction.faces(direction) {
+                for origin in [interaction.offset_ray_origin(direction), interaction.offset_ray_origin_along(direction)] {
                     for other in others {
                         prop_assert!(!meets(*other, origin, direction), "graze {graze}");
                     }
@@ -124,28 +191,28 @@ mod tests {
 
     /// On a triangle that faces up the z axis.
     fn flat_seen_along(direction: V3<f64>) -> SurfaceInteraction<f64> {
-        let flat = Triangle::new([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
-        SurfaceInteraction::new(&flat, 0.25, 0.25, direction)
+        let flat = Primitive::triangle([Vec3::ZERO, Vec3::X, Vec3::Y].map(|v| v * 0.5), 0, 0, 0);
+        SurfaceInteraction::new(Effects(0), &flat, (0.25, 0.25), direction)
     }
 
     #[test]
     fn leaves_on_the_side_that_the_direction_is_on() {
-        let contact = flat_seen_along(V3::new(0.6, 0.0, -0.8));
+        let interaction = flat_seen_along(V3::new(0.6, 0.0, -0.8));
         for (z, side) in [(1.0, 1.0), (-1.0, -1.0)] {
             let direction = V3::new(0.6, 0.0, 0.8 * z);
-            assert_eq!(contact.faces(direction), z > 0.0);
-            let off = contact.offset_ray_origin(direction) - contact.position;
-            assert_eq!((off.x, off.y, off.z), (0.0, 0.0, side * contact.error_offset));
+            assert_eq!(interaction.faces(direction), z > 0.0);
+            let off = interaction.offset_ray_origin(direction) - interaction.position;
+            assert_eq!((off.x, off.y, off.z), (0.0, 0.0, side * interaction.error_offset));
         }
     }
 
     /// A steep direction offsets along itself, a flatter one along the normal.
     #[test]
     fn leaves_along_its_direction_unless_that_grazes() {
-        let contact = flat_seen_along(V3::splat(-Vec3::Z));
+        let interaction = flat_seen_along(V3::splat(-Vec3::Z));
         let off = |cosine: f64| {
             let direction = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-            (contact.offset_ray_origin_along(direction) - contact.position).x / contact.error_offset
+            (interaction.offset_ray_origin_along(direction) - interaction.position).x / interaction.error_offset
         };
         assert!((off(0.04) - (1.0f64 - 0.0016).sqrt() / 0.04).abs() < 0.1);
         assert_eq!(off(0.03), 0.0);

@@ -1,11 +1,17 @@
 //! What rays meet: boxes, and primitives, each a file with its intersection; and the place where a surface was met.
 
+mod disk;
 mod interaction;
 mod moller_trumbore;
 mod slab;
+mod sphere;
 mod triangle;
 
+pub use disk::{Crossing, intersect_disk};
+pub(crate) use disk::{coordinates, tangents};
 pub use interaction::SurfaceInteraction;
 pub use moller_trumbore::intersect_moller_trumbore;
 pub use slab::{Span, slab};
+pub use sphere::{Chord, intersect_sphere};
+pub(crate) use sphere::{octahedral, unit_of};
 pub use triangle::{Candidate, intersect_watertight, sheared, straddles_origin};

@@ -16,7 +16,7 @@ use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
 pub struct Wave<'a, R: Scalar> {
     /// Paths by level, record and slot.
     pub paths: &'a mut [R::Record],
-    /// (t, u, v) and triangle by slot.
+    /// (t, u, v) and primitive index by slot.
     pub hits: &'a [R::Record],
     /// What [`crate::stage::shadow`] returned, by light and slot.
     pub shadows: &'a [u32],
@@ -32,7 +32,7 @@ struct Branches<R: Real> {
 
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
-pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
+pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
     let Wave { paths, hits, shadows, sums } = wave;
     // A queue holds no slot of a pixel outside.
     let is_first = !launch.spec.launch.has(Launch::SECONDARY);
@@ -41,20 +41,20 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, looks: &ShadingData<'_>, slo
     }
     let effects = launch.spec.effects;
     let path = Path::<R>::current(launch, slot, paths);
-    let (hit, triangle_index) = R::load(read(hits, slot));
-    if triangle_index == Hit::<R>::NOTHING {
+    let (hit, primitive_index) = R::load(read(hits, slot));
+    if primitive_index == Hit::<R>::NOTHING {
         add(launch, sums, slot, &path, background(effects, launch.frame, path.direction), 0);
         return pop(launch, slot, &path, paths);
     }
-    let triangle = launch.triangle(triangle_index);
-    let contact = SurfaceInteraction::new(&triangle, hit.y, hit.z, path.direction);
-    let surface = Surface::new(effects, looks, triangle_index, &triangle, path.direction, &contact);
-    let (light, rays) = lit(launch, looks.lights, slot, path.direction, (&contact, &surface), shadows);
+    let primitive = launch.primitive(primitive_index);
+    let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
+    let surface = Surface::new(effects, shading, primitive_index, &primitive, path.direction, &interaction);
+    let (light, rays) = lit(launch, shading.lights, slot, path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return false;
     }
-    follow(launch, slot, &path, branch(launch, &path, triangle.primitive(), (&contact, &surface)), paths)
+    follow(launch, slot, &path, branch(launch, &path, (&interaction, &surface)), paths)
 }
 
 /// Ambient light and every light that reaches the place, in file order; and how many were asked.
@@ -67,7 +67,7 @@ fn lit<R: Scalar>(
     lit: (&SurfaceInteraction<R>, &Surface<R>),
     shadows: &[u32],
 ) -> (V3<R>, u32) {
-    let (contact, surface) = lit;
+    let (interaction, surface) = lit;
     let mut sum = surface.ambient;
     let mut rays = 0;
     if !launch.spec.effects.has(Effects::LIT) {
@@ -80,7 +80,7 @@ fn lit<R: Scalar>(
             rays += 1;
         }
         if answer == REACHED {
-            let incidence = LightSample::new(launch.spec.effects, &read(lights, index), contact.position);
+            let incidence = LightSample::new(launch.spec.effects, &read(lights, index), interaction.position);
             sum = sum + eval_phong(launch.spec.effects, surface, direction, &incidence);
         }
         index += 1;
@@ -114,50 +114,49 @@ fn add<R: Scalar>(
 fn branch<R: Scalar>(
     launch: &LaunchContext<'_>,
     path: &Path<R>,
-    source_primitive: u32,
-    (contact, surface): (&SurfaceInteraction<R>, &Surface<R>),
+    (interaction, surface): (&SurfaceInteraction<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
     let mirrored = reflect(path.direction, surface.normal);
     // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
-    let mirrored = V3::select(contact.faces(mirrored), mirrored, reflect(path.direction, contact.normal));
-    let none = path.on(source_primitive, contact.position, mirrored, V3::zero());
+    let mirrored = V3::select(interaction.faces(mirrored), mirrored, reflect(path.direction, interaction.normal));
+    let none = path.on(interaction, interaction.position, mirrored, V3::zero());
     if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.eq(zero) {
-        let reflected = path.on(source_primitive, contact.offset_ray_origin(mirrored), mirrored, surface.reflection);
+        let reflected = path.on(interaction, interaction.offset_ray_origin(mirrored), mirrored, surface.reflection);
         return Branches { reflected, refracted: none };
     }
     let one = R::splat(1.0);
-    let eta = contact.relative_ior(surface.ior);
+    let eta = interaction.relative_ior(surface.ior);
     let at = refract(path.direction, surface.normal, eta);
     let share = fresnel(&at, eta);
     // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
     let reflected =
-        path.on(source_primitive, contact.offset_ray_origin_along(mirrored), mirrored, V3::new(share, share, share));
+        path.on(interaction, interaction.offset_ray_origin_along(mirrored), mirrored, V3::new(share, share, share));
     if at.total {
         return Branches { reflected, refracted: none };
     }
     let inwards = at.direction.normalised().0;
     let refracted = path.on(
-        source_primitive,
-        contact.offset_ray_origin_along(inwards),
+        interaction,
+        interaction.offset_ray_origin_along(inwards),
         inwards,
         surface.transmission * (one - share),
     );
     // Likewise an interpolated normal may refract a ray back out.
-    Branches { reflected, refracted: if contact.faces(inwards) { none } else { refracted } }
+    Branches { reflected, refracted: if interaction.faces(inwards) { none } else { refracted } }
 }
 
 impl<R: Scalar> Path<R> {
-    /// The path that goes on from a contact.
+    /// The path that goes on from an interaction.
     #[inline(always)]
-    fn on(&self, source_primitive: u32, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
+    fn on(&self, from: &SurfaceInteraction<R>, origin: V3<R>, direction: V3<R>, weight: V3<R>) -> Self {
         Path {
             origin,
             direction,
             weight: self.weight.times(weight).map(|c| c.flush(FAINT)),
             bounces: self.bounces + 1,
             pending: self.pending,
-            source_primitive,
+            source_primitive: from.source_primitive(direction),
         }
     }
 

@@ -7,12 +7,12 @@ pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
 
 use crate::buffer::read;
-use crate::data::{Effects, Material, Triangle, numbers};
+use crate::data::{Effects, Material, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::real::{Real, Scalar, V3};
 use crate::scene::ShadingData;
 
-/// A material at a contact, with the normal that light sees.
+/// A material at an interaction, with the normal that light sees.
 #[derive(Clone, Copy)]
 pub struct Surface<R: Real> {
     /// Unit shading normal on the viewer's side: the vertices' normals interpolated, or the triangle's.
@@ -34,26 +34,26 @@ pub struct Surface<R: Real> {
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of a triangle at a contact, seen along `direction`.
+    /// The surface of a triangle at an interaction, seen along `direction`.
     #[inline(always)]
     pub fn new(
         effects: Effects,
-        looks: &ShadingData<'_>,
-        triangle_index: u32,
-        triangle: &Triangle,
+        shading: &ShadingData<'_>,
+        primitive_index: u32,
+        primitive: &Primitive,
         direction: V3<R>,
-        contact: &SurfaceInteraction<R>,
+        interaction: &SurfaceInteraction<R>,
     ) -> Self {
-        let material: Material = read(looks.materials, triangle.material());
+        let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal = if effects.has(Effects::SMOOTH) {
-            interpolated(looks, triangle_index, direction, contact)
+            interpolated(shading, primitive_index, direction, interaction)
         } else {
-            contact.normal
+            interaction.normal
         };
         let other =
-            effects.has(Effects::CHECKER) && material.checker.w != 0 && odd_cell(contact, number(material.checker.w));
+            effects.has(Effects::CHECKER) && material.checker.w != 0 && odd_cell(interaction, number(material.checker.w));
         Surface {
             normal,
             ambient: if other { colour(material.checker_ambient) } else { colour(material.ambient) },
@@ -71,26 +71,26 @@ impl<R: Scalar> Surface<R> {
 /// or faces away from the viewer, the triangle's own normal replaces it.
 #[inline(always)]
 fn interpolated<R: Scalar>(
-    looks: &ShadingData<'_>,
-    triangle_index: u32,
+    shading: &ShadingData<'_>,
+    primitive_index: u32,
     direction: V3<R>,
-    contact: &SurfaceInteraction<R>,
+    interaction: &SurfaceInteraction<R>,
 ) -> V3<R> {
-    let (u, v) = contact.weights;
-    let normals = read(looks.normals, triangle_index);
+    let (u, v) = interaction.coordinates;
+    let normals = read(shading.normals, primitive_index);
     let normal = |record| V3::<R>::splat(numbers(record));
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.normalised();
-    let unit = V3::select(contact.faces(unit), unit, -unit);
+    let unit = V3::select(interaction.faces(unit), unit, -unit);
     let lost = length.eq(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
-    V3::select(lost, contact.normal, unit)
+    V3::select(lost, interaction.normal, unit)
 }
 
 /// Cells of a checkerboard over the two axes that the surface faces least.
 #[inline(always)]
-fn odd_cell<R: Scalar>(contact: &SurfaceInteraction<R>, cells: R) -> bool {
-    let n = contact.normal.abs();
-    let p = contact.position;
+fn odd_cell<R: Scalar>(interaction: &SurfaceInteraction<R>, cells: R) -> bool {
+    let n = interaction.normal.abs();
+    let p = interaction.position;
     let (a, b) = if n.y.le(n.x) && n.z.le(n.x) {
         (p.y, p.z)
     } else if n.z.le(n.y) {
@@ -113,7 +113,9 @@ mod tests {
             error_offset: 0.0,
             normal: V3::splat(normal),
             front: true,
-            weights: (0.0, 0.0),
+            coordinates: (0.0, 0.0),
+            number: 0,
+            is_curved: false,
         }
     }
 
@@ -135,9 +137,9 @@ mod tests {
     /// The shading normal where vertices have these.
     fn smooth_of(normals: [Vec3; 3], weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
         let [a, b, c] = normals.map(|n| pack(n, 0));
-        let looks = ShadingData { normals: &[Normals { a, b, c }], materials: &[], lights: &[] };
-        let contact = SurfaceInteraction { weights, ..contact(own, [0.0; 3]) };
-        interpolated(&looks, 0, V3::splat(from), &contact)
+        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[], lights: &[] };
+        let interaction = SurfaceInteraction { coordinates: weights, ..contact(own, [0.0; 3]) };
+        interpolated(&shading, 0, V3::splat(from), &interaction)
     }
 
     /// Of a triangle whose vertices' normals lean towards x, y and away from x.

@@ -1,12 +1,11 @@
 //! What the implementations for one lane share.
 
-/// What every [`Real`] of one lane has in common: its mask is a `bool`, its indices are `u32`.
+/// What every [`Real`](crate::real::Real) of one lane has in common: its mask is a `bool`, its indices are `u32`.
 #[macro_export]
 macro_rules! alone {
     () => {
         type Mask = bool;
         type Index = u32;
-        type Lane = Self;
 
         #[inline(always)]
         fn select(mask: bool, a: Self, b: Self) -> Self {
@@ -28,21 +27,10 @@ macro_rules! alone {
         fn select_index(mask: bool, a: u32, b: u32) -> u32 {
             if mask { a } else { b }
         }
-        #[inline(always)]
-        fn lanes(
-            ray: &$crate::ray::Ray<Self>,
-            hit: &mut $crate::ray::Hit<Self>,
-            mask: bool,
-            mut f: impl FnMut(&$crate::ray::Ray<Self>, &mut $crate::ray::Hit<Self>),
-        ) {
-            if mask {
-                f(ray, hit);
-            }
-        }
     };
 }
 
-/// What every [`Scalar`] has in common for which there are no registers: packets of one lane, and the given lanes for the
+/// What every [`Scalar`](crate::real::Scalar) has in common for which there are no registers: packets of one lane, and the given lanes for the
 /// boxes and triangles of wide nodes.
 #[macro_export]
 macro_rules! no_registers {

@@ -6,8 +6,7 @@ use core::array::from_fn;
 use core::mem::transmute;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
-use super::{F32xN, Lanes, Mask, MaskxN, Real, SimdIsa, U32xN};
-use crate::ray::{Hit, Ray};
+use super::{F32xN, FAINT, Lanes, Mask, Real, SimdIsa, U32xN};
 
 /// A processor with AVX2 and FMA. Not public: its vectors' safe functions are instructions that other processors lack, so
 /// [`Scalar::run_avx2`](super::Scalar::run_avx2) and [`run_avx512`](super::Scalar::run_avx512), which are unsafe, must stay
@@ -35,7 +34,7 @@ macro_rules! instruction {
 macro_rules! registers {
     (
         $what:literal, $number:ident($floats:ty), $mask:ident, $index:ident($integers:ty), $count:literal;
-        add: $add:ident, sub: $sub:ident, mul: $mul:ident, div: $div:ident, sqrt: $sqrt:ident, fused: $fused:ident,
+        add: $add:ident, sub: $sub:ident, mul: $mul:ident, div: $div:ident, sqrt: $sqrt:ident, fused: $fused:ident, fused_minus: $fused_minus:ident,
         min: $min:ident, max: $max:ident, and: $and:ident, or: $or:ident, xor: $xor:ident, without: $without:ident,
         compare: $compare:ident, blend: $blend:ident, blend_bytes: $blend_bytes:ident, bits: $bits:ident,
         all: $all:ident, all_integers: $all_integers:ident, equal: $equal:ident, greater: $greater:ident,
@@ -103,14 +102,6 @@ macro_rules! registers {
             }
         }
 
-        impl $mask {
-            #[inline(always)]
-            fn arrays(self) -> MaskxN<$count> {
-                // SAFETY: as many words either way.
-                MaskxN(unsafe { transmute::<$floats, [u32; $count]>(self.0) })
-            }
-        }
-
         impl $index {
             #[inline(always)]
             fn arrays(self) -> U32xN<$count> {
@@ -140,7 +131,6 @@ macro_rules! registers {
         impl Real for $number {
             type Mask = $mask;
             type Index = $index;
-            type Lane = f32;
             const ROUNDOFF: Self = {
                 // SAFETY: any bits are numbers.
                 $number(unsafe { transmute::<[f32; $count], $floats>([<f32 as Real>::ROUNDOFF; $count]) })
@@ -183,34 +173,12 @@ macro_rules! registers {
                 $number(unsafe { $div(self.normal().0, divisor.normal().0) }).normal()
             }
 
-            #[inline(always)]
-            fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: $mask, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
-                let arrays = Ray {
-                    origin: ray.origin.each($number::arrays),
-                    inverse: ray.inverse.each($number::arrays),
-                    offset: ray.offset.each($number::arrays),
-                    shear: ray.shear.each($number::arrays, $mask::arrays),
-                    source_primitive: ray.source_primitive.arrays(),
-                };
-                let mut lanes = Hit {
-                    t: hit.t.arrays(),
-                    u: hit.u.arrays(),
-                    v: hit.v.arrays(),
-                    scale: hit.scale.arrays(),
-                    triangle_index: hit.triangle_index.arrays(),
-                    primitive: hit.primitive.arrays(),
-                };
-                F32xN::<$count>::lanes(&arrays, &mut lanes, mask.arrays(), &mut f);
-                let number = |w: F32xN<$count>| Self::taken(&w.0);
-                let index = |w: U32xN<$count>| Self::indices(|i| w.0[i]);
-                *hit = Hit {
-                    t: number(lanes.t),
-                    u: number(lanes.u),
-                    v: number(lanes.v),
-                    scale: number(lanes.scale),
-                    triangle_index: index(lanes.triangle_index),
-                    primitive: index(lanes.primitive),
-                };
+            instruction! {
+                fn product_and_rest(self, other: Self) -> (Self, Self) {{
+                    let product = $mul(self.0, other.0);
+                    // One rounding of a product less its rounded self is none: the bits of the halves' products.
+                    (Self(product), Self($fused_minus(self.0, other.0, product)).flush(FAINT))
+                }}
             }
         }
 
@@ -233,6 +201,18 @@ macro_rules! registers {
             #[inline(always)]
             fn lane(&self, i: usize) -> f32 {
                 self.arrays().0[i & ($count - 1)]
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, i: usize, x: f32) {
+                let mut lanes = self.arrays().0;
+                lanes[i & ($count - 1)] = x;
+                *self = Self::taken(&lanes);
+            }
+            #[inline(always)]
+            fn set_index(index: &mut $index, i: usize, x: u32) {
+                let mut lanes = index.arrays().0;
+                lanes[i & ($count - 1)] = x;
+                *index = Self::indices(|i| lanes[i]);
             }
             #[inline(always)]
             fn index_of(index: $index, i: usize) -> u32 {
@@ -260,7 +240,7 @@ macro_rules! registers {
 registers! {
     "Eight", Eight(__m256), EightMask, EightIndex(__m256i), 8;
     add: _mm256_add_ps, sub: _mm256_sub_ps, mul: _mm256_mul_ps, div: _mm256_div_ps, sqrt: _mm256_sqrt_ps,
-    fused: _mm256_fmadd_ps, min: _mm256_min_ps, max: _mm256_max_ps, and: _mm256_and_ps, or: _mm256_or_ps,
+    fused: _mm256_fmadd_ps, fused_minus: _mm256_fmsub_ps, min: _mm256_min_ps, max: _mm256_max_ps, and: _mm256_and_ps, or: _mm256_or_ps,
     xor: _mm256_xor_ps, without: _mm256_andnot_ps, compare: _mm256_cmp_ps, blend: _mm256_blendv_ps,
     blend_bytes: _mm256_blendv_epi8, bits: _mm256_movemask_ps, all: _mm256_set1_ps, all_integers: _mm256_set1_epi32,
     equal: _mm256_cmpeq_epi32, greater: _mm256_cmpgt_epi32, xor_integers: _mm256_xor_si256,
@@ -271,7 +251,7 @@ registers! {
 registers! {
     "Four", Four(__m128), FourMask, FourIndex(__m128i), 4;
     add: _mm_add_ps, sub: _mm_sub_ps, mul: _mm_mul_ps, div: _mm_div_ps, sqrt: _mm_sqrt_ps,
-    fused: _mm_fmadd_ps, min: _mm_min_ps, max: _mm_max_ps, and: _mm_and_ps, or: _mm_or_ps,
+    fused: _mm_fmadd_ps, fused_minus: _mm_fmsub_ps, min: _mm_min_ps, max: _mm_max_ps, and: _mm_and_ps, or: _mm_or_ps,
     xor: _mm_xor_ps, without: _mm_andnot_ps, compare: _mm_cmp_ps, blend: _mm_blendv_ps,
     blend_bytes: _mm_blendv_epi8, bits: _mm_movemask_ps, all: _mm_set1_ps, all_integers: _mm_set1_epi32,
     equal: _mm_cmpeq_epi32, greater: _mm_cmpgt_epi32, xor_integers: _mm_xor_si128,

@@ -27,6 +27,10 @@ impl Real for f64 {
     fn abs(self) -> f64 {
         f64::abs(self)
     }
+    /// Halves of 26 bits would need another factor; a rest is far below what the reference is for.
+    fn product_and_rest(self, other: f64) -> (f64, f64) {
+        (self * other, 0.0)
+    }
     /// Never runs on a device that flushes.
     fn flush_if_exact(self, _least: f32) -> f64 {
         self

@@ -4,7 +4,6 @@ use core::array::from_fn;
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
 use super::{Fast, Lanes, Mask, Real, V3};
-use crate::ray::{Hit, Ray};
 
 /// `N` numbers, one a lane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,7 +73,6 @@ fn bits(holds: bool) -> u32 {
 impl<const N: usize> Real for F32xN<N> {
     type Mask = MaskxN<N>;
     type Index = U32xN<N>;
-    type Lane = f32;
     const ROUNDOFF: Self = F32xN([<f32 as Real>::ROUNDOFF; N]);
 
     #[inline(always)]
@@ -129,17 +127,6 @@ impl<const N: usize> Real for F32xN<N> {
     fn select_index(mask: MaskxN<N>, a: U32xN<N>, b: U32xN<N>) -> U32xN<N> {
         U32xN(from_fn(|i| if mask.0[i] != 0 { a.0[i] } else { b.0[i] }))
     }
-
-    #[inline(always)]
-    fn lanes(ray: &Ray<Self>, hit: &mut Hit<Self>, mask: MaskxN<N>, mut f: impl FnMut(&Ray<f32>, &mut Hit<f32>)) {
-        for i in 0..N {
-            if mask.0[i] != 0 {
-                let mut lane = hit.lane(i);
-                f(&ray.lane(i), &mut lane);
-                hit.set_lane(i, &lane);
-            }
-        }
-    }
 }
 
 macro_rules! lanes {
@@ -162,6 +149,14 @@ macro_rules! lanes {
             #[inline(always)]
             fn lane(&self, i: usize) -> $scalar {
                 $wrap(self.0[i])
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, i: usize, x: $scalar) {
+                self.0[i] = $inner(x);
+            }
+            #[inline(always)]
+            fn set_index(index: &mut U32xN<N>, i: usize, x: u32) {
+                index.0[i] = x;
             }
             #[inline(always)]
             fn index_of(index: U32xN<N>, i: usize) -> u32 {
@@ -191,49 +186,5 @@ impl<const N: usize> V3<F32xN<N>> {
     #[inline(always)]
     pub fn of_lanes(lane: impl Fn(usize) -> V3<f32>) -> Self {
         V3::new(F32xN(from_fn(|i| lane(i).x)), F32xN(from_fn(|i| lane(i).y)), F32xN(from_fn(|i| lane(i).z)))
-    }
-
-    #[inline(always)]
-    fn lane(&self, i: usize) -> V3<f32> {
-        V3::new(self.x.0[i], self.y.0[i], self.z.0[i])
-    }
-}
-
-impl<const N: usize> Ray<F32xN<N>> {
-    /// One lane's ray.
-    #[inline(always)]
-    fn lane(&self, i: usize) -> Ray<f32> {
-        Ray {
-            origin: self.origin.lane(i),
-            inverse: self.inverse.lane(i),
-            offset: self.offset.lane(i),
-            shear: self.shear.lane(i),
-            source_primitive: self.source_primitive.0[i],
-        }
-    }
-}
-
-impl<const N: usize> Hit<F32xN<N>> {
-    /// One lane's hit.
-    #[inline(always)]
-    pub fn lane(&self, i: usize) -> Hit<f32> {
-        Hit {
-            t: self.t.0[i],
-            u: self.u.0[i],
-            v: self.v.0[i],
-            scale: self.scale.0[i],
-            triangle_index: self.triangle_index.0[i],
-            primitive: self.primitive.0[i],
-        }
-    }
-
-    #[inline(always)]
-    fn set_lane(&mut self, i: usize, hit: &Hit<f32>) {
-        self.t.0[i] = hit.t;
-        self.u.0[i] = hit.u;
-        self.v.0[i] = hit.v;
-        self.scale.0[i] = hit.scale;
-        self.triangle_index.0[i] = hit.triangle_index;
-        self.primitive.0[i] = hit.primitive;
     }
 }

@@ -42,7 +42,7 @@ impl Neg for Fast {
 
 impl Real for Fast {
     const ROUNDOFF: Fast = Fast(<f32 as Real>::ROUNDOFF);
-    const CHOOSES: bool = true;
+    const EXACT: bool = false;
 
     comparisons!(Fast, inner);
 
@@ -54,6 +54,16 @@ impl Real for Fast {
     #[inline(always)]
     fn flush_if_exact(self, _least: f32) -> Fast {
         self
+    }
+
+    #[inline(always)]
+    fn difference_and_rest(self, other: Fast) -> (Fast, Fast) {
+        (self - other, Fast(0.0))
+    }
+
+    #[inline(always)]
+    fn product_and_rest(self, other: Fast) -> (Fast, Fast) {
+        (self * other, Fast(0.0))
     }
 
     #[inline(always)]

@@ -15,6 +15,10 @@ pub trait Lanes<S: Scalar>: Real {
     fn indices(index: impl Fn(usize) -> u32) -> Self::Index;
     /// Lane `i`.
     fn lane(&self, i: usize) -> S;
+    /// Changes lane `i`.
+    fn set_lane(&mut self, i: usize, x: S);
+    /// Changes the integer of lane `i`.
+    fn set_index(index: &mut Self::Index, i: usize, x: u32);
     /// The integer of lane `i`.
     fn index_of(index: Self::Index, i: usize) -> u32;
     /// Loads the first numbers of a slice, as many as there are lanes.
@@ -84,6 +88,14 @@ macro_rules! one_lane {
             #[inline(always)]
             fn lane(&self, _: usize) -> $type {
                 *self
+            }
+            #[inline(always)]
+            fn set_lane(&mut self, _: usize, x: $type) {
+                *self = x;
+            }
+            #[inline(always)]
+            fn set_index(index: &mut u32, _: usize, x: u32) {
+                *index = x;
             }
             #[inline(always)]
             fn index_of(index: u32, _: usize) -> u32 {

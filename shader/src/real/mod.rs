@@ -27,7 +27,7 @@ mod tests;
 mod vector;
 
 #[cfg(target_arch = "x86_64")]
-pub(crate) use avx2::Avx2;
+pub(crate) use avx2::{Avx2, Eight, Four};
 #[cfg(not(target_arch = "spirv"))]
 pub use f32xn::{F32xN, MaskxN, U32xN};
 pub use fast::Fast;
@@ -37,9 +37,6 @@ use lanes::Avx512;
 pub use lanes::{Lanes, Native, SimdIsa, Task};
 pub use vector::V3;
 
-#[cfg(doc)]
-use crate::data::Launch;
-use crate::ray::{Hit, Ray};
 use core::ops::{Add, BitAnd, BitOr, Mul, Neg, Not, Sub};
 
 /// One truth value a lane.
@@ -71,14 +68,11 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// An unsigned 32-bit integer a lane, for ids and counts.
     type Index: Copy;
 
-    /// One lane.
-    type Lane: Scalar;
-
     /// Unit roundoff: half the distance from 1 to the next number.
     const ROUNDOFF: Self;
 
-    /// May a launch choose the triangle test ([`Launch::MOLLER`])? Else it is always the watertight one.
-    const CHOOSES: bool = false;
+    /// Do results follow from the operands alone, whatever the device? Else it may trade them for speed.
+    const EXACT: bool = true;
 
     /// The same number in every lane.
     fn splat(x: f32) -> Self;
@@ -110,14 +104,6 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn equals(i: u32, other: Self::Index) -> Self::Mask;
     /// `a` where the mask holds, else `b`.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
-
-    /// Calls `f` for each lane of the mask, one after the other.
-    fn lanes(
-        ray: &Ray<Self>,
-        hit: &mut Hit<Self>,
-        mask: Self::Mask,
-        f: impl FnMut(&Ray<Self::Lane>, &mut Hit<Self::Lane>),
-    );
 
     /// The lesser, by compare and select; `other` if either is NaN.
     #[inline(always)]
@@ -164,6 +150,28 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
         leave.x.lesser(leave.y).lesser(leave.z.lesser(limit))
     }
 
+    /// A difference, and what its rounding took off: their sum is exact (Knuth, The Art of Computer Programming 2, 4.2.2).
+    /// Where precision is not exact the rest is zero.
+    #[inline(always)]
+    fn difference_and_rest(self, other: Self) -> (Self, Self) {
+        let difference = self - other;
+        let minuend = difference + other;
+        let subtrahend = minuend - difference;
+        (difference, (self - minuend) - (other - subtrahend))
+    }
+
+    /// A product, and what its rounding took off: their sum is exact where the rest is at least [`FAINT`], and a rest below
+    /// counts as zero. Both operands are below 2^100. Without a fused operation, which no device needs to have (Dekker, A
+    /// Floating-Point Technique for Extending the Available Precision, 1971). Where precision is not exact the rest is zero.
+    #[inline(always)]
+    fn product_and_rest(self, other: Self) -> (Self, Self) {
+        let product = self * other;
+        let ((a, b), (c, d)) = (halves(self), halves(other));
+        // A product of 2^-78 or more has parts of 2^-126 or more, which are normal; the rest of any other is faint.
+        let rest = ((a * c - product) + a * d + b * c) + b * d;
+        (product, rest.flush(FAINT))
+    }
+
     /// As [`Real::flush`] in exact precision; otherwise the device decides whether to keep or flush a subnormal.
     #[inline(always)]
     fn flush_if_exact(self, least: f32) -> Self {
@@ -176,6 +184,14 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn flush(self, least: f32) -> Self {
         Self::select(self.abs().lt(Self::splat(least)), Self::splat(0.0), self)
     }
+}
+
+/// The upper twelve bits of a number, rounded, and the rest of it (Veltkamp).
+#[inline(always)]
+fn halves<R: Real>(x: R) -> (R, R) {
+    let scaled = x * R::splat(4097.0);
+    let upper = scaled - (scaled - x);
+    (upper, x - upper)
 }
 
 /// A number of a single lane, as shading uses it.

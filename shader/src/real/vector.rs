@@ -62,13 +62,6 @@ impl<R: Real> V3<R> {
         V3::new(f(self.x), f(self.y), f(self.z))
     }
 
-    /// Applies a function to every component that changes its type.
-    #[cfg(target_arch = "x86_64")]
-    #[inline(always)]
-    pub(crate) fn each<T>(self, f: fn(R) -> T) -> V3<T> {
-        V3 { x: f(self.x), y: f(self.y), z: f(self.z) }
-    }
-
     /// Magnitudes.
     #[inline(always)]
     pub fn abs(self) -> Self {

@@ -4,7 +4,7 @@
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
-use crate::traverse::Query;
+use crate::traverse::{Leaf, Query};
 use crate::traverse::resumable::{Progress, Resumable};
 use crate::warp::Warp;
 
@@ -15,14 +15,14 @@ const IDLE: u32 = u32::MAX;
 /// more if there is none; `load` reads it, with its limit and whether it is to be traced at all; `store` is told the
 /// outcome.
 #[inline(always)]
-pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
-    geometry: &TraceContext<'_>,
+pub fn persistent<R: Scalar, M: Resumable<R>, L: Leaf, Q: Query, W: Warp>(
+    context: &TraceContext<'_>,
     count: u32,
     mut take: impl FnMut(bool) -> u32,
     load: impl Fn(u32) -> (Ray<R>, R, bool),
     mut store: impl FnMut(u32, bool, &Ray<R>, &Hit<R>),
 ) {
-    let enough = (W::count(true) * geometry.base.spec.tuning.busy()).div_ceil(100).max(1);
+    let enough = (W::count(true) * context.base.spec.tuning.busy()).div_ceil(100).max(1);
     let mut number = IDLE;
     let mut traced = false;
     let mut ray = Ray::new(V3::zero(), V3::splat(glam::Vec3::ONE));
@@ -53,7 +53,7 @@ pub fn persistent<R: Scalar, M: Resumable<R>, Q: Query, W: Warp>(
         let least = if more { enough } else { 1 };
         while W::count(!cursor.is_done()) >= least {
             if !cursor.is_done() {
-                M::step::<Q>(geometry, &ray, &mut hit, &mut cursor, &mut stack);
+                M::step::<Q, L>(context, &ray, &mut hit, &mut cursor, &mut stack);
             }
         }
     }

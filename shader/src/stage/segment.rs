@@ -22,13 +22,13 @@ impl<R: Scalar> Segment<R> {
     /// Ray `index` of a stream: two records, all first ones before all second ones, so that
     /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
     #[inline(always)]
-    pub fn load(geometry: &TraceContext<'_>, index: u32, stream: &[R::Record]) -> Self {
+    pub fn load(context: &TraceContext<'_>, index: u32, stream: &[R::Record]) -> Self {
         let (origin, source_primitive) = R::load(read(stream, index));
-        let (direction, limit) = R::load(read(stream, geometry.base.frame.slots + index));
+        let (direction, limit) = R::load(read(stream, context.base.frame.slots + index));
         Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), source_primitive }
     }
 
-    /// The ray, ready for boxes and triangles.
+    /// The ray, ready for boxes and primitives.
     #[inline(always)]
     pub fn ray(&self) -> Ray<R> {
         Ray::leaving(self.source_primitive, self.origin, self.direction)

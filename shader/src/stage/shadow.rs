@@ -8,7 +8,7 @@ use crate::light::ray_to_light;
 use crate::ray::Hit;
 use crate::real::Scalar;
 use crate::scene::TraceContext;
-use crate::traverse::{Method, Occlusion, step};
+use crate::traverse::{Leaf, Method, Occlusion, leaf};
 
 /// The light reaches the place.
 pub const REACHED: u32 = 0;
@@ -24,24 +24,24 @@ pub struct ShadowInputs<'a, R: Scalar> {
     pub lights: &'a [Light],
     /// Paths by level, record and slot, or the stream's rays.
     pub paths: &'a [R::Record],
-    /// (t, u, v) and triangle by slot.
+    /// (t, u, v) and primitive index by slot.
     pub hits: &'a [R::Record],
 }
 
 /// The ray from a slot's hit towards light `index`, and whether it is to be traced at all.
 #[inline(always)]
 pub fn shadow_ray<R: Scalar>(
-    geometry: &TraceContext<'_>,
+    context: &TraceContext<'_>,
     asking: ShadowInputs<'_, R>,
     slot: u32,
     index: u32,
 ) -> (Segment<R>, bool) {
-    if geometry.base.spec.launch.has(Launch::STREAM) {
-        return (Segment::load(geometry, slot, asking.paths), true);
+    if context.base.spec.launch.has(Launch::STREAM) {
+        return (Segment::load(context, slot, asking.paths), true);
     }
-    let path = Path::<R>::current(&geometry.base, slot, asking.paths);
-    let (hit, triangle_index) = R::load(read(asking.hits, slot));
-    if triangle_index == Hit::<R>::NOTHING {
+    let path = Path::<R>::current(&context.base, slot, asking.paths);
+    let (hit, primitive_index) = R::load(read(asking.hits, slot));
+    if primitive_index == Hit::<R>::NOTHING {
         let nowhere = Segment {
             origin: path.origin,
             direction: path.direction,
@@ -50,34 +50,36 @@ pub fn shadow_ray<R: Scalar>(
         };
         return (nowhere, false);
     }
-    let triangle = geometry.triangle(triangle_index);
-    let contact = SurfaceInteraction::new(&triangle, hit.y, hit.z, path.direction);
+    let primitive = context.primitive(primitive_index);
+    let effects = context.base.spec.effects;
+    let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
     let light = read(asking.lights, index);
-    let (origin, direction, limit) = ray_to_light(geometry.base.spec.effects, &light, &contact);
-    (Segment { origin, direction, limit, source_primitive: triangle.primitive() }, contact.faces(direction))
+    let (origin, direction, limit) = ray_to_light(effects, &light, &interaction);
+    let source_primitive = interaction.source_primitive(direction);
+    (Segment { origin, direction, limit, source_primitive }, interaction.faces(direction))
 }
 
 /// Traces the shadow ray from a slot's hit to light `index`.
 #[inline(always)]
-pub fn shadow<R: Scalar, M: Method<R>>(
-    geometry: &TraceContext<'_>,
+pub fn shadow<R: Scalar, M: Method<R>, L: Leaf>(
+    context: &TraceContext<'_>,
     asking: ShadowInputs<'_, R>,
     slot: u32,
     index: u32,
 ) -> u32 {
-    let (segment, faces) = shadow_ray(geometry, asking, slot, index);
+    let (segment, faces) = shadow_ray(context, asking, slot, index);
     if !faces {
         return FACES_AWAY;
     }
     let mut hit = Hit::none(segment.limit);
-    M::traverse::<Occlusion>(geometry, &segment.ray(), &mut hit);
+    M::traverse::<Occlusion, L>(context, &segment.ray(), &mut hit);
     visibility(&hit)
 }
 
 /// The answer of a ray that was traced.
 #[inline(always)]
 pub fn visibility<R: Scalar>(hit: &Hit<R>) -> u32 {
-    answer(step::occluded(hit))
+    answer(leaf::occluded(hit))
 }
 
 #[inline(always)]

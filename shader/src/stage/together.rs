@@ -6,7 +6,8 @@ use super::{Segment, shadow, trace};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Scalar, V3};
 use crate::scene::TraceContext;
-use crate::traverse::{Closest, Occlusion, Query, Together, step};
+use crate::traverse::lanes::RayLanes;
+use crate::traverse::{Closest, Leaf, Occlusion, Query, Together, leaf};
 
 /// Values of lanes that are followed at once.
 const VALUES: usize = 4;
@@ -21,19 +22,19 @@ pub const fn most<S: Scalar, P: Lanes<S>>() -> usize {
 
 /// The closest hits of at most [`most`] rays; `keep` is told the record of each.
 #[inline(always)]
-pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
-    geometry: &TraceContext<'_>,
+pub fn trace_together<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf>(
+    context: &TraceContext<'_>,
     segments: &[Segment<S>],
     mut keep: impl FnMut(usize, S::Record),
 ) {
-    let hits = follow::<S, P, M, Closest>(geometry, segments);
+    let hits = follow::<S, P, M, L, Closest>(context, segments);
     let lanes = P::COUNT as usize;
     for (value, hit) in hits.iter().enumerate() {
-        let (u, v) = hit.weights();
+        let (u, v) = hit.coordinates();
         let mut i = 0;
         while i < lanes && value * lanes + i < segments.len() {
             let place = V3::new(hit.t.lane(i), u.lane(i), v.lane(i));
-            keep(value * lanes + i, trace::record(place, P::index_of(hit.triangle_index, i)));
+            keep(value * lanes + i, trace::record(place, P::index_of(hit.primitive_index, i)));
             i += 1;
         }
     }
@@ -41,22 +42,22 @@ pub fn trace_together<S: Scalar, P: Lanes<S>, M: Together>(
 
 /// Whether something opaque is before the limit of at most [`most`] rays; `keep` is told each answer.
 #[inline(always)]
-pub fn shadow_together<S: Scalar, P: Lanes<S>, M: Together>(
-    geometry: &TraceContext<'_>,
+pub fn shadow_together<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf>(
+    context: &TraceContext<'_>,
     segments: &[Segment<S>],
     mut keep: impl FnMut(usize, u32),
 ) {
-    let hits = follow::<S, P, M, Occlusion>(geometry, segments);
+    let hits = follow::<S, P, M, L, Occlusion>(context, segments);
     let lanes = P::COUNT as usize;
     for i in 0..segments.len() {
-        let occluded = P::bits(step::occluded(&hits[i / lanes]));
+        let occluded = P::bits(leaf::occluded(&hits[i / lanes]));
         keep(i, shadow::answer((occluded >> (i % lanes)) & 1 == 1));
     }
 }
 
 #[inline(always)]
-fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
-    geometry: &TraceContext<'_>,
+fn follow<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf, Q: Query>(
+    context: &TraceContext<'_>,
     segments: &[Segment<S>],
 ) -> [Hit<P>; VALUES] {
     let lanes = P::COUNT as usize;
@@ -67,12 +68,12 @@ fn follow<S: Scalar, P: Lanes<S>, M: Together, Q: Query>(
             V3::new(P::of(|i| of(at(first + i)).x), P::of(|i| of(at(first + i)).y), P::of(|i| of(at(first + i)).z))
         };
         let source_primitive = P::indices(|i| at(first + i).source_primitive);
-        let from_afar = !Q::ANY && trace::is_of_camera(geometry.base.spec.launch);
+        let from_afar = !Q::ANY && trace::is_of_camera(context.base.spec.launch);
         Ray::prepared(source_primitive, vector(|s| s.origin), vector(|s| s.direction), from_afar)
     });
     let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOTHING) };
     let mut hits: [Hit<P>; VALUES] = from_fn(|value| Hit::none(P::of(|i| limit(value * lanes + i))));
     let values = segments.len().div_ceil(lanes);
-    M::together::<P, Q>(geometry, &rays[..values], &mut hits[..values]);
+    M::together::<P, Q, L>(context, &rays[..values], &mut hits[..values]);
     hits
 }

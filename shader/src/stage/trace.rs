@@ -5,15 +5,15 @@ use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
-use crate::traverse::{Closest, Method, step};
+use crate::traverse::{Closest, Leaf, Method, leaf};
 
 /// A slot's ray.
 #[inline(always)]
-pub fn traced<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
-    if geometry.base.spec.launch.has(Launch::STREAM) {
-        return Segment::load(geometry, slot, paths);
+pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Segment<R> {
+    if context.base.spec.launch.has(Launch::STREAM) {
+        return Segment::load(context, slot, paths);
     }
-    let path = Path::<R>::current(&geometry.base, slot, paths);
+    let path = Path::<R>::current(&context.base, slot, paths);
     Segment {
         origin: path.origin,
         direction: path.direction,
@@ -28,33 +28,37 @@ pub(super) fn is_of_camera(launch: Launch) -> bool {
     !launch.has(Launch::SECONDARY | Launch::STREAM)
 }
 
-/// A slot's ray, ready for boxes and triangles, and its limit.
+/// A slot's ray, ready for boxes and primitives, and its limit.
 #[inline(always)]
-pub fn ray<R: Scalar>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> (Ray<R>, R) {
-    let segment = traced::<R>(geometry, slot, paths);
-    let from_afar = is_of_camera(geometry.base.spec.launch);
+pub fn ray<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> (Ray<R>, R) {
+    let segment = traced::<R>(context, slot, paths);
+    let from_afar = is_of_camera(context.base.spec.launch);
     let source_primitive = R::index(segment.source_primitive);
     (Ray::prepared(source_primitive, segment.origin, segment.direction, from_afar), segment.limit)
 }
 
-/// What is kept of a ray's hit: (t, u, v) and the triangle index, or [`Hit::NOTHING`].
+/// What is kept of a ray's hit: (t, u, v) and the primitive index, or [`Hit::NOTHING`].
 #[inline(always)]
-pub fn found<R: Scalar>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
-    let (u, v) = step::weights(geometry, ray, hit);
-    record(V3::new(hit.t, u, v), hit.triangle_index)
+pub fn found<R: Scalar>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
+    let (u, v) = leaf::coordinates(context, ray, hit);
+    record(V3::new(hit.t, u, v), hit.primitive_index)
 }
 
-/// (t, u, v) and the triangle index, as they lie in memory.
+/// (t, u, v) and the primitive index, as they lie in memory.
 #[inline(always)]
-pub(super) fn record<R: Scalar>(place: V3<R>, triangle_index: u32) -> R::Record {
-    R::store(place, triangle_index)
+pub(super) fn record<R: Scalar>(place: V3<R>, primitive_index: u32) -> R::Record {
+    R::store(place, primitive_index)
 }
 
 /// Traces a slot's ray; returns what [`found`] does.
 #[inline(always)]
-pub fn trace<R: Scalar, M: Method<R>>(geometry: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> R::Record {
-    let (ray, limit) = ray::<R>(geometry, slot, paths);
+pub fn trace<R: Scalar, M: Method<R>, L: Leaf>(
+    context: &TraceContext<'_>,
+    slot: u32,
+    paths: &[R::Record],
+) -> R::Record {
+    let (ray, limit) = ray::<R>(context, slot, paths);
     let mut hit = Hit::none(limit);
-    M::traverse::<Closest>(geometry, &ray, &mut hit);
-    found(geometry, &ray, &hit)
+    M::traverse::<Closest, L>(context, &ray, &mut hit);
+    found(context, &ray, &hit)
 }

@@ -1,35 +1,35 @@
 //! Traversal of nodes of eight children on a CPU, see [`crate::bvh8`]. Every ray by itself, with the boxes and
-//! triangles in the vectors' lanes.
+//! primitives in the vectors' lanes.
 //!
 //! A ray crosses plane `p` at `p * inverse - offset`, which errs by the rounding of the offset, of the product and of
-//! the difference: with coordinates in [-1, 1], by less than 4 * 2^-24 of a shift of the plane. A triangle's own
+//! the difference: with coordinates in [-1, 1], by less than 4 * 2^-24 of a shift of the plane. A primitive's own
 //! box may be entered 4 * 2^-24 earlier than it says and left 17 * 2^-24 later: below [`Bvh8Node::MARGIN`]
-//! together, so that a box is hit, and entered no later, wherever a triangle's own box inside it is. That leaves room
+//! together, so that a box is hit, and entered no later, wherever a primitive's own box inside it is. That leaves room
 //! to round entry distances to single precision.
 
 use core::marker::PhantomData;
 use core::mem::MaybeUninit;
 
-use super::step::{occluded, triangle4};
+use super::leaf::{Leaf, occluded};
 use super::{Method, Query};
 use crate::bvh8::{Bvh8Node, Bvh8Ref};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Native, Scalar, SimdIsa, V3};
 use crate::scene::TraceContext;
 
-/// See the module. The vectors of `V` test boxes and triangles.
+/// See the module. The vectors of `V` test boxes and primitives.
 pub struct Bvh8Method<V = Native>(PhantomData<V>);
 
 impl<R: Scalar, V: SimdIsa<R>> Method<R> for Bvh8Method<V> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let boxes = Boxes::<R, V::Eight>::new(ray);
         let mut stack = Stack::new();
         let mut at = Bvh8Ref::ROOT;
         loop {
             while !at.is_leaf() {
                 Q::on_boxes(8);
-                let node = &geometry.bvh8.nodes[at.index()];
+                let node = &context.bvh8.nodes[at.index()];
                 let (met, near) = boxes.meet(node, hit.t);
                 let next = if Q::ANY { first(node, met, &mut stack) } else { nearest(node, met, &near, &mut stack) };
                 match next.or_else(|| stack.take(hit.t.to_f32())) {
@@ -37,7 +37,7 @@ impl<R: Scalar, V: SimdIsa<R>> Method<R> for Bvh8Method<V> {
                     None => return,
                 }
             }
-            triangle4::<Q, R, V::Four>(geometry, &geometry.bvh8.blocks[at.index()], ray, hit);
+            L::intersect_block::<Q, R, V::Four>(context, at, ray, hit);
             if Q::ANY && occluded(hit) {
                 return;
             }

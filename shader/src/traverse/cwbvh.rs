@@ -1,20 +1,20 @@
 //! Traversal of nodes of eight children (Ylitie, Karras and Laine 2017: CWBVH): every ray by itself, in
-//! every step at most one node and at most one triangle.
+//! every step at most one node and at most one primitive.
 //!
 //! The boxes lie on a grid of bytes. The grid is transformed instead of every plane: the ray crosses plane
 //! `origin + q * step` at `f * extent + start`, where `extent` is 256 steps times the inverse and `f` is
 //! 1 + q / 256, or 256 + q / 256 for every second child, and `start` compensates for the 1 or the 256.
 //!
 //! With coordinates in [-1, 1] that errs by less than 9 * 2^-24 and 3/256 of a step, as a shift of the plane, the
-//! entry into a triangle's own box by 4 * 2^-24, and its widened exit by 17 * 2^-24. The quantised boxes' margin of
-//! 2^-19 and 1/64 of a step covers all, so a node is entered no later than any triangle's own box below it, and no
+//! entry into a primitive's own box by 4 * 2^-24, and its widened exit by 17 * 2^-24. The quantised boxes' margin of
+//! 2^-19 and 1/64 of a step covers all, so a node is entered no later than any primitive's own box below it, and no
 //! order of visits can cull a hit.
 
-use super::resumable::{Progress, Resumable, follow};
-use super::step::{occluded, triangle};
-use super::{Method, Query};
+use super::Query;
+use super::leaf::{Leaf, occluded};
+use super::resumable::{Progress, Resumable, stepwise};
 use crate::buffer::read;
-use crate::data::{CwbvhNode, NodeRef, STACK, numbers};
+use crate::data::{CwbvhNode, STACK, numbers};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
@@ -45,9 +45,9 @@ impl Nodes {
     }
 }
 
-/// Triangles of one parent that are still to test.
+/// Primitives of one parent that are still to test.
 #[derive(Clone, Copy)]
-struct Triangles {
+struct Primitives {
     /// The parent's first.
     first: u32,
     /// Bits of those still to test.
@@ -56,8 +56,8 @@ struct Triangles {
     all: u32,
 }
 
-impl Triangles {
-    const NOTHING: Triangles = Triangles { first: 0, waiting: 0, all: 0 };
+impl Primitives {
+    const NOTHING: Primitives = Primitives { first: 0, waiting: 0, all: 0 };
 
     /// Takes one and returns its index.
     #[inline(always)]
@@ -72,7 +72,7 @@ impl Triangles {
 #[derive(Clone, Copy)]
 pub struct Groups {
     nodes: Nodes,
-    triangles: Triangles,
+    primitives: Primitives,
     depth: u32,
 }
 
@@ -85,12 +85,12 @@ impl Progress for Groups {
 
     #[inline(always)]
     fn finished() -> Self {
-        Groups { nodes: Nodes::NOTHING, triangles: Triangles::NOTHING, depth: 0 }
+        Groups { nodes: Nodes::NOTHING, primitives: Primitives::NOTHING, depth: 0 }
     }
 
     #[inline(always)]
     fn is_done(&self) -> bool {
-        !self.nodes.any() && self.triangles.waiting == 0 && self.depth == 0
+        !self.nodes.any() && self.primitives.waiting == 0 && self.depth == 0
     }
 }
 
@@ -121,6 +121,8 @@ impl Groups {
 /// Groups still to visit, two words each.
 pub type Stack = super::stack::Stack<u32, { 2 * STACK }>;
 
+stepwise!(CwbvhMethod);
+
 impl<R: Scalar> Resumable<R> for CwbvhMethod {
     type Cursor = Groups;
     type Stack = Stack;
@@ -131,33 +133,26 @@ impl<R: Scalar> Resumable<R> for CwbvhMethod {
     }
 
     #[inline(always)]
-    fn step<Q: Query>(
-        geometry: &TraceContext<'_>,
+    fn step<Q: Query, L: Leaf>(
+        context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Groups,
         stack: &mut Self::Stack,
     ) {
-        if cursor.triangles.waiting == 0 {
+        if cursor.primitives.waiting == 0 {
             let node = cursor.take(inverted(ray), stack);
-            let node = read(geometry.wide, node);
+            let node = read(context.wide, node);
             Q::on_boxes(CwbvhNode::ARITY as u32);
-            (cursor.nodes, cursor.triangles) = open(&node, ray, hit);
+            (cursor.nodes, cursor.primitives) = open(&node, ray, hit);
         }
-        if cursor.triangles.waiting != 0 {
-            let triangle_index = cursor.triangles.take();
-            triangle::<Q, R>(geometry, NodeRef::leaf(triangle_index, 1), ray, hit);
+        if cursor.primitives.waiting != 0 {
+            let index = cursor.primitives.take();
+            L::intersect::<Q, R>(context, index, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }
         }
-    }
-}
-
-impl<R: Scalar> Method<R> for CwbvhMethod {
-    #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        follow::<Q, R, Self>(geometry, ray, hit);
     }
 }
 
@@ -170,9 +165,9 @@ fn inverted<R: Scalar>(ray: &Ray<R>) -> u32 {
     bit(ray.inverse.x, 1) | bit(ray.inverse.y, 2) | bit(ray.inverse.z, 4)
 }
 
-/// Tests the eight boxes of a node. Returns the inner children that are hit, and the triangles of the leaves that are.
+/// Tests the eight boxes of a node. Returns the inner children that are hit, and the primitives of the leaves that are.
 #[inline(always)]
-fn open<R: Scalar>(node: &CwbvhNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Triangles) {
+fn open<R: Scalar>(node: &CwbvhNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Primitives) {
     let opening = Opening::<R>::new(node, ray, hit.t);
     // Not a loop, since it is not always unrolled.
     let met = opening.met(0)
@@ -183,9 +178,9 @@ fn open<R: Scalar>(node: &CwbvhNode, ray: &Ray<R>, hit: &Hit<R>) -> (Nodes, Tria
         | opening.met(5)
         | opening.met(6)
         | opening.met(7);
-    let (inner, triangles) = (node.grid.w, node.children.z);
+    let (inner, primitives) = (node.grid.w, node.children.z);
     let nodes = Nodes { first: node.children.x, waiting: turned(met & inner & NODES, inverted(ray)) | (inner >> 24) };
-    (nodes, Triangles { first: node.children.y, waiting: met & triangles, all: triangles })
+    (nodes, Primitives { first: node.children.y, waiting: met & primitives, all: primitives })
 }
 
 /// Bits of slots in a ray's order: bit 24 + `slot` becomes bit 24 + (`slot` XOR `inverted`).

@@ -6,6 +6,8 @@ use core::marker::PhantomData;
 use super::cursor::{Cursor, Stack};
 use super::packet::{goes, visit_leaf};
 use super::resumable::{Progress, finish};
+use super::lanes::RayLanes;
+use super::leaf::Leaf;
 use super::step::children;
 use super::{IfIf, Method, Query};
 use crate::data::{NodeRef, STACK};
@@ -17,9 +19,9 @@ use crate::warp::Warp;
 /// When a packet splits.
 pub trait SplitPolicy {
     /// With `depth` nodes on the stack, does the whole packet split?
-    fn full(geometry: &TraceContext<'_>, depth: u32) -> bool;
+    fn full(context: &TraceContext<'_>, depth: u32) -> bool;
     /// Do the rays that hit a child leave the packet, which has `active` rays, to visit it alone?
-    fn few(geometry: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
+    fn few(context: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool;
 }
 
 /// Splits when a small stack is full (thesis: stack max).
@@ -27,8 +29,8 @@ pub struct StackMax;
 
 impl SplitPolicy for StackMax {
     #[inline(always)]
-    fn full(geometry: &TraceContext<'_>, depth: u32) -> bool {
-        depth >= geometry.base.spec.tuning.stack_max()
+    fn full(context: &TraceContext<'_>, depth: u32) -> bool {
+        depth >= context.base.spec.tuning.stack_max()
     }
     #[inline(always)]
     fn few(_: &TraceContext<'_>, _: impl FnOnce() -> u32, _: impl FnOnce() -> u32) -> bool {
@@ -45,8 +47,8 @@ impl SplitPolicy for Cut {
         false
     }
     #[inline(always)]
-    fn few(geometry: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool {
-        100 * wanting() < geometry.base.spec.tuning.cut() * active()
+    fn few(context: &TraceContext<'_>, wanting: impl FnOnce() -> u32, active: impl FnOnce() -> u32) -> bool {
+        100 * wanting() < context.base.spec.tuning.cut() * active()
     }
 }
 
@@ -78,29 +80,29 @@ struct DeferredStack<R: Real> {
     count: u32,
 }
 
-impl<R: Real, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
+impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         let mut deferred = DeferredStack::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
         while !cursor.is_done() {
-            if S::full(geometry, cursor.depth()) {
+            if S::full(context, cursor.depth()) {
                 if T::REJOINS {
-                    alone::<Q, R>(geometry, cursor.node, everyone::<R>(), ray, hit);
+                    alone::<Q, L, R>(context, cursor.node, everyone::<R>(), ray, hit);
                     cursor.pop(&stack);
                 } else {
-                    part::<Q, R>(geometry, &cursor, &stack, ray, hit);
+                    part::<Q, L, R>(context, &cursor, &stack, ray, hit);
                     cursor.finish();
                 }
             } else if cursor.node.is_leaf() {
-                visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
+                visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack);
             } else {
-                let pair = geometry.pair(cursor.node.index());
+                let pair = context.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
-                let left = together::<Q, R, W, S, T>(geometry, pair.left(), wanted.left, ray, (hit, &mut deferred));
-                let right = together::<Q, R, W, S, T>(geometry, pair.right(), wanted.right, ray, (hit, &mut deferred));
+                let left = together::<Q, L, R, W, S, T>(context, pair.left(), wanted.left, ray, (hit, &mut deferred));
+                let right = together::<Q, L, R, W, S, T>(context, pair.right(), wanted.right, ray, (hit, &mut deferred));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
@@ -109,7 +111,7 @@ impl<R: Real, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
             deferred.count -= 1;
             // SAFETY: every index below the count has been set.
             let node = unsafe { deferred.nodes.get(deferred.count) };
-            alone::<Q, R>(geometry, node, deferred.rays[deferred.count as usize & (STACK - 1)], ray, hit);
+            alone::<Q, L, R>(context, node, deferred.rays[deferred.count as usize & (STACK - 1)], ray, hit);
         }
     }
 }
@@ -117,9 +119,9 @@ impl<R: Real, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
 #[cfg(not(target_arch = "spirv"))]
 impl<W: Warp, S: SplitPolicy, T: Turn> super::Together for Hybrid<W, S, T> {
     #[inline(always)]
-    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+    fn together<R: RayLanes, Q: Query, L: Leaf>(context: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            Self::traverse::<Q>(geometry, ray, hit);
+            Self::traverse::<Q, L>(context, ray, hit);
         }
     }
 }
@@ -132,21 +134,21 @@ fn everyone<R: Real>() -> R::Mask {
 
 /// Does the packet visit a child? If too few rays hit it, they visit it one by one, now or later.
 #[inline(always)]
-fn together<Q: Query, R: Real, W: Warp, S: SplitPolicy, T: Turn>(
-    geometry: &TraceContext<'_>,
+fn together<Q: Query, L: Leaf, R: RayLanes, W: Warp, S: SplitPolicy, T: Turn>(
+    context: &TraceContext<'_>,
     node: NodeRef,
     rays: R::Mask,
     ray: &Ray<R>,
     (hit, deferred): (&mut Hit<R>, &mut DeferredStack<R>),
 ) -> bool {
-    if !S::few(geometry, || W::count(rays), || W::count(everyone::<R>())) {
+    if !S::few(context, || W::count(rays), || W::count(everyone::<R>())) {
         return goes::<Q, R, W>(rays);
     }
     if !rays.any() {
         return false;
     }
     if T::REJOINS || deferred.count == STACK as u32 {
-        alone::<Q, R>(geometry, node, rays, ray, hit);
+        alone::<Q, L, R>(context, node, rays, ray, hit);
     } else {
         deferred.nodes.put(deferred.count, node);
         deferred.rays[deferred.count as usize & (STACK - 1)] = rays;
@@ -157,26 +159,26 @@ fn together<Q: Query, R: Real, W: Warp, S: SplitPolicy, T: Turn>(
 
 /// Traces every ray of the mask through a branch by itself.
 #[inline(always)]
-fn alone<Q: Query, R: Real>(geometry: &TraceContext<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
+fn alone<Q: Query, L: Leaf, R: RayLanes>(context: &TraceContext<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
     Q::on_parted(true);
-    R::lanes(ray, hit, rays, |ray, hit| {
+    R::each_lane(ray, hit, rays, |ray, hit| {
         let mut stack = Stack::new();
-        finish::<Q, R::Lane, IfIf>(geometry, ray, hit, Cursor::at(node), &mut stack);
+        finish::<Q, L, R::Lane, IfIf>(context, ray, hit, Cursor::at(node), &mut stack);
     });
     Q::on_parted(false);
 }
 
 /// Traces every ray by itself through what the packet has left to visit.
 #[inline(always)]
-fn part<Q: Query, R: Real>(
-    geometry: &TraceContext<'_>,
+fn part<Q: Query, L: Leaf, R: RayLanes>(
+    context: &TraceContext<'_>,
     cursor: &Cursor,
     shared: &Stack,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
     Q::on_parted(true);
-    R::lanes(ray, hit, everyone::<R>(), |ray, hit| {
+    R::each_lane(ray, hit, everyone::<R>(), |ray, hit| {
         let mut stack = Stack::new();
         let mut i = 0;
         while i < cursor.depth() {
@@ -184,7 +186,7 @@ fn part<Q: Query, R: Real>(
             stack.put(i, unsafe { shared.get(i) });
             i += 1;
         }
-        finish::<Q, R::Lane, IfIf>(geometry, ray, hit, *cursor, &mut stack);
+        finish::<Q, L, R::Lane, IfIf>(context, ray, hit, *cursor, &mut stack);
     });
     Q::on_parted(false);
 }

@@ -1,10 +1,11 @@
 //! If-if traversal (thesis algorithm 6.2, after Aila and Laine 2009): every ray by itself, and in
-//! every iteration at most one pair of boxes and at most one triangle.
+//! every iteration at most one pair of boxes and at most one primitive.
 
 use super::cursor::{Cursor, Stack};
-use super::resumable::{Resumable, follow};
-use super::step::{occluded, pair, triangle};
-use super::{Method, Query};
+use super::Query;
+use super::leaf::{Leaf, occluded};
+use super::resumable::{Resumable, stepwise};
+use super::step::pair;
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
@@ -12,6 +13,8 @@ use crate::scene::TraceContext;
 
 /// See the module.
 pub struct IfIf;
+
+stepwise!(IfIf);
 
 impl<R: Scalar> Resumable<R> for IfIf {
     type Cursor = Cursor;
@@ -24,18 +27,18 @@ impl<R: Scalar> Resumable<R> for IfIf {
 
     /// The two ifs.
     #[inline(always)]
-    fn step<Q: Query>(
-        geometry: &TraceContext<'_>,
+    fn step<Q: Query, L: Leaf>(
+        context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Cursor,
         stack: &mut Stack,
     ) {
         if !cursor.node.is_leaf() {
-            pair::<Q, R>(geometry, ray, hit, cursor, stack);
+            pair::<Q, R>(context, ray, hit, cursor, stack);
         }
         if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
-            triangle::<Q, R>(geometry, cursor.node, ray, hit);
+            L::intersect::<Q, R>(context, cursor.node.index(), ray, hit);
             cursor.node = cursor.node.rest();
             if Q::ANY && occluded(hit) {
                 cursor.finish();
@@ -43,12 +46,5 @@ impl<R: Scalar> Resumable<R> for IfIf {
                 cursor.pop(stack);
             }
         }
-    }
-}
-
-impl<R: Scalar> Method<R> for IfIf {
-    #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        follow::<Q, R, Self>(geometry, ray, hit);
     }
 }

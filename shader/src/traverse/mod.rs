@@ -1,6 +1,6 @@
 //! Traversal methods. Each is one small file built from the shared steps of [`step`].
 //!
-//! Every method finds the same hit: the least (t, primitive) among the triangles whose own box the ray
+//! Every method finds the same hit: the least (t, primitive) among the primitives whose own box the ray
 //! hits, with t no less than the entry to that box. A node's box is wider than its contents by more than
 //! the error of both tests, so it is entered no later, and no order of visits can cull the closest hit.
 
@@ -10,6 +10,8 @@ pub mod cursor;
 mod cwbvh;
 mod hybrid;
 mod if_if;
+pub mod lanes;
+pub mod leaf;
 mod packet;
 pub mod resumable;
 mod speculative;
@@ -20,27 +22,30 @@ mod while_while;
 #[cfg(not(target_arch = "spirv"))]
 pub use bvh8::Bvh8Method;
 pub use cwbvh::CwbvhMethod;
+pub use leaf::{Leaf, Primitives};
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;
 
+#[cfg(not(target_arch = "spirv"))]
+use self::lanes::RayLanes;
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
 use crate::scene::TraceContext;
 
 /// What a ray searches for.
 pub trait Query {
-    /// Is any hit enough, and do transparent triangles not count? (Shadow rays, thesis 3.2.)
+    /// Is any hit enough, and do transparent primitives not count? (Shadow rays, thesis 3.2.)
     const ANY: bool;
 
     /// Called when a ray, or a packet, tests this many boxes. Only statistics implement these callbacks.
     #[inline(always)]
     fn on_boxes(_tested: u32) {}
-    /// Called when a ray, or a packet, tests a triangle.
+    /// Called when a ray, or a packet, tests a primitive.
     #[inline(always)]
-    fn on_triangle() {}
+    fn on_primitive() {}
     /// Called when a packet visits a child; `_lanes` counts those of its rays that hit the child's box.
     #[inline(always)]
     fn on_child(_lanes: impl FnOnce() -> u32) {}
@@ -55,7 +60,7 @@ impl Query for Closest {
     const ANY: bool = false;
 }
 
-/// Whether anything opaque lies before the limit; read the result with [`step::occluded`].
+/// Whether anything opaque lies before the limit; read the result with [`leaf::occluded`].
 pub struct Occlusion;
 impl Query for Occlusion {
     const ANY: bool = true;
@@ -64,14 +69,14 @@ impl Query for Occlusion {
 /// A traversal method, for the types of numbers that it supports.
 pub trait Method<R: Real> {
     /// Traces a ray from the root. `hit` holds the ray's limit before and what was found after.
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
+    fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>);
 }
 
 /// A method that traces rays over any type of number: on a CPU, several lanes of several values at once.
 #[cfg(not(target_arch = "spirv"))]
 pub trait Together {
     /// Traces all rays from the root; as [`Method::traverse`] for each.
-    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
+    fn together<R: RayLanes, Q: Query, L: Leaf>(context: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]);
 }
 
 #[cfg(test)]

@@ -5,7 +5,9 @@ use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
 use super::resumable::Progress;
-use super::step::{children, leaf, occluded};
+use super::lanes::RayLanes;
+use super::leaf::{Leaf, occluded};
+use super::step::{children, leaf};
 use super::{Method, Query};
 use crate::ray::{Hit, Ray};
 use crate::real::Real;
@@ -17,14 +19,14 @@ pub struct Packet<W>(PhantomData<W>);
 
 impl<R: Real, W: Warp> Method<R> for Packet<W> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
             if cursor.node.is_leaf() {
-                visit_leaf::<Q, R, W>(geometry, ray, hit, &mut cursor, &stack);
+                visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack);
             } else {
-                let pair = geometry.pair(cursor.node.index());
+                let pair = context.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));
@@ -38,9 +40,9 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
 #[cfg(not(target_arch = "spirv"))]
 impl<W: Warp> super::Together for Packet<W> {
     #[inline(always)]
-    fn together<R: Real, Q: Query>(geometry: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
+    fn together<R: RayLanes, Q: Query, L: Leaf>(context: &TraceContext<'_>, rays: &[Ray<R>], hits: &mut [Hit<R>]) {
         for (ray, hit) in rays.iter().zip(hits) {
-            Self::traverse::<Q>(geometry, ray, hit);
+            Self::traverse::<Q, L>(context, ray, hit);
         }
     }
 }
@@ -57,14 +59,14 @@ pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
 
 /// All rays test the current leaf; an any-hit packet is done once all its rays have found something.
 #[inline(always)]
-pub(super) fn visit_leaf<Q: Query, R: Real, W: Warp>(
-    geometry: &TraceContext<'_>,
+pub(super) fn visit_leaf<Q: Query, L: Leaf, R: Real, W: Warp>(
+    context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
     cursor: &mut Cursor,
     stack: &Stack,
 ) {
-    leaf::<Q, R>(geometry, cursor.node, ray, hit);
+    leaf::<Q, L, R>(context, cursor.node, ray, hit);
     if Q::ANY && !W::any(!occluded(hit)) {
         cursor.finish();
     } else {

@@ -1,5 +1,6 @@
 //! Single-ray methods as steps, so that the caller may give a lane another ray in between.
 
+use super::leaf::Leaf;
 use super::Query;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
@@ -27,8 +28,8 @@ pub trait Resumable<R: Scalar> {
     fn stack() -> Self::Stack;
 
     /// One step of a traversal that is not done.
-    fn step<Q: Query>(
-        geometry: &TraceContext<'_>,
+    fn step<Q: Query, L: Leaf>(
+        context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Self::Cursor,
@@ -38,25 +39,43 @@ pub trait Resumable<R: Scalar> {
 
 /// From the root to the end.
 #[inline(always)]
-pub fn follow<Q: Query, R: Scalar, M: Resumable<R>>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+pub fn follow<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
+    context: &TraceContext<'_>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
     let mut stack = M::stack();
-    finish::<Q, R, M>(geometry, ray, hit, M::Cursor::start(), &mut stack);
+    finish::<Q, L, R, M>(context, ray, hit, M::Cursor::start(), &mut stack);
 }
+
+/// Makes methods that trace a ray from the root by their steps. Not all at once: other crates may make steps of types that
+/// trace otherwise here.
+macro_rules! stepwise {
+    ($($type:ident $(<$warp:ident>)?),*) => {$(
+        impl<R: Scalar $(, $warp: $crate::warp::Warp)?> $crate::traverse::Method<R> for $type $(<$warp>)? {
+            #[inline(always)]
+            fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+                $crate::traverse::resumable::follow::<Q, L, R, Self>(context, ray, hit);
+            }
+        }
+    )*};
+}
+pub(super) use stepwise;
 
 /// From the traversal's current state to its end.
 #[inline(always)]
-pub fn finish<Q: Query, R: Scalar, M: Resumable<R>>(
-    geometry: &TraceContext<'_>,
+pub fn finish<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
+    context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
     mut cursor: M::Cursor,
     stack: &mut M::Stack,
 ) {
     while !cursor.is_done() {
-        M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
+        M::step::<Q, L>(context, ray, hit, &mut cursor, stack);
         // Two steps, since loop iterations are expensive on a GPU.
         if !cursor.is_done() {
-            M::step::<Q>(geometry, ray, hit, &mut cursor, stack);
+            M::step::<Q, L>(context, ray, hit, &mut cursor, stack);
         }
     }
 }

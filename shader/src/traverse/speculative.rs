@@ -6,6 +6,7 @@ use core::marker::PhantomData;
 use super::cursor::{Cursor, Stack};
 use super::resumable::Progress;
 use super::step::{leaf, pair};
+use super::leaf::Leaf;
 use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
@@ -18,7 +19,7 @@ pub struct Speculative<W>(PhantomData<W>);
 
 impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
     #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
@@ -29,13 +30,13 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
                     aside = cursor.node;
                     cursor.pop(&stack);
                 } else {
-                    pair::<Q, R>(geometry, ray, hit, &mut cursor, &mut stack);
+                    pair::<Q, R>(context, ray, hit, &mut cursor, &mut stack);
                 }
                 if !W::any(!aside.is_leaf()) {
                     break;
                 }
             }
-            if aside.is_leaf() && leaf::<Q, R>(geometry, aside, ray, hit) {
+            if aside.is_leaf() && leaf::<Q, L, R>(context, aside, ray, hit) {
                 cursor.finish();
             }
         }

@@ -1,14 +1,15 @@
 //! The same hit as brute force, on triangles that tie, overlap and degenerate.
 
 use super::resumable::Resumable;
-use super::step::{self, occluded};
+use super::lanes::RayLanes;
+use super::leaf::{Leaf, Primitives, occluded};
 use super::{
     Bvh8Method, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential,
     Speculative, StackMax, WhileWhile,
 };
-use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, Triangle4};
+use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, LeafKind, MOST, Triangle4};
 use crate::data::{
-    CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Triangle, Tuning,
+    CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Primitive, Tuning,
 };
 use crate::ray::{Hit, Ray};
 use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
@@ -21,11 +22,11 @@ use glam::{UVec4, Vec3};
 use proptest::prelude::*;
 
 /// A hierarchy made by halving the list: bad trees must find the same hits.
-fn build(triangles: &[Triangle]) -> Vec<NodePair> {
-    fn child(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> (Vec3, Vec3, NodeRef) {
+fn build(triangles: &[Primitive]) -> Vec<NodePair> {
+    fn child(triangles: &[Primitive], first: u32, nodes: &mut Vec<NodePair>) -> (Vec3, Vec3, NodeRef) {
         let (least, greatest) = triangles
             .iter()
-            .map(Triangle::bounds)
+            .map(Primitive::bounds)
             .reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
             .expect("a child has triangles");
         let count = triangles.len() as u32;
@@ -33,7 +34,7 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
             if count <= MAX_LEAF { NodeRef::leaf(first, count) } else { NodeRef::inner(pair(triangles, first, nodes)) };
         (least, greatest, node)
     }
-    fn pair(triangles: &[Triangle], first: u32, nodes: &mut Vec<NodePair>) -> u32 {
+    fn pair(triangles: &[Primitive], first: u32, nodes: &mut Vec<NodePair>) -> u32 {
         let place = nodes.len();
         nodes.push(NodePair::zeroed());
         let (left, right) = triangles.split_at(triangles.len() / 2);
@@ -49,7 +50,7 @@ fn build(triangles: &[Triangle]) -> Vec<NodePair> {
 
 /// A wide hierarchy made by splitting the list in eighths, its nodes in breadth-first order. Every box is the whole
 /// grid, so it tests only whether all nodes and triangles are visited.
-fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
+fn build_cwbvh(triangles: &[Primitive]) -> Vec<CwbvhNode> {
     let all = 0..triangles.len() as u32;
     let mut open = vec![all];
     let mut nodes = Vec::new();
@@ -82,22 +83,22 @@ fn build_cwbvh(triangles: &[Triangle]) -> Vec<CwbvhNode> {
 }
 
 /// The same in full precision, by eighths down to four triangles, with the boxes' real bounds.
-fn build_bvh8(triangles: &[Triangle]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
+fn build_bvh8(triangles: &[Primitive]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
     let (mut nodes, mut blocks) = (vec![Bvh8Node::EMPTY], Vec::new());
     let mut open = vec![(0, 0..triangles.len())];
     while let Some((node, range)) = open.pop() {
-        let step = range.len().div_ceil(8).max(Triangle4::TRIANGLES);
+        let step = range.len().div_ceil(8).max(MOST);
         for (child, first) in range.clone().step_by(step).enumerate() {
             let part = first..(first + step).min(range.end);
-            let boxes = triangles[part.clone()].iter().map(Triangle::bounds);
+            let boxes = triangles[part.clone()].iter().map(Primitive::bounds);
             let (least, greatest) = boxes.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).expect("a part has triangles");
             let planes = [least - Bvh8Node::MARGIN, greatest + Bvh8Node::MARGIN];
             for (axis, side) in (0..6).map(|i| (i / 2, i % 2)) {
                 nodes[node].planes[axis][side][child] = planes[side][axis];
             }
-            nodes[node].children[child] = if part.len() <= Triangle4::TRIANGLES {
+            nodes[node].children[child] = if part.len() <= MOST {
                 blocks.push(Triangle4::of(part.map(|slot| (slot as u32, &triangles[slot]))));
-                Bvh8Ref::leaf(blocks.len() as u32 - 1)
+                Bvh8Ref::leaf(LeafKind::Triangles, blocks.len() as u32 - 1)
             } else {
                 nodes.push(Bvh8Node::EMPTY);
                 open.push((nodes.len() - 1, part));
@@ -109,7 +110,7 @@ fn build_bvh8(triangles: &[Triangle]) -> (Vec<Bvh8Node>, Vec<Triangle4>) {
 }
 
 struct World {
-    triangles: Vec<Triangle>,
+    triangles: Vec<Primitive>,
     nodes: Vec<CentredPair>,
     wide: Vec<CwbvhNode>,
     bvh8: (Vec<Bvh8Node>, Vec<Triangle4>),
@@ -119,34 +120,34 @@ struct World {
 }
 
 impl World {
-    fn new(triangles: Vec<Triangle>, effects: u32) -> Self {
+    fn new(triangles: Vec<Primitive>, effects: u32) -> Self {
         let nodes = build(&triangles).iter().map(CentredPair::from).collect();
         let words = bytemuck::cast_slice(&triangles).to_vec();
         let (wide, bvh8) = (build_cwbvh(&triangles), build_bvh8(&triangles));
         World { triangles, nodes, wide, bvh8, words, frame: Frame::zeroed(), effects: Effects(effects) }
     }
 
-    fn geometry(&self) -> TraceContext<'_> {
+    fn context(&self) -> TraceContext<'_> {
         let spec = Specialisation { effects: self.effects, tuning: Tuning::new(2, 60), ..Specialisation::default() };
         TraceContext {
-            base: LaunchContext { frame: &self.frame, spec, triangles: &self.words },
+            base: LaunchContext { frame: &self.frame, spec, primitives: &self.words },
             nodes: bytemuck::cast_slice(&self.nodes),
             wide: &self.wide,
-            bvh8: Bvh8View { nodes: &self.bvh8.0, blocks: &self.bvh8.1 },
+            bvh8: Bvh8View { nodes: &self.bvh8.0, triangles: &self.bvh8.1, ..Bvh8View::default() },
             bounds: &[],
         }
     }
 
     fn trace<M: Method<R>, Q: Query, R: Real>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
-        M::traverse::<Q>(&self.geometry(), ray, &mut hit);
+        M::traverse::<Q, Primitives>(&self.context(), ray, &mut hit);
         hit
     }
 
     fn brute_force<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
         for slot in (0..self.triangles.len() as u32).rev() {
-            step::triangle::<Q, R>(&self.geometry(), NodeRef::leaf(slot, 1), ray, &mut hit);
+            Primitives::intersect::<Q, R>(&self.context(), slot, ray, &mut hit);
         }
         hit
     }
@@ -161,13 +162,13 @@ fn grid() -> impl Strategy<Value = [f32; 3]> {
     prop::array::uniform3((-4i8..=4).prop_map(|k| f32::from(k) / 8.0))
 }
 
-fn soup() -> impl Strategy<Value = Vec<Triangle>> {
+fn soup() -> impl Strategy<Value = Vec<Primitive>> {
     prop::collection::vec((prop::array::uniform3(grid()), any::<bool>()), 2..80).prop_map(|soup| {
         let count = soup.len() as u32;
         soup.iter()
             .zip(0..)
             .map(|((t, clear), i)| {
-                Triangle::new(t.map(Vec3::from), (i * 37) % count.next_power_of_two(), 0, u32::from(*clear))
+                Primitive::triangle(t.map(Vec3::from), (i * 37) % count.next_power_of_two(), 0, u32::from(*clear))
             })
             .collect()
     })
@@ -183,7 +184,7 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
     }
 }
 
-fn every_method<R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
+fn every_method<R: Scalar + RayLanes + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile<Alone>, R>(world, origin, direction);
     check::<CwbvhMethod, R>(world, origin, direction);
@@ -228,10 +229,10 @@ fn check_packet<M: Method<F32xN<N>>, const N: usize>(world: &World, rays: &[End]
     let shadows = world.trace::<M, Occlusion, F32xN<N>>(&packet, 0.5);
     for (i, (origin, direction)) in rays[..N].iter().enumerate() {
         let alone = ray::<f32>(*origin, *direction);
-        let (got, want) = (closest.lane(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
+        let (got, want) = (closest.lane::<f32>(i), world.brute_force::<Closest, f32>(&alone, f32::MAX));
         assert_eq!((got.t, got.u, got.v, got.primitive), (want.t, want.u, want.v, want.primitive), "lane {i} of {N}");
         let want = occluded(&world.brute_force::<Occlusion, f32>(&alone, 0.5));
-        assert_eq!(occluded(&shadows.lane(i)), want, "lane {i} of {N}");
+        assert_eq!(occluded(&shadows.lane::<f32>(i)), want, "lane {i} of {N}");
     }
 }
 
@@ -244,7 +245,7 @@ fn check_packets<const N: usize>(world: &World, rays: &[End]) {
 }
 
 /// The first `count` rays as a launch traces them together, also where some lanes have none.
-fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
+fn check_together<P: Lanes<f32> + RayLanes>(world: &World, rays: &[End], count: usize) {
     let vector = |v: [f32; 3]| V3::splat(Vec3::from(v));
     let segments: Vec<Segment<f32>> = rays[..count]
         .iter()
@@ -256,17 +257,17 @@ fn check_together<P: Lanes<f32>>(world: &World, rays: &[End], count: usize) {
         })
         .collect();
     let (mut hits, mut answers) = (vec![UVec4::ZERO; count], vec![u32::MAX; count]);
-    let geometry = world.geometry();
-    trace_together::<f32, P, Packet<Alone>>(&geometry, &segments, |i, hit| hits[i] = hit);
-    shadow_together::<f32, P, Packet<Alone>>(&geometry, &segments, |i, answer| answers[i] = answer);
+    let context = world.context();
+    trace_together::<f32, P, Packet<Alone>, Primitives>(&context, &segments, |i, hit| hits[i] = hit);
+    shadow_together::<f32, P, Packet<Alone>, Primitives>(&context, &segments, |i, answer| answers[i] = answer);
     for (i, (origin, direction)) in rays[..count].iter().enumerate() {
         let alone = ray::<f32>(*origin, *direction);
         let want = world.trace::<Packet<Alone>, Closest, f32>(&alone, 0.5);
-        let primitive = |slot: u32| world.triangles.get(slot as usize).map(Triangle::primitive);
-        let weights = want.weights();
+        let primitive = |slot: u32| world.triangles.get(slot as usize).map(Primitive::number);
+        let weights = want.coordinates();
         let got = crate::data::numbers(hits[i]);
         assert_eq!((got.x, got.y, got.z), (want.t, weights.0, weights.1), "ray {i} of {count}");
-        assert_eq!(primitive(hits[i].w), primitive(want.triangle_index), "ray {i} of {count}");
+        assert_eq!(primitive(hits[i].w), primitive(want.primitive_index), "ray {i} of {count}");
         let want = occluded(&world.trace::<Packet<Alone>, Occlusion, f32>(&alone, 0.5));
         assert_eq!(answers[i] == SHADOWED, want, "ray {i} of {count}");
     }
@@ -325,7 +326,7 @@ proptest! {
 fn ties_go_to_the_least_primitive_in_any_leaf_order() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     for order in [[7u32, 3, 9, 5, 8, 6, 4], [3, 4, 5, 6, 7, 8, 9], [9, 8, 7, 6, 5, 4, 3]] {
-        let world = World::new(order.iter().map(|&id| Triangle::new(t, id, 0, 0)).collect(), 0);
+        let world = World::new(order.iter().map(|&id| Primitive::triangle(t, id, 0, 0)).collect(), 0);
         let hit = world.trace::<IfIf, Closest, f32>(&ray([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]), f32::MAX);
         assert_eq!((hit.primitive, hit.t), (3, 0.5));
     }
@@ -334,12 +335,12 @@ fn ties_go_to_the_least_primitive_in_any_leaf_order() {
 #[test]
 fn culling_hides_backs_from_sight_but_not_from_light() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
-    let world = World::new(vec![Triangle::new(t, 0, 0, 0), Triangle::new(t, 1, 0, 0)], Effects::CULLING);
+    let world = World::new(vec![Primitive::triangle(t, 0, 0, 0), Primitive::triangle(t, 1, 0, 0)], Effects::CULLING);
     let from = |z: f32| ray::<f32>([0.0, 0.0, z], [0.0, 0.0, -z]);
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(0.5), f32::MAX).primitive, 0);
     assert_eq!(world.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, Hit::<f32>::NOTHING);
     assert!(occluded(&world.trace::<IfIf, Occlusion, f32>(&from(-0.5), f32::MAX)));
-    let glass = World::new(vec![Triangle::new(t, 4, 0, Triangle::TRANSPARENT); 2], Effects::CULLING);
+    let glass = World::new(vec![Primitive::triangle(t, 4, 0, Primitive::TRANSPARENT); 2], Effects::CULLING);
     assert_eq!(glass.trace::<IfIf, Closest, f32>(&from(-0.5), f32::MAX).primitive, 4, "glass has an inside");
 }
 
@@ -347,9 +348,9 @@ fn culling_hides_backs_from_sight_but_not_from_light() {
 fn light_passes_transparent_triangles_only() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
-    for (flags, blocked) in [(0, true), (Triangle::TRANSPARENT, false)] {
+    for (flags, blocked) in [(0, true), (Primitive::TRANSPARENT, false)] {
         let world =
-            World::new(vec![Triangle::new(t, 0, 0, flags), Triangle::new(t, 1, 0, flags)], Effects::TRANSPARENT);
+            World::new(vec![Primitive::triangle(t, 0, 0, flags), Primitive::triangle(t, 1, 0, flags)], Effects::TRANSPARENT);
         assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
         assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
     }
@@ -365,7 +366,7 @@ fn persistent_lanes<M: Method<f32> + Resumable<f32>>(world: &World, rays: &[Segm
         let before = seen.borrow_mut()[number as usize].replace((traced, hit.t, hit.primitive));
         assert!(before.is_none(), "{number} is answered twice");
     };
-    persistent::<f32, M, Closest, Alone>(&world.geometry(), rays.len() as u32, take, load, store);
+    persistent::<f32, M, Primitives, Closest, Alone>(&world.context(), rays.len() as u32, take, load, store);
     for (number, answer) in seen.into_inner().into_iter().enumerate() {
         let (ray, limit, wanted) = load(number as u32);
         let want = world.trace::<M, Closest, f32>(&ray, limit);

@@ -1,5 +1,5 @@
 //! While-while traversal (Aila and Laine 2009): every ray by itself, pairs until it is at a leaf, then
-//! all of the leaf's triangles.
+//! all of the leaf's primitives.
 //!
 //! On a GPU a ray at its leaf waits for those rays of its warp that are still searching for theirs. A vote ends the
 //! wait once too few of them are ([`Tuning::cut`](crate::data::Tuning::cut)).
@@ -7,9 +7,10 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
-use super::resumable::{Resumable, follow};
+use super::Query;
+use super::leaf::Leaf;
+use super::resumable::{Resumable, stepwise};
 use super::step::{leaf, pair};
-use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
@@ -18,6 +19,8 @@ use crate::warp::Warp;
 
 /// See the module. The lanes of `W` wait for each other; [`Alone`](crate::warp::Alone) never ends the search early.
 pub struct WhileWhile<W>(PhantomData<W>);
+
+stepwise!(WhileWhile<W>);
 
 impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     type Cursor = Cursor;
@@ -30,8 +33,8 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 
     /// The two inner whiles.
     #[inline(always)]
-    fn step<Q: Query>(
-        geometry: &TraceContext<'_>,
+    fn step<Q: Query, L: Leaf>(
+        context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
         cursor: &mut Cursor,
@@ -39,16 +42,16 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     ) {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
-            pair::<Q, R>(geometry, ray, hit, cursor, stack);
+            pair::<Q, R>(context, ray, hit, cursor, stack);
             // Three pairs per iteration: iterations are expensive on a GPU, and votes more so.
-            inner::<Q, R>(geometry, ray, hit, cursor, stack);
-            inner::<Q, R>(geometry, ray, hit, cursor, stack);
-            if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < geometry.base.spec.tuning.cut() * all {
+            inner::<Q, R>(context, ray, hit, cursor, stack);
+            inner::<Q, R>(context, ray, hit, cursor, stack);
+            if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < context.base.spec.tuning.cut() * all {
                 break;
             }
         }
         if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
-            if leaf::<Q, R>(geometry, cursor.node, ray, hit) {
+            if leaf::<Q, L, R>(context, cursor.node, ray, hit) {
                 cursor.finish();
             } else {
                 cursor.pop(stack);
@@ -60,20 +63,13 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 /// Visits a pair, unless the traversal is at a leaf.
 #[inline(always)]
 fn inner<Q: Query, R: Scalar>(
-    geometry: &TraceContext<'_>,
+    context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &Hit<R>,
     cursor: &mut Cursor,
     stack: &mut Stack,
 ) {
     if !cursor.node.is_leaf() {
-        pair::<Q, R>(geometry, ray, hit, cursor, stack);
-    }
-}
-
-impl<R: Scalar, W: Warp> Method<R> for WhileWhile<W> {
-    #[inline(always)]
-    fn traverse<Q: Query>(geometry: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
-        follow::<Q, R, Self>(geometry, ray, hit);
+        pair::<Q, R>(context, ray, hit, cursor, stack);
     }
 }

@@ -21,7 +21,7 @@ impl Embree {
     /// Triangles in the order of their primitives.
     pub fn new(packed: &DeviceScene, quality: BuildQuality) -> Result<Embree, embree3::Error> {
         let device = Device::new()?;
-        let mut triangles: Vec<_> = packed.triangles().iter().collect();
+        let mut triangles: Vec<_> = packed.primitives().iter().collect();
         triangles.sort_unstable_by_key(|t| t.primitive());
         triangles.dedup_by_key(|t| t.primitive());
         let corners = triangles.iter().flat_map(|t| [t.a, t.b, t.c]).map(|p| numbers(p).to_array());

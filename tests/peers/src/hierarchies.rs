@@ -16,7 +16,7 @@ use obvhs::triangle::Triangle;
 use crate::contest::{Found, RayTracer, tasks};
 
 fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
-    let mut all: Vec<_> = packed.triangles().iter().collect();
+    let mut all: Vec<_> = packed.primitives().iter().collect();
     all.sort_unstable_by_key(|t| t.primitive());
     all.dedup_by_key(|t| t.primitive());
     let corner = |p| Vec3A::from(numbers(p));

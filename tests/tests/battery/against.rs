@@ -2,7 +2,7 @@
 
 use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Stream, StreamRay};
-use eyerays_shader::data::{BOX_PADDING, Triangle};
+use eyerays_shader::data::{BOX_PADDING, Primitive};
 use eyerays_shader::real::Fast;
 use eyerays_tests::brute_force::{Found, brute_force, brute_force_of, found};
 use eyerays_tests::count;
@@ -47,7 +47,7 @@ pub fn rays(packed: &DeviceScene, count: usize) -> Stream {
 /// Is the mesh so small beside its distance from zero that the padding of boxes makes them one? A ray then meets most
 /// triangles, and software, which ends loops after 65,535 rounds, can't follow it.
 pub fn is_crowded(packed: &DeviceScene) -> bool {
-    is_crowd(packed.triangles().iter().flat_map(Triangle::vertices))
+    is_crowd(packed.primitives().iter().flat_map(Primitive::vertices))
 }
 
 /// The same of some of its vertices.

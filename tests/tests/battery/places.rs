@@ -11,7 +11,7 @@ use eyerays::scene::{Light, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_command::bench::Kind;
 use eyerays_command::bench::rays::{CameraRays, PrimaryHits};
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::Primitive;
 use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, empty, glowing, lamp, matt, sun};
@@ -44,7 +44,7 @@ fn moved(scale: f64, offset: DVec3) -> Scene {
 }
 
 /// The largest error of t that is promised for a hit.
-fn bound(triangle: &Triangle, ray: &StreamRay) -> f64 {
+fn bound(triangle: &Primitive, ray: &StreamRay) -> f64 {
     let (origin, direction) = (ray.origin.as_dvec3(), ray.direction.as_dvec3());
     let [a, b, c] = triangle.vertices().map(|v| v.as_dvec3() - origin);
     let reach = a.length().max(b.length()).max(c.length());
@@ -68,7 +68,7 @@ fn compare(machine: Machine, packed: &DeviceScene, stream: &Stream) -> Apart {
     let mut apart = Apart { others: 0, error: 0.0, rays: stream.len() };
     for (i, (hit, &record)) in got.iter().zip(&truth).enumerate() {
         let (place, slot) = f64::load(record);
-        let triangle = |slot: u32| packed.triangles().get(slot as usize);
+        let triangle = |slot: u32| packed.primitives().get(slot as usize);
         match (triangle(hit.w), triangle(slot)) {
             (Some(a), Some(b)) if a.primitive() == b.primitive() => {
                 let error = (f64::from(f32::from_bits(hit.x)) - place.x).abs() / bound(b, &stream.ray(i));

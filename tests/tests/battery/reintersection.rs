@@ -3,7 +3,7 @@
 use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::scene::{Scene, Settings};
 use eyerays::stream::StreamRay;
-use eyerays_shader::data::{NodeRef, Triangle};
+use eyerays_shader::data::{NodeRef, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Fast, Scalar, V3};
@@ -52,7 +52,7 @@ fn meets<R: Scalar>(packed: &DeviceScene, ray: Ray<R>) -> bool {
     let (laid, frame) = (SceneView::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &ray, &mut hit);
-    hit.triangle_index != StreamRay::NOWHERE
+    hit.primitive_index != StreamRay::NOWHERE
 }
 
 /// Sends a ray at a triangle and, from where it meets it, `count` rays every way by each of the two starts.
@@ -61,7 +61,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let vertices: [Vec3; 3] = std::array::from_fn(|_| place(random));
     let eye = place(random);
     let packed = alone(vertices, eye);
-    let triangle: Triangle = packed.triangles()[0];
+    let triangle: Primitive = packed.primitives()[0];
     let [a, b, c] = triangle.vertices().map(|v| v.as_dvec3());
     let [u, v, w] = random.weights();
     let origin = packed.normalisation().place(eye);
@@ -70,7 +70,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let (laid, frame) = (SceneView::new(&packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &Ray::new(origin, direction), &mut hit);
-    if hit.triangle_index == StreamRay::NOWHERE {
+    if hit.primitive_index == StreamRay::NOWHERE {
         return;
     }
     let (u, v) = hit.weights();

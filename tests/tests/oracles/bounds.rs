@@ -1,7 +1,7 @@
 //! The errors that the kernels' sources state, against what intervals show them to be.
 
 use eyerays::scene::Settings;
-use eyerays_shader::data::{BOX_PADDING, CentredPair, NodePair, NodeRef, Triangle};
+use eyerays_shader::data::{BOX_PADDING, CentredPair, NodePair, NodeRef, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::geometry::{sheared, slab};
 use eyerays_shader::ray::Ray;
@@ -21,7 +21,7 @@ type V = V3<Interval>;
 fn pairs(mut f: impl FnMut(&Ray<Interval>, [Vec3; 3], &mut Rng)) {
     let mut rng = Rng::with_seed(13);
     for case in cases(count::of(3_000, 300_000)) {
-        let triangles = case.triangles();
+        let triangles = case.primitives();
         for ray in &case.rays {
             let ray = Ray::<Interval>::new(V::splat(ray.origin), V::splat(ray.direction));
             f(&ray, triangles[rng.usize(0..triangles.len())], &mut rng);
@@ -51,7 +51,7 @@ fn boxes() {
     let gamma = 3.0 * ROUNDOFF / (1.0 - 3.0 * ROUNDOFF);
     let (mut entry, mut shift, mut tests) = (0f64, 0f64, 0);
     pairs(|ray, triangle, _| {
-        let (least, greatest) = Triangle::new(triangle, 0, 0, 0).bounds();
+        let (least, greatest) = Primitive::triangle(triangle, 0, 0, 0).bounds();
         let own = slab(V::splat(least), V::splat(greatest), ray);
         if own.near.value > 0.0 {
             entry = entry.max(own.near.error() / f64::from(own.near.value));
@@ -96,7 +96,7 @@ fn own_boxes_are_padded() {
             let place = vertices[0][i % 4];
             vertices.iter_mut().for_each(|v| v[i % 4] = place);
         }
-        let (least, greatest) = Triangle::new(vertices, 0, 0, 0).bounds();
+        let (least, greatest) = Primitive::triangle(vertices, 0, 0, 0).bounds();
         let low = vertices[0].min(vertices[1]).min(vertices[2]);
         let high = vertices[0].max(vertices[1]).max(vertices[2]);
         for padding in [low - least, greatest - high] {
@@ -124,7 +124,7 @@ fn places_and_clearances() {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5).normalize();
         let splat = |x: f32| Interval::exact(x);
-        let at = SurfaceInteraction::new(&Triangle::new(triangle, 0, 0, 0), splat(u), splat(v), V::splat(direction));
+        let at = SurfaceInteraction::new(&Primitive::triangle(triangle, 0, 0, 0), splat(u), splat(v), V::splat(direction));
         let reach = a.abs().max(b.abs()).max(c.abs()).as_dvec3().to_array();
         let (position, normal) =
             ([at.position.x, at.position.y, at.position.z], [at.normal.x, at.normal.y, at.normal.z]);

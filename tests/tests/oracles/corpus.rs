@@ -29,7 +29,7 @@ impl Case {
 
     /// Every triangle once, by its number in the scene.
     pub fn triangles(&self) -> Vec<[Vec3; 3]> {
-        let mut all: Vec<_> = self.packed.triangles().iter().map(|t| (t.primitive(), t.vertices())).collect();
+        let mut all: Vec<_> = self.packed.primitives().iter().map(|t| (t.primitive(), t.vertices())).collect();
         all.sort_by_key(|t| t.0);
         all.dedup_by_key(|t| t.0);
         all.into_iter().map(|t| t.1).collect()
@@ -103,7 +103,7 @@ fn primary(posed: &Posed) -> Vec<StreamRay> {
 
 /// At vertices, at edges, into triangles, along axes, along a triangle's plane, and anywhere.
 fn aimed(packed: &DeviceScene, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
-    let triangles: Vec<[Vec3; 3]> = packed.triangles().iter().map(|t| t.vertices()).collect();
+    let triangles: Vec<[Vec3; 3]> = packed.primitives().iter().map(|t| t.vertices()).collect();
     let ray = |i: usize| {
         let [a, b, c] = triangles[rng.usize(0..triangles.len())];
         let mut origin = point(rng) * 0.99;

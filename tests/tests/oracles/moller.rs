@@ -46,7 +46,7 @@ fn ball(steps: u32) -> DeviceScene {
 fn rays(packed: &DeviceScene, count: usize) -> Stream {
     let mut rng = Rng::with_seed(17);
     let ray = |i: usize| {
-        let [a, b, _] = packed.triangles()[rng.usize(0..packed.triangles().len())].vertices();
+        let [a, b, _] = packed.primitives()[rng.usize(0..packed.primitives().len())].vertices();
         // The packed ball has a radius of at least 1/2.
         let origin = 0.5 * Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5);
         let target = if i.is_multiple_of(4) { a } else { a + (b - a) * rng.f32() };
@@ -67,7 +67,7 @@ fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
         let segment = Segment::<R>::load(&geometry, *i, stream.words());
         let mut hit = Hit::none(segment.limit);
         M::traverse::<Closest>(&geometry, &segment.ray(), &mut hit);
-        hit.triangle_index == Hit::<R>::NOTHING
+        hit.primitive_index == Hit::<R>::NOTHING
     };
     (0..stream.len() as u32).into_par_iter().filter(misses).count()
 }

@@ -26,7 +26,7 @@ fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<U
     let (laid, frame) = (SceneView::new(&case.packed, Traversal::default()), case.packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     // Parts of a split triangle are hit alike, so the slot is no part of the answer.
-    let primitive = |slot: u32| case.packed.triangles().get(slot as usize).map_or(slot, |t| t.primitive());
+    let primitive = |slot: u32| case.packed.primitives().get(slot as usize).map_or(slot, |t| t.primitive());
     let hit = |slot| stage::trace::<R, M>(&geometry, slot, stream.words());
     (0..stream.len() as u32).map(hit).map(|hit| UVec4 { w: primitive(hit.w), ..hit }).collect()
 }

@@ -1,6 +1,6 @@
 //! Whether two runs gave the same answers, bit for bit.
 
-use eyerays_shader::data::Triangle;
+use eyerays_shader::data::Primitive;
 use glam::UVec4;
 
 use eyerays::stream::{Answers, StreamRay};
@@ -23,7 +23,7 @@ impl Hash {
 
     /// The answers of a stream: bits of (t, u, v) and the primitive's number (a slot depends on how the
     /// hierarchy was built), or what is known of its end.
-    pub fn of(triangles: &[Triangle], answers: &Answers) -> Hash {
+    pub fn of(triangles: &[Primitive], answers: &Answers) -> Hash {
         let mut hash = Hash::default();
         match answers {
             Answers::Closest(hits) => {
@@ -42,12 +42,12 @@ impl std::fmt::Display for Hash {
 }
 
 /// A hit with its primitive instead of its slot.
-fn comparable(triangles: &[Triangle], hit: UVec4) -> UVec4 {
+fn comparable(triangles: &[Primitive], hit: UVec4) -> UVec4 {
     hit.truncate().extend(primitive(triangles, hit.w))
 }
 
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
-pub(crate) fn primitive(triangles: &[Triangle], slot: u32) -> u32 {
+pub(crate) fn primitive(triangles: &[Primitive], slot: u32) -> u32 {
     match triangles.get(slot as usize) {
         Some(triangle) => triangle.primitive(),
         None if slot == StreamRay::NOWHERE => slot,
@@ -56,7 +56,7 @@ pub(crate) fn primitive(triangles: &[Triangle], slot: u32) -> u32 {
 }
 
 /// The first ray with another answer, or with none.
-pub fn first_difference(triangles: &[Triangle], a: &Answers, b: &Answers) -> Option<usize> {
+pub fn first_difference(triangles: &[Primitive], a: &Answers, b: &Answers) -> Option<usize> {
     let shorter = |a: usize, b: usize| (a != b).then(|| a.min(b));
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
@@ -71,7 +71,7 @@ pub fn first_difference(triangles: &[Triangle], a: &Answers, b: &Answers) -> Opt
 }
 
 /// The share of rays that met another primitive, or were told another answer.
-pub fn differing(triangles: &[Triangle], a: &Answers, b: &Answers) -> f64 {
+pub fn differing(triangles: &[Primitive], a: &Answers, b: &Answers) -> f64 {
     let share = |differing: usize, all: usize| differing as f64 / all.max(1) as f64;
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
@@ -96,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_bit_or_a_primitive_makes_a_difference_and_a_slot_none() {
-        let mut triangles = cornell((8, 8)).0.triangles().to_vec();
+        let mut triangles = cornell((8, 8)).0.primitives().to_vec();
         triangles[1] = triangles[0];
         let triangles = &triangles[..];
         let of = |hits: &[UVec4]| Answers::Closest(hits.to_vec());

@@ -233,7 +233,7 @@ fn traverse<R: Real, M: traverse::Method<R>>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_shader::data::{CentredPair, Frame, Launch, NodePair, NodeRef, Specialisation, Triangle, Tuning};
+    use eyerays_shader::data::{CentredPair, Frame, Launch, NodePair, NodeRef, Specialisation, Primitive, Tuning};
     use eyerays_shader::scene::LaunchContext;
     use glam::{Vec3, vec3};
 
@@ -241,10 +241,10 @@ mod tests {
     /// and the others on the right, in one leaf.
     fn in_row(traversal: Traversal, stream: &Stream, question: Question) -> Counts {
         let wall = |x: f32| [vec3(x, -0.1, -0.1), vec3(x, 0.1, -0.1), vec3(x, 0.0, 0.1)];
-        let triangles: Vec<Triangle> =
-            [0.1, 0.3, 0.5, 0.7].iter().zip(0..).map(|(&x, i)| Triangle::new(wall(x), i, 0, 0)).collect();
-        let around = |of: &[Triangle], node| {
-            let bounds = of.iter().map(Triangle::bounds);
+        let triangles: Vec<Primitive> =
+            [0.1, 0.3, 0.5, 0.7].iter().zip(0..).map(|(&x, i)| Primitive::triangle(wall(x), i, 0, 0)).collect();
+        let around = |of: &[Primitive], node| {
+            let bounds = of.iter().map(Primitive::bounds);
             let (least, greatest) = bounds.reduce(|(a, b), (c, d)| (a.min(c), b.max(d))).unwrap();
             (least, greatest, node)
         };

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use eyerays_shader::camera::{self, Pixel};
-use eyerays_shader::data::{Frame, Order as OrderBits, Triangle};
+use eyerays_shader::data::{Frame, Order as OrderBits, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::ray_to_light;
 use eyerays_shader::material::{reflect, refract};
@@ -55,7 +55,7 @@ impl CameraRays {
 
 /// The diagonal of the box around a scene's triangles, in the normalised scene.
 pub fn diagonal(packed: &DeviceScene) -> f64 {
-    let vertices = || packed.triangles().iter().flat_map(Triangle::vertices);
+    let vertices = || packed.primitives().iter().flat_map(Primitive::vertices);
     let least = vertices().fold(Vec3::INFINITY, Vec3::min);
     let greatest = vertices().fold(Vec3::NEG_INFINITY, Vec3::max);
     (greatest.as_dvec3() - least.as_dvec3()).length()
@@ -186,7 +186,7 @@ impl<'a> PrimaryHits<'a> {
     }
 
     fn place(&self, i: usize, hit: UVec4) -> Place {
-        let triangle = &self.packed.triangles()[hit.w as usize];
+        let triangle = &self.packed.primitives()[hit.w as usize];
         let direction = V3::splat(self.primary.ray(i).direction);
         let contact = SurfaceInteraction::new(triangle, f32::from_bits(hit.y), f32::from_bits(hit.z), direction);
         Place { pixel: self.pixels[i], direction, contact, primitive: triangle.primitive() }

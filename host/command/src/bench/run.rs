@@ -179,7 +179,7 @@ impl<'a> Bench<'a> {
                 entry.insert(counts(packed, trial.traversal, threads, stream, ask)?);
             }
         }
-        let hash = Hash::of(packed.triangles(), &reference);
+        let hash = Hash::of(packed.primitives(), &reference);
         Ok(Asked { kind, camera, stream, reference, hash, counts: by_way })
     }
 
@@ -227,8 +227,8 @@ impl<'a> Bench<'a> {
             boxes: counts.boxes,
             triangle_tests: counts.triangles,
             simd_efficiency: counts.simd_efficiency,
-            hash: Hash::of(self.packed.triangles(), &run.answers).to_string(),
-            differing: answers::differing(self.packed.triangles(), &asked.reference, &run.answers),
+            hash: Hash::of(self.packed.primitives(), &run.answers).to_string(),
+            differing: answers::differing(self.packed.primitives(), &asked.reference, &run.answers),
         }
     }
 
@@ -242,7 +242,7 @@ impl<'a> Bench<'a> {
 
     fn difference(&self, trial: &Trial, asked: &Asked<'_>, answers: &Answers) -> String {
         let how = self.describe(trial, asked);
-        match answers::first_difference(self.packed.triangles(), &asked.reference, answers) {
+        match answers::first_difference(self.packed.primitives(), &asked.reference, answers) {
             Some(ray) => format!("{how}: ray {ray} of {} differs first", asked.stream.len()),
             None => format!("{how}: there are fewer answers than rays"),
         }

@@ -69,7 +69,7 @@ impl Primary {
         let truth = hits
             .into_iter()
             .map(f64::load)
-            .map(|(place, slot)| (place.x, primitive(packed.triangles(), slot)))
+            .map(|(place, slot)| (place.x, primitive(packed.primitives(), slot)))
             .collect();
         Ok(Primary { stream, truth })
     }
@@ -87,7 +87,7 @@ impl Primary {
             None => cpu::closest::<f32>(packed, on_cpu, choice.threads, &self.stream)?,
         };
         let found: Vec<_> =
-            hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed.triangles(), hit.w))).collect();
+            hits.iter().map(|hit| (f32::from_bits(hit.x), primitive(packed.primitives(), hit.w))).collect();
         Ok(HitErrors::of(&found, &self.truth))
     }
 

@@ -1,0 +1,97 @@
+//! What the leaves of a hierarchy hold. Every traversal method takes it as a type, as it takes what a ray searches for.
+
+mod disk;
+mod primitives;
+mod sphere;
+mod triangle;
+
+pub use primitives::{Primitives, coordinates};
+
+use super::Query;
+#[cfg(not(target_arch = "spirv"))]
+use crate::bvh8::Bvh8Ref;
+use crate::geometry::slab;
+use crate::ray::{Hit, Ray};
+use crate::real::{Mask, Real, V3};
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::{Lanes, Scalar};
+use crate::scene::TraceContext;
+use glam::Vec3;
+
+/// What leaves hold, and how rays meet it. A leaf's box must contain the own box of all that it holds, and a hit must lie in
+/// the own box of what was hit, see [`accept`].
+pub trait Leaf {
+    /// Tests what is at an index in leaf order, and takes the hit if it is the best so far.
+    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>);
+
+    /// Tests a leaf of the hierarchy that a CPU loads, with as many of its contents at once as there are lanes.
+    #[cfg(not(target_arch = "spirv"))]
+    fn intersect_block<Q: Query, R: Scalar, F: Lanes<R>>(
+        context: &TraceContext<'_>,
+        leaf: Bvh8Ref,
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+    );
+}
+
+/// The limit of an any-hit ray that has found something: no box lies before it.
+const FOUND: f32 = -1.0;
+
+/// Has an any-hit ray found something opaque?
+#[inline(always)]
+pub fn occluded<R: Real>(hit: &Hit<R>) -> R::Mask {
+    hit.t.lt(R::splat(0.0))
+}
+
+/// Where a ray meets a primitive, before its own box is asked.
+struct Meeting<R: Real> {
+    /// In which lanes?
+    inside: R::Mask,
+    /// The distance.
+    t: R,
+    /// The place on its surface, each to be multiplied by `scale`; see [`Hit`].
+    u: R,
+    v: R,
+    scale: R,
+}
+
+/// A primitive by its index in leaf order and its number in the scene.
+#[derive(Clone, Copy)]
+struct Identity {
+    index: u32,
+    number: u32,
+}
+
+/// Moves the hit behind the entry to the primitive's own box, and takes the lesser (t, primitive).
+///
+/// That box lies in every box that leads here, so no hit that is accepted can have been culled. A part of a split
+/// triangle may find a hit in another part, which has the same t there.
+#[inline(always)]
+fn accept<Q: Query, R: Real>(
+    met: Meeting<R>,
+    own: (Vec3, Vec3),
+    Identity { index, number }: Identity,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let own = slab(V3::splat(own.0), V3::splat(own.1), ray);
+    let inside = met.inside & own.near.le(own.far);
+    // A bound of zero may have either sign; of zeros `max` takes the second.
+    let t = met.t.max(own.near.max(R::splat(0.0)));
+    if Q::ANY {
+        hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
+        return;
+    }
+    let tie = t.eq(hit.t) & R::precedes(number, hit.primitive);
+    let better = inside & (t.lt(hit.t) | tie);
+    if better.any() {
+        hit.t = R::select(better, t, hit.t);
+        if cfg!(not(target_arch = "spirv")) {
+            hit.u = R::select(better, met.u, hit.u);
+            hit.v = R::select(better, met.v, hit.v);
+            hit.scale = R::select(better, met.scale, hit.scale);
+        }
+        hit.primitive_index = R::select_index(better, R::index(index), hit.primitive_index);
+        hit.primitive = R::select_index(better, R::index(number), hit.primitive);
+    }
+}

@@ -1,0 +1,97 @@
+//! Triangles, spheres and disks, in any mixture.
+
+use super::{Leaf, disk, sphere, triangle};
+#[cfg(not(target_arch = "spirv"))]
+use crate::bvh8::{Bvh8Ref, LeafKind};
+use crate::data::{Effects, Primitive};
+use crate::ray::{Hit, Ray};
+use crate::real::{Real, Scalar};
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::Lanes;
+use crate::scene::TraceContext;
+use crate::traverse::Query;
+
+/// See the module.
+pub struct Primitives;
+
+/// Does the scene have primitives that are no triangles?
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn is_mixed(context: &TraceContext<'_>) -> bool {
+    context.base.spec.effects.has(Effects::SPHERE | Effects::DISK)
+}
+
+impl Leaf for Primitives {
+    #[inline(always)]
+    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>) {
+        Q::on_primitive();
+        let primitive = context.primitive(index);
+        let effects = context.base.spec.effects;
+        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+            sphere::intersect::<Q, R>(context, &primitive, index, ray, hit);
+        } else if effects.has(Effects::DISK) && primitive.is_disk() {
+            disk::intersect::<Q, R>(context, &primitive, index, ray, hit);
+        } else {
+            triangle::intersect::<Q, R>(context, &primitive, index, ray, hit);
+        }
+    }
+
+    #[cfg(not(target_arch = "spirv"))]
+    #[inline(always)]
+    fn intersect_block<Q: Query, R: Scalar, F: Lanes<R>>(
+        context: &TraceContext<'_>,
+        leaf: Bvh8Ref,
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+    ) {
+        let blocks = &context.bvh8;
+        if !is_mixed(context) {
+            return triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit);
+        }
+        match leaf.kind() {
+            LeafKind::Triangles => triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit),
+            LeafKind::Spheres => sphere::intersect_four::<Q, R, F>(context, &blocks.spheres[leaf.index()], ray, hit),
+            LeafKind::Mixed => {
+                for &index in blocks.mixed[leaf.index()].indices() {
+                    Self::intersect::<Q, R>(context, index, ray, hit);
+                }
+            }
+        }
+    }
+}
+
+/// Does the query consider this primitive? Only opaque objects cast shadows (thesis 3.2).
+#[inline(always)]
+pub(super) fn counts<Q: Query>(effects: Effects, primitive: &Primitive) -> bool {
+    !(Q::ANY && effects.has(Effects::TRANSPARENT) && primitive.is_transparent())
+}
+
+/// Is the side that is turned away from the ray skipped? The inside of glass is seen from its back side.
+#[inline(always)]
+pub(super) fn is_culled<Q: Query>(effects: Effects, primitive: &Primitive) -> bool {
+    effects.has(Effects::CULLING) && !Q::ANY && !primitive.is_transparent()
+}
+
+/// Where on its surface a ray has hit a primitive, or zeros if it has hit none: the weights of a triangle's second and third
+/// vertex, the octahedral coordinates of a sphere's normal, or a disk's coordinates along its tangents, in radii.
+///
+/// A CPU keeps them with the hit. A GPU recomputes them, from the same numbers to the same bits: the fewer registers a
+/// ray takes, the more rays it can switch to while one waits for memory.
+#[inline(always)]
+pub fn coordinates<R: Scalar>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> (R, R) {
+    if cfg!(not(target_arch = "spirv")) {
+        return hit.coordinates();
+    }
+    if hit.primitive_index == Hit::<R>::NOTHING {
+        return (R::splat(0.0), R::splat(0.0));
+    }
+    let primitive = context.primitive(hit.primitive_index);
+    let effects = context.base.spec.effects;
+    if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+        sphere::coordinates(&primitive, ray)
+    } else if effects.has(Effects::DISK) && primitive.is_disk() {
+        disk::coordinates(&primitive, ray)
+    } else {
+        triangle::weights(context, &primitive, ray)
+    }
+}

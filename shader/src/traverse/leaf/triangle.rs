@@ -1,0 +1,138 @@
+//! Triangles in leaves.
+
+use super::primitives::{counts, is_culled};
+use super::{Identity, Meeting, accept};
+#[cfg(not(target_arch = "spirv"))]
+use crate::bvh8::{MOST, Triangle4};
+use crate::data::{Launch, Primitive};
+use crate::geometry::{Candidate, intersect_moller_trumbore, intersect_watertight, straddles_origin};
+use crate::ray::{Hit, Ray};
+#[cfg(not(target_arch = "spirv"))]
+use crate::real::Lanes;
+use crate::real::{Mask, Real, Scalar, V3};
+use crate::scene::TraceContext;
+use crate::traverse::Query;
+
+/// Tests a triangle and takes the hit if it is the best so far.
+#[inline(always)]
+pub fn intersect<Q: Query, R: Real>(
+    context: &TraceContext<'_>,
+    triangle: &Primitive,
+    index: u32,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let candidate = single(context, triangle, ray);
+    if candidate.nearer(hit.t).any() && counts::<Q>(context.base.spec.effects, triangle) {
+        accept_candidate::<Q, R>(context, triangle, index, &candidate, ray, hit);
+    }
+}
+
+/// Intersects one triangle.
+#[inline(always)]
+fn single<R: Real>(context: &TraceContext<'_>, triangle: &Primitive, ray: &Ray<R>) -> Candidate<R> {
+    let [a, b, c] = triangle.vertices();
+    let (slopes, along) = (ray.slopes(), ray.along());
+    intersect_by_choice(context.base.spec.launch, [ray.seen(a), ray.seen(b), ray.seen(c)], slopes, along)
+}
+
+/// The weights of the second and the third vertex where a ray has hit a triangle.
+#[inline(always)]
+pub fn weights<R: Scalar>(context: &TraceContext<'_>, triangle: &Primitive, ray: &Ray<R>) -> (R, R) {
+    let candidate = single(context, triangle, ray);
+    let scale = candidate.area.reciprocal();
+    (candidate.u * scale, candidate.v * scale)
+}
+
+/// Tests up to four triangles, as many at once as there are lanes.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+pub fn intersect_four<Q: Query, R: Scalar, F: Lanes<R>>(
+    context: &TraceContext<'_>,
+    triangles: &Triangle4,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let origin = ray.shear.cycle(ray.origin);
+    let shear = (F::all(ray.shear.x), F::all(ray.shear.y));
+    let along = F::all(ray.along());
+    let mut first = 0;
+    while first < MOST {
+        Q::on_primitive();
+        let a = vertex::<R, F>(triangles, 0, first, ray, origin);
+        let b = vertex::<R, F>(triangles, 1, first, ray, origin);
+        let c = vertex::<R, F>(triangles, 2, first, ray, origin);
+        let candidate = intersect_by_choice::<F>(context.base.spec.launch, [a, b, c], shear, along);
+        let mut inside = F::bits(candidate.nearer(F::all(hit.t)));
+        while inside != 0 {
+            let lane = inside.trailing_zeros() as usize;
+            inside &= inside - 1;
+            let index = triangles.primitive_indices[(first + lane) & 3];
+            let triangle = context.primitive(index);
+            if counts::<Q>(context.base.spec.effects, &triangle) {
+                accept_candidate::<Q, R>(context, &triangle, index, &candidate.lane(lane), ray, hit);
+            }
+        }
+        first += F::COUNT as usize;
+    }
+}
+
+/// Intersects a triangle by the test that the launch asks for, if precision leaves it a choice; see
+/// [`intersect_watertight`].
+#[inline(always)]
+fn intersect_by_choice<F: Real>(launch: Launch, [a, b, c]: [V3<F>; 3], shear: (F, F), along: F) -> Candidate<F> {
+    if !F::EXACT && launch.has(Launch::MOLLER) {
+        intersect_moller_trumbore(a, b, c, shear, along)
+    } else {
+        intersect_watertight(a, b, c, shear, along)
+    }
+}
+
+/// A vertex of the triangles from `first` on, relative to the ray's origin, both with their axes cycled.
+#[cfg(not(target_arch = "spirv"))]
+#[inline(always)]
+fn vertex<R: Scalar, F: Lanes<R>>(
+    triangles: &Triangle4,
+    vertex: usize,
+    first: usize,
+    ray: &Ray<R>,
+    origin: V3<R>,
+) -> V3<F> {
+    let numbers = &triangles.vertices[vertex];
+    let axis = AXES[ray.shear.major()];
+    V3::new(
+        F::taken(&numbers[axis[0]][first..]) - F::all(origin.x),
+        F::taken(&numbers[axis[1]][first..]) - F::all(origin.y),
+        F::taken(&numbers[axis[2]][first..]) - F::all(origin.z),
+    )
+}
+
+/// The axes in their order, given which is the third.
+#[cfg(not(target_arch = "spirv"))]
+const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
+
+/// Rejects misses of triangles seen edge-on, divides, and hands on the rest.
+#[inline(always)]
+fn accept_candidate<Q: Query, R: Real>(
+    context: &TraceContext<'_>,
+    triangle: &Primitive,
+    index: u32,
+    candidate: &Candidate<R>,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
+    let number = triangle.number();
+    let mut inside = candidate.inside & !R::equals(number, ray.source_primitive);
+    if is_culled::<Q>(context.base.spec.effects, triangle) {
+        inside = inside & candidate.front;
+    }
+    // This is rare, so transforming the vertices again costs less than keeping them since the intersection.
+    if (inside & candidate.in_line()).any() {
+        let [a, b, c] = triangle.vertices();
+        inside = inside & straddles_origin(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
+    }
+    // Lanes outside divide by one, so that none divides by zero.
+    let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
+    let met = Meeting { inside, t: candidate.depth * scale, u: candidate.u, v: candidate.v, scale };
+    accept::<Q, R>(met, context.bounds(index, || triangle.triangle_bounds()), Identity { index, number }, ray, hit);
+}

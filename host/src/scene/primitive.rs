@@ -61,7 +61,7 @@ fn fault(center: Vec3, radius: f32, bounds: [Vec3; 2]) -> Option<&'static str> {
     if !bounds.iter().all(|corner| corner.is_finite()) {
         Some("leaves the range of single precision; make it smaller or move it nearer to the origin")
     } else if far + radius == far {
-        Some("is too small for single precision so far from the origin; make it larger or move it nearer")
+        Some("is too small for single precision where it stands; make it larger or move it nearer to the origin")
     } else {
         None
     }

@@ -27,7 +27,7 @@ pub struct Wish {
 }
 
 impl Wish {
-    /// Can only a mesh of a round shape be what is asked for?
+    /// Is a sphere no longer one where it goes, nor a disk a disk?
     fn stretches(&self) -> bool {
         self.transform.is_some_and(|transform| !transform.keeps_spheres())
     }

@@ -63,6 +63,8 @@ fn scene() -> Scene {
             triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
             materials: vec![0, 0, 1, 1],
         },
+        spheres: Vec::new(),
+        disks: Vec::new(),
         parts: Vec::new(),
         files: Vec::new(),
         materials: vec![plain, mirror],

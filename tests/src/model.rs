@@ -7,6 +7,8 @@ use glam::Vec3;
 pub fn empty() -> Scene {
     Scene {
         mesh: Mesh::default(),
+        spheres: Vec::new(),
+        disks: Vec::new(),
         parts: Vec::new(),
         files: Vec::new(),
         materials: Vec::new(),

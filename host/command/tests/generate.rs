@@ -36,6 +36,37 @@ fn a_scene_is_three_files_that_render_as_they_are() {
 }
 
 #[test]
+fn spheres_are_a_list_and_a_scene_that_shows_it() {
+    let place = Place::new(&[]);
+    let outcome = place.succeed(&["generate", "spheres", "--count", "100"]);
+    assert_eq!(outcome.stderr, "spheres.toml, spheres.xyzr: flake of 100 spheres\n");
+    assert_eq!(place.names(), ["spheres.toml", "spheres.xyzr"]);
+    let list = fs::read_to_string(place.path("spheres.xyzr")).unwrap();
+    assert_eq!(list.lines().count(), 1 + 100);
+    assert!(list.starts_with("# eyerays generate spheres --count 100\n0 1 0 1\n"), "{list}");
+    let (scene, warnings) = scene::load(&place.path("spheres.toml")).unwrap();
+    assert_eq!((scene.spheres.len(), scene.disks.len(), warnings.len()), (100, 1, 0));
+    // By either name, and again.
+    place.succeed(&["generate", "spheres", "--count", "101", "-q", "-o", "spheres.xyzr"]);
+    assert_eq!(fs::read_to_string(place.path("spheres.xyzr")).unwrap().lines().count(), 1 + 101);
+}
+
+#[test]
+fn spheres_are_counted_and_meshes_cut_into_triangles() {
+    let place = Place::new(&[("own.xyzr", "0 0 0 1\n")]);
+    place.refuse(&["generate", "spheres", "--triangles", "6000"], &["--count"]);
+    place.refuse(&["generate", "hall", "--count", "6000"], &["--triangles"]);
+    place.refuse(&["generate", "spheres", "--count", "0"], &["--count 0", "1 to 20000000"]);
+    place.refuse(&["generate", "spheres", "--count", "9", "-o", "a.obj"], &["a.obj", ".toml"]);
+    place.refuse(&["generate", "spheres", "--count", "9", "-o", "-"], &["two files"]);
+    place.refuse(&["generate", "spheres", "--count", "9", "-o", "own.toml"], &["own.xyzr", "not written by"]);
+    let seeded = ["generate", "spheres", "--count", "9", "--seed", "2"];
+    assert_eq!(place.run(&seeded).code, Some(2));
+    assert_eq!(place.run(&["generate", "spheres"]).code, Some(2));
+    assert_eq!(place.names(), ["own.xyzr"]);
+}
+
+#[test]
 fn the_same_recipe_gives_the_same_bytes_and_another_seed_others() {
     let place = Place::new(&[]);
     let generate = |seed: &str, name: &str| {

@@ -11,8 +11,9 @@ const FARTHEST: f32 = 1e18;
 /// How much larger a scene must become for it to be moved.
 const WORTH_MOVING: f64 = 8.0;
 
-/// Moves a scene that lies far from the world's origin and multiplies it by a power of two, so that every vertex comes
-/// into [-1, 1] and no bit of its coordinates is lost. Cameras and lights may lie outside.
+/// Moves a scene that lies far from the world's origin and multiplies it by a power of two, so that every vertex, sphere
+/// and disk comes into [-1, 1] and no bit of a vertex's or a center's coordinates is lost. Cameras and lights may lie
+/// outside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Normalisation {
     /// The place that becomes zero, in world units.
@@ -22,7 +23,7 @@ pub struct Normalisation {
 }
 
 impl Normalisation {
-    /// For points of which at least one is finite; whoever packs the others refuses them by their number, so they change
+    /// For a scene's extremes ([`crate::scene::Scene::extremes`]), of which at least one is finite; whoever packs the others refuses them by their number, so they change
     /// nothing here. `movable` unless something counts from the world's origin.
     pub fn of(points: impl Iterator<Item = Vec3>, movable: bool) -> Self {
         let nowhere = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -33,7 +34,7 @@ impl Normalisation {
         if movable && moved.scale >= WORTH_MOVING * here.scale { moved } else { here }
     }
 
-    /// A place in the normalised scene, which for a vertex is exact.
+    /// A place in the normalised scene, which for a vertex or a center is exact.
     pub fn exactly(&self, p: DVec3) -> DVec3 {
         (p - self.origin.as_dvec3()) * self.scale
     }
@@ -53,7 +54,9 @@ impl Normalisation {
 
 /// On each axis the middle, from which all differences are exact, or zero if that can't be promised.
 ///
-/// Sterbenz: numbers of one sign, none more than twice another, have exact differences.
+/// Sterbenz: numbers of one sign, none more than twice another, have exact differences. This holds for the centers of
+/// spheres and disks too, although only the corners around them were asked: a center lies between its corners. What these
+/// were rounded outward by is more room, never less.
 fn middle(least: Vec3, greatest: Vec3) -> Vec3 {
     let axis = |low: f32, high: f32| {
         let (near, far) = if low > 0.0 { (low, high) } else { (-high, -low) };
@@ -85,6 +88,7 @@ pub(super) fn flushed_number(x: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::{Disk, Sphere};
     use proptest::prelude::*;
 
     fn of(points: &[Vec3]) -> Normalisation {
@@ -118,6 +122,40 @@ mod tests {
     }
 
     proptest! {
+        /// As `no_bit_is_lost`, of centers, and all of each sphere and disk lies in [-1, 1].
+        #[test]
+        fn no_bit_of_a_center_is_lost_and_nothing_round_sticks_out(
+            middle in prop::array::uniform3(-1e7f32..1e7), size in -8f32..8.0, flat in 0usize..4,
+            round in prop::collection::vec((prop::array::uniform4(-1f32..1.0), prop::array::uniform3(-1f32..1.0)), 1..20),
+        ) {
+            let mut middle = Vec3::from(middle);
+            if flat < 3 { middle[flat] = 0.0 }
+            let rounds = round.iter().map(|&([x, y, z, radius], normal)| {
+                let center = middle + Vec3::new(x, y, z) * size.exp2();
+                let normal = Vec3::from(normal).try_normalize().unwrap_or(Vec3::Y);
+                (center, (radius.abs() * size.exp2()).max(1e-3), normal)
+            });
+            let rounds: Vec<(Vec3, f32, Vec3)> = rounds.collect();
+            let spheres = rounds.iter().map(|&(center, radius, _)| Sphere { center, radius, material: 0 }.bounds());
+            let disk = |&(center, radius, normal): &(Vec3, f32, Vec3)| Disk { center, normal, radius, material: 0 };
+            let disks = rounds.iter().map(|round| disk(round).bounds());
+            let corners: [Vec<Vec3>; 2] = [spheres.flatten().collect(), disks.flatten().collect()];
+            for (corners, is_disk) in corners.iter().zip([false, true]) {
+                let normalisation = of(corners);
+                for &(center, radius, normal) in &rounds {
+                    let (exact, got) = (normalisation.exactly(center.as_dvec3()), normalisation.place(center));
+                    prop_assert_eq!(got.as_dvec3(), exact);
+                    let sine = |n: f32| if is_disk { (1.0 - f64::from(n).powi(2)).max(0.0).sqrt() } else { 1.0 };
+                    let reach = normal.to_array().map(|n| sine(n) * f64::from(radius) * normalisation.scale);
+                    for (x, reach) in exact.to_array().into_iter().zip(reach) {
+                        // Only a normal's own rounding is allowed for.
+                        let most = if is_disk { 1.0 + 1e-6 } else { 1.0 };
+                        prop_assert!(x.abs() + reach <= most, "{x} {reach}");
+                    }
+                }
+            }
+        }
+
         /// Every point lies in [-1, 1], not all within half of that, and none has lost a bit.
         #[test]
         fn no_bit_is_lost(

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Background, Camera, Light, Mesh};
+use super::{Background, Camera, Light, Scene};
 use crate::math;
 
 /// From the mesh to the eye: right, above and in front of it.
@@ -12,10 +12,10 @@ const FOV: f32 = 40.0;
 /// Room around the bounding sphere.
 const MARGIN: f64 = 1.05;
 
-/// The camera that a scene gets which names none: its image, `aspect` times as wide as high, holds the mesh's
-/// bounding sphere. `None` where the mesh is so large that no such place exists in single precision.
-pub fn default_camera(mesh: &Mesh, aspect: f64) -> Option<Camera> {
-    let (center, radius) = sphere(mesh);
+/// The camera that a scene gets which names none: its image, `aspect` times as wide as high, holds the surfaces'
+/// bounding sphere. `None` where they are so large that no such place exists in single precision.
+pub fn default_camera(scene: &Scene, aspect: f64) -> Option<Camera> {
+    let (center, radius) = sphere(scene);
     let half = f64::from(FOV).to_radians() / 2.0;
     let across = math::atan(math::tan(half) * aspect);
     let distance = MARGIN * radius / math::sin(half.min(across));
@@ -37,12 +37,15 @@ pub fn background() -> Background {
     Background::Gradient { horizon: Vec3::new(0.80, 0.85, 0.90), zenith: Vec3::new(0.35, 0.50, 0.75) }
 }
 
-/// A sphere around the mesh's vertices, never of radius zero.
-fn sphere(mesh: &Mesh) -> (DVec3, f64) {
-    let [low, high] = mesh.bounds().map(Vec3::as_dvec3);
+/// A sphere around all surfaces, never of radius zero.
+fn sphere(scene: &Scene) -> (DVec3, f64) {
+    let [low, high] = scene.bounds().map(Vec3::as_dvec3);
     let center = (low + high) / 2.0;
-    let distances = mesh.positions.iter().map(|position| position.as_dvec3().distance(center));
-    let radius = distances.fold(0.0, f64::max);
+    let reach = |place: Vec3, radius: f32| place.as_dvec3().distance(center) + f64::from(radius);
+    let vertices = scene.mesh.positions.iter().map(|&position| reach(position, 0.0));
+    let spheres = scene.spheres.iter().map(|sphere| reach(sphere.center, sphere.radius));
+    let disks = scene.disks.iter().map(|disk| reach(disk.center, disk.radius));
+    let radius = vertices.chain(spheres).chain(disks).fold(0.0, f64::max);
     // The eye must differ from the target once both are rounded to single precision.
     let least = center.abs().max_element() * 1e-4;
     let radius = radius.max(least);

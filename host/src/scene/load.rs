@@ -7,15 +7,17 @@ use glam::Vec3;
 use super::budget::Budget;
 use super::document;
 use super::file;
+use super::files::{Files, is};
 use super::frame;
+use super::geometry::Geometry;
 use super::material::Fields;
-use super::merge::{Merge, Override, Overrides};
+use super::merge::{Merge, Merged, Override, Overrides};
 use super::obj;
-use super::part::{self, Files, Placed, is};
+use super::part::{self, Placed};
 use super::range::Range;
 use super::source::Source;
 use super::table::Table;
-use super::{Background, Camera, Mesh, Scene, Settings};
+use super::{Background, Scene, Settings};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
@@ -46,34 +48,35 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
 fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let obj = obj::load(path, budget)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let placed = Placed { name, mesh: obj.mesh, materials: obj.materials, material: None };
+    let placed = Placed { name, geometry: Geometry::Mesh(obj.mesh), materials: obj.materials, material: None };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
-    let (mesh, parts, materials) = merge.finish();
-    let settings = Settings::default();
+    let Merged { mesh, spheres, disks, parts, materials } = merge.finish();
     let scene = Scene {
-        cameras: framing(path, &mesh, &settings)?,
         mesh,
+        spheres,
+        disks,
         parts,
         files: obj.libraries,
         materials,
         lights: frame::lights(),
+        cameras: Vec::new(),
         background: frame::background(),
         ambient: Vec3::splat(0.2),
-        settings,
+        settings: Settings::default(),
     };
-    Ok((scene, obj.warnings))
+    Ok((framed(path, scene)?, obj.warnings))
 }
 
-fn framing(path: &Path, mesh: &Mesh, settings: &Settings) -> Result<Vec<Camera>> {
-    let (width, height) = settings.size;
-    match frame::default_camera(mesh, f64::from(width) / f64::from(height)) {
-        Some(camera) => Ok(vec![camera]),
-        None => {
-            let fault = "the mesh is too large to be seen whole; make it smaller or add a [[camera]]";
-            Err(Error::file(path, fault))
-        }
+/// Gives a scene without a camera one that sees all of it.
+fn framed(path: &Path, mut scene: Scene) -> Result<Scene> {
+    if scene.cameras.is_empty() {
+        let (width, height) = scene.settings.size;
+        let camera = frame::default_camera(&scene, f64::from(width) / f64::from(height));
+        let fault = "the scene is too large to be seen whole; make it smaller or add a [[camera]]";
+        scene.cameras.push(camera.ok_or_else(|| Error::file(path, fault))?);
     }
+    Ok(scene)
 }
 
 fn load_toml(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
@@ -117,15 +120,13 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         return Err(Error::file(path, fault));
     }
     let mut files = Files::new(file::folder(path), budget);
-    let (mesh, parts, materials) = merge(meshes, &overrides, &mut files)?.finish();
+    let Merged { mesh, spheres, disks, parts, materials } = merge(meshes, &overrides, &mut files)?.finish();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
-    let cameras = match cameras.is_empty() {
-        true => framing(path, &mesh, &settings)?,
-        false => cameras,
-    };
     let scene = Scene {
         mesh,
+        spheres,
+        disks,
         parts,
         files: files.paths,
         materials,
@@ -135,7 +136,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         ambient: ambient.unwrap_or(Vec3::ZERO),
         settings,
     };
-    Ok((scene, warnings))
+    Ok((framed(path, scene)?, warnings))
 }
 
 fn overrides(tables: Vec<Table>) -> Result<Overrides> {

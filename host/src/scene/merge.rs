@@ -1,14 +1,15 @@
-//! One mesh of many parts, and the materials in use.
+//! One scene of many parts, and the materials in use.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, TryReserveError};
 
 use glam::Vec3;
 
+use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
 use super::part::Placed;
 use super::suggest::suggest;
-use super::{Material, Mesh, Part, Unplaced};
+use super::{Disk, Material, Mesh, Part, Primitives, Sphere, Unplaced};
 
 /// A `[[material]]` table, and whether any surface has it.
 pub struct Override {
@@ -41,9 +42,20 @@ pub type Overrides = BTreeMap<String, Override>;
 #[derive(Default)]
 pub struct Merge {
     mesh: Mesh,
+    spheres: Vec<Sphere>,
+    disks: Vec<Disk>,
     parts: Vec<Part>,
     materials: Vec<Material>,
     by_name: HashMap<String, Vec<u32>>,
+}
+
+/// The fields of a scene that its parts make.
+pub struct Merged {
+    pub mesh: Mesh,
+    pub spheres: Vec<Sphere>,
+    pub disks: Vec<Disk>,
+    pub parts: Vec<Part>,
+    pub materials: Vec<Material>,
 }
 
 impl Merge {
@@ -52,43 +64,65 @@ impl Merge {
     /// # Errors
     /// Its material is unknown, or there is no memory for it.
     pub fn add(&mut self, placed: Placed, overrides: &Overrides) -> Unplaced<()> {
-        let full = |_| "there is no memory left for this mesh; use fewer triangles";
-        self.reserve(&placed.mesh).map_err(full)?;
+        let full = |_| "there is no memory left for this mesh; use fewer triangles or spheres";
+        self.reserve(&placed.geometry).map_err(full)?;
         let all = placed.material.as_deref();
         let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
-        let mut numbers = vec![all; placed.materials.len()];
-        let first = self.mesh.positions.len() as u32;
-        for &local in &placed.mesh.materials {
-            let local = local as usize;
-            let number = *numbers[local].get_or_insert_with(|| {
-                let (name, fields) = &placed.materials[local];
-                self.number(name, *fields, overrides)
-            });
-            self.mesh.materials.push(number);
+        self.parts.push(placed.part(self.next(&placed.geometry)));
+        let Placed { mut geometry, materials, .. } = placed;
+        let mut numbers = vec![all; materials.len()];
+        geometry.renumber(|local| {
+            let (name, fields) = &materials[local as usize];
+            *numbers[local as usize].get_or_insert_with(|| self.number(name, *fields, overrides))
+        });
+        match geometry {
+            Geometry::Mesh(mesh) => self.append(mesh),
+            Geometry::Spheres(spheres) => self.spheres.extend(spheres),
+            Geometry::Disks(disks) => self.disks.extend(disks),
         }
-        let triangles = self.mesh.triangles.len()..self.mesh.materials.len();
-        self.parts.push(placed.part(triangles));
-        let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
-        self.mesh.triangles.extend(placed.mesh.triangles.into_iter().map(shift));
-        self.mesh.positions.extend(placed.mesh.positions);
-        self.mesh.normals.extend(placed.mesh.normals);
-        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
         Ok(())
     }
 
-    fn reserve(&mut self, more: &Mesh) -> Result<(), TryReserveError> {
-        self.mesh.materials.try_reserve(more.materials.len())?;
-        self.mesh.triangles.try_reserve(more.triangles.len())?;
-        self.mesh.positions.try_reserve(more.positions.len())?;
-        self.mesh.normals.try_reserve(more.positions.len())
+    /// Where the geometry will stand.
+    fn next(&self, geometry: &Geometry) -> Primitives {
+        let after = |count: usize, more: usize| count..count + more;
+        match geometry {
+            Geometry::Mesh(mesh) => Primitives::Triangles(after(self.mesh.triangles.len(), mesh.triangles.len())),
+            Geometry::Spheres(spheres) => Primitives::Spheres(after(self.spheres.len(), spheres.len())),
+            Geometry::Disks(disks) => Primitives::Disks(after(self.disks.len(), disks.len())),
+        }
     }
 
-    /// The whole mesh, its parts, and the materials that it uses, each once.
-    pub fn finish(mut self) -> (Mesh, Vec<Part>, Vec<Material>) {
+    fn append(&mut self, mesh: Mesh) {
+        let first = self.mesh.positions.len() as u32;
+        let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
+        self.mesh.triangles.extend(mesh.triangles.into_iter().map(shift));
+        self.mesh.materials.extend(mesh.materials);
+        self.mesh.positions.extend(mesh.positions);
+        self.mesh.normals.extend(mesh.normals);
+        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
+    }
+
+    fn reserve(&mut self, more: &Geometry) -> Result<(), TryReserveError> {
+        match more {
+            Geometry::Mesh(mesh) => {
+                self.mesh.materials.try_reserve(mesh.materials.len())?;
+                self.mesh.triangles.try_reserve(mesh.triangles.len())?;
+                self.mesh.positions.try_reserve(mesh.positions.len())?;
+                self.mesh.normals.try_reserve(mesh.positions.len())
+            }
+            Geometry::Spheres(spheres) => self.spheres.try_reserve(spheres.len()),
+            Geometry::Disks(disks) => self.disks.try_reserve(disks.len()),
+        }
+    }
+
+    /// All of it, with the materials that it uses, each once.
+    pub fn finish(mut self) -> Merged {
         if self.mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
             self.mesh.normals = Vec::new();
         }
-        (self.mesh, self.parts, self.materials)
+        let Merge { mesh, spheres, disks, parts, materials, .. } = self;
+        Merged { mesh, spheres, disks, parts, materials }
     }
 
     fn named(&mut self, name: &str, placed: &Placed, overrides: &Overrides) -> Unplaced<u32> {

@@ -9,18 +9,23 @@
 mod budget;
 mod checked;
 mod document;
+mod extent;
 mod face;
 mod file;
+mod files;
 mod frame;
+mod geometry;
 mod lines;
 mod load;
 mod material;
 mod merge;
 mod mtl;
+mod named;
 mod normal;
 mod obj;
 mod part;
 mod polygon;
+mod primitive;
 mod range;
 mod shape;
 mod source;
@@ -29,12 +34,14 @@ mod suggest;
 mod table;
 mod tally;
 mod transform;
+mod xyzr;
 
 #[cfg(test)]
 mod tests;
 
 pub use frame::default_camera;
 pub use load::{load, read_table};
+pub use primitive::{Disk, Sphere};
 pub use range::Range;
 pub use suggest::suggest;
 pub use table::Table;
@@ -45,15 +52,20 @@ use glam::Vec3;
 /// The result of a check that does not know whose line it checks: the error is a fault and its remedy.
 type Unplaced<T> = Result<T, String>;
 
-/// The most triangles a mesh may have: traversal numbers them in the bits that a node reference has.
-pub const MAX_TRIANGLES: usize = NodeRef::MAX_INDEX as usize;
+/// The most triangles, spheres and disks that a scene may have together: traversal numbers them in the bits that a node
+/// reference has.
+pub const MAX_PRIMITIVES: usize = NodeRef::MAX_INDEX as usize;
 
 /// All that a picture is made from. Everything in it is finite and in range: [`load`] refuses the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Every surface, merged and transformed to world units.
+    /// Every surface of triangles, merged and transformed to world units.
     pub mesh: Mesh,
-    /// Which triangles of the mesh came of what, in file order; together all of them.
+    /// Whole spheres. Where primitives are numbered, they follow the mesh's triangles.
+    pub spheres: Vec<Sphere>,
+    /// Disks, which follow the spheres.
+    pub disks: Vec<Disk>,
+    /// Which triangles, spheres and disks came of what, in file order; together all of them.
     pub parts: Vec<Part>,
     /// The meshes and material files that it was read from, beside the scene file itself.
     pub files: Vec<std::path::PathBuf>,
@@ -71,16 +83,44 @@ pub struct Scene {
     pub settings: Settings,
 }
 
-/// What one `[[mesh]]` of a scene file adds to the scene's mesh, or the bare mesh file.
+/// What one `[[mesh]]` of a scene file adds to the scene, or the bare mesh file.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Part {
     /// The file as the scene names it or the shape's word, and the material where one is named: `sphere (glass)`.
     /// Several parts may have the same name.
     pub name: String,
-    /// Where its triangles stand in [`Mesh::triangles`]; never empty.
-    pub triangles: std::ops::Range<usize>,
+    /// What it is made of; never nothing.
+    pub primitives: Primitives,
     /// Its least and its greatest corner in world units.
     pub bounds: [Vec3; 2],
+}
+
+/// What a part is made of, and where that stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Primitives {
+    /// In [`Mesh::triangles`].
+    Triangles(std::ops::Range<usize>),
+    /// In [`Scene::spheres`].
+    Spheres(std::ops::Range<usize>),
+    /// In [`Scene::disks`].
+    Disks(std::ops::Range<usize>),
+}
+
+impl Primitives {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        let (Primitives::Triangles(range) | Primitives::Spheres(range) | Primitives::Disks(range)) = self;
+        range.len()
+    }
+
+    /// What one of them is called: `triangle`, `sphere` or `disk`.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Primitives::Triangles(_) => "triangle",
+            Primitives::Spheres(_) => "sphere",
+            Primitives::Disks(_) => "disk",
+        }
+    }
 }
 
 /// An indexed triangle mesh.
@@ -99,8 +139,7 @@ pub struct Mesh {
 impl Mesh {
     /// The least and the greatest corner of the vertices, in their units; zeros where there are none.
     pub fn bounds(&self) -> [Vec3; 2] {
-        let bound = |choose: fn(Vec3, Vec3) -> Vec3| self.positions.iter().copied().reduce(choose);
-        [Vec3::min, Vec3::max].map(|choose| bound(choose).unwrap_or_default())
+        extent::of(self.positions.iter().copied())
     }
 }
 

@@ -1,24 +1,46 @@
-//! Meshes that a scene file names by their shape.
+//! Meshes of the shapes that a scene file names.
 
 use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use super::Mesh;
+use super::{Disk, Mesh, Sphere};
+use crate::math;
 
-/// A sphere: an icosahedron whose triangles are split in four `subdivisions` times, 20 * 4^n of them, with
-/// the sphere's own normals. Neighbours share their vertices, so that there is no crack.
-pub fn sphere(center: Vec3, radius: f32, subdivisions: u32) -> Mesh {
+/// Spheres: icosahedra whose triangles are split in four `steps` times, 20 * 4^n of them each, with the spheres' own
+/// normals. Neighbours share their vertices, so that there is no crack.
+pub fn spheres(spheres: &[Sphere], steps: u32) -> Mesh {
     let (mut points, mut triangles) = icosahedron();
-    for _ in 0..subdivisions {
+    for _ in 0..steps {
         triangles = split(&mut points, &triangles);
     }
-    let place = |point: &DVec3| (center.as_dvec3() + *point * f64::from(radius)).as_vec3();
-    Mesh {
-        positions: points.iter().map(place).collect(),
-        normals: points.iter().map(|point| point.as_vec3()).collect(),
-        ..flat(triangles)
-    }
+    let place = |sphere: &Sphere| {
+        let (center, radius) = (sphere.center.as_dvec3(), f64::from(sphere.radius));
+        points.iter().map(move |point| (center + *point * radius).as_vec3())
+    };
+    let normals = spheres.iter().flat_map(|_| points.iter().map(|point| point.as_vec3()));
+    let firsts = (0..spheres.len()).map(|number| (number * points.len()) as u32);
+    let shifted = firsts.flat_map(|first| triangles.iter().map(move |triangle| triangle.map(|vertex| first + vertex)));
+    Mesh { positions: spheres.iter().flat_map(place).collect(), normals: normals.collect(), ..flat(shifted.collect()) }
+}
+
+/// How many triangles and vertices [`spheres`] makes.
+pub fn spheres_size(count: usize, steps: u32) -> (usize, usize) {
+    let triangles = 20 << (2 * steps);
+    (count * triangles, count * (triangles / 2 + 2))
+}
+
+/// A disk: a fan of triangles around its center, whose corners lie on the rim.
+pub fn disk(disk: &Disk, triangles: u32) -> Mesh {
+    let (center, normal) = (disk.center.as_dvec3(), disk.normal.as_dvec3().normalize());
+    let right = normal.any_orthonormal_vector();
+    let (right, up) = (right * f64::from(disk.radius), normal.cross(right) * f64::from(disk.radius));
+    let rim = (0..triangles).map(|corner| {
+        let (sine, cosine) = math::sin_cos(std::f64::consts::TAU * f64::from(corner) / f64::from(triangles));
+        (center + right * cosine + up * sine).as_vec3()
+    });
+    let fan = (1..=triangles).map(|corner| [0, corner, corner % triangles + 1]);
+    Mesh { positions: std::iter::once(disk.center).chain(rim).collect(), ..flat(fan.collect()) }
 }
 
 /// A parallelogram or any flat convex quadrilateral, from its corners counter-clockwise.

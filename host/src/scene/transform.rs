@@ -14,6 +14,7 @@ use crate::math;
 pub struct Transform {
     linear: DMat3,
     translate: DVec3,
+    scale: DVec3,
 }
 
 impl Transform {
@@ -42,16 +43,39 @@ impl Transform {
         let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
         let about_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
         let about_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
+        let scale = scale.as_dvec3();
         Transform {
-            linear: about_z * about_y * about_x * DMat3::from_diagonal(scale.as_dvec3()),
+            linear: about_z * about_y * about_x * DMat3::from_diagonal(scale),
             translate: translate.as_dvec3(),
+            scale,
         }
+    }
+
+    /// Does a sphere stay one? It does in a mirror.
+    pub fn keeps_spheres(&self) -> bool {
+        let scale = self.scale.abs();
+        scale.x == scale.y && scale.y == scale.z
+    }
+
+    /// A place.
+    pub fn place(&self, position: Vec3) -> Vec3 {
+        (self.linear * position.as_dvec3() + self.translate).as_vec3()
+    }
+
+    /// A length in a transform that keeps spheres.
+    pub fn length(&self, length: f32) -> f32 {
+        (f64::from(length) * self.scale.x.abs()) as f32
+    }
+
+    /// A unit normal in a transform that keeps spheres; in a mirror the front stays the front.
+    pub fn normal(&self, normal: Vec3) -> Vec3 {
+        unit(self.linear * normal.as_dvec3())
     }
 
     /// Moves a mesh. A mirror turns the triangles around, so that their fronts stay outside.
     pub fn apply(&self, mesh: &mut Mesh) {
         for position in &mut mesh.positions {
-            *position = (self.linear * position.as_dvec3() + self.translate).as_vec3();
+            *position = self.place(*position);
         }
         let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.linear;
         // The cofactors are the inverse's transpose but for the length and the determinant's sign.

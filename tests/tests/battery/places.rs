@@ -29,6 +29,9 @@ fn moved(scale: f64, offset: DVec3) -> Scene {
     let mut scene = shipped("whitted");
     let place = |p: Vec3| (p.as_dvec3() * scale + offset).as_vec3();
     scene.mesh.positions.iter_mut().for_each(|p| *p = place(*p));
+    for sphere in &mut scene.spheres {
+        (sphere.center, sphere.radius) = (place(sphere.center), (f64::from(sphere.radius) * scale) as f32);
+    }
     for camera in &mut scene.cameras {
         (camera.eye, camera.target) = (place(camera.eye), place(camera.target));
     }

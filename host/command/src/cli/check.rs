@@ -11,6 +11,7 @@ use super::outline::Outline;
 use super::{console, plural, progress};
 use crate::error::Result;
 use eyerays::device_scene::DeviceScene;
+use eyerays::scene::Scene;
 use eyerays::view::View;
 
 #[derive(Args)]
@@ -33,7 +34,7 @@ impl Check {
             console::print_line(format_args!(
                 "{}: {}, {}, {}; cameras {}",
                 self.scene.display(),
-                plural(scene.mesh.triangles.len(), "triangle"),
+                primitives(&scene),
                 plural(scene.materials.len(), "material"),
                 plural(scene.lights.len(), "light"),
                 cameras.join(", ")
@@ -42,4 +43,12 @@ impl Check {
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// How many there are of every kind of primitive that the scene has.
+fn primitives(scene: &Scene) -> String {
+    let counts =
+        [(scene.mesh.triangles.len(), "triangle"), (scene.spheres.len(), "sphere"), (scene.disks.len(), "disk")];
+    let there = counts.into_iter().filter(|(count, _)| *count > 0);
+    there.map(|(count, noun)| plural(count, noun)).collect::<Vec<_>>().join(", ")
 }

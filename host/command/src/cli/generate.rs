@@ -4,39 +4,75 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::ExitCode;
 
-use clap::Args;
+use clap::builder::PossibleValue;
+use clap::{Args, ValueEnum};
 
-use super::console;
-use crate::error::Result;
-use crate::generate::{Files, Kind, Recipe};
+use super::{console, plural};
+use crate::error::{Error, Result};
+use crate::generate::{Files, Kind, Pair, Recipe, Spheres};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays generate hall --triangles 300000 -o hall.obj
   eyerays render hall.toml --camera view1 -o hall.png
   eyerays generate forest --triangles 75000 --seed 7 -o scenes/forest.obj
+  eyerays generate spheres --count 1000000 -o flake.toml
 Writes FILE.obj, its materials to FILE.mtl, and to FILE.toml a scene with lights and the cameras view1 to view5.
-The same kind, triangles and seed give the same bytes on every machine.";
+Spheres go to FILE.xyzr, with such a scene in FILE.toml.
+The same kind, number and seed give the same bytes on every machine.";
 
 #[derive(Args)]
 pub(super) struct Generate {
     /// What to make
     #[arg(value_enum)]
-    kind: Kind,
+    kind: What,
     /// Exactly so many triangles, 6000 to 20000000
-    #[arg(long, value_name = "N")]
-    triangles: u64,
-    /// Another seed gives another scene of the kind
-    #[arg(long, value_name = "S", default_value_t = 1)]
-    seed: u64,
-    /// The mesh, .obj; an .mtl and a .toml of the same name come beside it [default: KIND.obj here]
+    #[arg(long, value_name = "N", required_unless_present = "count")]
+    triangles: Option<u64>,
+    /// Exactly so many spheres, 1 to 20000000; of spheres, instead of --triangles
+    #[arg(long, value_name = "N", conflicts_with_all = ["triangles", "seed"])]
+    count: Option<u64>,
+    /// Another seed gives another scene of the kind [default: 1]
+    #[arg(long, value_name = "S")]
+    seed: Option<u64>,
+    /// The mesh, .obj; an .mtl and a .toml of the same name come beside it. Of spheres, the scene, .toml; an .xyzr comes
+    /// beside it [default: KIND.obj or spheres.toml here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<OsString>,
 }
 
+#[derive(Clone, Copy)]
+enum What {
+    Mesh(Kind),
+    Spheres,
+}
+
+impl ValueEnum for What {
+    fn value_variants<'a>() -> &'a [Self] {
+        &[What::Mesh(Kind::Hall), What::Mesh(Kind::Forest), What::Mesh(Kind::Cathedral), What::Spheres]
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        match self {
+            What::Mesh(kind) => kind.to_possible_value(),
+            What::Spheres => Some(PossibleValue::new("spheres").help("Haines' sphere flake over a disk")),
+        }
+    }
+}
+
 impl Generate {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let Generate { kind, triangles, seed, .. } = *self;
+        match (self.kind, self.triangles, self.count) {
+            (What::Mesh(kind), Some(triangles), None) => self.mesh(kind, triangles, quiet)?,
+            (What::Spheres, None, Some(count)) => self.spheres(count, quiet)?,
+            (What::Mesh(_), ..) => return Err(Error::new("--count is of spheres: give --triangles")),
+            (What::Spheres, ..) => return Err(Error::new("--triangles is of meshes: give --count")),
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    fn mesh(&self, kind: Kind, triangles: u64, quiet: bool) -> Result<()> {
+        let seed = self.seed.unwrap_or(1);
         let recipe = Recipe { kind, triangles, seed };
         recipe.check()?;
         let output = self.output.clone().unwrap_or_else(|| format!("{}.obj", kind.name()).into());
@@ -47,6 +83,18 @@ impl Generate {
             let name = kind.name();
             console::say(format_args!("{mesh}, {materials}, {scene}: {name} of {triangles} triangles, seed {seed}"));
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(())
+    }
+
+    fn spheres(&self, count: u64, quiet: bool) -> Result<()> {
+        let spheres = Spheres { count };
+        spheres.check()?;
+        let files = Pair::beside(Path::new(self.output.as_deref().unwrap_or("spheres.toml".as_ref())))?;
+        spheres.write(&files)?;
+        if !quiet {
+            let [scene, list] = files.paths().map(|path| path.display());
+            console::say(format_args!("{scene}, {list}: flake of {}", plural(count as usize, "sphere")));
+        }
+        Ok(())
     }
 }

@@ -22,20 +22,26 @@ impl<'a> Outline<'a> {
     /// The outline of a scene, whose default camera fits its image.
     pub fn of(scene: &'a Scene) -> Self {
         let (width, height) = scene.settings.size;
-        Outline { scene, camera: default_camera(&scene.mesh, f64::from(width) / f64::from(height)) }
+        Outline { scene, camera: default_camera(scene, f64::from(width) / f64::from(height)) }
     }
 
     pub fn json(&self) -> Value {
         let bounds = |[least, greatest]: [Vec3; 2]| json!([least.to_array(), greatest.to_array()]);
-        let meshes =
-            self.scene.parts.iter().map(
-                |part| json!({ "name": part.name, "triangles": part.triangles.len(), "bounds": bounds(part.bounds) }),
-            );
+        let meshes = self.scene.parts.iter().map(|part| {
+            let count = |noun| if part.primitives.noun() == noun { part.primitives.count() } else { 0 };
+            json!({
+                "name": part.name,
+                "triangles": count("triangle"),
+                "spheres": count("sphere"),
+                "disks": count("disk"),
+                "bounds": bounds(part.bounds),
+            })
+        });
         let camera = self.camera.as_ref().map(
             |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.fov }),
         );
         json!({
-            "bounds": bounds(self.scene.mesh.bounds()),
+            "bounds": bounds(self.scene.bounds()),
             "default_camera": camera,
             "meshes": meshes.collect::<Vec<_>>(),
         })
@@ -45,16 +51,16 @@ impl<'a> Outline<'a> {
 impl fmt::Display for Outline<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let range = |[least, greatest]: [Vec3; 2]| format!("{:?} to {:?}", least.to_array(), greatest.to_array());
-        writeln!(out, "bounds: {}", range(self.scene.mesh.bounds()))?;
+        writeln!(out, "bounds: {}", range(self.scene.bounds()))?;
         if let Some(Camera { eye, target, fov, .. }) = &self.camera {
             let (eye, target) = (eye.to_array(), target.to_array());
             writeln!(out, "default camera: eye = {eye:?}, target = {target:?}, fov = {fov:?}")?;
         }
         let parts = &self.scene.parts;
         for (number, part) in parts.iter().enumerate().take(MOST_MESHES) {
-            let triangles = plural(part.triangles.len(), "triangle");
+            let primitives = plural(part.primitives.count(), part.primitives.noun());
             let name = printable(&part.name);
-            writeln!(out, "mesh {}: {name}, {triangles}, {}", number + 1, range(part.bounds))?;
+            writeln!(out, "mesh {}: {name}, {primitives}, {}", number + 1, range(part.bounds))?;
         }
         match parts.len().saturating_sub(MOST_MESHES) {
             0 => Ok(()),

@@ -1,4 +1,4 @@
-//! The three files of a generated scene.
+//! The files of a generated scene.
 
 use std::ffi::OsStr;
 use std::io::{self, Write};
@@ -33,13 +33,8 @@ impl Files {
             return Err(Error::file(mesh, "the mesh is a Wavefront file: give -o a name that ends in .obj"));
         }
         let (materials, scene) = (mesh.with_extension("mtl"), mesh.with_extension("toml"));
-        let name =
-            |path: &Path| path.file_name().and_then(OsStr::to_str).filter(|name| is_plain(name)).map(str::to_owned);
-        let (Some(mesh_name), Some(materials_name)) = (name(mesh), name(&materials)) else {
-            let fault = "the scene file could not hold this name: give -o one of plain characters";
-            return Err(Error::file(mesh, fault));
-        };
-        Ok(Files { mesh: mesh.to_owned(), materials, scene, names: [mesh_name, materials_name] })
+        let names = [plain_name(mesh)?, plain_name(&materials)?];
+        Ok(Files { mesh: mesh.to_owned(), materials, scene, names })
     }
 
     /// The mesh, its materials, and the scene.
@@ -57,13 +52,7 @@ impl Files {
 
     /// Fails where [`Files::write`] would, without changing a file. What a person made is not replaced.
     pub(super) fn check_writable(&self) -> Result<()> {
-        let files = self.paths().map(|path| Destination::File(path.to_owned()));
-        output::check_apart(&files, iter::empty::<&Path>())?;
-        for (path, file) in self.paths().into_iter().zip(&files) {
-            output::check_writable(file)?;
-            output::check_own(path, COMMAND, "-o")?;
-        }
-        Ok(())
+        check_all(&self.paths())
     }
 
     /// Writes all three under temporary names and renames them once the mesh, by far the largest, is whole.
@@ -76,6 +65,74 @@ impl Files {
             })
         })
     }
+}
+
+/// Where a scene of spheres goes: the scene, and beside it their list of the same name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Pair {
+    scene: PathBuf,
+    list: PathBuf,
+    list_name: String,
+}
+
+impl Pair {
+    /// The files of a scene or of a list at `path`.
+    ///
+    /// # Errors
+    /// A name that is neither `.toml` nor `.xyzr`, or that the scene could not hold.
+    pub fn beside(path: &Path) -> Result<Self> {
+        if path == Path::new("-") {
+            return Err(Error::new("-o - can't be: a scene of spheres is two files; name a .toml file"));
+        }
+        let is = |end: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+        let (scene, list) = match (is("toml"), is("xyzr")) {
+            (true, _) => (path.to_owned(), path.with_extension("xyzr")),
+            (_, true) => (path.with_extension("toml"), path.to_owned()),
+            _ => return Err(Error::file(path, "spheres make a scene: give -o a name that ends in .toml")),
+        };
+        let list_name = plain_name(&list)?;
+        Ok(Pair { scene, list, list_name })
+    }
+
+    /// The scene and the list.
+    pub fn paths(&self) -> [&Path; 2] {
+        [&self.scene, &self.list]
+    }
+
+    pub(super) fn list_name(&self) -> &str {
+        &self.list_name
+    }
+
+    /// As [`Files::check_writable`].
+    pub(super) fn check_writable(&self) -> Result<()> {
+        check_all(&self.paths())
+    }
+
+    /// Writes both under temporary names and renames them once the list, by far the larger, is whole.
+    pub(super) fn write(&self, list: Fill, scene: Fill) -> Result<()> {
+        output::write_atomically(&self.scene, |out| {
+            filled(scene, out)?;
+            output::write_atomically(&self.list, |out| filled(list, out))
+        })
+    }
+}
+
+/// Fails where one of the files could not be written, or is not our own, without changing any.
+fn check_all(paths: &[&Path]) -> Result<()> {
+    let files: Vec<_> = paths.iter().map(|path| Destination::File(path.to_path_buf())).collect();
+    output::check_apart(&files, iter::empty::<&Path>())?;
+    for (path, file) in paths.iter().zip(&files) {
+        output::check_writable(file)?;
+        output::check_own(path, COMMAND, "-o")?;
+    }
+    Ok(())
+}
+
+/// The name of a file as another file holds it.
+fn plain_name(path: &Path) -> Result<String> {
+    let name = path.file_name().and_then(OsStr::to_str).filter(|name| is_plain(name));
+    let fault = "the scene file could not hold this name: give -o one of plain characters";
+    name.map(str::to_owned).ok_or_else(|| Error::file(path, fault))
 }
 
 /// Flushes too, so that a full disk is met before any file is renamed.

@@ -1,12 +1,14 @@
-//! Scenes to measure with, made on the spot: a hall, a forest and a cathedral of any number of triangles.
+//! Scenes to measure with, made on the spot: a hall, a forest and a cathedral of any number of triangles, and a flake of any
+//! number of spheres.
 //!
-//! They stand in for Conference, Fairy Forest and Sibenik, which are not ours to ship. The same kind, number and
+//! The first three stand in for Conference, Fairy Forest and Sibenik, which are not ours to ship. The same kind, number and
 //! seed give the same bytes on every machine, since nothing but `+ - * /` and the square root makes them.
 
 mod cathedral;
 mod circle;
 mod document;
 mod files;
+mod flake;
 mod forest;
 mod frame;
 mod hall;
@@ -15,11 +17,13 @@ mod obj;
 mod patch;
 mod random;
 mod shape;
+mod spheres;
 
 #[cfg(test)]
 mod tests;
 
-pub use files::Files;
+pub use files::{Files, Pair};
+pub use spheres::Spheres;
 
 use std::io::Write;
 

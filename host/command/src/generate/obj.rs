@@ -121,7 +121,7 @@ impl Sink for Writer<'_> {
 }
 
 /// A number with as few digits as its steps need.
-fn decimal(text: &mut String, number: f64, steps: f64) {
+pub(super) fn decimal(text: &mut String, number: f64, steps: f64) {
     let whole = (number * steps).round() as i64;
     if whole < 0 {
         text.push('-');

@@ -6,7 +6,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::budget;
-use crate::scene::{load, mtl, obj};
+use crate::scene::{load, mtl, obj, xyzr};
 
 /// Words of the format between words of no format.
 fn word() -> impl Strategy<Value = String> {
@@ -56,6 +56,20 @@ proptest! {
             prop_assert!(mesh.normals.iter().all(unit));
             let known = |&material: &u32| (material as usize) < obj.materials.len();
             prop_assert!(mesh.materials.iter().all(known));
+        }
+    }
+
+    #[test]
+    fn spheres_are_refused_or_whole(
+        numbers in prop::collection::vec("-?[0-9]{1,3} |[0-9]\\.[0-9]e-?[0-9]{1,2} |\n|\n|#|nan ", 0..60), bytes in text(),
+    ) {
+        for bytes in [numbers.concat().into_bytes(), bytes] {
+            if let Ok(spheres) = xyzr::parse(Path::new("/nowhere/a.xyzr"), &bytes[..], budget(1 << 20)) {
+                prop_assert!(!spheres.is_empty());
+                for sphere in spheres {
+                    prop_assert!(sphere.radius > 0.0 && sphere.bounds().iter().all(|corner| corner.is_finite()));
+                }
+            }
         }
     }
 

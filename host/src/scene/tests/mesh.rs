@@ -6,10 +6,31 @@ use glam::Vec3;
 
 use super::{Folder, TRIANGLE};
 use crate::scene::transform::Transform;
-use crate::scene::{Mesh, Scene, default_camera, normal, shape};
+use crate::scene::{Background, Mesh, Scene, Settings, Sphere, default_camera, normal, shape};
 
 fn corners(mesh: &Mesh, triangle: [u32; 3]) -> [Vec3; 3] {
     triangle.map(|vertex| mesh.positions[vertex as usize])
+}
+
+fn sphere(center: Vec3, radius: f32, steps: u32) -> Mesh {
+    shape::spheres(&[Sphere { center, radius, material: 0 }], steps)
+}
+
+/// A scene of nothing else.
+fn of_mesh(mesh: Mesh) -> Scene {
+    Scene {
+        mesh,
+        spheres: Vec::new(),
+        disks: Vec::new(),
+        parts: Vec::new(),
+        files: Vec::new(),
+        materials: Vec::new(),
+        lights: Vec::new(),
+        cameras: Vec::new(),
+        background: Background::Colour(Vec3::ZERO),
+        ambient: Vec3::ZERO,
+        settings: Settings::default(),
+    }
 }
 
 /// Every edge once each way: no crack, and all triangles turn the same way.
@@ -37,7 +58,7 @@ fn assert_outward(mesh: &Mesh, center: Vec3) {
 fn a_sphere_is_closed_outward_and_round() {
     let center = Vec3::new(1.0, -2.0, 3.0);
     for subdivisions in [0, 1, 4] {
-        let ball = shape::sphere(center, 2.0, subdivisions);
+        let ball = sphere(center, 2.0, subdivisions);
         assert_eq!(ball.triangles.len(), 20 << (2 * subdivisions));
         assert_closed(&ball);
         assert_outward(&ball, center);
@@ -83,7 +104,7 @@ fn a_transform_scales_then_turns_then_moves() {
 #[test]
 fn a_mirror_keeps_the_outside_out_and_a_stretch_keeps_normals_upright() {
     for scale in [Vec3::new(-1.0, 1.0, 1.0), Vec3::splat(-2.0), Vec3::new(1.0, 2.0, 0.5)] {
-        let mut ball = shape::sphere(Vec3::ZERO, 1.0, 4);
+        let mut ball = sphere(Vec3::ZERO, 1.0, 4);
         Transform::new(scale, Vec3::new(10.0, 20.0, 30.0), Vec3::ONE).apply(&mut ball);
         assert_closed(&ball);
         assert_outward(&ball, Vec3::ONE);
@@ -136,8 +157,8 @@ fn smooth_decides_over_a_file_s_normals() {
 #[test]
 fn the_framing_camera_sees_every_vertex() {
     for (at, radius, aspect) in [(0.0, 1.0, 1.0), (1e3, 0.5, 2.0), (-5.0, 1e6, 0.4), (0.0, 1e-6, 1.0)] {
-        let ball = shape::sphere(Vec3::splat(at), radius, 3);
-        let camera = default_camera(&ball, aspect).unwrap();
+        let ball = sphere(Vec3::splat(at), radius, 3);
+        let camera = default_camera(&of_mesh(ball.clone()), aspect).unwrap();
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
@@ -159,6 +180,6 @@ fn the_framing_camera_sees_every_vertex() {
 #[test]
 fn a_mesh_of_one_place_is_framed() {
     let dot = Mesh { positions: vec![Vec3::splat(7.0)], ..Mesh::default() };
-    let camera = default_camera(&dot, 1.0).unwrap();
+    let camera = default_camera(&of_mesh(dot), 1.0).unwrap();
     assert_ne!(camera.eye, camera.target);
 }

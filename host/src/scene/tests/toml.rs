@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
-use crate::scene::{Background, Light, Scene, Settings};
+use crate::scene::{Background, Light, Primitives, Scene, Settings};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
@@ -22,6 +22,7 @@ fn the_documented_example_loads_as_documented() {
     let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["floor", "glass", "mirror", "default"]);
     assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 12 + 6);
+    assert_eq!((scene.spheres.len(), scene.disks.len()), (1 + 3, 1));
     assert_eq!(scene.mesh.materials.len(), scene.mesh.triangles.len());
     assert_eq!(scene.mesh.normals.len(), scene.mesh.positions.len());
     assert_eq!(scene.settings.size, (640, 480));
@@ -232,14 +233,14 @@ fn every_mesh_is_a_part_with_its_name_its_triangles_and_its_bounds() {
     let (scene, _) = load(&scene);
     let names: Vec<_> = scene.parts.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["sphere", "a.obj (default)", "box"]);
-    let ranges: Vec<_> = scene.parts.iter().map(|part| part.triangles.clone()).collect();
-    assert_eq!(ranges, [0..20, 20..21, 21..33]);
+    let ranges: Vec<_> = scene.parts.iter().map(|part| part.primitives.clone()).collect();
+    assert_eq!(ranges, [0..20, 20..21, 21..33].map(Primitives::Triangles));
     assert_eq!(scene.parts[1].bounds, [Vec3::new(-1.0, -1.0, 9.0), Vec3::new(0.0, 0.0, 9.0)]);
     assert_eq!(scene.parts[2].bounds, [Vec3::new(0.0, 1.0, 2.0), Vec3::new(3.0, 4.0, 5.0)]);
     let folder = Folder::new(&[("a.obj", TRIANGLE)]);
     let (bare, _) = folder.load("a.obj").unwrap();
-    assert_eq!((bare.parts[0].name.as_str(), bare.parts[0].triangles.clone()), ("a.obj", 0..1));
-    assert_eq!(bare.cameras, [crate::scene::default_camera(&bare.mesh, 1.0).unwrap()]);
+    assert_eq!((bare.parts[0].name.as_str(), bare.parts[0].primitives.clone()), ("a.obj", Primitives::Triangles(0..1)));
+    assert_eq!(bare.cameras, [crate::scene::default_camera(&bare, 1.0).unwrap()]);
 }
 
 #[test]

@@ -1,0 +1,76 @@
+//! The files that the `[[mesh]]` tables of a scene name.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use super::budget::Budget;
+use super::obj::{self, Obj};
+use super::table::Table;
+use super::{Sphere, file, xyzr};
+use crate::error::Result;
+
+/// Files already read, since a scene may place one many times, and what is left of the memory for others.
+pub struct Files<'p> {
+    folder: &'p Path,
+    /// What is left for the geometry that is not placed yet.
+    pub budget: Budget,
+    meshes: HashMap<PathBuf, Obj>,
+    spheres: HashMap<PathBuf, Vec<Sphere>>,
+    /// What was ignored in them.
+    pub warnings: Vec<String>,
+    /// Every file that was read, material files too.
+    pub paths: Vec<PathBuf>,
+}
+
+impl<'p> Files<'p> {
+    /// The files that a scene in `folder` names, all within the budget.
+    pub fn new(folder: &'p Path, budget: Budget) -> Self {
+        let (meshes, spheres) = (HashMap::new(), HashMap::new());
+        Files { folder, budget, meshes, spheres, warnings: Vec::new(), paths: Vec::new() }
+    }
+
+    /// Where the file of a table's key `file` lies.
+    ///
+    /// # Errors
+    /// There is no file that can be read.
+    pub fn place(&self, table: &Table, name: &str) -> Result<PathBuf> {
+        let path = self.folder.join(name);
+        // What is wrong with the name is the scene's fault, what is in the file is the file's.
+        file::open(&path, file::MOST_MESH)
+            .map_err(|fault| table.fault_of("file", format!("{}: {fault}", path.display())))?;
+        Ok(path)
+    }
+
+    /// A mesh.
+    ///
+    /// # Errors
+    /// Those of [`obj::load`].
+    pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
+        if !self.meshes.contains_key(path) {
+            let mut obj = obj::load(path, self.budget)?;
+            self.warnings.append(&mut obj.warnings);
+            self.paths.push(path.to_owned());
+            self.paths.append(&mut obj.libraries);
+            self.meshes.insert(path.to_owned(), obj);
+        }
+        Ok(&self.meshes[path])
+    }
+
+    /// Spheres.
+    ///
+    /// # Errors
+    /// Those of [`xyzr::load`].
+    pub fn spheres(&mut self, path: &Path) -> Result<&[Sphere]> {
+        if !self.spheres.contains_key(path) {
+            let spheres = xyzr::load(path, self.budget)?;
+            self.paths.push(path.to_owned());
+            self.spheres.insert(path.to_owned(), spheres);
+        }
+        Ok(&self.spheres[path])
+    }
+}
+
+/// Does the path end like this, in capitals or not?
+pub fn is(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension))
+}

@@ -16,7 +16,8 @@ pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError>
     if primitives == 0 {
         return Err(BuildError::NoPrimitives);
     }
-    let mut walk = Walk { nodes, bounds, pairs: Once::new(nodes.len()), slots: Once::new(primitives), open: Vec::new() };
+    let mut walk =
+        Walk { nodes, bounds, pairs: Once::new(nodes.len()), slots: Once::new(primitives), open: Vec::new() };
     walk.enter(0, NodeRef::ROOT, 0)?;
     while let Some((pair, level)) = walk.open.pop() {
         for (bounds, reference) in children(&nodes[pair as usize]) {

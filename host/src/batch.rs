@@ -23,10 +23,11 @@ pub struct Ray {
 pub struct Hit {
     /// The distance from the ray's origin, in the scene's units.
     pub distance: f64,
-    /// The triangle's number in [`crate::scene::Mesh::triangles`].
-    pub triangle: u32,
-    /// Barycentric weights of the triangle's second and third vertex.
-    pub weights: [f32; 2],
+    /// The primitive's number in the scene: its triangles' first, then its spheres', then its disks'.
+    pub primitive: u32,
+    /// Where on it: barycentric weights of a triangle's second and third vertex, octahedral coordinates of a sphere's normal,
+    /// or a disk's coordinates along two tangents, in radii.
+    pub coordinates: [f32; 2],
 }
 
 /// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
@@ -86,9 +87,9 @@ impl Batch {
     }
 
     fn hit(&self, packed: &DeviceScene, record: UVec4, moved: f64) -> Option<Hit> {
-        let triangle = packed.primitives().get(record.w as usize)?.primitive();
+        let primitive = packed.primitives().get(record.w as usize)?.number();
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
-        Some(Hit { distance: moved + f64::from(t) / self.scale, triangle, weights: [u, v] })
+        Some(Hit { distance: moved + f64::from(t) / self.scale, primitive, coordinates: [u, v] })
     }
 }
 
@@ -141,7 +142,7 @@ mod tests {
             let (hit, height) = (hit.expect("the floor is below"), f64::from(ray.origin.y - bottom));
             assert!((hit.distance - height).abs() <= 1e-6 * height, "{height}: {hit:?}");
             assert!(
-                scene.mesh.triangles[hit.triangle as usize]
+                scene.mesh.triangles[hit.primitive as usize]
                     .iter()
                     .all(|&v| scene.mesh.positions[v as usize].y == bottom)
             );

@@ -15,7 +15,11 @@ fn is(effects: Effects, light: &Light, feature: u32, kind: u32) -> bool {
 
 /// Where a shadow ray starts, its unit direction and its limit.
 #[inline(always)]
-pub fn ray_to_light<R: Scalar>(effects: Effects, light: &Light, interaction: &SurfaceInteraction<R>) -> (V3<R>, V3<R>, R) {
+pub fn ray_to_light<R: Scalar>(
+    effects: Effects,
+    light: &Light,
+    interaction: &SurfaceInteraction<R>,
+) -> (V3<R>, V3<R>, R) {
     let place = V3::<R>::splat(numbers(light.position));
     if is(effects, light, Effects::DIRECTIONAL, Light::DIRECTIONAL) {
         (interaction.offset_ray_origin(place), place, R::splat(f32::MAX))

@@ -4,7 +4,7 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Specialisation, Primitive,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Primitive, Specialisation,
     numbers,
 };
 use glam::{UVec4, Vec3};

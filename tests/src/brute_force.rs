@@ -1,12 +1,11 @@
-//! A test of every triangle, with no hierarchy and no box but the triangles' own.
+//! A test of every primitive, with no hierarchy and no box but the primitives' own.
 
 use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::method::Traversal;
 use eyerays::stream::{Stream, StreamRay};
-use eyerays_shader::data::NodeRef;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{F32xN, Scalar, U32xN, V3};
-use eyerays_shader::traverse::{Closest, step};
+use eyerays_shader::traverse::{Closest, Leaf, Primitives};
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
@@ -28,11 +27,11 @@ pub fn brute_force(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
         let packet = Ray::leaving(source_primitive, vector(&|r| r.origin), vector(&|r| r.direction));
         let mut hit = Hit::none(F32xN(std::array::from_fn(|i| ray(i).limit)));
         for slot in 0..packed.primitives().len() as u32 {
-            step::triangle::<Closest, F32xN<LANES>>(&geometry, NodeRef::leaf(slot, 1), &packet, &mut hit);
+            Primitives::intersect::<Closest, F32xN<LANES>>(&geometry, slot, &packet, &mut hit);
         }
         (0..LANES.min(stream.len() - start)).map(move |i| {
-            let hit = hit.lane(i);
-            let (u, v) = hit.weights();
+            let hit = hit.lane::<f32>(i);
+            let (u, v) = hit.coordinates();
             [hit.t.to_bits(), u.to_bits(), v.to_bits(), hit.primitive]
         })
     });
@@ -48,16 +47,16 @@ pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<F
         let ray = Ray::<R>::leaving(R::index(source_primitive), V3::splat(origin), V3::splat(direction));
         let mut hit = Hit::none(R::splat(limit));
         for slot in 0..packed.primitives().len() as u32 {
-            step::triangle::<Closest, R>(&geometry, NodeRef::leaf(slot, 1), &ray, &mut hit);
+            Primitives::intersect::<Closest, R>(&geometry, slot, &ray, &mut hit);
         }
-        let (u, v) = hit.weights();
+        let (u, v) = hit.coordinates();
         [hit.t.to_f32().to_bits(), u.to_f32().to_bits(), v.to_f32().to_bits(), hit.primitive]
     });
     found.collect()
 }
 
-/// A hit as a traversal returns it: a split triangle may be met at any of its slots.
+/// A hit as a traversal returns it: a split triangle may be met at any of its places.
 pub fn found(packed: &DeviceScene, hit: UVec4) -> Found {
-    let primitive = packed.primitives().get(hit.w as usize).map_or(hit.w, |triangle| triangle.primitive());
+    let primitive = packed.primitives().get(hit.w as usize).map_or(hit.w, |primitive| primitive.number());
     [hit.x, hit.y, hit.z, primitive]
 }

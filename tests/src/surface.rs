@@ -112,6 +112,6 @@ impl Surface {
 pub fn triangles(packed: &DeviceScene) -> Vec<Primitive> {
     let mut triangles = packed.primitives().to_vec();
     triangles.sort_by_key(Primitive::number);
-    triangles.dedup_by_key(|triangle| triangle.primitive());
+    triangles.dedup_by_key(|triangle| triangle.number());
     triangles
 }

@@ -42,8 +42,8 @@ fn rays(packed: &DeviceScene) -> Stream {
     let count = std::env::var("EYERAYS_RAYS").map_or(RAYS, |n| n.parse().expect("a number of rays"));
     // In the scene's order, which no hierarchy changes.
     let mut triangles = packed.primitives().to_vec();
-    triangles.sort_by_key(|t| t.primitive());
-    triangles.dedup_by_key(|t| t.primitive());
+    triangles.sort_by_key(|t| t.number());
+    triangles.dedup_by_key(|t| t.number());
     let vertices: Vec<Vec3> = triangles.iter().flat_map(|t| t.vertices()).collect();
     let (least, greatest) =
         vertices.iter().fold((Vec3::ONE, -Vec3::ONE), |(least, greatest), v| (least.min(*v), greatest.max(*v)));

@@ -41,7 +41,7 @@ fn stream() -> Stream {
 fn settled(packed: &DeviceScene, answers: Answers) -> Vec<[u32; 4]> {
     match answers {
         Answers::Closest(hits) => {
-            let primitive = |slot: u32| packed.primitives().get(slot as usize).map_or(slot, |t| t.primitive());
+            let primitive = |slot: u32| packed.primitives().get(slot as usize).map_or(slot, |t| t.number());
             hits.iter().map(|hit| [hit.x, hit.y, hit.z, primitive(hit.w)]).collect()
         }
         Answers::Occlusion(answers) => answers.iter().map(|&answer| [answer, 0, 0, 0]).collect(),

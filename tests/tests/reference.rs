@@ -61,13 +61,13 @@ impl Log<'_> {
         }
         let packed = self.packed;
         let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
-        let triangle = &geometry.triangle(primitive_index);
-        let contact = SurfaceInteraction::new(triangle, hit.y, hit.z, path.direction);
+        let triangle = &geometry.primitive(primitive_index);
+        let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, (hit.y, hit.z), path.direction);
         let surface =
             Surface::new(geometry.base.spec.effects, &looks, primitive_index, triangle, path.direction, &contact);
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
-        story.events.extend([triangle.primitive(), u32::from(contact.front)]);
+        story.events.extend([triangle.number(), u32::from(contact.front)]);
         story.events.extend(cell);
         for (light, index) in packed.lights().iter().zip(0..) {
             let answer = records.shadows[(index * geometry.base.frame.slots + slot) as usize];

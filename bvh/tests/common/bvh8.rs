@@ -73,7 +73,10 @@ impl Walk<'_> {
         if !child.is_leaf() {
             return self.node(child.index(), depth + 1);
         }
-        assert!(!std::mem::replace(&mut self.blocks[child.kind() as usize][child.index()], true), "a leaf is met twice");
+        assert!(
+            !std::mem::replace(&mut self.blocks[child.kind() as usize][child.index()], true),
+            "a leaf is met twice"
+        );
         let slots = match child.kind() {
             LeafKind::Triangles => self.triangles(&self.bvh8.triangles[child.index()]),
             LeafKind::Spheres => self.spheres(&self.bvh8.spheres[child.index()]),

@@ -6,7 +6,8 @@ use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, FACES_AWAY, Segment, ShadowInputs};
 use eyerays_shader::traverse::{
-    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Packet, Sequential, Speculative, StackMax, Together, WhileWhile,
+    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Packet, Primitives, Sequential, Speculative, StackMax, Together,
+    WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 
@@ -85,12 +86,12 @@ fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &TraceContext<'_>, sl
     match job {
         Job::Trace(paths, hits) => {
             for (&slot, hit) in slots.iter().zip(hits) {
-                *hit = stage::trace::<R, M>(geometry, slot, paths);
+                *hit = stage::trace::<R, M, Primitives>(geometry, slot, paths);
             }
         }
         Job::Shadow(asking, light, answers) => {
             for (&slot, answer) in slots.iter().zip(answers) {
-                *answer = stage::shadow::<R, M>(geometry, asking, slot, light);
+                *answer = stage::shadow::<R, M, Primitives>(geometry, asking, slot, light);
             }
         }
     }
@@ -120,7 +121,9 @@ impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
                 for (slots, hits) in slots.chunks(most).zip(hits.chunks_mut(most)) {
                     segments.clear();
                     segments.extend(slots.iter().map(|&slot| stage::traced::<R>(&geometry, slot, paths)));
-                    stage::trace_together::<R, V::Packet, M>(&geometry, &segments, |i, record| hits[i] = record);
+                    stage::trace_together::<R, V::Packet, M, Primitives>(&geometry, &segments, |i, record| {
+                        hits[i] = record
+                    });
                 }
             }
             Job::Shadow(asking, light, answers) => {
@@ -142,7 +145,7 @@ impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
                     }
                     if !segments.is_empty() {
                         let keep = |i: usize, answer| *places[i] = answer;
-                        stage::shadow_together::<R, V::Packet, M>(&geometry, &segments, keep);
+                        stage::shadow_together::<R, V::Packet, M, Primitives>(&geometry, &segments, keep);
                     }
                 }
             }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    Normals, Specialisation, Primitive,
+    Normals, Primitive, Specialisation,
 };
 
 mod check;
@@ -18,7 +18,7 @@ mod words;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
 pub use view::SceneView;
-pub use words::{NodeWords, TriangleWords};
+pub use words::{NodeWords, PrimitiveWords};
 
 use crate::error::{Error, Result};
 use crate::method::Traversal;
@@ -32,7 +32,7 @@ const SPLIT_BUDGET: f32 = 0.3;
 pub struct DeviceScene {
     nodes: Vec<CentredPair>,
     wide: Vec<CwbvhNode>,
-    triangles: Vec<Primitive>,
+    primitives: Vec<Primitive>,
     bounds: Vec<Bounds>,
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
@@ -58,19 +58,18 @@ impl DeviceScene {
         check::settings(&settings)?;
         let effects = records::effects(scene);
         // The cells of a checkerboard are counted from the world's origin.
-        let positions = scene.mesh.positions.iter().copied();
-        let normalisation = Normalisation::of(positions, !effects.has(Effects::CHECKER));
-        let triangles = records::triangles(scene, &normalisation);
+        let normalisation = Normalisation::of(scene.extremes(), !effects.has(Effects::CHECKER));
+        let primitives = records::primitives(scene, &normalisation);
         let start = Instant::now();
         let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
-        let references = eyerays_bvh::split(&triangles, SPLIT_BUDGET).map_err(refused)?;
-        let is_split = references.list.len() > triangles.len();
+        let references = eyerays_bvh::split(&primitives, SPLIT_BUDGET).map_err(refused)?;
+        let is_split = references.list.len() > primitives.len();
         let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
         Ok(DeviceScene {
-            statistics: Statistics::of(&bvh, &triangles),
-            triangles: bvh.gather(&triangles),
+            statistics: Statistics::of(&bvh, &primitives),
+            primitives: bvh.gather(&primitives),
             normals: if effects.has(Effects::SMOOTH) { bvh.gather(&records::normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes.iter().map(CentredPair::from).collect(),
             wide: bvh.wide,
@@ -98,15 +97,15 @@ impl DeviceScene {
 
     /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
     pub fn bvh8(&self) -> &Bvh8 {
-        self.bvh8.get_or_init(|| Bvh8::of(&self.nodes, &self.triangles, &self.bounds))
+        self.bvh8.get_or_init(|| Bvh8::of(&self.nodes, &self.primitives, &self.bounds))
     }
 
-    /// Triangles by slot, in the normalised scene; a split one has several slots.
-    pub fn triangles(&self) -> &[Primitive] {
-        &self.triangles
+    /// Primitives in leaf order, in the normalised scene; a split triangle has several places.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
     }
 
-    /// Bounds by slot; empty unless triangles are split.
+    /// Bounds in leaf order; empty unless triangles are split.
     pub fn bounds(&self) -> &[Bounds] {
         &self.bounds
     }
@@ -196,7 +195,7 @@ impl DeviceScene {
 
     /// The record of a launch that follows `count` rays of a stream.
     pub fn stream_frame(&self, count: usize) -> Frame {
-        Frame { slots: count as u32, vertices: self.triangles.len() as u32, ..Frame::default() }
+        Frame { slots: count as u32, vertices: self.primitives.len() as u32, ..Frame::default() }
     }
 
     /// Every launch's record but for what a view says.
@@ -213,7 +212,7 @@ impl DeviceScene {
             min_contribution: self.settings.min_contribution,
             lights,
             shadow_rays: lights,
-            vertices: self.triangles.len() as u32,
+            vertices: self.primitives.len() as u32,
             ..Frame::default()
         }
     }

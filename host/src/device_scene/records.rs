@@ -1,7 +1,7 @@
 //! The records of a scene's parts.
 
 use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Primitive, pack};
-use glam::Vec3;
+use glam::{UVec4, Vec3};
 
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
@@ -9,7 +9,7 @@ use crate::math;
 use crate::scene::{Background, Light, Material, Scene, Settings};
 
 /// A colour and an integer.
-pub(super) fn colour(c: Vec3, word: u32) -> glam::UVec4 {
+pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
     pack(flushed(c), word)
 }
 
@@ -35,6 +35,8 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::DIRECTIONAL, scene.lights.iter().any(|l| matches!(l, Light::Directional { .. })));
     ask(Effects::SPECULAR, lit && used(&|m| m.specular != Vec3::ZERO));
     ask(Effects::LIT, lit);
+    ask(Effects::SPHERE, !scene.spheres.is_empty());
+    ask(Effects::DISK, !scene.disks.is_empty());
     ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
     Effects(bits)
 }
@@ -43,22 +45,40 @@ fn is_transparent(m: &Material) -> bool {
     m.transmission != Vec3::ZERO
 }
 
-/// Its triangles in the normalised scene.
-pub(super) fn triangles(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
+/// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
+pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
-    let records = mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), primitive)| {
-        let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-        let flags = if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
-        Primitive::triangle(vertices, primitive, material, flags)
-    });
-    records.collect()
+    let flags = |material: u32| if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
+    let length = |radius: f32| (f64::from(radius) * normalisation.scale) as f32;
+    let mut numbers = 0..;
+    let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
+    records.extend(mesh.triangles.iter().zip(&mesh.materials).zip(&mut numbers).map(
+        |((corners, &material), number)| {
+            let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
+            Primitive::triangle(vertices, number, material, flags(material))
+        },
+    ));
+    // Numbers are taken only where there is something to number.
+    let mut numbers = records.len() as u32..;
+    records.extend(scene.spheres.iter().zip(&mut numbers).map(|(sphere, number)| {
+        let (centre, material) = (normalisation.place(sphere.center), sphere.material);
+        Primitive::sphere(centre, length(sphere.radius), number, material, flags(material))
+    }));
+    let numbers = records.len() as u32..;
+    records.extend(scene.disks.iter().zip(numbers).map(|(disk, number)| {
+        let (centre, material) = (normalisation.place(disk.center), disk.material);
+        Primitive::disk(centre, unit(disk.normal), length(disk.radius), number, material, flags(material))
+    }));
+    records
 }
 
-/// Its vertex normals by triangle.
+/// Its vertex normals by primitive; what is no triangle has none.
 pub(super) fn normals(scene: &Scene) -> Vec<Normals> {
     let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
-    scene.mesh.triangles.iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) }).collect()
+    let none = Normals { a: UVec4::ZERO, b: UVec4::ZERO, c: UVec4::ZERO };
+    let of_triangles = scene.mesh.triangles.iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) });
+    of_triangles.chain(std::iter::repeat_n(none, scene.spheres.len() + scene.disks.len())).collect()
 }
 
 /// A material's record.

@@ -6,7 +6,7 @@ use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::scene::{LaunchContext, TraceContext};
 
-use super::{DeviceScene, NodeWords, TriangleWords};
+use super::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::Result;
 use crate::method::{Method, Traversal};
 use crate::scene::Light;
@@ -18,7 +18,7 @@ pub struct SceneView<'a> {
     /// How its rays are followed.
     pub traversal: Traversal,
     nodes: NodeWords<'a>,
-    triangles: TriangleWords<'a>,
+    primitives: PrimitiveWords<'a>,
     bvh8: Bvh8View<'a>,
     lights: Cow<'a, [LightRecord]>,
 }
@@ -26,12 +26,13 @@ pub struct SceneView<'a> {
 impl<'a> SceneView<'a> {
     /// Lays out what the traversal does not take as it is packed.
     pub fn new(packed: &'a DeviceScene, traversal: Traversal) -> Self {
-        let (nodes, triangles) = (NodeWords::of(packed, traversal.layout), TriangleWords::of(packed, traversal.layout));
+        let (nodes, primitives) =
+            (NodeWords::of(packed, traversal.layout), PrimitiveWords::of(packed, traversal.layout));
         let bvh8 = match traversal.method {
             Method::Auto | Method::Wide => packed.bvh8().borrow(),
             _ => Bvh8View::default(),
         };
-        SceneView { packed, traversal, nodes, triangles, bvh8, lights: Cow::Borrowed(packed.lights()) }
+        SceneView { packed, traversal, nodes, primitives, bvh8, lights: Cow::Borrowed(packed.lights()) }
     }
 
     /// Lights in file order.
@@ -56,7 +57,7 @@ impl<'a> SceneView<'a> {
     /// The scene for a launch by a kernel that is compiled for `spec`.
     pub fn context<'g>(&'g self, frame: &'g Frame, spec: Specialisation) -> TraceContext<'g> {
         TraceContext {
-            base: LaunchContext { frame, spec, triangles: &self.triangles.0 },
+            base: LaunchContext { frame, spec, primitives: &self.primitives.0 },
             nodes: &self.nodes.0,
             wide: self.packed.wide(),
             bvh8: self.bvh8,

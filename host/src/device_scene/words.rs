@@ -1,4 +1,4 @@
-//! Triangles and nodes as kernels load them.
+//! Primitives and nodes as kernels load them.
 
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -9,15 +9,15 @@ use glam::UVec4;
 use super::DeviceScene;
 use crate::method::Layout;
 
-/// The words of all triangles in one of their layouts, see [`eyerays_shader::scene::LaunchContext::triangle`].
-pub struct TriangleWords<'a>(pub Cow<'a, [UVec4]>);
+/// The words of all primitives in one of their layouts, see [`eyerays_shader::scene::LaunchContext::primitive`].
+pub struct PrimitiveWords<'a>(pub Cow<'a, [UVec4]>);
 
-impl<'a> TriangleWords<'a> {
-    /// The triangles of a scene.
+impl<'a> PrimitiveWords<'a> {
+    /// The primitives of a scene.
     pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
-        TriangleWords(match layout {
-            Layout::Gathered | Layout::Compact => Cow::Borrowed(bytemuck::cast_slice(&packed.triangles)),
-            Layout::Indexed => Cow::Owned(indexed(&packed.triangles)),
+        PrimitiveWords(match layout {
+            Layout::Gathered | Layout::Compact => Cow::Borrowed(bytemuck::cast_slice(&packed.primitives)),
+            Layout::Indexed => Cow::Owned(indexed(&packed.primitives)),
         })
     }
 }
@@ -38,22 +38,23 @@ impl<'a> NodeWords<'a> {
     }
 }
 
-/// A word of three vertices' numbers and the primitive for each triangle, then the vertices, each with its
-/// triangles' material and flag: corners that share both and their place are one.
-fn indexed(triangles: &[Primitive]) -> Vec<UVec4> {
+/// A word of three vertices' numbers and the primitive's for each primitive, then the vertices, each with its primitives'
+/// material and flags: corners that share both and their place are one. The numbers of a sphere or a disk lie as three
+/// vertices would.
+fn indexed(primitives: &[Primitive]) -> Vec<UVec4> {
     let mut numbers = HashMap::new();
-    let mut words = Vec::with_capacity(2 * triangles.len());
+    let mut words = Vec::with_capacity(2 * primitives.len());
     let mut vertices = Vec::new();
-    for t in triangles {
-        let clear = if t.is_transparent() { Primitive::CLEAR_VERTEX } else { 0 };
-        let corner = [t.a, t.b, t.c].map(|corner| {
-            let vertex = corner.truncate().extend(t.material() | clear);
+    for p in primitives {
+        let beside = p.material() | p.c.w << Primitive::FLAGS_SHIFT;
+        let corner = [p.a, p.b, p.c].map(|corner| {
+            let vertex = corner.truncate().extend(beside);
             *numbers.entry(vertex).or_insert_with(|| {
                 vertices.push(vertex);
                 vertices.len() as u32 - 1
             })
         });
-        words.push(UVec4::new(corner[0], corner[1], corner[2], t.primitive()));
+        words.push(UVec4::new(corner[0], corner[1], corner[2], p.number()));
     }
     words.extend(vertices);
     words

@@ -95,7 +95,7 @@ mod tests {
     /// All of them have lights, smooth normals, and glass or mirrors that send rays on.
     #[test]
     fn every_shipped_scene_has_exactly_these_kernels_and_buffers() {
-        let all = ["hierarchy", "triangles", "normals", "materials", "lights"];
+        let all = ["hierarchy", "primitives", "normals", "materials", "lights"];
         let waves = ["paths", "hits", "shadows", "sums", "queue", "next queue"];
         for name in ["cornell", "whitted", "glass", "lights"] {
             let cost = cost(&shipped(name));

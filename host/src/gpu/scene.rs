@@ -4,7 +4,7 @@ use eyerays_shader::data::Effects;
 use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::device::Gpu;
-use crate::device_scene::{DeviceScene, NodeWords, TriangleWords};
+use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
 use crate::method::Layout;
 use crate::plan::Plan;
@@ -13,7 +13,7 @@ use crate::plan::Plan;
 pub(super) struct SceneRecords<'a> {
     packed: &'a DeviceScene,
     nodes: Option<NodeWords<'a>>,
-    triangles: TriangleWords<'a>,
+    primitives: PrimitiveWords<'a>,
     wide: bool,
 }
 
@@ -21,7 +21,7 @@ impl<'a> SceneRecords<'a> {
     /// A scene in one of its layouts. A hierarchy that no method walks is left out.
     pub fn new(packed: &'a DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Self {
         let nodes = hierarchies.binary.then(|| NodeWords::of(packed, layout));
-        SceneRecords { packed, nodes, triangles: TriangleWords::of(packed, layout), wide: hierarchies.wide }
+        SceneRecords { packed, nodes, primitives: PrimitiveWords::of(packed, layout), wide: hierarchies.wide }
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
@@ -32,7 +32,7 @@ impl<'a> SceneRecords<'a> {
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
             (binding::WIDE, bytemuck::cast_slice(wide)),
-            (binding::TRIANGLES, bytemuck::cast_slice(&self.triangles.0)),
+            (binding::PRIMITIVES, bytemuck::cast_slice(&self.primitives.0)),
             (binding::BOUNDS, bytemuck::cast_slice(packed.bounds())),
             (binding::NORMALS, bytemuck::cast_slice(normals)),
             (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),

@@ -89,12 +89,12 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
     assert_eq!(bindings("exact::advance", effects(0)), [COUNTERS, ARGUMENTS]);
     assert_eq!(bindings("exact::gather", effects(0)), [FRAME, SUMS, FILM]);
-    assert_eq!(bindings("exact::if_if::trace", effects(0)), [FRAME, NODES, TRIANGLES, HITS]);
-    assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, TRIANGLES, HITS, BOUNDS]);
-    let further = [FRAME, NODES, TRIANGLES, PATHS, HITS, QUEUE, COUNTERS];
+    assert_eq!(bindings("exact::if_if::trace", effects(0)), [FRAME, NODES, PRIMITIVES, HITS]);
+    assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, PRIMITIVES, HITS, BOUNDS]);
+    let further = [FRAME, NODES, PRIMITIVES, PATHS, HITS, QUEUE, COUNTERS];
     assert_eq!(bindings("exact::if_if::trace", effects(0).with_launch(Launch::SECONDARY)), further);
-    assert_eq!(bindings("exact::shade", effects(0)), [FRAME, TRIANGLES, MATERIALS, HITS, SUMS]);
-    let lit = [FRAME, TRIANGLES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
+    assert_eq!(bindings("exact::shade", effects(0)), [FRAME, PRIMITIVES, MATERIALS, HITS, SUMS]);
+    let lit = [FRAME, PRIMITIVES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
     assert_eq!(bindings("exact::shade", effects(Effects::SMOOTH | Effects::LIT)), lit);
 }
 

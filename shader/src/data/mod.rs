@@ -9,17 +9,17 @@ mod compact;
 mod cwbvh;
 mod frame;
 mod node;
+mod primitive;
 mod shading;
 mod specialisation;
-mod primitive;
 
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
 pub use frame::{Frame, Lens};
 pub use node::{CentredPair, NodePair, NodeRef};
+pub use primitive::{Bounds, Primitive};
 pub use shading::{Light, Material, Normals};
 pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
-pub use primitive::{Bounds, Primitive};
 
 use glam::{UVec4, Vec3};
 

@@ -9,8 +9,8 @@ use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
 use crate::stage::{self, ShadowInputs};
 use crate::traverse::{
-    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative, StackMax,
-    WhileWhile,
+    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative,
+    StackMax, WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, append, take};
 use glam::{UVec3, UVec4};

@@ -44,8 +44,7 @@ pub fn intersect_disk<R: Real>(
     let (zero, slope) = (R::splat(0.0), dot(normal, direction));
     let parallel = slope.eq(zero);
     let t = -dot(normal, from).div(R::select(parallel, R::splat(1.0), slope));
-    let (i, j, k) =
-        (t.product_and_rest(direction.x), t.product_and_rest(direction.y), t.product_and_rest(direction.z));
+    let (i, j, k) = (t.product_and_rest(direction.x), t.product_and_rest(direction.y), t.product_and_rest(direction.z));
     let place = from + V3::new(i.0, j.0, k.0) + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1);
     let place = place.map(|c| c.flush(SMALL));
     let meets = place.dot(place).le(radius * radius) & !parallel;

@@ -174,12 +174,14 @@ mod tests {
     ) -> Result<(), TestCaseError> {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = V3::<f32>::new(d[0], d[1], d[2]).normalised().0;
-        let interaction = SurfaceInteraction::new(Effects(0), &Primitive::triangle(vertices, 0, 0, 0), (u, v), -direction);
+        let interaction =
+            SurfaceInteraction::new(Effects(0), &Primitive::triangle(vertices, 0, 0, 0), (u, v), -direction);
         for graze in [1.0, 1e-2, 1e-4, 1e-6] {
             let across = interaction.normal * interaction.normal.dot(direction);
             let direction = (direction - across + across * graze).normalised().0;
             if interaction.faces(direction) {
-                for origin in [interaction.offset_ray_origin(direction), interaction.offset_ray_origin_along(direction)] {
+                for origin in [interaction.offset_ray_origin(direction), interaction.offset_ray_origin_along(direction)]
+                {
                     for other in others {
                         prop_assert!(!meets(*other, origin, direction), "graze {graze}");
                     }

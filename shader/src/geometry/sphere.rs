@@ -15,9 +15,9 @@
 //! A device may take subnormal numbers for zero. Differences to the centre below 2^-40 are zero, and components of directions
 //! below 2^-60 are, so no product of the two is subnormal.
 
-use crate::real::{FAINT, Mask, Real, SMALL, Scalar, TINY, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
+use crate::real::{FAINT, Mask, Real, SMALL, Scalar, TINY, V3};
 
 /// Where a ray's line passes through a sphere. Distances are in lengths of the ray's direction.
 #[derive(Clone, Copy)]

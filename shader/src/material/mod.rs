@@ -52,8 +52,9 @@ impl<R: Scalar> Surface<R> {
         } else {
             interaction.normal
         };
-        let other =
-            effects.has(Effects::CHECKER) && material.checker.w != 0 && odd_cell(interaction, number(material.checker.w));
+        let other = effects.has(Effects::CHECKER)
+            && material.checker.w != 0
+            && odd_cell(interaction, number(material.checker.w));
         Surface {
             normal,
             ambient: if other { colour(material.checker_ambient) } else { colour(material.ambient) },

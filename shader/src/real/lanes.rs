@@ -1,6 +1,7 @@
 //! Several numbers side by side, in the vectors of a CPU. Not for GPUs, whose lanes are filled by other rays.
 
 use super::{Fast, Real, Scalar};
+use crate::traverse::lanes::RayLanes;
 
 /// Lanes over the numbers of `S`: several on a CPU with vectors, or `S` itself.
 pub trait Lanes<S: Scalar>: Real {
@@ -36,7 +37,7 @@ pub trait SimdIsa<S: Scalar> {
     /// Vectors that test the triangles of its leaves.
     type Four: Lanes<S>;
     /// Vectors that trace several rays together.
-    type Packet: Lanes<S>;
+    type Packet: Lanes<S> + RayLanes;
 }
 
 /// What is to be compiled for every instruction set.

@@ -204,7 +204,7 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     type Four: Lanes<Self>;
     /// Vectors that trace several rays together.
     #[cfg(not(target_arch = "spirv"))]
-    type Packet: Lanes<Self>;
+    type Packet: Lanes<Self> + crate::traverse::lanes::RayLanes;
     /// Are there vectors other than the [`Native`] ones?
     #[cfg(not(target_arch = "spirv"))]
     const VECTORISES: bool = false;

@@ -4,8 +4,8 @@
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
-use crate::traverse::{Leaf, Query};
 use crate::traverse::resumable::{Progress, Resumable};
+use crate::traverse::{Leaf, Query};
 use crate::warp::Warp;
 
 /// A lane without a ray.

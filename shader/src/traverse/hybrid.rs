@@ -4,10 +4,10 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
-use super::packet::{goes, visit_leaf};
-use super::resumable::{Progress, finish};
 use super::lanes::RayLanes;
 use super::leaf::Leaf;
+use super::packet::{goes, visit_leaf};
+use super::resumable::{Progress, finish};
 use super::step::children;
 use super::{IfIf, Method, Query};
 use crate::data::{NodeRef, STACK};
@@ -102,7 +102,8 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let left = together::<Q, L, R, W, S, T>(context, pair.left(), wanted.left, ray, (hit, &mut deferred));
-                let right = together::<Q, L, R, W, S, T>(context, pair.right(), wanted.right, ray, (hit, &mut deferred));
+                let right =
+                    together::<Q, L, R, W, S, T>(context, pair.right(), wanted.right, ray, (hit, &mut deferred));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 cursor.descend(&pair, left, right, right_first, &mut stack);
             }
@@ -159,7 +160,13 @@ fn together<Q: Query, L: Leaf, R: RayLanes, W: Warp, S: SplitPolicy, T: Turn>(
 
 /// Traces every ray of the mask through a branch by itself.
 #[inline(always)]
-fn alone<Q: Query, L: Leaf, R: RayLanes>(context: &TraceContext<'_>, node: NodeRef, rays: R::Mask, ray: &Ray<R>, hit: &mut Hit<R>) {
+fn alone<Q: Query, L: Leaf, R: RayLanes>(
+    context: &TraceContext<'_>,
+    node: NodeRef,
+    rays: R::Mask,
+    ray: &Ray<R>,
+    hit: &mut Hit<R>,
+) {
     Q::on_parted(true);
     R::each_lane(ray, hit, rays, |ray, hit| {
         let mut stack = Stack::new();

@@ -1,8 +1,8 @@
 //! If-if traversal (thesis algorithm 6.2, after Aila and Laine 2009): every ray by itself, and in
 //! every iteration at most one pair of boxes and at most one primitive.
 
-use super::cursor::{Cursor, Stack};
 use super::Query;
+use super::cursor::{Cursor, Stack};
 use super::leaf::{Leaf, occluded};
 use super::resumable::{Resumable, stepwise};
 use super::step::pair;

@@ -21,17 +21,19 @@ pub trait RayLanes: Real {
     );
 }
 
-macro_rules! alone {
+/// Implements [`RayLanes`](crate::traverse::lanes::RayLanes) for numbers of one lane.
+#[macro_export]
+macro_rules! lone_rays {
     ($($scalar:ty),*) => {$(
-        impl RayLanes for $scalar {
+        impl $crate::traverse::lanes::RayLanes for $scalar {
             type Lane = Self;
 
             #[inline(always)]
             fn each_lane(
-                ray: &Ray<Self>,
-                hit: &mut Hit<Self>,
+                ray: &$crate::ray::Ray<Self>,
+                hit: &mut $crate::ray::Hit<Self>,
                 mask: bool,
-                mut f: impl FnMut(&Ray<Self>, &mut Hit<Self>),
+                mut f: impl FnMut(&$crate::ray::Ray<Self>, &mut $crate::ray::Hit<Self>),
             ) {
                 if mask {
                     f(ray, hit);
@@ -40,9 +42,9 @@ macro_rules! alone {
         }
     )*};
 }
-alone!(f32, Fast);
+lone_rays!(f32, Fast);
 #[cfg(not(target_arch = "spirv"))]
-alone!(f64);
+lone_rays!(f64);
 
 /// Implements [`RayLanes`] for the vectors of a CPU.
 #[cfg(not(target_arch = "spirv"))]

@@ -22,9 +22,9 @@ mod while_while;
 #[cfg(not(target_arch = "spirv"))]
 pub use bvh8::Bvh8Method;
 pub use cwbvh::CwbvhMethod;
-pub use leaf::{Leaf, Primitives};
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
+pub use leaf::{Leaf, Primitives};
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;

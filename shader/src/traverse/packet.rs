@@ -4,9 +4,9 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
-use super::resumable::Progress;
 use super::lanes::RayLanes;
 use super::leaf::{Leaf, occluded};
+use super::resumable::Progress;
 use super::step::{children, leaf};
 use super::{Method, Query};
 use crate::ray::{Hit, Ray};

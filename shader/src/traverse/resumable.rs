@@ -1,7 +1,7 @@
 //! Single-ray methods as steps, so that the caller may give a lane another ray in between.
 
-use super::leaf::Leaf;
 use super::Query;
+use super::leaf::Leaf;
 use crate::ray::{Hit, Ray};
 use crate::real::Scalar;
 use crate::scene::TraceContext;

@@ -4,9 +4,9 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
+use super::leaf::Leaf;
 use super::resumable::Progress;
 use super::step::{leaf, pair};
-use super::leaf::Leaf;
 use super::{Method, Query};
 use crate::data::NodeRef;
 use crate::ray::{Hit, Ray};

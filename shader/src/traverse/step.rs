@@ -1,8 +1,8 @@
 //! The steps that all methods share: testing two boxes, or a leaf.
 
+use super::Query;
 use super::cursor::{Cursor, Stack};
 use super::leaf::{Leaf, occluded};
-use super::Query;
 use crate::data::{CentredPair, NodeRef, numbers};
 use crate::geometry::Span;
 use crate::ray::{Hit, Ray};

@@ -1,15 +1,15 @@
 //! The same hit as brute force, on triangles that tie, overlap and degenerate.
 
-use super::resumable::Resumable;
 use super::lanes::RayLanes;
 use super::leaf::{Leaf, Primitives, occluded};
+use super::resumable::Resumable;
 use super::{
     Bvh8Method, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Method, Occlusion, Packet, Query, Sequential,
     Speculative, StackMax, WhileWhile,
 };
 use crate::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, LeafKind, MOST, Triangle4};
 use crate::data::{
-    CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Specialisation, Primitive, Tuning,
+    CentredPair, CwbvhNode, Effects, Frame, MAX_LEAF, NodePair, NodeRef, Primitive, Specialisation, Tuning,
 };
 use crate::ray::{Hit, Ray};
 use crate::real::{F32xN, Fast, Lanes, Real, Scalar, V3};
@@ -184,7 +184,11 @@ fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, 
     }
 }
 
-fn every_method<R: Scalar + RayLanes + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
+fn every_method<R: Scalar + RayLanes + PartialEq + core::fmt::Debug>(
+    world: &World,
+    origin: [f32; 3],
+    direction: [f32; 3],
+) {
     check::<IfIf, R>(world, origin, direction);
     check::<WhileWhile<Alone>, R>(world, origin, direction);
     check::<CwbvhMethod, R>(world, origin, direction);
@@ -349,8 +353,10 @@ fn light_passes_transparent_triangles_only() {
     let t = [Vec3::new(-0.5, -0.5, 0.0), Vec3::new(0.5, -0.5, 0.0), Vec3::new(0.0, 0.5, 0.0)];
     let down = ray::<f32>([0.0, 0.0, 0.5], [0.0, 0.0, -1.0]);
     for (flags, blocked) in [(0, true), (Primitive::TRANSPARENT, false)] {
-        let world =
-            World::new(vec![Primitive::triangle(t, 0, 0, flags), Primitive::triangle(t, 1, 0, flags)], Effects::TRANSPARENT);
+        let world = World::new(
+            vec![Primitive::triangle(t, 0, 0, flags), Primitive::triangle(t, 1, 0, flags)],
+            Effects::TRANSPARENT,
+        );
         assert_eq!(occluded(&world.trace::<IfIf, Occlusion, f32>(&down, f32::MAX)), blocked);
         assert!(!occluded(&world.trace::<IfIf, Occlusion, f32>(&down, 0.5)), "a triangle at the limit does not block");
     }

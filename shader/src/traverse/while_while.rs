@@ -6,8 +6,8 @@
 
 use core::marker::PhantomData;
 
-use super::cursor::{Cursor, Stack};
 use super::Query;
+use super::cursor::{Cursor, Stack};
 use super::leaf::Leaf;
 use super::resumable::{Resumable, stepwise};
 use super::step::{leaf, pair};

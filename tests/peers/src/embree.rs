@@ -22,8 +22,8 @@ impl Embree {
     pub fn new(packed: &DeviceScene, quality: BuildQuality) -> Result<Embree, embree3::Error> {
         let device = Device::new()?;
         let mut triangles: Vec<_> = packed.primitives().iter().collect();
-        triangles.sort_unstable_by_key(|t| t.primitive());
-        triangles.dedup_by_key(|t| t.primitive());
+        triangles.sort_unstable_by_key(|t| t.number());
+        triangles.dedup_by_key(|t| t.number());
         let corners = triangles.iter().flat_map(|t| [t.a, t.b, t.c]).map(|p| numbers(p).to_array());
         let corners: Vec<[f32; 3]> = corners.collect();
         let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();

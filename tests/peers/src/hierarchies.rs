@@ -17,8 +17,8 @@ use crate::contest::{Found, RayTracer, tasks};
 
 fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
     let mut all: Vec<_> = packed.primitives().iter().collect();
-    all.sort_unstable_by_key(|t| t.primitive());
-    all.dedup_by_key(|t| t.primitive());
+    all.sort_unstable_by_key(|t| t.number());
+    all.dedup_by_key(|t| t.number());
     let corner = |p| Vec3A::from(numbers(p));
     all.iter().map(|t| Triangle { v0: corner(t.a), v1: corner(t.b), v2: corner(t.c) }).collect()
 }

@@ -150,6 +150,8 @@ pub struct Record([Interval; 3], u32);
 
 one_lane!(Interval);
 
+eyerays_shader::lone_rays!(Interval);
+
 impl Scalar for Interval {
     eyerays_shader::no_registers!(Self, Self);
     type Record = Record;

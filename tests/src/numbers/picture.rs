@@ -9,7 +9,7 @@ use eyerays_shader::integrator::{self, Wave};
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::scene::ShadingData;
 use eyerays_shader::stage::{self, RECORDS, ShadowInputs};
-use eyerays_shader::traverse::IfIf;
+use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
 
@@ -28,10 +28,10 @@ pub fn picture<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut context = scene.context(&frame, spec);
     while !queue.is_empty() {
         for &slot in &queue {
-            hits[slot as usize] = stage::trace::<R, IfIf>(&context, slot, &paths);
+            hits[slot as usize] = stage::trace::<R, IfIf, Primitives>(&context, slot, &paths);
             for light in 0..frame.lights {
                 let inputs = ShadowInputs { lights: looks.lights, paths: &paths, hits: &hits };
-                let answer = stage::shadow::<R, IfIf>(&context, inputs, slot, light);
+                let answer = stage::shadow::<R, IfIf, Primitives>(&context, inputs, slot, light);
                 shadows[light as usize * slots + slot as usize] = answer;
             }
         }

@@ -179,6 +179,7 @@ macro_rules! numbers {
         }
     };
 }
+eyerays_shader::lone_rays!(Counting, Flushing);
 numbers!(Counting);
 numbers!(Flushing);
 

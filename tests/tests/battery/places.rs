@@ -73,7 +73,7 @@ fn compare(machine: Machine, packed: &DeviceScene, stream: &Stream) -> Apart {
         let (place, slot) = f64::load(record);
         let triangle = |slot: u32| packed.primitives().get(slot as usize);
         match (triangle(hit.w), triangle(slot)) {
-            (Some(a), Some(b)) if a.primitive() == b.primitive() => {
+            (Some(a), Some(b)) if a.number() == b.number() => {
                 let error = (f64::from(f32::from_bits(hit.x)) - place.x).abs() / bound(b, &stream.ray(i));
                 apart.error = apart.error.max(error);
             }

@@ -3,11 +3,11 @@
 use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::scene::{Scene, Settings};
 use eyerays::stream::StreamRay;
-use eyerays_shader::data::{NodeRef, Primitive};
+use eyerays_shader::data::Primitive;
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::ray::{Hit, Ray};
 use eyerays_shader::real::{Fast, Scalar, V3};
-use eyerays_shader::traverse::{Closest, step};
+use eyerays_shader::traverse::{Closest, Leaf, Primitives};
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, add_box, empty, glowing, lamp, matt};
 use eyerays_tests::random::Random;
@@ -51,7 +51,7 @@ fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
 fn meets<R: Scalar>(packed: &DeviceScene, ray: Ray<R>) -> bool {
     let (laid, frame) = (SceneView::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
-    step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &ray, &mut hit);
+    Primitives::intersect::<Closest, R>(&laid.stream(&frame), 0, &ray, &mut hit);
     hit.primitive_index != StreamRay::NOWHERE
 }
 
@@ -69,12 +69,12 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let (origin, direction) = (V3::<R>::splat(origin), V3::<R>::splat(direction));
     let (laid, frame) = (SceneView::new(&packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
-    step::triangle::<Closest, R>(&laid.stream(&frame), NodeRef::leaf(0, 1), &Ray::new(origin, direction), &mut hit);
+    Primitives::intersect::<Closest, R>(&laid.stream(&frame), 0, &Ray::new(origin, direction), &mut hit);
     if hit.primitive_index == StreamRay::NOWHERE {
         return;
     }
-    let (u, v) = hit.weights();
-    let contact = SurfaceInteraction::new(&triangle, u, v, direction);
+    let (u, v) = hit.coordinates();
+    let contact = SurfaceInteraction::new(packed.effects(), &triangle, (u, v), direction);
     let is_stout = is_stout([a, b, c]);
     for _ in 0..count {
         let out = V3::<R>::splat(random.direction().as_vec3()).normalised().0;
@@ -83,7 +83,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
             returned.by_start += by_start;
             returned.by_start_of_stout += if is_stout { by_start } else { 0 };
             returned.stout += usize::from(is_stout);
-            returned.met += usize::from(meets(&packed, Ray::leaving(triangle.primitive(), start, out)));
+            returned.met += usize::from(meets(&packed, Ray::leaving(triangle.number(), start, out)));
             returned.rays += 1;
         }
     }

@@ -1,7 +1,7 @@
 //! The errors that the kernels' sources state, against what intervals show them to be.
 
 use eyerays::scene::Settings;
-use eyerays_shader::data::{BOX_PADDING, CentredPair, NodePair, NodeRef, Primitive};
+use eyerays_shader::data::{BOX_PADDING, CentredPair, Effects, NodePair, NodeRef, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::geometry::{sheared, slab};
 use eyerays_shader::ray::Ray;
@@ -21,7 +21,7 @@ type V = V3<Interval>;
 fn pairs(mut f: impl FnMut(&Ray<Interval>, [Vec3; 3], &mut Rng)) {
     let mut rng = Rng::with_seed(13);
     for case in cases(count::of(3_000, 300_000)) {
-        let triangles = case.primitives();
+        let triangles = case.triangles();
         for ray in &case.rays {
             let ray = Ray::<Interval>::new(V::splat(ray.origin), V::splat(ray.direction));
             f(&ray, triangles[rng.usize(0..triangles.len())], &mut rng);
@@ -124,7 +124,12 @@ fn places_and_clearances() {
         let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
         let direction = Vec3::new(rng.f32() - 0.5, rng.f32() - 0.5, rng.f32() - 0.5).normalize();
         let splat = |x: f32| Interval::exact(x);
-        let at = SurfaceInteraction::new(&Primitive::triangle(triangle, 0, 0, 0), splat(u), splat(v), V::splat(direction));
+        let at = SurfaceInteraction::new(
+            Effects(0),
+            &Primitive::triangle(triangle, 0, 0, 0),
+            (splat(u), splat(v)),
+            V::splat(direction),
+        );
         let reach = a.abs().max(b.abs()).max(c.abs()).as_dvec3().to_array();
         let (position, normal) =
             ([at.position.x, at.position.y, at.position.z], [at.normal.x, at.normal.y, at.normal.z]);

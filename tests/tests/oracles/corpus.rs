@@ -29,7 +29,7 @@ impl Case {
 
     /// Every triangle once, by its number in the scene.
     pub fn triangles(&self) -> Vec<[Vec3; 3]> {
-        let mut all: Vec<_> = self.packed.primitives().iter().map(|t| (t.primitive(), t.vertices())).collect();
+        let mut all: Vec<_> = self.packed.primitives().iter().map(|t| (t.number(), t.vertices())).collect();
         all.sort_by_key(|t| t.0);
         all.dedup_by_key(|t| t.0);
         all.into_iter().map(|t| t.1).collect()

@@ -113,7 +113,7 @@ fn answers(case: &Case, method: Method) -> Vec<Option<(f32, u32)>> {
     let stream = Stream::new(case.rays.iter().copied());
     let (answers, _) = cpu::cast(&case.packed, method.into(), 0, &stream, Question::Closest).unwrap();
     let Answers::Closest(hits) = answers else { unreachable!("closest hits were asked for") };
-    let slot = |hit: UVec4| case.packed.primitives().get(hit.w as usize).map(|t| (f32::from_bits(hit.x), t.primitive()));
+    let slot = |hit: UVec4| case.packed.primitives().get(hit.w as usize).map(|t| (f32::from_bits(hit.x), t.number()));
     hits.into_iter().map(slot).collect()
 }
 
@@ -124,7 +124,7 @@ fn closest_hits_are_exact_within_their_bounds() {
         "scene, rays, exact nearest, ties within bounds, edges within bounds, t error / bound, t error in roundoffs"
     );
     for case in cases(count::of(2_000, 200_000)) {
-        let (triangles, answers) = (case.primitives(), [Method::Packet, Method::Wide].map(|m| answers(&case, m)));
+        let (triangles, answers) = (case.triangles(), [Method::Packet, Method::Wide].map(|m| answers(&case, m)));
         assert!(answers[0] == answers[1], "{}", case.name);
         let tally = (case.rays.par_iter().zip(&answers[0]))
             .map(|(ray, answer)| judge(&case, &triangles, ray, *answer))
@@ -155,7 +155,7 @@ impl Tally {
 fn intervals_hold_exact_crossings() {
     let (mut crossings, mut rng) = (0, fastrand::Rng::with_seed(5));
     for case in cases(count::of(3_000, 100_000)) {
-        let triangles = case.primitives();
+        let triangles = case.triangles();
         for (i, ray) in case.rays.iter().enumerate() {
             // From where the ray starts to anywhere in a triangle, or a little beside it.
             let triangle = triangles[i * 7919 % triangles.len()];

@@ -7,7 +7,7 @@ use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::Segment;
-use eyerays_shader::traverse::{self, Closest, CwbvhMethod, IfIf};
+use eyerays_shader::traverse::{self, Closest, CwbvhMethod, IfIf, Primitives};
 use eyerays_tests::model::{add, empty, matt};
 use eyerays_tests::{count, gpu, pack};
 use fastrand::Rng;
@@ -66,7 +66,7 @@ fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
     let misses = |i: &u32| {
         let segment = Segment::<R>::load(&geometry, *i, stream.words());
         let mut hit = Hit::none(segment.limit);
-        M::traverse::<Closest>(&geometry, &segment.ray(), &mut hit);
+        M::traverse::<Closest, Primitives>(&geometry, &segment.ray(), &mut hit);
         hit.primitive_index == Hit::<R>::NOTHING
     };
     (0..stream.len() as u32).into_par_iter().filter(misses).count()

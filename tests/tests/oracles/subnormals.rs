@@ -6,7 +6,7 @@ use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage;
-use eyerays_shader::traverse::{self, CwbvhMethod, IfIf};
+use eyerays_shader::traverse::{self, CwbvhMethod, IfIf, Primitives};
 use eyerays_tests::numbers::{Counting, Flushing, picture, subnormals};
 use eyerays_tests::{Posed, SHIPPED, count, pack, settings, shipped};
 use glam::{UVec4, Vec3};
@@ -26,8 +26,8 @@ fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<U
     let (laid, frame) = (SceneView::new(&case.packed, Traversal::default()), case.packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     // Parts of a split triangle are hit alike, so the slot is no part of the answer.
-    let primitive = |slot: u32| case.packed.primitives().get(slot as usize).map_or(slot, |t| t.primitive());
-    let hit = |slot| stage::trace::<R, M>(&geometry, slot, stream.words());
+    let primitive = |slot: u32| case.packed.primitives().get(slot as usize).map_or(slot, |t| t.number());
+    let hit = |slot| stage::trace::<R, M, Primitives>(&geometry, slot, stream.words());
     (0..stream.len() as u32).map(hit).map(|hit| UVec4 { w: primitive(hit.w), ..hit }).collect()
 }
 

@@ -49,7 +49,7 @@ fn comparable(triangles: &[Primitive], hit: UVec4) -> UVec4 {
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
 pub(crate) fn primitive(triangles: &[Primitive], slot: u32) -> u32 {
     match triangles.get(slot as usize) {
-        Some(triangle) => triangle.primitive(),
+        Some(triangle) => triangle.number(),
         None if slot == StreamRay::NOWHERE => slot,
         None => slot | 1 << 31,
     }

@@ -10,8 +10,8 @@ use eyerays_shader::real::{F32xN, Real, U32xN, V3};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::Segment;
 use eyerays_shader::traverse::{
-    self, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Query, Sequential, Speculative,
-    StackMax, WhileWhile,
+    self, Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Query, Sequential,
+    Speculative, StackMax, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 use rayon::prelude::*;
@@ -88,7 +88,7 @@ impl<Q: Query> Query for Counted<Q> {
         CALLS.set(CALLS.get() + Calls { visits: rays, boxes: rays * u64::from(tested), ..Calls::default() });
     }
 
-    fn on_triangle() {
+    fn on_primitive() {
         CALLS.set(CALLS.get() + Calls { triangles: CHARGED.get(), ..Calls::default() });
     }
 
@@ -225,15 +225,15 @@ fn traverse<R: Real, M: traverse::Method<R>>(
     question: Question,
 ) {
     match question {
-        Question::Closest => M::traverse::<Counted<Closest>>(geometry, ray, &mut hit),
-        Question::Occlusion => M::traverse::<Counted<Occlusion>>(geometry, ray, &mut hit),
+        Question::Closest => M::traverse::<Counted<Closest>, Primitives>(geometry, ray, &mut hit),
+        Question::Occlusion => M::traverse::<Counted<Occlusion>, Primitives>(geometry, ray, &mut hit),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_shader::data::{CentredPair, Frame, Launch, NodePair, NodeRef, Specialisation, Primitive, Tuning};
+    use eyerays_shader::data::{CentredPair, Frame, Launch, NodePair, NodeRef, Primitive, Specialisation, Tuning};
     use eyerays_shader::scene::LaunchContext;
     use glam::{Vec3, vec3};
 
@@ -259,7 +259,7 @@ mod tests {
         let frame = Frame { slots: stream.len() as u32, ..Frame::default() };
         let spec = Specialisation { tuning: traversal.tuning, ..Specialisation::default() }.with_launch(Launch::STREAM);
         let scene = TraceContext {
-            base: LaunchContext { frame: &frame, spec, triangles: bytemuck::cast_slice(&triangles) },
+            base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(&triangles) },
             nodes: bytemuck::cast_slice(&nodes),
             wide: &[],
             bvh8: Default::default(),

@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use eyerays_shader::camera::{self, Pixel};
-use eyerays_shader::data::{Frame, Order as OrderBits, Primitive};
+use eyerays_shader::data::{BOX_PADDING, Frame, Order as OrderBits, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::ray_to_light;
 use eyerays_shader::material::{reflect, refract};
@@ -53,11 +53,15 @@ impl CameraRays {
     }
 }
 
-/// The diagonal of the box around a scene's triangles, in the normalised scene.
+/// The diagonal of the box around a scene's primitives, in the normalised scene.
 pub fn diagonal(packed: &DeviceScene) -> f64 {
-    let vertices = || packed.primitives().iter().flat_map(Primitive::vertices);
-    let least = vertices().fold(Vec3::INFINITY, Vec3::min);
-    let greatest = vertices().fold(Vec3::NEG_INFINITY, Vec3::max);
+    let extent = |p: &Primitive| match p.is_triangle() {
+        true => p.vertices().into_iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, g), v| (l.min(v), g.max(v))),
+        false => (p.bounds().0 + Vec3::splat(BOX_PADDING), p.bounds().1 - Vec3::splat(BOX_PADDING)),
+    };
+    let nowhere = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+    let all = packed.primitives().iter().map(extent);
+    let (least, greatest) = all.fold(nowhere, |(l, g), (least, greatest)| (l.min(least), g.max(greatest)));
     (greatest.as_dvec3() - least.as_dvec3()).length()
 }
 
@@ -77,12 +81,16 @@ struct Place {
     pixel: u32,
     direction: V3<f32>,
     contact: SurfaceInteraction<f32>,
-    primitive: u32,
 }
 
 impl Place {
     fn ray(&self, origin: V3<f32>, direction: V3<f32>, limit: f32) -> StreamRay {
-        StreamRay { origin: vector(origin), direction: vector(direction), limit, source_primitive: self.primitive }
+        StreamRay {
+            origin: vector(origin),
+            direction: vector(direction),
+            limit,
+            source_primitive: self.contact.source_primitive(direction),
+        }
     }
 
     fn reflected(&self) -> StreamRay {
@@ -186,9 +194,14 @@ impl<'a> PrimaryHits<'a> {
     }
 
     fn place(&self, i: usize, hit: UVec4) -> Place {
-        let triangle = &self.packed.primitives()[hit.w as usize];
+        let primitive = &self.packed.primitives()[hit.w as usize];
         let direction = V3::splat(self.primary.ray(i).direction);
-        let contact = SurfaceInteraction::new(triangle, f32::from_bits(hit.y), f32::from_bits(hit.z), direction);
-        Place { pixel: self.pixels[i], direction, contact, primitive: triangle.primitive() }
+        let contact = SurfaceInteraction::new(
+            self.packed.effects(),
+            primitive,
+            (f32::from_bits(hit.y), f32::from_bits(hit.z)),
+            direction,
+        );
+        Place { pixel: self.pixels[i], direction, contact }
     }
 }

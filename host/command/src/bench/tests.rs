@@ -99,7 +99,7 @@ fn every_hit_has_its_rays() {
 fn rays_go_to_their_side() {
     let (packed, view) = cornell((48, 48));
     let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();
-    let slots = packed.primitives().iter().map(|t| (t.primitive(), t.vertices()));
+    let slots = packed.primitives().iter().map(|t| (t.number(), t.vertices()));
     let by_primitive: HashMap<u32, [Vec3; 3]> = slots.collect();
     let primary = rays(&sight, Kind::Primary);
     assert_eq!(sight.hits(), primary.len(), "the box fills this view");

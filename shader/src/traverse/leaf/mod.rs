@@ -12,9 +12,9 @@ use super::Query;
 use crate::bvh8::Bvh8Ref;
 use crate::geometry::slab;
 use crate::ray::{Hit, Ray};
-use crate::real::{Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
+use crate::real::{Mask, Real, V3};
 use crate::scene::TraceContext;
 use glam::Vec3;
 

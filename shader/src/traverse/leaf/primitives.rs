@@ -5,9 +5,9 @@ use super::{Leaf, disk, sphere, triangle};
 use crate::bvh8::{Bvh8Ref, LeafKind};
 use crate::data::{Effects, Primitive};
 use crate::ray::{Hit, Ray};
-use crate::real::{Real, Scalar};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
+use crate::real::{Real, Scalar};
 use crate::scene::TraceContext;
 use crate::traverse::Query;
 
@@ -49,7 +49,9 @@ impl Leaf for Primitives {
             return triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit);
         }
         match leaf.kind() {
-            LeafKind::Triangles => triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit),
+            LeafKind::Triangles => {
+                triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit)
+            }
             LeafKind::Spheres => sphere::intersect_four::<Q, R, F>(context, &blocks.spheres[leaf.index()], ray, hit),
             LeafKind::Mixed => {
                 for &index in blocks.mixed[leaf.index()].indices() {

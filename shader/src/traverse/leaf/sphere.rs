@@ -92,11 +92,8 @@ fn accept_chord<Q: Query, R: Real>(
         return;
     }
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let (u, v, size) = if Q::ANY || cfg!(target_arch = "spirv") {
-        (zero, zero, one)
-    } else {
-        octahedral(place(chord, end.far, ray))
-    };
+    let (u, v, size) =
+        if Q::ANY || cfg!(target_arch = "spirv") { (zero, zero, one) } else { octahedral(place(chord, end.far, ray)) };
     let scale = R::select(inside, size, one).reciprocal();
     let met = Meeting { inside, t: end.t, u, v, scale };
     accept::<Q, R>(met, context.bounds(index, || sphere.sphere_bounds()), Identity { index, number }, ray, hit);

@@ -1,5 +1,6 @@
 //! What the whole-program tests share: the shipped scenes, the GPU at hand, and films side by side.
 
+pub mod bare;
 pub mod brute_force;
 pub mod count;
 pub mod machine;

@@ -5,6 +5,8 @@ mod interaction;
 mod moller_trumbore;
 mod slab;
 mod sphere;
+#[cfg(test)]
+mod tests;
 mod triangle;
 
 pub use disk::{Crossing, intersect_disk};

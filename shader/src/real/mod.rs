@@ -20,6 +20,8 @@ mod fast;
 #[cfg(not(target_arch = "spirv"))]
 mod lanes;
 pub mod power;
+#[cfg(test)]
+mod rests;
 mod single;
 pub mod soft;
 #[cfg(test)]

@@ -9,7 +9,7 @@ use num_rational::BigRational;
 use num_traits::{Signed, ToPrimitive, Zero};
 
 /// Every finite `f32` is a whole multiple of 2^-149.
-const GRID: i32 = 149;
+pub(super) const GRID: i32 = 149;
 
 /// Sheared vertices are off by less than this on each axis; see `geometry::triangle`.
 pub const SHEAR: f64 = 16.0 * ROUNDOFF;
@@ -17,7 +17,7 @@ pub const SHEAR: f64 = 16.0 * ROUNDOFF;
 pub const ROUNDOFF: f64 = <f32 as Real>::ROUNDOFF as f64;
 
 /// A number in steps of the grid.
-fn steps(x: f32) -> BigInt {
+pub(super) fn steps(x: f32) -> BigInt {
     let bits = x.to_bits();
     let (exponent, fraction) = ((bits >> 23 & 255) as i32, bits & 0x007f_ffff);
     assert!(exponent < 255, "{x} is no finite number");
@@ -27,21 +27,21 @@ fn steps(x: f32) -> BigInt {
     if x.is_sign_negative() { -magnitude } else { magnitude }
 }
 
-type V = [BigInt; 3];
+pub(super) type V = [BigInt; 3];
 
-fn vector(v: Vec3) -> V {
+pub(super) fn vector(v: Vec3) -> V {
     v.to_array().map(steps)
 }
 
-fn minus(a: &V, b: &V) -> V {
+pub(super) fn minus(a: &V, b: &V) -> V {
     [&a[0] - &b[0], &a[1] - &b[1], &a[2] - &b[2]]
 }
 
-fn dot(a: &V, b: &V) -> BigInt {
+pub(super) fn dot(a: &V, b: &V) -> BigInt {
     &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
 }
 
-fn cross(a: &V, b: &V) -> V {
+pub(super) fn cross(a: &V, b: &V) -> V {
     [&a[1] * &b[2] - &a[2] * &b[1], &a[2] * &b[0] - &a[0] * &b[2], &a[0] * &b[1] - &a[1] * &b[0]]
 }
 

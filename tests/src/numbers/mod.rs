@@ -3,6 +3,7 @@
 pub mod exact;
 mod interval;
 mod picture;
+pub mod round;
 mod watched;
 
 pub use interval::Interval;

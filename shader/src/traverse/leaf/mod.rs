@@ -3,6 +3,8 @@
 mod disk;
 mod primitives;
 mod sphere;
+#[cfg(test)]
+mod tests;
 mod triangle;
 
 pub use primitives::{Primitives, coordinates};

@@ -20,8 +20,8 @@ pub struct SurfaceInteraction<R: Real> {
     pub coordinates: (R, R),
     /// The primitive's number in the scene.
     pub number: u32,
-    /// May a ray that starts there meet the primitive again?
-    pub is_curved: bool,
+    /// The radius of a sphere, which a ray that starts there may meet again; zero of what is flat.
+    pub radius: R,
 }
 
 /// Bounds the error of a point and of the triangle test of a ray that starts there, in roundoffs times the
@@ -70,7 +70,7 @@ impl<R: Scalar> SurfaceInteraction<R> {
             front,
             coordinates,
             number: primitive.number(),
-            is_curved: false,
+            radius: R::splat(0.0),
         }
     }
 
@@ -98,7 +98,7 @@ impl<R: Scalar> SurfaceInteraction<R> {
         let reach = centre.abs().greatest() + radius;
         let error_offset = (reach * (R::splat(SPHERE_ROUNDOFFS) * R::ROUNDOFF)).min(radius * R::splat(OFF_SPHERE));
         let at = (centre + normal * radius, error_offset);
-        SurfaceInteraction { is_curved: true, ..Self::seen(sphere, (u, v), at, normal, direction) }
+        SurfaceInteraction { radius, ..Self::seen(sphere, (u, v), at, normal, direction) }
     }
 
     #[inline(always)]
@@ -111,10 +111,15 @@ impl<R: Scalar> SurfaceInteraction<R> {
         Self::seen(disk, (u, v), at, normal, direction)
     }
 
+    #[inline(always)]
+    fn is_curved(&self) -> bool {
+        R::splat(0.0).lt(self.radius)
+    }
+
     /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`].
     #[inline(always)]
     pub fn source_primitive(&self, direction: V3<R>) -> u32 {
-        let goes_inside = self.is_curved && self.faces(direction) != self.front;
+        let goes_inside = self.is_curved() && self.faces(direction) != self.front;
         if goes_inside { self.number | Ray::<R>::INSIDE } else { self.number }
     }
 
@@ -140,11 +145,14 @@ impl<R: Scalar> SurfaceInteraction<R> {
     }
 
     /// As [`SurfaceInteraction::offset_ray_origin`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
-    /// offset sideways sees another point, which lenses magnify.
+    /// offset sideways sees another point, which lenses magnify. Through a sphere the way to the far side is twice its radius
+    /// times the cosine; a step of more than half of it may end beyond.
     #[inline(always)]
     pub fn offset_ray_origin_along(&self, direction: V3<R>) -> V3<R> {
         let cosine = self.normal.dot(direction).abs();
-        let grazes = cosine.lt(R::splat(GRAZING));
+        let steep = cosine.max(R::splat(GRAZING));
+        let grazes =
+            cosine.lt(R::splat(GRAZING)) | (self.is_curved() & (steep * steep * self.radius).lt(self.error_offset));
         let step = self.error_offset.div(R::select(grazes, R::splat(1.0), cosine));
         let along = (self.position + direction * step).map(|x| x.flush(TINY));
         V3::select(grazes, self.offset_ray_origin(direction), along)

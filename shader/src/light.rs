@@ -121,6 +121,7 @@ mod tests {
             front: true,
             coordinates: (0.0, 0.0),
             number: 0,
+            is_curved: false,
             radius: 0.0,
         };
         let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));

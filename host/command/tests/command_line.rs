@@ -203,7 +203,7 @@ fn check_tells_what_is_in_a_scene_and_writes_nothing() {
     let place = Place::new(&[]);
     for (name, parts) in [
         ("cornell", ["2 lights", "cameras \"front\", \"inside\", \"ball\""]),
-        ("whitted", ["1 light;", "3 materials"]),
+        ("whitted", ["2 triangles, 2 spheres, 3 materials, 1 light;", "mesh 2: sphere (glass), 1 sphere, ["]),
         ("glass", ["2 lights", "\"above\""]),
         ("lights", ["28 lights", "4 materials"]),
     ] {

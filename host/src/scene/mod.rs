@@ -41,7 +41,7 @@ mod tests;
 
 pub use frame::default_camera;
 pub use load::{load, read_table};
-pub use primitive::{Disk, Sphere};
+pub use primitive::{Disk, Primitives, Sphere};
 pub use range::Range;
 pub use suggest::suggest;
 pub use table::Table;
@@ -93,34 +93,6 @@ pub struct Part {
     pub primitives: Primitives,
     /// Its least and its greatest corner in world units.
     pub bounds: [Vec3; 2],
-}
-
-/// What a part is made of, and where that stands.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Primitives {
-    /// In [`Mesh::triangles`].
-    Triangles(std::ops::Range<usize>),
-    /// In [`Scene::spheres`].
-    Spheres(std::ops::Range<usize>),
-    /// In [`Scene::disks`].
-    Disks(std::ops::Range<usize>),
-}
-
-impl Primitives {
-    /// How many there are.
-    pub fn count(&self) -> usize {
-        let (Primitives::Triangles(range) | Primitives::Spheres(range) | Primitives::Disks(range)) = self;
-        range.len()
-    }
-
-    /// What one of them is called: `triangle`, `sphere` or `disk`.
-    pub fn noun(&self) -> &'static str {
-        match self {
-            Primitives::Triangles(_) => "triangle",
-            Primitives::Spheres(_) => "sphere",
-            Primitives::Disks(_) => "disk",
-        }
-    }
 }
 
 /// An indexed triangle mesh.

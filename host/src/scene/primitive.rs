@@ -1,4 +1,6 @@
-//! Surfaces that rays meet as they are, without triangles.
+//! Surfaces that rays meet as they are, without triangles, and how a part names its own.
+
+use std::ops::Range;
 
 use glam::{DVec3, Vec3};
 
@@ -24,6 +26,34 @@ pub struct Disk {
     pub radius: f32,
     /// An index into [`super::Scene::materials`].
     pub material: u32,
+}
+
+/// What a part is made of, and where that stands.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Primitives {
+    /// In [`super::Mesh::triangles`].
+    Triangles(Range<usize>),
+    /// In [`super::Scene::spheres`].
+    Spheres(Range<usize>),
+    /// In [`super::Scene::disks`].
+    Disks(Range<usize>),
+}
+
+impl Primitives {
+    /// How many there are.
+    pub fn count(&self) -> usize {
+        let (Primitives::Triangles(range) | Primitives::Spheres(range) | Primitives::Disks(range)) = self;
+        range.len()
+    }
+
+    /// What one of them is called: `triangle`, `sphere` or `disk`.
+    pub fn noun(&self) -> &'static str {
+        match self {
+            Primitives::Triangles(_) => "triangle",
+            Primitives::Spheres(_) => "sphere",
+            Primitives::Disks(_) => "disk",
+        }
+    }
 }
 
 impl Sphere {

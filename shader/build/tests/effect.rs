@@ -39,23 +39,23 @@ const DUMMY: [Edit; 5] = [
     ),
     (
         "src/data/specialisation.rs",
-        "        TRANSPARENT = 10;\n",
-        "        TRANSPARENT = 10;\n        /// Surfaces have the dummy's light.\n        DUMMY = 11;\n",
+        "        DISK = 12;\n",
+        "        DISK = 12;\n        /// Surfaces have the dummy's light.\n        DUMMY = 13;\n",
     ),
     (
         "src/entry/mod.rs",
-        "[frame triangles normals materials lights paths hits shadows sums queue next counters] {",
-        "[frame triangles normals materials lights paths hits shadows sums queue next counters dummy] {",
+        "[frame primitives normals materials lights paths hits shadows sums queue next counters] {",
+        "[frame primitives normals materials lights paths hits shadows sums queue next counters dummy] {",
     ),
     (
         "src/entry/mod.rs",
-        "let looks = ShadingData { normals, materials, lights };",
-        "let looks = ShadingData { normals, materials, lights, dummy };",
+        "let shading = ShadingData { normals, materials, lights };",
+        "let shading = ShadingData { normals, materials, lights, dummy };",
     ),
     (
         "src/integrator/whitted.rs",
         "    add(launch, sums, slot, &path, light, rays);\n    if",
-        "    add(launch, sums, slot, &path, light, rays);\n    if effects.has(Effects::DUMMY) {\n        write(sums, slot, R::store(V3::splat(crate::data::numbers(read(looks.dummy, 0))), 0));\n    }\n    if",
+        "    add(launch, sums, slot, &path, light, rays);\n    if effects.has(Effects::DUMMY) {\n        write(sums, slot, R::store(V3::splat(crate::data::numbers(read(shading.dummy, 0))), 0));\n    }\n    if",
     ),
 ];
 
@@ -162,7 +162,7 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             assert!(old.words() == new.words(), "{scene}: {name} has other words");
             // And the effect is there for those that ask for it.
             if stage == Stage::Shade {
-                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 11), ..spec };
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 13), ..spec };
                 let dummy = cut(&after, &name, asked);
                 assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&17), "{scene}: {name}");
             }

@@ -45,15 +45,28 @@ fn queued(spec: Specialisation, number: u32, queue: &[u32]) -> u32 {
     if spec.launch.has(Launch::SECONDARY) { read(queue, number) } else { number }
 }
 
-/// Adds a slot to the next wave by an atomic of its own.
+/// Adds a slot that goes on to the next wave, by an atomic of its own.
 #[inline(always)]
-fn enqueue(slot: u32, next: &mut [u32], counters: &mut [u32]) {
-    // SAFETY: the host sizes the counters and gives the next wave room for every slot.
-    let position = unsafe {
-        let count = counters.index_unchecked_mut(counter::NEXT as usize);
-        atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(count, 1)
-    };
-    write(next, position, slot);
+fn enqueue_alone(_: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
+    if goes_on {
+        // SAFETY: the host sizes the counters and gives the next wave room for every slot.
+        let position = unsafe {
+            let count = counters.index_unchecked_mut(counter::NEXT as usize);
+            atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(count, 1)
+        };
+        write(next, position, slot);
+    }
+}
+
+/// The same where lanes vote: the slots of a subgroup take their places at once.
+#[inline(always)]
+fn enqueue_together(spec: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
+    if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
+        let position = append(goes_on, counters, counter::NEXT);
+        if goes_on {
+            write(next, position, slot);
+        }
+    }
 }
 
 /// Starts the next wave: its count, the widths of its dispatches, and what has been traced so far.
@@ -117,7 +130,7 @@ macro_rules! precision {
         /// Kernels whose lanes vote.
         pub mod $subgroup {
             use super::*;
-            voting_shading!($R);
+            shade!($R, enqueue_together);
             crate::for_each_method!(methods subgroup $R);
             /// Kernels of persistent subgroups.
             pub mod persistent {

@@ -67,9 +67,9 @@ macro_rules! entry {
     };
 }
 
-/// The stages that follow no ray, over the numbers `R`.
-macro_rules! shading {
-    ($R:ty) => {
+/// The shading of a wave over the numbers `R`; `$enqueue` adds its slots to the next wave.
+macro_rules! shade {
+    ($R:ty, $enqueue:ident) => {
         entry! {
             /// Shades the slots of a wave.
             shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
@@ -80,11 +80,17 @@ macro_rules! shading {
                 }
                 let launch = LaunchContext { frame, spec, primitives };
                 let shading = ShadingData { normals, materials, lights };
-                if integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums }) {
-                    enqueue(slot, next, counters);
-                }
+                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums });
+                $enqueue(spec, goes_on, slot, next, counters);
             }
         }
+    };
+}
+
+/// The stages that follow no ray, over the numbers `R`.
+macro_rules! shading {
+    ($R:ty) => {
+        shade!($R, enqueue_alone);
 
         entry! {
             /// Turns to the next wave.
@@ -97,30 +103,6 @@ macro_rules! shading {
             /// Folds the sums of slots into pixels.
             gather<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame sums film] {
                 stage::gather::<$R>(frame, spec.order, id.x, sums, film);
-            }
-        }
-    };
-}
-
-/// The shading of a wave where lanes vote: a subgroup adds its slots to the next wave at once.
-macro_rules! voting_shading {
-    ($R:ty) => {
-        entry! {
-            /// Shades the slots of a wave.
-            shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame primitives normals materials lights paths hits shadows sums queue next counters] {
-                let slot = slot(spec, frame, id.x, queue, counters);
-                if slot == IDLE {
-                    return;
-                }
-                let launch = LaunchContext { frame, spec, primitives };
-                let shading = ShadingData { normals, materials, lights };
-                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums });
-                if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
-                    let position = append(goes_on, counters, counter::NEXT);
-                    if goes_on {
-                        write(next, position, slot);
-                    }
-                }
             }
         }
     };
@@ -220,7 +202,7 @@ pub mod bound {
 
     /// Of subgroups that vote.
     pub mod voting {
-        voting_shading!(f32);
+        shade!(f32, enqueue_together);
     }
 
     tracing!(f32, ());

@@ -20,7 +20,9 @@ pub struct SurfaceInteraction<R: Real> {
     pub coordinates: (R, R),
     /// The primitive's number in the scene.
     pub number: u32,
-    /// The radius of a sphere, which a ray that starts there may meet again; zero of what is flat.
+    /// May a ray that starts there meet the primitive again?
+    pub is_curved: bool,
+    /// A sphere's radius, else zero.
     pub radius: R,
 }
 
@@ -42,26 +44,20 @@ const GRAZING: f32 = 1.0 / 32.0;
 
 impl<R: Scalar> SurfaceInteraction<R> {
     /// The point at some [`coordinates`](crate::traverse::leaf::coordinates) of a primitive, seen along `direction`.
+    // Its parts are chosen one by one: a choice between whole records would cost a scene of triangles alone their copies.
     #[inline(always)]
-    pub fn new(effects: Effects, primitive: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
-        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
-            Self::on_sphere(primitive, (u, v), direction)
+    pub fn new(effects: Effects, primitive: &Primitive, coordinates: (R, R), direction: V3<R>) -> Self {
+        let (position, error_offset, normal);
+        // Here, so that smooth shading has it too.
+        let first = R::splat(1.0) - coordinates.0 - coordinates.1;
+        let is_curved = effects.has(Effects::SPHERE) && primitive.is_sphere();
+        if is_curved {
+            (position, error_offset, normal) = on_sphere(primitive, coordinates);
         } else if effects.has(Effects::DISK) && primitive.is_disk() {
-            Self::on_disk(primitive, (u, v), direction)
+            (position, error_offset, normal) = on_disk(primitive, coordinates);
         } else {
-            Self::on_triangle(primitive, (u, v), direction)
+            (position, error_offset, normal) = on_triangle(primitive, (first, coordinates), direction);
         }
-    }
-
-    /// A point of the surface whose front has this normal.
-    #[inline(always)]
-    fn seen(
-        primitive: &Primitive,
-        coordinates: (R, R),
-        (position, error_offset): (V3<R>, R),
-        normal: V3<R>,
-        direction: V3<R>,
-    ) -> Self {
         let front = normal.dot(direction).le(R::splat(0.0));
         SurfaceInteraction {
             position: position.map(|x| x.flush(TINY)),
@@ -70,56 +66,15 @@ impl<R: Scalar> SurfaceInteraction<R> {
             front,
             coordinates,
             number: primitive.number(),
-            radius: R::splat(0.0),
+            is_curved,
+            radius: if is_curved { R::splat(primitive.radius()) } else { R::splat(0.0) },
         }
-    }
-
-    #[inline(always)]
-    fn on_triangle(triangle: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
-        let [a, b, c] = triangle.vertices();
-        let (a, b, c) = (V3::<R>::splat(a), V3::<R>::splat(b), V3::<R>::splat(c));
-        let position = a * (R::splat(1.0) - u - v) + b * u + c * v;
-        let reach = a.abs().max(b.abs()).max(c.abs());
-        let span = (a - position).abs().max((b - position).abs()).max((c - position).abs());
-        // Edges below 2^-40 are zero, so that the normal's products do not underflow.
-        let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
-        let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
-        let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
-        // The position's error across the surface grows with its coordinates along the normal; the triangle
-        // test's error grows with the triangle's extent in every direction.
-        let error_offset = (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF);
-        Self::seen(triangle, (u, v), (position, error_offset), normal, direction)
-    }
-
-    #[inline(always)]
-    fn on_sphere(sphere: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
-        let (centre, radius) = (V3::<R>::splat(sphere.centre()), R::splat(sphere.radius()));
-        let normal = unit_of(u, v);
-        let reach = centre.abs().greatest() + radius;
-        let error_offset = (reach * (R::splat(SPHERE_ROUNDOFFS) * R::ROUNDOFF)).min(radius * R::splat(OFF_SPHERE));
-        let at = (centre + normal * radius, error_offset);
-        SurfaceInteraction { radius, ..Self::seen(sphere, (u, v), at, normal, direction) }
-    }
-
-    #[inline(always)]
-    fn on_disk(disk: &Primitive, (u, v): (R, R), direction: V3<R>) -> Self {
-        let (centre, normal) = (V3::<R>::splat(disk.centre()), V3::<R>::splat(disk.normal()));
-        let radius = R::splat(disk.radius());
-        let [x, y] = tangents(normal);
-        let reach = normal.abs().dot(centre.abs()) + radius + radius;
-        let at = (centre + (x * u + y * v) * radius, reach * (R::splat(ROUNDOFFS) * R::ROUNDOFF));
-        Self::seen(disk, (u, v), at, normal, direction)
-    }
-
-    #[inline(always)]
-    fn is_curved(&self) -> bool {
-        R::splat(0.0).lt(self.radius)
     }
 
     /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`].
     #[inline(always)]
     pub fn source_primitive(&self, direction: V3<R>) -> u32 {
-        let goes_inside = self.is_curved() && self.faces(direction) != self.front;
+        let goes_inside = self.is_curved && self.faces(direction) != self.front;
         if goes_inside { self.number | Ray::<R>::INSIDE } else { self.number }
     }
 
@@ -146,17 +101,58 @@ impl<R: Scalar> SurfaceInteraction<R> {
 
     /// As [`SurfaceInteraction::offset_ray_origin`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
     /// offset sideways sees another point, which lenses magnify. Through a sphere the way to the far side is twice its radius
-    /// times the cosine; a step of more than half of it may end beyond.
+    /// times the cosine: a step of more than half of it counts as grazing, since it might end beyond.
     #[inline(always)]
     pub fn offset_ray_origin_along(&self, direction: V3<R>) -> V3<R> {
         let cosine = self.normal.dot(direction).abs();
-        let steep = cosine.max(R::splat(GRAZING));
-        let grazes =
-            cosine.lt(R::splat(GRAZING)) | (self.is_curved() & (steep * steep * self.radius).lt(self.error_offset));
+        let mut grazes = cosine.lt(R::splat(GRAZING));
+        if self.is_curved {
+            let steep = cosine.max(R::splat(GRAZING));
+            grazes = grazes | (steep * steep * self.radius).lt(self.error_offset);
+        }
         let step = self.error_offset.div(R::select(grazes, R::splat(1.0), cosine));
         let along = (self.position + direction * step).map(|x| x.flush(TINY));
         V3::select(grazes, self.offset_ray_origin(direction), along)
     }
+}
+
+/// Position, error offset and the front's normal of a point on a triangle.
+#[inline(always)]
+fn on_triangle<R: Scalar>(triangle: &Primitive, (first, (u, v)): (R, (R, R)), direction: V3<R>) -> (V3<R>, R, V3<R>) {
+    let [a, b, c] = triangle.vertices();
+    let (a, b, c) = (V3::<R>::splat(a), V3::<R>::splat(b), V3::<R>::splat(c));
+    let position = a * first + b * u + c * v;
+    let reach = a.abs().max(b.abs()).max(c.abs());
+    let span = (a - position).abs().max((b - position).abs()).max((c - position).abs());
+    // Edges below 2^-40 are zero, so that the normal's products do not underflow.
+    let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
+    let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
+    let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
+    // The position's error across the surface grows with its coordinates along the normal; the triangle
+    // test's error grows with the triangle's extent in every direction.
+    let error_offset = (normal.abs().dot(reach) + span.greatest()) * (R::splat(ROUNDOFFS) * R::ROUNDOFF);
+    (position, error_offset, normal)
+}
+
+/// The same on a sphere.
+#[inline(always)]
+fn on_sphere<R: Scalar>(sphere: &Primitive, (u, v): (R, R)) -> (V3<R>, R, V3<R>) {
+    let (centre, radius) = (V3::<R>::splat(sphere.centre()), R::splat(sphere.radius()));
+    let normal = unit_of(u, v);
+    let reach = centre.abs().greatest() + radius;
+    let error_offset = (reach * (R::splat(SPHERE_ROUNDOFFS) * R::ROUNDOFF)).min(radius * R::splat(OFF_SPHERE));
+    (centre + normal * radius, error_offset, normal)
+}
+
+/// The same on a disk.
+#[inline(always)]
+fn on_disk<R: Scalar>(disk: &Primitive, (u, v): (R, R)) -> (V3<R>, R, V3<R>) {
+    let (centre, normal) = (V3::<R>::splat(disk.centre()), V3::<R>::splat(disk.normal()));
+    let radius = R::splat(disk.radius());
+    let [x, y] = tangents(normal);
+    let reach = normal.abs().dot(centre.abs()) + radius + radius;
+    let position = centre + (x * u + y * v) * radius;
+    (position, reach * (R::splat(ROUNDOFFS) * R::ROUNDOFF), normal)
 }
 
 #[cfg(test)]

@@ -116,6 +116,7 @@ mod tests {
             front: true,
             coordinates: (0.0, 0.0),
             number: 0,
+            is_curved: false,
             radius: 0.0,
         }
     }

@@ -7,7 +7,7 @@ use eyerays_bvh::Quality;
 use glam::Vec3;
 use proptest::prelude::*;
 
-use super::{Files, Kind, Recipe, obj};
+use super::{Files, Kind, Pair, Recipe, Spheres, obj};
 use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Background, Scene};
 use eyerays::view::View;
@@ -87,6 +87,15 @@ fn a_recipe_gives_the_same_bytes_on_every_machine() {
         let found = files.paths().map(|path| fnv(&std::fs::read(path).unwrap()));
         assert_eq!(found, expected, "{kind:?}: {found:#018x?}");
     }
+}
+
+#[test]
+fn a_number_of_spheres_gives_the_same_bytes_on_every_machine() {
+    let place = tempfile::tempdir().unwrap();
+    let files = Pair::beside(&place.path().join("scene.toml")).unwrap();
+    Spheres { count: 20_000 }.write(&files).unwrap();
+    let found = files.paths().map(|path| fnv(&std::fs::read(path).unwrap()));
+    assert_eq!(found, [0x5248_c5c8_e91a_2711, 0x20da_5a64_271d_0ea2], "{found:#018x?}");
 }
 
 /// Of mesh, materials and scene.

@@ -113,7 +113,7 @@ fn the_bounds_and_the_framing_camera_are_of_all_surfaces() {
     assert_eq!(scene.bounds(), [Vec3::new(-6.0, -3.0, -2.0), Vec3::new(5.0, 3.0, 2.5)]);
     assert_eq!(scene.extremes().count(), 2 * 4);
     let camera = default_camera(&scene, 1.0).unwrap();
-    assert_eq!(scene.cameras, [camera.clone()]);
+    assert_eq!(scene.cameras, std::slice::from_ref(&camera));
     let forward = (camera.target - camera.eye).normalize();
     for Sphere { center, radius, .. } in &scene.spheres {
         let view = *center - camera.eye;

@@ -4,6 +4,7 @@
 
 mod blocks;
 mod branch;
+mod composite;
 mod constants;
 mod evaluate;
 mod join;

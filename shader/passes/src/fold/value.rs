@@ -3,18 +3,20 @@
 use std::collections::HashMap;
 
 use rspirv::dr::{Instruction, Module};
-use rspirv::spirv::Word;
+use rspirv::spirv::{Op, Word};
 
+use super::composite::Composites;
 use super::constants::Constants;
 use super::evaluate::{Known, evaluate};
 
 /// Replaces what is known by constants and by what it is the same as; tells whether there was anything.
 pub fn fold(module: &mut Module) -> bool {
     let mut constants = Constants::of(module);
+    let composites = Composites::of(module);
     let mut known = Replacements::default();
     let bodies = module.functions.iter().flat_map(|function| &function.blocks);
     for inst in bodies.flat_map(|block| &block.instructions) {
-        if let Some((id, with)) = replacement(inst, &mut constants, &known) {
+        if let Some((id, with)) = replacement(inst, &mut constants, &composites, &known) {
             known.0.insert(id, with);
         }
     }
@@ -24,8 +26,16 @@ pub fn fold(module: &mut Module) -> bool {
 }
 
 /// An instruction's result, and what may stand for it.
-fn replacement(inst: &Instruction, constants: &mut Constants, known: &Replacements) -> Option<(Word, Word)> {
+fn replacement(
+    inst: &Instruction,
+    constants: &mut Constants,
+    composites: &Composites,
+    known: &Replacements,
+) -> Option<(Word, Word)> {
     let (id, kind) = (inst.result_id?, inst.result_type?);
+    if inst.class.opcode == Op::CompositeExtract {
+        return composites.part(inst).map(|part| (id, known.of(part)));
+    }
     match evaluate(inst, |id| constants.value(known.of(id)))? {
         Known::Value(value) => constants.folds(kind).then(|| (id, constants.id(kind, value))),
         // What stands for itself only goes round a loop that is never entered.

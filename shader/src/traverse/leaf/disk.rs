@@ -1,8 +1,8 @@
 //! Disks in leaves.
 
-use super::primitives::{counts, is_culled};
+use super::primitives::counts;
 use super::{Identity, Meeting, accept};
-use crate::data::Primitive;
+use crate::data::{Effects, Primitive};
 use crate::geometry::{self, Crossing, intersect_disk};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real, Scalar, V3};
@@ -27,7 +27,7 @@ pub fn intersect<Q: Query, R: Real>(
     let ahead = zero.lt(crossing.t) & crossing.t.le(hit.t);
     // A ray can't meet a plane twice.
     let mut inside = crossing.meets & ahead & !R::equals(number, ray.source_primitive);
-    if is_culled::<Q>(effects, disk) {
+    if effects.has(Effects::CULLING) && !Q::ANY && !disk.is_transparent() {
         inside = inside & crossing.front;
     }
     if !inside.any() {

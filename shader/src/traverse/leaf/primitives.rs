@@ -68,12 +68,6 @@ pub(super) fn counts<Q: Query>(effects: Effects, primitive: &Primitive) -> bool 
     !(Q::ANY && effects.has(Effects::TRANSPARENT) && primitive.is_transparent())
 }
 
-/// Is the side that is turned away from the ray skipped? The inside of glass is seen from its back side.
-#[inline(always)]
-pub(super) fn is_culled<Q: Query>(effects: Effects, primitive: &Primitive) -> bool {
-    effects.has(Effects::CULLING) && !Q::ANY && !primitive.is_transparent()
-}
-
 /// Where on its surface a ray has hit a primitive, or zeros if it has hit none: the weights of a triangle's second and third
 /// vertex, the octahedral coordinates of a sphere's normal, or a disk's coordinates along its tangents, in radii.
 ///

@@ -1,10 +1,10 @@
 //! Spheres in leaves.
 
-use super::primitives::{counts, is_culled};
+use super::primitives::counts;
 use super::{Identity, Meeting, accept};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Sphere4};
-use crate::data::Primitive;
+use crate::data::{Effects, Primitive};
 use crate::geometry::{Chord, intersect_sphere, octahedral};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
@@ -85,7 +85,7 @@ fn accept_chord<Q: Query, R: Real>(
     let number = sphere.number();
     let end = end(chord, number, ray);
     let mut inside = end.hit & end.t.le(hit.t);
-    if is_culled::<Q>(context.base.spec.effects, sphere) {
+    if context.base.spec.effects.has(Effects::CULLING) && !Q::ANY && !sphere.is_transparent() {
         inside = inside & !end.far;
     }
     if !inside.any() {

@@ -1,10 +1,10 @@
 //! Triangles in leaves.
 
-use super::primitives::{counts, is_culled};
+use super::primitives::counts;
 use super::{Identity, Meeting, accept};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Triangle4};
-use crate::data::{Launch, Primitive};
+use crate::data::{Effects, Launch, Primitive};
 use crate::geometry::{Candidate, intersect_moller_trumbore, intersect_watertight, straddles_origin};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
@@ -121,9 +121,10 @@ fn accept_candidate<Q: Query, R: Real>(
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
-    let number = triangle.number();
+    let (number, effects) = (triangle.number(), context.base.spec.effects);
     let mut inside = candidate.inside & !R::equals(number, ray.source_primitive);
-    if is_culled::<Q>(context.base.spec.effects, triangle) {
+    // The inside of glass is seen from its back side.
+    if effects.has(Effects::CULLING) && !Q::ANY && !triangle.is_transparent() {
         inside = inside & candidate.front;
     }
     // This is rare, so transforming the vertices again costs less than keeping them since the intersection.

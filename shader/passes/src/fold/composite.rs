@@ -1,0 +1,73 @@
+//! Parts of composites that were put there before.
+
+use std::collections::HashMap;
+
+use rspirv::dr::{Instruction, Module, Operand};
+use rspirv::spirv::{Op, Word};
+
+/// The composites of a module that instructions make of parts.
+pub struct Composites<'m> {
+    made: HashMap<Word, &'m Instruction>,
+    /// Vectors, whose parts may be vectors themselves, by their numbers of components.
+    vectors: HashMap<Word, usize>,
+}
+
+impl<'m> Composites<'m> {
+    /// Those of a module.
+    pub fn of(module: &'m Module) -> Self {
+        let mut this = Composites { made: HashMap::new(), vectors: HashMap::new() };
+        let bodies =
+            module.functions.iter().flat_map(|function| &function.blocks).flat_map(|block| &block.instructions);
+        for inst in module.types_global_values.iter().chain(bodies) {
+            let Some(id) = inst.result_id else { continue };
+            match inst.class.opcode {
+                Op::TypeVector => {
+                    this.vectors.insert(id, literal(&inst.operands[1]) as usize);
+                }
+                Op::ConstantComposite | Op::CompositeConstruct | Op::CompositeInsert => {
+                    this.made.insert(id, inst);
+                }
+                _ => {}
+            }
+        }
+        this
+    }
+
+    /// The id of what an instruction takes out of a composite, if it was put there as it is.
+    pub fn part(&self, extract: &Instruction) -> Option<Word> {
+        let mut id = extract.operands[0].id_ref_any()?;
+        let mut path = &extract.operands[1..];
+        while !path.is_empty() {
+            let from = self.made.get(&id)?;
+            (id, path) =
+                if from.class.opcode == Op::CompositeInsert { inserted(from, path)? } else { self.given(from, path)? };
+        }
+        Some(id)
+    }
+
+    /// The first step into a composite of parts.
+    fn given<'p>(&self, from: &Instruction, path: &'p [Operand]) -> Option<(Word, &'p [Operand])> {
+        let whole = from.result_type.and_then(|kind| self.vectors.get(&kind));
+        if whole.is_some_and(|&components| components != from.operands.len()) {
+            return None;
+        }
+        let part = from.operands.get(literal(&path[0]) as usize)?.id_ref_any()?;
+        Some((part, &path[1..]))
+    }
+}
+
+/// The step into what was inserted, or past it; none where it covers only some of what is asked for.
+fn inserted<'p>(from: &Instruction, path: &'p [Operand]) -> Option<(Word, &'p [Operand])> {
+    let place = &from.operands[2..];
+    if path.starts_with(place) {
+        return Some((from.operands[0].id_ref_any()?, &path[place.len()..]));
+    }
+    (!place.starts_with(path)).then(|| Some((from.operands[1].id_ref_any()?, path)))?
+}
+
+fn literal(operand: &Operand) -> u32 {
+    match operand {
+        Operand::LiteralBit32(value) => *value,
+        _ => u32::MAX,
+    }
+}

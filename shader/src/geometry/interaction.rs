@@ -151,7 +151,10 @@ fn on_disk<R: Scalar>(disk: &Primitive, (u, v): (R, R)) -> (V3<R>, R, V3<R>) {
     let radius = R::splat(disk.radius());
     let [x, y] = tangents(normal);
     let reach = normal.abs().dot(centre.abs()) + radius + radius;
-    let position = centre + (x * u + y * v) * radius;
+    // Whatever is below 2^-60 is zero, so that no product is subnormal.
+    let term = |tangent: V3<R>, along: R| tangent.map(|c| c.flush(TINY)) * along.flush(TINY);
+    let across = term(x, u) + term(y, v);
+    let position = centre + across.map(|c| c.flush(TINY)) * radius;
     (position, reach * (R::splat(ROUNDOFFS) * R::ROUNDOFF), normal)
 }
 

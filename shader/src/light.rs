@@ -122,6 +122,7 @@ mod tests {
             coordinates: (0.0, 0.0),
             number: 0,
             is_curved: false,
+            radius: 0.0,
         };
         let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));
         let (origin, direction, _) = ray_to_light(

@@ -1,6 +1,7 @@
 //! The records of a scene's parts.
 
 use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Primitive, pack};
+use eyerays_shader::real::SMALL;
 use glam::{UVec4, Vec3};
 
 use super::normalisation::{Normalisation, flushed, flushed_number};
@@ -50,7 +51,8 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
     let flags = |material: u32| if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
-    let length = |radius: f32| (f64::from(radius) * normalisation.scale) as f32;
+    // Kernels see nothing smaller: differences to a centre that are less count as zero.
+    let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut numbers = 0..;
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
     records.extend(mesh.triangles.iter().zip(&mesh.materials).zip(&mut numbers).map(

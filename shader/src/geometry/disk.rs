@@ -1,8 +1,8 @@
 //! The disk test: where a ray crosses the plane, and how far from the centre that is.
 //!
 //! The place relative to the centre is found as a sphere's is ([`super::sphere`]), so it errs by few roundoffs of its length
-//! and by what the distance errs: 8 roundoffs of the way from the origin to the centre, over the cosine between the ray and
-//! the normal. The place is off the plane by no more than 8 roundoffs of that way, whatever the cosine.
+//! and by what the distance errs: 8 roundoffs of the way from the origin to the centre or to the plane, whichever is longer, over
+//! the cosine between the ray and the normal. The place is off the plane by no more than 8 roundoffs of that way, whatever the cosine.
 
 use crate::real::{FAINT, Real, SMALL, V3};
 
@@ -43,10 +43,10 @@ pub fn intersect_disk<R: Real>(
     let from = V3::new(x.0, y.0, z.0);
     let (zero, slope) = (R::splat(0.0), dot(normal, direction));
     let parallel = slope.eq(zero);
-    let t = -dot(normal, from).div(R::select(parallel, R::splat(1.0), slope));
+    let t = -dot(normal, from).div(R::select(parallel, R::splat(1.0), slope)).flush(FAINT);
     let (i, j, k) = (t.product_and_rest(direction.x), t.product_and_rest(direction.y), t.product_and_rest(direction.z));
-    let place = from + V3::new(i.0, j.0, k.0) + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1);
-    let place = place.map(|c| c.flush(SMALL));
+    let about = from + V3::new(i.0, j.0, k.0).map(|c| c.flush(SMALL));
+    let place = (about + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1)).map(|c| c.flush(SMALL));
     let meets = place.dot(place).le(radius * radius) & !parallel;
     Crossing { meets, front: slope.lt(zero), t, place }
 }

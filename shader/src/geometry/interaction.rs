@@ -22,6 +22,8 @@ pub struct SurfaceInteraction<R: Real> {
     pub number: u32,
     /// May a ray that starts there meet the primitive again?
     pub is_curved: bool,
+    /// A sphere's radius, else zero.
+    pub radius: R,
 }
 
 /// Bounds the error of a point and of the triangle test of a ray that starts there, in roundoffs times the
@@ -65,6 +67,7 @@ impl<R: Scalar> SurfaceInteraction<R> {
             coordinates,
             number: primitive.number(),
             is_curved,
+            radius: if is_curved { R::splat(primitive.radius()) } else { R::splat(0.0) },
         }
     }
 
@@ -97,11 +100,16 @@ impl<R: Scalar> SurfaceInteraction<R> {
     }
 
     /// As [`SurfaceInteraction::offset_ray_origin`], but offset along the unit direction itself, unless that grazes the surface: a ray that is
-    /// offset sideways sees another point, which lenses magnify.
+    /// offset sideways sees another point, which lenses magnify. Through a sphere the way to the far side is twice its radius
+    /// times the cosine: a step of more than half of it counts as grazing, since it might end beyond.
     #[inline(always)]
     pub fn offset_ray_origin_along(&self, direction: V3<R>) -> V3<R> {
         let cosine = self.normal.dot(direction).abs();
-        let grazes = cosine.lt(R::splat(GRAZING));
+        let mut grazes = cosine.lt(R::splat(GRAZING));
+        if self.is_curved {
+            let steep = cosine.max(R::splat(GRAZING));
+            grazes = grazes | (steep * steep * self.radius).lt(self.error_offset);
+        }
         let step = self.error_offset.div(R::select(grazes, R::splat(1.0), cosine));
         let along = (self.position + direction * step).map(|x| x.flush(TINY));
         V3::select(grazes, self.offset_ray_origin(direction), along)
@@ -143,7 +151,10 @@ fn on_disk<R: Scalar>(disk: &Primitive, (u, v): (R, R)) -> (V3<R>, R, V3<R>) {
     let radius = R::splat(disk.radius());
     let [x, y] = tangents(normal);
     let reach = normal.abs().dot(centre.abs()) + radius + radius;
-    let position = centre + (x * u + y * v) * radius;
+    // Whatever is below 2^-60 is zero, so that no product is subnormal.
+    let term = |tangent: V3<R>, along: R| tangent.map(|c| c.flush(TINY)) * along.flush(TINY);
+    let across = term(x, u) + term(y, v);
+    let position = centre + across.map(|c| c.flush(TINY)) * radius;
     (position, reach * (R::splat(ROUNDOFFS) * R::ROUNDOFF), normal)
 }
 

@@ -9,11 +9,13 @@
 //! The errors, in roundoffs u = 2^-24. The place relative to the centre errs by 4 u of its length, for its sum is of one
 //! rounded difference and what both roundings took off. Thus the square of the chord errs by less than 16 u of the radius'
 //! square: a ray is taken for a hit or a miss wrongly only where that square is so small. A root errs by 2 u of its distance
-//! and of the radius, and by 16 u of the radius' square over the chord. A hit lies in the sphere's own box: its distance to
-//! the centre is the radius but for 8 u of it, and u of its distance along the ray.
+//! and of the radius, and by 16 u of the radius' square over the chord, or by 4 roots of u of the radius where the chord is
+//! shorter. A hit lies in the sphere's own box: its distance to the centre is the radius but for 8 u of it, and u of its
+//! distance along the ray.
 //!
-//! A device may take subnormal numbers for zero. Differences to the centre below 2^-40 are zero, and components of directions
-//! below 2^-60 are, so no product of the two is subnormal.
+//! A device may take subnormal numbers for zero. Differences to the centre and steps from there below 2^-40 are zero, which
+//! moves places by less than 2^-39, and components of directions below 2^-60 are, so no product of the two is subnormal.
+//! Directions are shorter than 2^62, so that their square has a reciprocal.
 
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -49,10 +51,10 @@ pub fn intersect_sphere<R: Real>(centre: V3<R>, radius: R, origin: V3<R>, direct
     );
     let from = V3::new(x.0, y.0, z.0).map(|c| c.flush(SMALL));
     let inverse = direction.dot(direction).reciprocal();
-    let base = -(from.dot(direction) * inverse).flush(TINY);
+    let base = -(from.dot(direction) * inverse).flush(FAINT);
     let (i, j, k) =
         (base.product_and_rest(direction.x), base.product_and_rest(direction.y), base.product_and_rest(direction.z));
-    let about = from + V3::new(i.0, j.0, k.0);
+    let about = from + V3::new(i.0, j.0, k.0).map(|c| c.flush(SMALL));
     let reach = radius + R::splat(BESIDE);
     // A ray that enters a sphere's box often misses the sphere.
     let close = about.dot(about).le(reach * reach);
@@ -62,9 +64,10 @@ pub fn intersect_sphere<R: Real>(centre: V3<R>, radius: R, origin: V3<R>, direct
     }
     let place = (about + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1)).map(|c| c.flush(SMALL));
     let along = place.dot(direction);
-    let step = along * inverse;
+    let step = (along * inverse).flush(FAINT);
     let square = radius * radius - place.dot(place) + (along * step).flush(FAINT);
-    let half = (square.max(zero) * inverse).flush(FAINT).sqrt();
+    // A root takes a subnormal for zero.
+    let half = (square.max(zero) * inverse).sqrt();
     Chord { meets: close & zero.le(square), base, place, near: -step - half, far: half - step }
 }
 

@@ -154,7 +154,7 @@ fn direction() -> impl Strategy<Value = DVec3> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(200_000))]
 
-    /// There and back: within 8 roundoffs of unit length, whatever the length was.
+    /// There and back: of unit length within 4 roundoffs, and within 16 of where it was.
     #[test]
     fn octahedral_coordinates_lead_back(unit in direction(), length in -20f64..1.0) {
         let vector = (unit * length.exp2()).as_vec3();
@@ -164,7 +164,7 @@ proptest! {
         prop_assert!(u.abs() <= 1.0 + 4.0 * f32::EPSILON && w.abs() <= 1.0 + 4.0 * f32::EPSILON);
         let back = double(unit_of(u, w));
         let error = (back - vector.as_dvec3().normalize()).length() / ROUNDOFF;
-        prop_assert!(error <= 8.0, "{error}");
+        prop_assert!(error <= 16.0, "{error}");
         prop_assert!((back.length() - 1.0).abs() <= 4.0 * ROUNDOFF);
     }
 

@@ -117,6 +117,7 @@ mod tests {
             coordinates: (0.0, 0.0),
             number: 0,
             is_curved: false,
+            radius: 0.0,
         }
     }
 

@@ -163,8 +163,9 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     }
 
     /// A product, and what its rounding took off: their sum is exact where the rest is at least [`FAINT`], and a rest below
-    /// counts as zero. Both operands are below 2^100. Without a fused operation, which no device needs to have (Dekker, A
-    /// Floating-Point Technique for Extending the Available Precision, 1971). Where precision is not exact the rest is zero.
+    /// counts as zero. Both operands are zero or between 2^-100 and 2^100. Without a fused operation, which no device needs to
+    /// have (Dekker, A Floating-Point Technique for Extending the Available Precision, 1971). Where precision is not exact the
+    /// rest is zero.
     #[inline(always)]
     fn product_and_rest(self, other: Self) -> (Self, Self) {
         let product = self * other;

@@ -33,7 +33,7 @@ fn rest(x: f32, y: f32) -> f64 {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(200_000))]
+    #![proptest_config(ProptestConfig { max_global_rejects: 1 << 20, ..ProptestConfig::with_cases(200_000) })]
 
     #[test]
     fn a_difference_and_its_rest_are_exact(x in number(-49, 50), y in number(-49, 50)) {

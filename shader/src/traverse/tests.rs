@@ -168,7 +168,12 @@ fn soup() -> impl Strategy<Value = Vec<Primitive>> {
         soup.iter()
             .zip(0..)
             .map(|((t, clear), i)| {
-                Primitive::triangle(t.map(Vec3::from), (i * 37) % count.next_power_of_two(), 0, u32::from(*clear))
+                Primitive::triangle(
+                    t.map(Vec3::from),
+                    (i * 37) % count.next_power_of_two(),
+                    0,
+                    if *clear { Primitive::TRANSPARENT } else { 0 },
+                )
             })
             .collect()
     })

@@ -103,12 +103,13 @@ impl<W: Watch> Neg for Watched<W> {
 
 /// For one watch, since lanes are implemented for types by themselves.
 macro_rules! numbers {
-    ($type:ty) => {
+    ($type:ty { $($own:tt)* }) => {
         one_lane!($type);
 
         impl Real for $type {
             eyerays_shader::alone!();
             const ROUNDOFF: Self = Watched(<f32 as Real>::ROUNDOFF, PhantomData);
+            $($own)*
 
             fn splat(x: f32) -> Self {
                 Watched(x, PhantomData)
@@ -180,8 +181,16 @@ macro_rules! numbers {
     };
 }
 eyerays_shader::lone_rays!(Counting, Flushing);
-numbers!(Counting);
-numbers!(Flushing);
+numbers!(Counting {
+    /// Its parts may be subnormal where the rest counts as zero whatever they are: see [`Flushing`], which looks into it.
+    #[inline(never)]
+    #[track_caller]
+    fn product_and_rest(self, other: Self) -> (Self, Self) {
+        let (product, rest) = self.seen().product_and_rest(other.seen());
+        (Self::new(product), Self::new(rest))
+    }
+});
+numbers!(Flushing {});
 
 #[cfg(test)]
 mod tests {

@@ -66,7 +66,7 @@ impl From {
 
 /// A ray of any length that matters, now and then along an axis or a plane.
 pub fn towards_at(origin: Vec3, towards: DVec3, rng: &mut Rng) -> StreamRay {
-    let length = if rng.bool() { 1.0 / towards.length() } else { power(rng, -3.0, 3.0) };
+    let length = if rng.bool() { 1.0 / towards.length() } else { power(rng, -9.0, 9.0) };
     let mut direction = (towards * length).as_vec3();
     if rng.u32(0..8) == 0 {
         direction[rng.usize(0..3)] = 0.0;

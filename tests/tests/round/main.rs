@@ -8,6 +8,7 @@ mod leaving;
 mod mixed;
 mod scenes;
 mod spheres;
+mod subnormals;
 
 use rayon::prelude::*;
 

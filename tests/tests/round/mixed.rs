@@ -3,7 +3,7 @@
 use eyerays::cpu::{self, Isa};
 use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::gpu::{AdapterRequest, Caster};
-use eyerays::method::{Layout, Method, Traversal};
+use eyerays::method::{Layout, Method, Scheduling, Traversal};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
 use eyerays_shader::ray::{Hit, Ray};
@@ -64,7 +64,7 @@ fn every_method_and_hierarchy_finds_what_brute_force_finds() {
             let stream = rays(&packed, count::of(1_500, 200_000));
             let truth: &Truth = truth.get_or_insert_with(|| Truth::of(&packed, &stream));
             let hits = truth.closest.iter().filter(|found| found[3] != StreamRay::NOWHERE).count();
-            assert!(2 * hits > stream.len(), "{kind:?}: {hits} of {} hit", stream.len());
+            assert!(5 * hits > 2 * stream.len(), "{kind:?}: {hits} of {} hit", stream.len());
             for (traversal, question) in traversals().into_iter().flat_map(|t| QUESTIONS.map(|q| (t, q))) {
                 let (answers, _) = cpu::cast(&packed, traversal, 0, &stream, question).unwrap();
                 truth.assert(&packed, answers, &format!("{kind:?}, {quality:?}, {traversal:?}, {question:?}"));
@@ -144,9 +144,11 @@ fn the_gpu_finds_what_brute_force_finds() {
         let truth = Truth::of(&packed, &stream);
         let caster = Caster::new(&gpu, &packed, Layout::Gathered).unwrap();
         let cast = caster.upload(&stream).unwrap();
-        // A software device compiles each kernel slowly.
+        // A software device compiles each kernel slowly, and ends loops after 65,535 rounds in all: too few for all of a
+        // persistent lane's rays.
+        let grid = |method: Method| Traversal { scheduling: Scheduling::Grid, ..method.into() };
+        let some = [Method::IfIf, Method::Wide, Method::Packet].map(grid).into_iter();
         let all = traversals().into_iter().filter(|t| t.layout == Layout::Gathered);
-        let some = [Method::IfIf.into(), Method::Wide.into(), Method::Packet.into()].into_iter();
         let ways: Vec<Traversal> = if gpu.report.is_software() { some.collect() } else { all.collect() };
         for (traversal, question) in ways.into_iter().flat_map(|t| QUESTIONS.map(|q| (t, q))) {
             caster.trace(&cast, true, traversal, question).unwrap();

@@ -9,7 +9,7 @@ use crate::geometry::{Chord, intersect_sphere, octahedral};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
-use crate::real::{Mask, Real, Scalar, V3};
+use crate::real::{FAINT, Mask, Real, Scalar, V3};
 use crate::scene::TraceContext;
 use crate::traverse::Query;
 
@@ -62,15 +62,22 @@ fn single<R: Real>(sphere: &Primitive, ray: &Ray<R>) -> Chord<R> {
 pub fn coordinates<R: Scalar>(sphere: &Primitive, ray: &Ray<R>) -> (R, R) {
     let chord = single(sphere, ray);
     let (u, v, size) = octahedral(place(&chord, end(&chord, sphere.number(), ray).far, ray));
-    let scale = size.reciprocal();
+    let scale = size_or_one(true, size).reciprocal();
     (u * scale, v * scale)
+}
+
+/// What the octahedral coordinates are divided by. A place next to the centre of a sphere that is next to nothing has no
+/// size, and there any normal will do: that of the coordinates (0, 0).
+#[inline(always)]
+fn size_or_one<R: Real>(inside: R::Mask, size: R) -> R {
+    R::select(inside & R::splat(0.0).lt(size), size, R::splat(1.0))
 }
 
 /// Where a ray hits, relative to the centre.
 #[inline(always)]
 fn place<R: Real>(chord: &Chord<R>, far: R::Mask, ray: &Ray<R>) -> V3<R> {
     let step = R::select(far, chord.far, chord.near);
-    chord.place + ray.direction * step
+    chord.place + (ray.direction * step).map(|c| c.flush(FAINT))
 }
 
 #[inline(always)]
@@ -94,7 +101,7 @@ fn accept_chord<Q: Query, R: Real>(
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let (u, v, size) =
         if Q::ANY || cfg!(target_arch = "spirv") { (zero, zero, one) } else { octahedral(place(chord, end.far, ray)) };
-    let scale = R::select(inside, size, one).reciprocal();
+    let scale = size_or_one(inside, size).reciprocal();
     let met = Meeting { inside, t: end.t, u, v, scale };
     accept::<Q, R>(met, context.bounds(index, || sphere.sphere_bounds()), Identity { index, number }, ray, hit);
 }

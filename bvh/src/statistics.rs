@@ -12,9 +12,9 @@ use crate::{
 /// Figures of a hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Statistics {
-    /// Triangles.
-    pub triangles: usize,
-    /// References to triangles or parts of them, each in a slot of its own (thesis: split triangles).
+    /// Primitives.
+    pub primitives: usize,
+    /// References to primitives or parts of triangles, each in a place of its own (thesis: split triangles).
     pub references: usize,
     /// Inner nodes and leaves.
     pub nodes: usize,
@@ -37,8 +37,8 @@ pub struct Statistics {
     pub wide_sah_cost: f64,
     /// Bytes of the wide nodes.
     pub wide_bytes: usize,
-    /// Bytes of the triangles by slot.
-    pub triangle_bytes: usize,
+    /// Bytes of the primitives in leaf order.
+    pub primitive_bytes: usize,
 }
 
 impl Statistics {
@@ -47,10 +47,10 @@ impl Statistics {
     /// Cost of a triangle test.
     pub const INTERSECTION: f64 = 1.0;
 
-    /// The figures of `bvh`, which was built over `triangles`.
-    pub fn of(bvh: &Bvh, triangles: &[Primitive]) -> Self {
+    /// The figures of `bvh`, which was built over `primitives`.
+    pub fn of(bvh: &Bvh, primitives: &[Primitive]) -> Self {
         let mut statistics = Statistics {
-            triangles: triangles.len(),
+            primitives: primitives.len(),
             references: bvh.order.len(),
             nodes: bvh.nodes.len(),
             leaves: 0,
@@ -61,7 +61,7 @@ impl Statistics {
             wide_depth: 0,
             wide_sah_cost: 0.0,
             wide_bytes: size_of_val(&bvh.wide[..]),
-            triangle_bytes: size_of::<Primitive>() * bvh.order.len(),
+            primitive_bytes: size_of::<Primitive>() * bvh.order.len(),
         };
         let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
         let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
@@ -154,7 +154,7 @@ mod tests {
         // Cubes of edge 1 in one of edge 2.
         assert_eq!(statistics.wide_sah_cost, 1.0 + (2.0 + 3.0) / 4.0);
         let expected = Statistics {
-            triangles: 9,
+            primitives: 9,
             references: 9,
             nodes: 5,
             leaves: 3,
@@ -165,7 +165,7 @@ mod tests {
             wide_depth: 1,
             wide_sah_cost: statistics.wide_sah_cost,
             wide_bytes: 80,
-            triangle_bytes: 432,
+            primitive_bytes: 432,
         };
         assert_eq!(statistics, expected);
     }

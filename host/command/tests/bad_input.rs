@@ -247,7 +247,7 @@ fn meshes_larger_than_the_buffers_of_a_device() {
         return eprintln!("skipped: buffers of {buffer} bytes hold the mesh");
     }
     let render = ["render", "scene.toml", "-o", "out.png", "--device", "gpu", "--bvh", "fast", "--size", "8x8"];
-    place.refuse(&render, &["triangles", &size.to_string(), &buffer.to_string(), "--device cpu"]);
+    place.refuse(&render, &["primitives", &size.to_string(), &buffer.to_string(), "--device cpu"]);
 }
 
 #[test]

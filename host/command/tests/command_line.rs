@@ -104,7 +104,7 @@ fn json_tells_everything_of_a_rendering() {
     assert!(outcome.stderr.is_empty(), "{}", outcome.stderr);
     assert_eq!((&json["width"], &json["height"], &json["samples"]), (&24.into(), &18.into(), &2.into()));
     assert_eq!((&json["output"], &json["precision"]), (&"out.png".into(), &"exact".into()));
-    assert_eq!((&json["why"], &json["triangles"], &json["bounces"]), (&"--device cpu".into(), &80.into(), &5.into()));
+    assert_eq!((&json["why"], &json["primitives"], &json["bounces"]), (&"--device cpu".into(), &80.into(), &5.into()));
     assert!(json["device"].as_str().unwrap().starts_with("CPU ("));
     place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "out.exr", "--samples", "2"]);
     assert_eq!(json["film_hash"], image::read(&place.path("out.exr")).unwrap().hash());
@@ -232,17 +232,17 @@ fn info_tells_the_hierarchies_of_a_scene() {
     {
         let want = DeviceScene::new(&scene, scene.settings, quality).unwrap();
         let want = want.statistics();
-        let counts = [want.triangles, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
+        let counts = [want.primitives, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
         assert_eq!(rows[row][0], name);
         assert_eq!(rows[row][1..5], counts, "{name}");
         assert_eq!(rows[row][5], format!("{:.1}", want.sah_cost), "{name}");
         let hierarchy = &json["hierarchies"][row];
         assert_eq!(hierarchy["bvh"], name);
-        for (key, count) in ["triangles", "nodes", "leaves", "depth"].into_iter().zip(counts) {
+        for (key, count) in ["primitives", "nodes", "leaves", "depth"].into_iter().zip(counts) {
             assert_eq!(hierarchy[key].to_string(), count, "{name}, {key}");
         }
         assert!(hierarchy["node_bytes"].as_u64().unwrap() >= 64);
-        assert_eq!(hierarchy["triangle_bytes"], 48 * scene.mesh.triangles.len());
+        assert_eq!(hierarchy["primitive_bytes"], 48 * (scene.mesh.triangles.len() + scene.spheres.len()));
     }
     assert_eq!(rows.len(), 3);
     let one = place.succeed(&["info", &path, "--bvh", "medium", "--json"]).json()["hierarchies"].take();

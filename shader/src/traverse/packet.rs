@@ -4,6 +4,7 @@
 use core::marker::PhantomData;
 
 use super::cursor::{Cursor, Stack};
+#[cfg(not(target_arch = "spirv"))]
 use super::lanes::RayLanes;
 use super::leaf::{Leaf, occluded};
 use super::resumable::Progress;

@@ -163,7 +163,7 @@ fn refusal(scene: &Scene) -> Option<Error> {
 #[test]
 fn none_at_all() {
     let error = refusal(&soup([]).scene()).expect("there is nothing to see").to_string();
-    assert!(error.contains("no triangles") && !error.contains('\n'), "{error}");
+    assert!(error.contains("no primitives") && !error.contains('\n'), "{error}");
 }
 
 #[test]

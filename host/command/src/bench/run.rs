@@ -80,7 +80,7 @@ impl<'a> Bench<'a> {
         let statistics = &packed.statistics();
         report.scenes.push(SceneRow {
             scene: subject.name.clone(),
-            triangles: statistics.triangles,
+            triangles: statistics.primitives,
             split_triangles: statistics.references,
             nodes: statistics.nodes,
             leaves: statistics.leaves,

@@ -108,7 +108,7 @@ fn paid(cost: &Cost) -> String {
     text + &format!("bytes of a sample in flight: {}; of a pixel: film {}\n", sum(&cost.sample), cost.pixel)
 }
 
-const HEAD: &str = "BVH      triangles      nodes     leaves  depth  SAH cost       memory          build\n";
+const HEAD: &str = "BVH     primitives      nodes     leaves  depth  SAH cost       memory          build\n";
 
 /// A hierarchy's figures.
 struct Row {
@@ -121,9 +121,9 @@ impl Row {
     fn json(&self) -> Value {
         let s = &self.statistics;
         json!({
-            "bvh": self.bvh, "triangles": s.triangles, "nodes": s.nodes, "leaves": s.leaves,
+            "bvh": self.bvh, "primitives": s.primitives, "nodes": s.nodes, "leaves": s.leaves,
             "depth": s.depth, "sah_cost": s.sah_cost, "node_bytes": s.node_bytes,
-            "triangle_bytes": s.triangle_bytes, "build_ms": self.build_time.as_secs_f64() * 1e3,
+            "primitive_bytes": s.primitive_bytes, "build_ms": self.build_time.as_secs_f64() * 1e3,
         })
     }
 }
@@ -131,9 +131,9 @@ impl Row {
 impl fmt::Display for Row {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let s = &self.statistics;
-        let megabytes = (s.node_bytes + s.triangle_bytes) as f64 / 1e6;
+        let megabytes = (s.node_bytes + s.primitive_bytes) as f64 / 1e6;
         let milliseconds = self.build_time.as_secs_f64() * 1e3;
-        write!(out, "{:<6} {:>11} {:>10} {:>10} {:>6}", self.bvh, s.triangles, s.nodes, s.leaves, s.depth)?;
+        write!(out, "{:<6} {:>11} {:>10} {:>10} {:>6}", self.bvh, s.primitives, s.nodes, s.leaves, s.depth)?;
         writeln!(out, " {:>9.1} {megabytes:>9.1} MB {milliseconds:>11.1} ms", s.sah_cost)
     }
 }

@@ -86,7 +86,7 @@ impl<'a> Summary<'a> {
             "precision": self.precision(),
             "device": self.rendering.device,
             "why": remedy::why(self.rendering),
-            "triangles": self.loaded.packed.statistics().triangles,
+            "primitives": self.loaded.packed.statistics().primitives,
             "rays": self.rendering.rays,
             "film_hash": self.rendering.film.hash(),
             "mrays_per_second": self.mrays(times.render),

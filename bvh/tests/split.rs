@@ -87,7 +87,7 @@ fn a_triangle_across_a_mesh_is_split_and_cheaper() {
         };
         let (whole, parts) = (cost(0.0), cost(0.5));
         assert!(parts.sah_cost < whole.sah_cost && parts.wide_sah_cost < whole.wide_sah_cost, "{quality:?}");
-        assert_eq!((parts.triangles, whole.references), (2001, 2001));
+        assert_eq!((parts.primitives, whole.references), (2001, 2001));
         assert!(parts.references > 2001);
     }
 }

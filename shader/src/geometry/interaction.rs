@@ -108,7 +108,7 @@ impl<R: Scalar> SurfaceInteraction<R> {
         let mut grazes = cosine.lt(R::splat(GRAZING));
         if self.is_curved {
             let steep = cosine.max(R::splat(GRAZING));
-            grazes = grazes | (steep * steep * self.radius).lt(self.error_offset);
+            grazes |= (steep * steep * self.radius).lt(self.error_offset);
         }
         let step = self.error_offset.div(R::select(grazes, R::splat(1.0), cosine));
         let along = (self.position + direction * step).map(|x| x.flush(TINY));

@@ -74,7 +74,7 @@ impl Kind {
             Kind::Particles => (cube(rng), 0.05),
             Kind::Nested => (cube(&mut Rng::with_seed(i as u64 % 4)) * 0.5, 0.5 * power(rng, -3.0, 0.0)),
             Kind::Touching => (grid(rng), 0.125),
-            Kind::TinyAndLarge if i % 10 > 0 => (cube(rng) * 0.3, power(rng, -6.0, -5.0)),
+            Kind::TinyAndLarge if !i.is_multiple_of(10) => (cube(rng) * 0.3, power(rng, -6.0, -5.0)),
             Kind::TinyAndLarge => (cube(rng), 0.4),
             Kind::Random | Kind::Spheres | Kind::Disks => (cube(rng), 0.5 * power(rng, -4.0, 0.0)),
         }
@@ -136,7 +136,7 @@ fn leaving(packed: &DeviceScene, primitive: &Primitive, rng: &mut Rng) -> Stream
     let (u, v) = (rng.f32(), rng.f32());
     let (u, v) = match () {
         () if primitive.is_sphere() => (2.0 * u - 1.0, 2.0 * v - 1.0),
-        () if primitive.is_disk() => ((v * 6.28).cos() * u, (v * 6.28).sin() * u),
+        () if primitive.is_disk() => ((v * std::f32::consts::TAU).cos() * u, (v * std::f32::consts::TAU).sin() * u),
         () if u + v > 1.0 => (1.0 - u, 1.0 - v),
         () => (u, v),
     };

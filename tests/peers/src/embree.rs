@@ -1,14 +1,15 @@
 //! Embree 3.13 in its robust mode.
 
 use embree3::{
-    BufferUsage, BuildQuality, Device, Format, Geometry, GeometryKind, Hit16, IntersectContext, Ray, Ray16, RayHit,
-    RayHit16, Scene, SceneFlags, ValidMask, ValidMaskN,
+    BufferData, BufferUsage, BuildQuality, Device, Format, Geometry, GeometryBuilder, GeometryKind, Hit16,
+    IntersectContext, Ray, Ray16, RayHit, RayHit16, Scene, SceneFlags, ValidMask, ValidMaskN,
 };
 use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
-use eyerays_shader::data::numbers;
+use eyerays_shader::data::Primitive;
 
-use crate::contest::{Found, RayTracer, tasks};
+use crate::contest::{Answers, RayTracer, tasks};
+use crate::primitives;
 
 const PACKET: usize = 16;
 
@@ -18,27 +19,55 @@ pub struct Embree {
 }
 
 impl Embree {
-    /// Triangles in the order of their primitives.
+    /// Triangles, spheres and disks, each kind as Embree's own, in the order of their numbers.
     pub fn new(packed: &DeviceScene, quality: BuildQuality) -> Result<Embree, embree3::Error> {
         let device = Device::new()?;
-        let mut triangles: Vec<_> = packed.primitives().iter().collect();
-        triangles.sort_unstable_by_key(|t| t.number());
-        triangles.dedup_by_key(|t| t.number());
-        let corners = triangles.iter().flat_map(|t| [t.a, t.b, t.c]).map(|p| numbers(p).to_array());
-        let corners: Vec<[f32; 3]> = corners.collect();
-        let indices: Vec<[u32; 3]> = (0..triangles.len() as u32).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-        let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
-        mesh.set_new_buffer::<[f32; 3]>(BufferUsage::VERTEX, 0, Format::FLOAT3, 12, corners.len())?
-            .copy_from_slice(&corners);
-        mesh.set_new_buffer::<[u32; 3]>(BufferUsage::INDEX, 0, Format::UINT3, 12, indices.len())?
-            .copy_from_slice(&indices);
         let mut scene = device.create_scene()?;
         scene.set_flags(SceneFlags::ROBUST);
         scene.set_build_quality(quality);
-        scene.attach_geometry(&mesh.commit());
+        let primitives = primitives(packed);
+        let of = |is_kind: fn(&Primitive) -> bool| -> Vec<Primitive> {
+            primitives.iter().copied().filter(is_kind).collect()
+        };
+        let corners: Vec<[f32; 3]> =
+            of(Primitive::is_triangle).iter().flat_map(Primitive::vertices).map(|p| p.to_array()).collect();
+        if !corners.is_empty() {
+            let indices: Vec<[u32; 3]> = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+            let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
+            fill(&mut mesh, BufferUsage::VERTEX, Format::FLOAT3, &corners)?;
+            fill(&mut mesh, BufferUsage::INDEX, Format::UINT3, &indices)?;
+            scene.attach_geometry(&mesh.commit());
+        }
+        let round = |p: &Primitive| p.centre().extend(p.radius()).to_array();
+        let spheres: Vec<[f32; 4]> = of(Primitive::is_sphere).iter().map(round).collect();
+        if !spheres.is_empty() {
+            let mut points = Geometry::new(&device, GeometryKind::SPHERE_POINT);
+            fill(&mut points, BufferUsage::VERTEX, Format::FLOAT4, &spheres)?;
+            scene.attach_geometry(&points.commit());
+        }
+        let disks = of(Primitive::is_disk);
+        if !disks.is_empty() {
+            let (places, normals): (Vec<[f32; 4]>, Vec<[f32; 3]>) =
+                disks.iter().map(|d| (round(d), d.normal().to_array())).unzip();
+            let mut points = Geometry::new(&device, GeometryKind::ORIENTED_DISC_POINT);
+            fill(&mut points, BufferUsage::VERTEX, Format::FLOAT4, &places)?;
+            fill(&mut points, BufferUsage::NORMAL, Format::FLOAT3, &normals)?;
+            scene.attach_geometry(&points.commit());
+        }
         scene.commit();
         Ok(Embree { scene })
     }
+}
+
+/// Copies one record a vertex or a triangle.
+fn fill<T: BufferData + Copy>(
+    geometry: &mut GeometryBuilder<'_>,
+    usage: BufferUsage,
+    format: Format,
+    records: &[T],
+) -> Result<(), embree3::Error> {
+    geometry.set_new_buffer::<T>(usage, 0, format, size_of::<T>(), records.len())?.copy_from_slice(records);
+    Ok(())
 }
 
 /// One ray at a time.
@@ -57,7 +86,7 @@ impl RayTracer for Single<'_> {
         "Embree rtcIntersect1"
     }
 
-    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Found) {
+    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Answers) {
         let scene = &self.0.scene;
         tasks(pool, stream, |first, answers| {
             let mut context = IntersectContext::incoherent();
@@ -107,7 +136,7 @@ impl RayTracer for Packet<'_> {
         true
     }
 
-    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Found) {
+    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Answers) {
         let scene = &self.0.scene;
         tasks(pool, stream, |first, answers| {
             let mut context = IntersectContext::coherent();

@@ -5,7 +5,6 @@ use std::time::Duration;
 use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
 use eyerays_bvh::Quality;
-use eyerays_shader::data::numbers;
 use glam::Vec3A;
 use obvhs::BvhBuildParams;
 use obvhs::bvh2::{Bvh2, builder::build_bvh2_from_tris};
@@ -13,14 +12,12 @@ use obvhs::cwbvh::{CwBvh, builder::build_cwbvh_from_tris};
 use obvhs::ray::{Ray, RayHit};
 use obvhs::triangle::Triangle;
 
-use crate::contest::{Found, RayTracer, tasks};
+use crate::contest::{Answers, RayTracer, tasks};
+use crate::primitives;
 
 fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
-    let mut all: Vec<_> = packed.primitives().iter().collect();
-    all.sort_unstable_by_key(|t| t.number());
-    all.dedup_by_key(|t| t.number());
-    let corner = |p| Vec3A::from(numbers(p));
-    all.iter().map(|t| Triangle { v0: corner(t.a), v1: corner(t.b), v2: corner(t.c) }).collect()
+    let all = primitives(packed);
+    all.iter().map(|t| t.vertices().map(Vec3A::from)).map(|[v0, v1, v2]| Triangle { v0, v1, v2 }).collect()
 }
 
 fn parameters(quality: Quality) -> BvhBuildParams {
@@ -98,7 +95,7 @@ macro_rules! contestant {
                 $name
             }
 
-            fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Found) {
+            fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Answers) {
                 #[cfg(target_arch = "x86_64")]
                 if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma") {
                     return tasks(pool, stream, |first, answers| {

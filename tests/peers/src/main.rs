@@ -10,7 +10,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use clap::Parser;
-use contest::{Found, RayTracer};
+use contest::{RayTracer, differing, hits};
 use embree3::BuildQuality;
 use eyerays::device_scene::DeviceScene;
 use eyerays::method::{Method, Order, Traversal};
@@ -19,6 +19,7 @@ use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_command::bench::Kind;
 use eyerays_command::bench::rays::{AO_SHARE, CameraRays, PrimaryHits, diagonal};
+use eyerays_shader::data::Primitive;
 use own::Own;
 
 #[derive(Parser)]
@@ -55,17 +56,35 @@ struct Options {
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
     println!(
-        "| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits |"
+        "| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits | other than {} |",
+        REFERENCE
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|");
     for path in &options.scenes {
         contest(&options, path)?;
     }
     Ok(())
 }
 
-/// Rays a second of a contestant by kind and view.
-type Score = Vec<Vec<(f64, Found)>>;
+/// Whose answers the others' are compared with.
+const REFERENCE: &str = "Eyerays wide";
+
+/// What a contestant reached in a view.
+struct Score {
+    /// Millions of rays a second.
+    rate: f64,
+    hits: usize,
+    /// Rays whose answers are not those of [`REFERENCE`].
+    others: Option<usize>,
+}
+
+/// The primitives of a scene in the order of their numbers, each once though it may be split.
+fn primitives(packed: &DeviceScene) -> Vec<Primitive> {
+    let mut all = packed.primitives().to_vec();
+    all.sort_unstable_by_key(Primitive::number);
+    all.dedup_by_key(|p| p.number());
+    all
+}
 
 fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene::load(path)?;
@@ -80,11 +99,15 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
         options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let embree = embree::Embree::new(&packed, embree_quality).map_err(|e| format!("Embree: {e:?}"))?;
-    let binary = hierarchies::Binary::new(&packed, quality);
-    let compressed = hierarchies::Compressed::new(&packed, quality);
+    // obvhs has no other primitives.
+    let triangles = packed
+        .primitives()
+        .iter()
+        .all(Primitive::is_triangle)
+        .then(|| (hierarchies::Binary::new(&packed, quality), hierarchies::Compressed::new(&packed, quality)));
     let mut names: Vec<(&'static str, bool)> = Vec::new();
     let kinds = [Kind::Primary, Kind::Shadow, Kind::Ao, Kind::Diffuse];
-    let mut scores: Vec<Score> = Vec::new();
+    let mut scores: Vec<Vec<Vec<Score>>> = Vec::new();
     for camera in scene.cameras.iter().take(options.views) {
         let rays = CameraRays::of(&packed, &View::new(&packed, camera)?, Order::Tiled);
         let own = |name, method, packet| Own { name, packed: &packed, traversal: Traversal::from(method), packet };
@@ -95,16 +118,19 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
             own("Eyerays packet", Method::Packet, true),
         ];
         let (single, packet) = (embree::Single(&embree), embree::Packet(&embree));
-        let mut all: Vec<&dyn RayTracer> = vec![&single, &packet, &binary, &compressed];
+        let mut all: Vec<&dyn RayTracer> = vec![&single, &packet];
+        if let Some((binary, compressed)) = &triangles {
+            all.extend([binary as &dyn RayTracer, compressed]);
+        }
         all.extend(methods.iter().map(|m| m as &dyn RayTracer));
         all.retain(|c| c.name().contains(&options.only));
         names = all.iter().map(|c| (c.name(), c.is_packet())).collect();
-        scores.resize(all.len(), Score::new());
+        scores.resize_with(all.len(), || kinds.iter().map(|_| Vec::new()).collect());
         let sight = PrimaryHits::new(&packed, &rays, options.threads)?;
         for (k, kind) in kinds.iter().enumerate().filter(|(_, k)| k.name().contains(&options.kind)) {
             let stream = sight.rays(*kind, ao_length)?;
             let mut times = vec![Vec::new(); all.len()];
-            let mut found = vec![Found::default(); all.len()];
+            let mut found = vec![contest::Answers::new(); all.len()];
             for repeat in 0..=options.repeat {
                 for (c, contestant) in all.iter().enumerate() {
                     let (seconds, what) = contestant.cast(&pool, &stream, kind.question());
@@ -115,17 +141,20 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
                     found[c] = what;
                 }
             }
+            let reference = all.iter().position(|c| c.name() == REFERENCE);
             for (c, mut times) in times.into_iter().enumerate() {
-                scores[c].resize(kinds.len(), Vec::new());
-                scores[c][k].push((stream.len() as f64 / median(&mut times) / 1e6, found[c]));
+                scores[c][k].push(Score {
+                    rate: stream.len() as f64 / median(&mut times) / 1e6,
+                    hits: hits(&found[c]),
+                    others: reference.map(|r| differing(&stream, &found[r], &found[c])),
+                });
             }
         }
     }
     let scene = path.file_stem().unwrap_or_default().to_string_lossy();
     for (k, kind) in kinds.iter().enumerate() {
         let kind = kind.name();
-        let rates: Vec<Vec<f64>> =
-            scores.iter().map(|s| s.get(k).map_or(Vec::new(), |views| views.iter().map(|v| v.0).collect())).collect();
+        let rates: Vec<Vec<f64>> = scores.iter().map(|kinds| kinds[k].iter().map(|view| view.rate).collect()).collect();
         let of = |name: &str| names.iter().position(|n| n.0 == name).map(|c| &rates[c]);
         for (c, &(name, is_packet)) in names.iter().enumerate().filter(|(c, _)| !rates[*c].is_empty()) {
             let peer = of(if is_packet { "Embree rtcIntersect16" } else { "Embree rtcIntersect1" });
@@ -133,9 +162,11 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
             let least = rates[c].iter().copied().fold(f64::MAX, f64::min);
             let most = rates[c].iter().copied().fold(0.0, f64::max);
             let middle = median(&mut rates[c].clone());
-            let hits: u64 = scores[c][k].iter().map(|v| v.1.hits).sum();
+            let hits: usize = scores[c][k].iter().map(|view| view.hits).sum();
+            let others: Option<usize> = scores[c][k].iter().map(|view| view.others).sum();
+            let others = others.map_or(String::new(), |n| n.to_string());
             println!(
-                "| {scene} | {kind} | {name} | {middle:.2} | {least:.2} | {most:.2} | {embree} | {obvhs} | {hits} |"
+                "| {scene} | {kind} | {name} | {middle:.2} | {least:.2} | {most:.2} | {embree} | {obvhs} | {hits} | {others} |"
             );
         }
     }

@@ -5,8 +5,9 @@ use eyerays::device_scene::DeviceScene;
 use eyerays::method::Traversal;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::stage::SHADOWED;
+use glam::UVec4;
 
-use crate::contest::{Found, RayTracer};
+use crate::contest::{self, RayTracer};
 
 /// One of its methods.
 pub struct Own<'a> {
@@ -25,18 +26,13 @@ impl RayTracer for Own<'_> {
         self.packet
     }
 
-    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, Found) {
+    fn cast(&self, pool: &rayon::ThreadPool, stream: &Stream, question: Question) -> (f64, contest::Answers) {
         let threads = pool.current_num_threads();
         let (answers, time) = cpu::cast(self.packed, self.traversal, threads, stream, question).expect("threads");
-        let hit = |t: f32| Found { hits: 1, distance: f64::from(t) };
+        let distance = |hit: &UVec4| if hit.w == StreamRay::NOWHERE { -1.0 } else { f32::from_bits(hit.x) };
         let found = match answers {
-            Answers::Closest(hits) => {
-                let hits = hits.iter().filter(|hit| hit.w != StreamRay::NOWHERE);
-                hits.fold(Found::default(), |sum, h| sum + hit(f32::from_bits(h.x)))
-            }
-            Answers::Occlusion(answers) => {
-                answers.iter().filter(|&&a| a == SHADOWED).fold(Found::default(), |sum, _| sum + hit(0.0))
-            }
+            Answers::Closest(hits) => hits.iter().map(distance).collect(),
+            Answers::Occlusion(answers) => answers.iter().map(|&a| if a == SHADOWED { 0.0 } else { -1.0 }).collect(),
         };
         (time.as_secs_f64(), found)
     }

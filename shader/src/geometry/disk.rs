@@ -1,8 +1,9 @@
 //! The disk test: where a ray crosses the plane, and how far from the centre that is.
 //!
 //! The place relative to the centre is found as a sphere's is ([`super::sphere`]), so it errs by few roundoffs of its length
-//! and by what the distance errs: 8 roundoffs of the way from the origin to the centre or to the plane, whichever is longer, over
-//! the cosine between the ray and the normal. The place is off the plane by no more than 8 roundoffs of that way, whatever the cosine.
+//! and by what the distance errs: 8 roundoffs of the way from the origin to the centre or to the plane, whichever is longer,
+//! over the cosine between the ray and the normal. The place is off the plane by no more than 8 roundoffs of that way, whatever
+//! the cosine.
 
 use crate::real::{FAINT, Real, SMALL, V3};
 
@@ -35,18 +36,13 @@ pub fn intersect_disk<R: Real>(
     origin: V3<R>,
     direction: V3<R>,
 ) -> Crossing<R> {
-    let (x, y, z) = (
-        origin.x.difference_and_rest(centre.x),
-        origin.y.difference_and_rest(centre.y),
-        origin.z.difference_and_rest(centre.z),
-    );
-    let from = V3::new(x.0, y.0, z.0);
+    let (from, from_rest) = origin.difference_and_rest(centre);
     let (zero, slope) = (R::splat(0.0), dot(normal, direction));
     let parallel = slope.eq(zero);
     let t = -dot(normal, from).div(R::select(parallel, R::splat(1.0), slope)).flush(FAINT);
-    let (i, j, k) = (t.product_and_rest(direction.x), t.product_and_rest(direction.y), t.product_and_rest(direction.z));
-    let about = from + V3::new(i.0, j.0, k.0).map(|c| c.flush(SMALL));
-    let place = (about + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1)).map(|c| c.flush(SMALL));
+    let (step, step_rest) = direction.product_and_rest(t);
+    let about = from + step.map(|c| c.flush(FAINT));
+    let place = (about + (from_rest + step_rest)).map(|c| c.flush(SMALL));
     let meets = place.dot(place).le(radius * radius) & !parallel;
     Crossing { meets, front: slope.lt(zero), t, place }
 }

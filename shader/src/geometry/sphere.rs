@@ -13,9 +13,9 @@
 //! shorter. A hit lies in the sphere's own box: its distance to the centre is the radius but for 8 u of it, and u of its
 //! distance along the ray.
 //!
-//! A device may take subnormal numbers for zero. Differences to the centre and steps from there below 2^-40 are zero, which
-//! moves places by less than 2^-39, and components of directions below 2^-60 are, so no product of the two is subnormal.
-//! Directions are shorter than 2^62, so that their square has a reciprocal.
+//! A device may take subnormal numbers for zero. Coordinates relative to the centre below 2^-40 are zero, which moves places by
+//! less than 2^-39 and the chord's square by less than 2^-39 of the radius. Components of directions below 2^-60 are zero, so
+//! no product of the two is subnormal. Directions are shorter than 2^62, so that their square has a reciprocal.
 
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -44,31 +44,27 @@ const BESIDE: f32 = 1.0 / (1 << 19) as f32;
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
 pub fn intersect_sphere<R: Real>(centre: V3<R>, radius: R, origin: V3<R>, direction: V3<R>) -> Chord<R> {
-    let (x, y, z) = (
-        origin.x.difference_and_rest(centre.x),
-        origin.y.difference_and_rest(centre.y),
-        origin.z.difference_and_rest(centre.z),
-    );
-    let from = V3::new(x.0, y.0, z.0).map(|c| c.flush(SMALL));
+    let (from, from_rest) = origin.difference_and_rest(centre);
+    let from = from.map(|c| c.flush(SMALL));
     let inverse = direction.dot(direction).reciprocal();
     let base = -(from.dot(direction) * inverse).flush(FAINT);
-    let (i, j, k) =
-        (base.product_and_rest(direction.x), base.product_and_rest(direction.y), base.product_and_rest(direction.z));
-    let about = from + V3::new(i.0, j.0, k.0).map(|c| c.flush(SMALL));
+    let (step, step_rest) = direction.product_and_rest(base);
+    let about = from + step.map(|c| c.flush(FAINT));
     let reach = radius + R::splat(BESIDE);
     // A ray that enters a sphere's box often misses the sphere.
-    let close = about.dot(about).le(reach * reach);
+    let seen = about.map(|c| c.flush(SMALL));
+    let close = seen.dot(seen).le(reach * reach);
     let zero = R::splat(0.0);
     if !close.any() {
         return Chord { meets: close, base, place: about, near: zero, far: zero };
     }
-    let place = (about + V3::new(x.1 + i.1, y.1 + j.1, z.1 + k.1)).map(|c| c.flush(SMALL));
+    let place = (about + (from_rest + step_rest)).map(|c| c.flush(SMALL));
     let along = place.dot(direction);
-    let step = (along * inverse).flush(FAINT);
-    let square = radius * radius - place.dot(place) + (along * step).flush(FAINT);
+    let middle = (along * inverse).flush(FAINT);
+    let square = radius * radius - place.dot(place) + (along * middle).flush(FAINT);
     // A root takes a subnormal for zero.
     let half = (square.max(zero) * inverse).sqrt();
-    Chord { meets: close & zero.le(square), base, place, near: -step - half, far: half - step }
+    Chord { meets: close & zero.le(square), base, place, near: -middle - half, far: half - middle }
 }
 
 /// A direction's octahedral coordinates in [-1, 1] (Meyer et al., On Floating-Point Normal Vectors, 2010): continuous over a

@@ -86,6 +86,25 @@ impl<R: Real> V3<R> {
         V3::new(self.x.fused(a.x, b.x), self.y.fused(a.y, b.y), self.z.fused(a.z, b.z))
     }
 
+    /// Component by component, by [`Real::difference_and_rest`].
+    #[inline(always)]
+    pub fn difference_and_rest(self, other: Self) -> (Self, Self) {
+        let (x, y, z) = (
+            self.x.difference_and_rest(other.x),
+            self.y.difference_and_rest(other.y),
+            self.z.difference_and_rest(other.z),
+        );
+        (V3::new(x.0, y.0, z.0), V3::new(x.1, y.1, z.1))
+    }
+
+    /// Every component times `factor`, by [`Real::product_and_rest`].
+    #[inline(always)]
+    pub fn product_and_rest(self, factor: R) -> (Self, Self) {
+        let (x, y, z) =
+            (factor.product_and_rest(self.x), factor.product_and_rest(self.y), factor.product_and_rest(self.z));
+        (V3::new(x.0, y.0, z.0), V3::new(x.1, y.1, z.1))
+    }
+
     /// Lesser components, by [`Real::lesser`].
     #[inline(always)]
     pub fn lesser(self, other: Self) -> Self {

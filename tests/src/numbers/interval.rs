@@ -142,6 +142,17 @@ impl Real for Interval {
     fn flush(self, least: f32) -> Self {
         Interval { value: Real::flush(self.value, least), ..self }
     }
+    /// Exact arithmetic leaves no rest.
+    #[inline(never)]
+    fn difference_and_rest(self, other: Self) -> (Self, Self) {
+        let (_, rest) = self.value.difference_and_rest(other.value);
+        (self - other, Interval { value: rest, ..Self::default() })
+    }
+    #[inline(never)]
+    fn product_and_rest(self, other: Self) -> (Self, Self) {
+        let (_, rest) = self.value.product_and_rest(other.value);
+        (self * other, Interval { value: rest, ..Self::default() })
+    }
 }
 
 /// Three intervals and an integer.
@@ -223,6 +234,8 @@ mod tests {
             let (least, greatest) = if p < q { (&p, &q) } else { (&q, &p) };
             prop_assert!(holds(a.min(b), least) && holds(a.max(b), greatest));
             prop_assert!(holds(a.flush(1e-3), &p));
+            let ((difference, over), (product, rest)) = (a.difference_and_rest(b), a.product_and_rest(b));
+            prop_assert!(holds(difference + over, &(&p - &q)) && holds(product + rest, &(&p * &q)));
             if b.value != 0.0 && y != 0.0 {
                 prop_assert!(holds(a.div(b), &(&p / &q)));
                 prop_assert!(holds(b.reciprocal(), &q.recip()));

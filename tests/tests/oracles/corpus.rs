@@ -1,4 +1,4 @@
-//! The scenes and rays that all oracles are asked about, with fixed seeds.
+//! The scenes of triangles and the rays that all oracles are asked about, with fixed seeds.
 
 use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Scene};
@@ -8,7 +8,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::Order;
 use eyerays_shader::ray::Ray;
 use eyerays_tests::model::{add, empty, matt};
-use eyerays_tests::{Posed, SHIPPED, pack, settings, shipped};
+use eyerays_tests::{Posed, SHIPPED, pack, settings};
 use fastrand::Rng;
 use glam::Vec3;
 
@@ -36,13 +36,25 @@ impl Case {
     }
 }
 
-/// Shipped scenes, a generated one, and triangles of every shape and size; each with its camera's rays and `count`
+/// Shipped scenes of triangles alone, a generated one, and triangles of every shape and size; each with its camera's rays and `count`
 /// others.
 pub fn cases(count: usize) -> Vec<Case> {
-    let mut cases: Vec<Case> = SHIPPED.iter().map(|name| Case::new(name, &shipped(name), count)).collect();
+    let mut cases: Vec<Case> = SHIPPED.iter().map(|name| Case::new(name, &tessellated(name), count)).collect();
     cases.push(Case::new("hall", &hall(), count));
     cases.push(Case::new("soup", &soup(&mut Rng::with_seed(11)), count));
     cases
+}
+
+/// A shipped scene whose spheres are meshes.
+fn tessellated(name: &str) -> Scene {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    for file in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).expect("the scenes") {
+        let file = file.expect("an entry");
+        let text = std::fs::read_to_string(file.path()).expect("a text");
+        let text = text.replace("shape = \"sphere\"", "shape = \"sphere\"\ntessellate = 4");
+        std::fs::write(folder.path().join(file.file_name()), text).expect("a copy");
+    }
+    scene::load(&folder.path().join(name).with_extension("toml")).unwrap().0
 }
 
 fn hall() -> Scene {

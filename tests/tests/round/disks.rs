@@ -1,9 +1,6 @@
 //! Rays against disks by exact arithmetic: hit or miss, and where.
 
 use eyerays_shader::data::Primitive;
-use eyerays_shader::ray::Hit;
-use eyerays_shader::traverse::Closest;
-use eyerays_tests::bare::{Bare, prepared};
 use eyerays_tests::count;
 use eyerays_tests::numbers::exact::ROUNDOFF;
 use eyerays_tests::numbers::round::Crossing;
@@ -12,6 +9,7 @@ use glam::{DVec3, Vec3};
 
 use super::draw::{Drawn, From, across, cube, power, sign, towards_at, unit};
 use super::tallied;
+use super::tally::{Answer, FLUSHED, Tally};
 
 /// From where a ray comes.
 #[derive(Clone, Copy, Debug)]
@@ -22,34 +20,6 @@ enum At {
     Rim,
     /// Along the disk's plane but for a small angle.
     Grazing,
-}
-
-/// What was found of a case's rays.
-#[derive(Debug, Default, Clone, Copy)]
-struct Tally {
-    rays: usize,
-    hits: usize,
-    /// Hits of what is missed exactly, and misses of what is hit.
-    wrong: usize,
-    /// The greatest distance of those from the rim, of its bound.
-    wrong_share: f64,
-    /// The greatest error of t, of its bound.
-    t_share: f64,
-    /// So flat that the bound is more than the scene.
-    flat: usize,
-}
-
-impl Tally {
-    fn and(self, other: Tally) -> Tally {
-        Tally {
-            rays: self.rays + other.rays,
-            hits: self.hits + other.hits,
-            wrong: self.wrong + other.wrong,
-            wrong_share: self.wrong_share.max(other.wrong_share),
-            t_share: self.t_share.max(other.t_share),
-            flat: self.flat + other.flat,
-        }
-    }
 }
 
 /// A disk, and a ray in its scene.
@@ -73,20 +43,16 @@ fn draw(case: At, rng: &mut Rng) -> (Drawn, Vec3) {
 }
 
 fn judge(case: At, rng: &mut Rng) -> Tally {
-    let (Drawn { centre, radius, ray }, normal) = draw(case, rng);
-    let bare = Bare::new(vec![Primitive::disk(centre, normal, radius, 0, 0, 0)]);
-    let shot = prepared::<f32>(&ray);
-    let hit = bare.hit::<Closest, f32>(&shot, f32::MAX);
-    let is_hit = hit.primitive_index != Hit::<f32>::NOTHING;
-    let direction = Vec3::new(shot.direction.x, shot.direction.y, shot.direction.z);
+    let (drawn, normal) = draw(case, rng);
+    let Drawn { centre, radius, ray } = drawn;
+    let Answer { is_hit, t, direction } = Answer::of(Primitive::disk(centre, normal, radius, 0, 0, 0), &drawn);
     let flat = Tally { rays: 1, flat: 1, ..Tally::default() };
     let Some(crossing) = Crossing::of(centre, normal, ray.origin, direction) else { return flat };
     if crossing.slope <= 16.0 * ROUNDOFF {
         return flat;
     }
-    let what =
-        || format!("{case:?}: {centre} {normal} {radius}, {ray:?}: {crossing:?}, {hit:?}", hit = (is_hit, hit.t));
-    let (r, t) = (f64::from(radius), f64::from(hit.t));
+    let what = || format!("{case:?}: {centre} {normal} {radius}, {ray:?}: {crossing:?}, {:?}", (is_hit, t));
+    let r = f64::from(radius);
     let way = crossing.way.max(crossing.t.abs() * crossing.length);
     let across = 8.0 * ROUNDOFF * way + FLUSHED;
     let along = across / crossing.slope;
@@ -105,9 +71,6 @@ fn judge(case: At, rng: &mut Rng) -> Tally {
     tally
 }
 
-/// What taking small differences to the centre for zero moves a place by.
-const FLUSHED: f64 = 2.0 / (1u64 << 40) as f64;
-
 /// Of radii from 1e-6 to 1 of the scene, as `geometry::disk` states.
 #[test]
 fn hits_of_disks_are_exact_within_their_bounds() {
@@ -116,7 +79,7 @@ fn hits_of_disks_are_exact_within_their_bounds() {
     );
     for (number, case) in [At::Inside, At::Rim, At::Grazing].into_iter().enumerate() {
         let rays = count::of(50_000, 10_000_000);
-        let Tally { rays, hits, wrong, wrong_share, t_share, flat } =
+        let Tally { rays, hits, flat, wrong, wrong_share, t_share, .. } =
             tallied(number, rays, Tally::default, |rng| judge(case, rng), Tally::and);
         println!("{case:?}, {rays}, {hits}, {flat}, {wrong}, {wrong_share:.3}, {t_share:.3}");
         assert!(hits * 4 > rays, "{case:?}: {hits} of {rays}");

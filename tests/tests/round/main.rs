@@ -9,6 +9,7 @@ mod mixed;
 mod scenes;
 mod spheres;
 mod subnormals;
+mod tally;
 
 use rayon::prelude::*;
 

@@ -1,45 +1,14 @@
 //! Rays against spheres by exact arithmetic: hit or miss, and where.
 
 use eyerays_shader::data::Primitive;
-use eyerays_shader::ray::Hit;
-use eyerays_shader::traverse::Closest;
-use eyerays_tests::bare::{Bare, prepared};
 use eyerays_tests::count;
 use eyerays_tests::numbers::exact::ROUNDOFF;
 use eyerays_tests::numbers::round::Passage;
 use fastrand::Rng;
-use glam::Vec3;
 
 use super::draw::{Drawn, From};
 use super::tallied;
-
-/// What was found of a case's rays.
-#[derive(Debug, Default, Clone, Copy)]
-struct Tally {
-    rays: usize,
-    hits: usize,
-    /// Hits of what is missed exactly, and misses of what is hit.
-    wrong: usize,
-    /// The greatest square of half a chord of those, of its bound.
-    wrong_share: f64,
-    /// The greatest error of t, of its bound.
-    t_share: f64,
-    /// The greatest distance of a hit from the surface, of its bound.
-    off_share: f64,
-}
-
-impl Tally {
-    fn and(self, other: Tally) -> Tally {
-        Tally {
-            rays: self.rays + other.rays,
-            hits: self.hits + other.hits,
-            wrong: self.wrong + other.wrong,
-            wrong_share: self.wrong_share.max(other.wrong_share),
-            t_share: self.t_share.max(other.t_share),
-            off_share: self.off_share.max(other.off_share),
-        }
-    }
-}
+use super::tally::{Answer, FLUSHED, Tally};
 
 /// What half a chord's square may be off by; see `geometry::sphere`.
 fn square_error(radius: f64) -> f64 {
@@ -53,20 +22,13 @@ fn root_error(passage: &Passage, radius: f64, root: f64) -> f64 {
     of_chord + 2.0 * ROUNDOFF * (root.abs() + radius / passage.length) + FLUSHED / passage.length
 }
 
-/// What taking small differences to the centre for zero moves a place by.
-const FLUSHED: f64 = 2.0 / (1u64 << 40) as f64;
-
 fn judge(case: From, rng: &mut Rng) -> Tally {
-    let Drawn { centre, radius, ray } = case.draw(rng);
-    let bare = Bare::new(vec![Primitive::sphere(centre, radius, 0, 0, 0)]);
-    let shot = prepared::<f32>(&ray);
-    let hit = bare.hit::<Closest, f32>(&shot, f32::MAX);
-    let is_hit = hit.primitive_index != Hit::<f32>::NOTHING;
-    // Without what counts as zero.
-    let direction = Vec3::new(shot.direction.x, shot.direction.y, shot.direction.z);
+    let drawn = case.draw(rng);
+    let Drawn { centre, radius, ray } = drawn;
+    let Answer { is_hit, t, direction } = Answer::of(Primitive::sphere(centre, radius, 0, 0, 0), &drawn);
     let (passage, r) = (Passage::of(centre, radius, ray.origin, direction), f64::from(radius));
-    let what = || format!("{case:?}: {centre} {radius}, {ray:?}: {passage:?}, {hit:?}", hit = (is_hit, hit.t));
-    let (t, half, error) = (f64::from(hit.t), passage.half(0.0), square_error(r));
+    let what = || format!("{case:?}: {centre} {radius}, {ray:?}: {passage:?}, {:?}", (is_hit, t));
+    let (half, error) = (passage.half(0.0), square_error(r));
     let roots = [passage.middle - half, passage.middle + half];
     let errors = roots.map(|root| root_error(&passage, r, root));
     let mut tally = Tally { rays: 1, hits: usize::from(is_hit), ..Tally::default() };
@@ -100,7 +62,7 @@ fn hits_of_spheres_are_exact_within_their_bounds() {
     println!("from, rays, hits, wrong, greatest square of a wrong chord / bound, t error / bound, place off / bound");
     for (number, case) in From::ALL.into_iter().enumerate() {
         let rays = count::of(50_000, 10_000_000);
-        let Tally { rays, hits, wrong, wrong_share, t_share, off_share } =
+        let Tally { rays, hits, wrong, wrong_share, t_share, off_share, .. } =
             tallied(number, rays, Tally::default, |rng| judge(case, rng), Tally::and);
         println!("{case:?}, {rays}, {hits}, {wrong}, {wrong_share:.3}, {t_share:.3}, {off_share:.3}");
         assert!(hits * 4 > rays, "{case:?}: {hits} of {rays}");

@@ -4,10 +4,10 @@ use super::pack;
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
-/// A reference to a node: a pair of children, or a run of triangles.
+/// A reference to a node: a pair of children, or a run of primitives.
 ///
-/// Bits 0 to 2 count the triangles of a leaf (1 to [`MAX_LEAF`](super::MAX_LEAF)), 0 for an inner node; bits 3 to 31
-/// are the index of the child pair or of the first triangle.
+/// Bits 0 to 2 count the primitives of a leaf (1 to [`MAX_LEAF`](super::MAX_LEAF)), 0 for an inner node; bits 3 to 31
+/// are the index of the child pair or of the first primitive.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct NodeRef(pub u32);
 
@@ -25,19 +25,19 @@ impl NodeRef {
         NodeRef(pair << 3)
     }
 
-    /// The leaf of `count` triangles from `first` on.
+    /// The leaf of `count` primitives from `first` on.
     #[inline(always)]
     pub fn leaf(first: u32, count: u32) -> Self {
         NodeRef((first << 3) | count)
     }
 
-    /// Is this a run of triangles?
+    /// Is this a run of primitives?
     #[inline(always)]
     pub fn is_leaf(self) -> bool {
         self.0 & 7 != 0
     }
 
-    /// The child pair, or the first triangle of the run.
+    /// The child pair, or the first primitive of the run.
     #[inline(always)]
     pub fn index(self) -> u32 {
         self.0 >> 3

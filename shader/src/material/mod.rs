@@ -34,7 +34,7 @@ pub struct Surface<R: Real> {
 }
 
 impl<R: Scalar> Surface<R> {
-    /// The surface of a triangle at an interaction, seen along `direction`.
+    /// The surface of a primitive at an interaction, seen along `direction`.
     #[inline(always)]
     pub fn new(
         effects: Effects,

@@ -45,10 +45,9 @@ impl Leaf for Primitives {
         hit: &mut Hit<R>,
     ) {
         let blocks = &context.bvh8;
-        if !is_mixed(context) {
-            return triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit);
-        }
-        match leaf.kind() {
+        // A scene of triangles alone does not look at what a leaf holds.
+        let kind = if is_mixed(context) { leaf.kind() } else { LeafKind::Triangles };
+        match kind {
             LeafKind::Triangles => {
                 triangle::intersect_four::<Q, R, F>(context, &blocks.triangles[leaf.index()], ray, hit)
             }

@@ -2,12 +2,13 @@
 
 use std::marker::PhantomData;
 
+use eyerays_shader::data::Effects;
 use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, FACES_AWAY, Segment, ShadowInputs};
 use eyerays_shader::traverse::{
-    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Packet, Primitives, Sequential, Speculative, StackMax, Together,
-    WhileWhile,
+    self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Leaf, Packet, Primitives, Sequential, Speculative, StackMax,
+    Together, Triangles, WhileWhile,
 };
 use eyerays_shader::warp::Alone;
 
@@ -24,93 +25,110 @@ pub enum Job<'a, R: Scalar> {
 
 /// The way of a method on a CPU, from the shader's table.
 macro_rules! way {
-    ([$method:ident $R:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
+    ([$method:ident $R:ident $L:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
         gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
         match $method {
-            Method::Auto => alone::<$R, IfIf>,
-            $(Method::$variant => $way::<$R $(, $type)?>,)*
+            Method::Auto => alone::<$R, $L, IfIf>,
+            $(Method::$variant => $way::<$R, $L $(, $type)?>,)*
         }
     };
 }
 
 /// Follows the rays of slots by a method, with the instructions of an [`Isa`].
 pub fn follow<R: Scalar>(isa: Isa, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    let way = eyerays_shader::for_each_method!(way method R);
+    let way = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK) {
+        way::<R, Primitives>(method)
+    } else {
+        way::<R, Triangles>(method)
+    };
     way(isa, geometry, slots, job);
 }
 
+/// How slots' rays are followed: see [`follow`].
+type Way<R> = fn(Isa, &TraceContext<'_>, &[u32], Job<'_, R>);
+
+/// The way of a method among leaves of these.
+fn way<R: Scalar, L: Leaf>(method: Method) -> Way<R> {
+    eyerays_shader::for_each_method!(way method R L)
+}
+
 /// The slots of a task.
-struct Slots<'a, R: Scalar, M> {
+struct Slots<'a, R: Scalar, L, M> {
     geometry: TraceContext<'a>,
     slots: &'a [u32],
     job: Job<'a, R>,
-    method: PhantomData<M>,
+    how: PhantomData<(L, M)>,
 }
 
-impl<'a, R: Scalar, M> Slots<'a, R, M> {
+impl<'a, R: Scalar, L, M> Slots<'a, R, L, M> {
     fn new(geometry: &TraceContext<'a>, slots: &'a [u32], job: Job<'a, R>) -> Self {
-        Slots { geometry: *geometry, slots, job, method: PhantomData }
+        Slots { geometry: *geometry, slots, job, how: PhantomData }
     }
 }
 
 /// Every ray by itself.
-struct EachAlone<'a, R: Scalar, M>(Slots<'a, R, M>);
+struct EachAlone<'a, R: Scalar, L, M>(Slots<'a, R, L, M>);
 
-fn alone<R: Scalar, M: traverse::Method<R>>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    isa.run::<R>(EachAlone::<R, M>(Slots::new(geometry, slots, job)));
+fn alone<R: Scalar, L: Leaf, M: traverse::Method<R>>(
+    isa: Isa,
+    geometry: &TraceContext<'_>,
+    slots: &[u32],
+    job: Job<'_, R>,
+) {
+    isa.run::<R>(EachAlone::<R, L, M>(Slots::new(geometry, slots, job)));
 }
 
-impl<R: Scalar, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, M> {
+impl<R: Scalar, L: Leaf, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, L, M> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        one_by_one::<R, M>(&self.0.geometry, self.0.slots, self.0.job);
+        one_by_one::<R, L, M>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
 
 /// Every ray by itself through nodes of eight children, whose boxes and triangles take all lanes.
-struct Nodes<'a, R: Scalar>(Slots<'a, R, ()>);
+struct Nodes<'a, R: Scalar, L>(Slots<'a, R, L, ()>);
 
-fn nodes<R: Scalar>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    isa.run::<R>(Nodes::<R>(Slots::new(geometry, slots, job)));
+fn nodes<R: Scalar, L: Leaf>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    isa.run::<R>(Nodes::<R, L>(Slots::new(geometry, slots, job)));
 }
 
-impl<R: Scalar> Task<R> for Nodes<'_, R> {
+impl<R: Scalar, L: Leaf> Task<R> for Nodes<'_, R, L> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        one_by_one::<R, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.job);
+        one_by_one::<R, L, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.job);
     }
 }
 
 #[inline(always)]
-fn one_by_one<R: Scalar, M: traverse::Method<R>>(geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+fn one_by_one<R: Scalar, L: Leaf, M: traverse::Method<R>>(geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     match job {
         Job::Trace(paths, hits) => {
             for (&slot, hit) in slots.iter().zip(hits) {
-                *hit = stage::trace::<R, M, Primitives>(geometry, slot, paths);
+                *hit = stage::trace::<R, M, L>(geometry, slot, paths);
             }
         }
         Job::Shadow(asking, light, answers) => {
             for (&slot, answer) in slots.iter().zip(answers) {
-                *answer = stage::shadow::<R, M, Primitives>(geometry, asking, slot, light);
+                *answer = stage::shadow::<R, M, L>(geometry, asking, slot, light);
             }
         }
     }
 }
 
 /// Neighbours together.
-struct Neighbours<'a, R: Scalar, M>(Slots<'a, R, M>);
+struct Neighbours<'a, R: Scalar, L, M>(Slots<'a, R, L, M>);
 
-fn together<R: Scalar, M: Together>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    isa.run::<R>(Neighbours::<R, M>(Slots::new(geometry, slots, job)));
+fn together<R: Scalar, L: Leaf, M: Together>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    isa.run::<R>(Neighbours::<R, L, M>(Slots::new(geometry, slots, job)));
 }
 
 /// As [`together`], with the instructions that every processor has: the hybrids are there to be compared, and to
 /// compile them for every ISA would take as long as all else.
-fn plainly<R: Scalar, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    Neighbours::<R, M>(Slots::new(geometry, slots, job)).run::<Native>();
+fn plainly<R: Scalar, L: Leaf, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    Neighbours::<R, L, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }
 
-impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
+impl<R: Scalar, L: Leaf, M: Together> Task<R> for Neighbours<'_, R, L, M> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
         let Slots { geometry, slots, job, .. } = self.0;
@@ -121,9 +139,7 @@ impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
                 for (slots, hits) in slots.chunks(most).zip(hits.chunks_mut(most)) {
                     segments.clear();
                     segments.extend(slots.iter().map(|&slot| stage::traced::<R>(&geometry, slot, paths)));
-                    stage::trace_together::<R, V::Packet, M, Primitives>(&geometry, &segments, |i, record| {
-                        hits[i] = record
-                    });
+                    stage::trace_together::<R, V::Packet, M, L>(&geometry, &segments, |i, record| hits[i] = record);
                 }
             }
             Job::Shadow(asking, light, answers) => {
@@ -145,7 +161,7 @@ impl<R: Scalar, M: Together> Task<R> for Neighbours<'_, R, M> {
                     }
                     if !segments.is_empty() {
                         let keep = |i: usize, answer| *places[i] = answer;
-                        stage::shadow_together::<R, V::Packet, M, Primitives>(&geometry, &segments, keep);
+                        stage::shadow_together::<R, V::Packet, M, L>(&geometry, &segments, keep);
                     }
                 }
             }

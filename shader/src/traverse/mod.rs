@@ -24,6 +24,8 @@ pub use bvh8::Bvh8Method;
 pub use cwbvh::CwbvhMethod;
 pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
+#[cfg(not(target_arch = "spirv"))]
+pub use leaf::Triangles;
 pub use leaf::{Leaf, Primitives};
 pub use packet::Packet;
 pub use speculative::Speculative;

@@ -23,11 +23,11 @@ impl Hash {
 
     /// The answers of a stream: bits of (t, u, v) and the primitive's number (a slot depends on how the
     /// hierarchy was built), or what is known of its end.
-    pub fn of(triangles: &[Primitive], answers: &Answers) -> Hash {
+    pub fn of(primitives: &[Primitive], answers: &Answers) -> Hash {
         let mut hash = Hash::default();
         match answers {
             Answers::Closest(hits) => {
-                hits.iter().flat_map(|&hit| comparable(triangles, hit).to_array()).for_each(|word| hash.add(word));
+                hits.iter().flat_map(|&hit| comparable(primitives, hit).to_array()).for_each(|word| hash.add(word));
             }
             Answers::Occlusion(shadows) => shadows.iter().for_each(|&word| hash.add(word)),
         }
@@ -42,25 +42,25 @@ impl std::fmt::Display for Hash {
 }
 
 /// A hit with its primitive instead of its slot.
-fn comparable(triangles: &[Primitive], hit: UVec4) -> UVec4 {
-    hit.truncate().extend(primitive(triangles, hit.w))
+fn comparable(primitives: &[Primitive], hit: UVec4) -> UVec4 {
+    hit.truncate().extend(primitive(primitives, hit.w))
 }
 
 /// A slot's primitive. A slot that there is not can only come from a fault, and differs from every other.
-pub(crate) fn primitive(triangles: &[Primitive], slot: u32) -> u32 {
-    match triangles.get(slot as usize) {
-        Some(triangle) => triangle.number(),
+pub(crate) fn primitive(primitives: &[Primitive], slot: u32) -> u32 {
+    match primitives.get(slot as usize) {
+        Some(primitive) => primitive.number(),
         None if slot == StreamRay::NOWHERE => slot,
         None => slot | 1 << 31,
     }
 }
 
 /// The first ray with another answer, or with none.
-pub fn first_difference(triangles: &[Primitive], a: &Answers, b: &Answers) -> Option<usize> {
+pub fn first_difference(primitives: &[Primitive], a: &Answers, b: &Answers) -> Option<usize> {
     let shorter = |a: usize, b: usize| (a != b).then(|| a.min(b));
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
-            let differs = |(&a, &b): (&UVec4, &UVec4)| comparable(triangles, a) != comparable(triangles, b);
+            let differs = |(&a, &b): (&UVec4, &UVec4)| comparable(primitives, a) != comparable(primitives, b);
             a.iter().zip(b).position(differs).or_else(|| shorter(a.len(), b.len()))
         }
         (Answers::Occlusion(a), Answers::Occlusion(b)) => {
@@ -71,11 +71,11 @@ pub fn first_difference(triangles: &[Primitive], a: &Answers, b: &Answers) -> Op
 }
 
 /// The share of rays that met another primitive, or were told another answer.
-pub fn differing(triangles: &[Primitive], a: &Answers, b: &Answers) -> f64 {
+pub fn differing(primitives: &[Primitive], a: &Answers, b: &Answers) -> f64 {
     let share = |differing: usize, all: usize| differing as f64 / all.max(1) as f64;
     match (a, b) {
         (Answers::Closest(a), Answers::Closest(b)) => {
-            let differs = |(a, b): &(&UVec4, &UVec4)| primitive(triangles, a.w) != primitive(triangles, b.w);
+            let differs = |(a, b): &(&UVec4, &UVec4)| primitive(primitives, a.w) != primitive(primitives, b.w);
             share(a.iter().zip(b).filter(differs).count(), a.len())
         }
         (Answers::Occlusion(a), Answers::Occlusion(b)) => {

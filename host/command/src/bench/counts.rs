@@ -30,10 +30,10 @@ const SAMPLE: usize = 1024;
 /// Calls of the kernels' hooks.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct Calls {
-    /// Visits, boxes and triangles, each times the rays that it is charged to.
+    /// Visits, boxes and primitives, each times the rays that it is charged to.
     visits: u64,
     boxes: u64,
-    triangles: u64,
+    primitives: u64,
     /// Children that packets visited, and how many of their rays hit them.
     children: u64,
     lanes: u64,
@@ -46,7 +46,7 @@ impl Add for Calls {
         Calls {
             visits: self.visits + other.visits,
             boxes: self.boxes + other.boxes,
-            triangles: self.triangles + other.triangles,
+            primitives: self.primitives + other.primitives,
             children: self.children + other.children,
             lanes: self.lanes + other.lanes,
         }
@@ -89,7 +89,7 @@ impl<Q: Query> Query for Counted<Q> {
     }
 
     fn on_primitive() {
-        CALLS.set(CALLS.get() + Calls { triangles: CHARGED.get(), ..Calls::default() });
+        CALLS.set(CALLS.get() + Calls { primitives: CHARGED.get(), ..Calls::default() });
     }
 
     fn on_child(lanes: impl FnOnce() -> u32) {
@@ -109,8 +109,8 @@ pub struct Counts {
     pub visits: f64,
     /// Boxes tested: two a pair, eight a wide node.
     pub boxes: f64,
-    /// Triangles tested.
-    pub triangles: f64,
+    /// Primitives tested.
+    pub primitives: f64,
     /// The share of a packet's rays that hit a child it visits; `None` for single rays.
     pub simd_efficiency: Option<f64>,
 }
@@ -173,7 +173,7 @@ fn in_scene(
     Ok(Counts {
         visits: each(calls.visits),
         boxes: each(calls.boxes),
-        triangles: each(calls.triangles),
+        primitives: each(calls.primitives),
         simd_efficiency: (calls.children > 0).then(efficiency),
     })
 }
@@ -295,7 +295,7 @@ mod tests {
         ] {
             for method in [Method::IfIf, Method::WhileWhile] {
                 let counts = of(method, stream, question);
-                assert_eq!((counts.visits, counts.boxes, counts.triangles), (visits, 2.0 * visits, triangles));
+                assert_eq!((counts.visits, counts.boxes, counts.primitives), (visits, 2.0 * visits, triangles));
                 assert_eq!(counts.simd_efficiency, None);
             }
         }
@@ -304,10 +304,10 @@ mod tests {
     #[test]
     fn a_packet_is_charged_to_each_of_its_rays() {
         let packet = of(Method::Packet, &halves(), Question::Closest);
-        assert_eq!((packet.visits, packet.boxes, packet.triangles), (2.0, 4.0, 4.0));
+        assert_eq!((packet.visits, packet.boxes, packet.primitives), (2.0, 4.0, 4.0));
         assert_eq!(packet.simd_efficiency, Some(0.5));
         let single = of(Method::IfIf, &halves(), Question::Closest);
-        assert_eq!((single.visits, single.triangles), (1.5, 2.0));
+        assert_eq!((single.visits, single.primitives), (1.5, 2.0));
     }
 
     #[test]
@@ -315,7 +315,7 @@ mod tests {
         // The packet splits at the pair on the left, while the leaf on the right is still to visit for all.
         let traversal = Traversal { tuning: Tuning::new(1, 0), ..Method::SequentialStack.into() };
         let counts = in_row(traversal, &halves(), Question::Closest);
-        assert_eq!((counts.visits, counts.triangles, counts.simd_efficiency), (2.0, 3.0, Some(0.5)));
+        assert_eq!((counts.visits, counts.primitives, counts.simd_efficiency), (2.0, 3.0, Some(0.5)));
     }
 
     #[test]

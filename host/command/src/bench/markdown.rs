@@ -48,7 +48,7 @@ fn setup(text: &mut Text, report: &Report) {
 fn scenes(text: &mut Text, report: &Report) {
     text.heading("Scenes (thesis table 7.1)", "");
     let row = |s: &SceneRow| {
-        let counts = [s.triangles, s.split_triangles, s.nodes, s.leaves, s.depth as usize, s.wide_nodes];
+        let counts = [s.primitives, s.references, s.nodes, s.leaves, s.depth as usize, s.wide_nodes];
         let mut row = vec![s.scene.clone()];
         row.extend(counts.map(grouped));
         row.extend([format!("{:.0}", s.build_ms), format!("{:.4}", s.ao_length)]);
@@ -58,8 +58,8 @@ fn scenes(text: &mut Text, report: &Report) {
     text.table(
         &[
             "scene",
-            "triangles",
-            "split triangles",
+            "primitives",
+            "references",
             "nodes",
             "leaves",
             "largest depth",
@@ -186,12 +186,12 @@ fn counts(text: &mut Text, report: &Report) {
         row.extend([
             mean(&|r| Some(r.visits)),
             mean(&|r| Some(r.boxes)),
-            mean(&|r| Some(r.triangle_tests)),
+            mean(&|r| Some(r.primitive_tests)),
             mean(&|r| r.simd_efficiency),
         ]);
         rows.push(row);
     }
-    text.table(&["scene", "kind", "method", "visits", "box tests", "triangle tests", "SIMD efficiency"], &rows);
+    text.table(&["scene", "kind", "method", "visits", "box tests", "primitive tests", "SIMD efficiency"], &rows);
 }
 
 /// What fast precision changes.

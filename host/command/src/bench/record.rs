@@ -21,7 +21,7 @@ pub struct Record {
     pub scheduling: Option<String>,
     /// The order of pixels.
     pub order: String,
-    /// How the hierarchy and its triangles lay in memory.
+    /// How the hierarchy and its primitives lay in memory.
     pub layout: String,
     /// How a ray was tested against a triangle.
     pub triangle: String,
@@ -59,8 +59,8 @@ pub struct Record {
     pub visits: f64,
     /// Box tests a ray.
     pub boxes: f64,
-    /// Triangle tests a ray.
-    pub triangle_tests: f64,
+    /// Tests of primitives a ray.
+    pub primitive_tests: f64,
     /// Share of a packet's lanes that hit the children it visits.
     pub simd_efficiency: Option<f64>,
     /// Of the answers.
@@ -74,10 +74,10 @@ pub struct Record {
 pub struct SceneRow {
     /// Its name.
     pub scene: String,
-    /// Triangles.
-    pub triangles: usize,
-    /// Triangles after splitting.
-    pub split_triangles: usize,
+    /// Triangles, spheres and disks.
+    pub primitives: usize,
+    /// Primitives of leaves: a split triangle counts several times.
+    pub references: usize,
     /// Inner nodes and leaves.
     pub nodes: usize,
     /// Leaves.

@@ -80,8 +80,8 @@ impl<'a> Bench<'a> {
         let statistics = &packed.statistics();
         report.scenes.push(SceneRow {
             scene: subject.name.clone(),
-            triangles: statistics.primitives,
-            split_triangles: statistics.references,
+            primitives: statistics.primitives,
+            references: statistics.references,
             nodes: statistics.nodes,
             leaves: statistics.leaves,
             depth: statistics.depth,
@@ -225,7 +225,7 @@ impl<'a> Bench<'a> {
             frames_per_s: 1.0 / timing.median,
             visits: counts.visits,
             boxes: counts.boxes,
-            triangle_tests: counts.triangles,
+            primitive_tests: counts.primitives,
             simd_efficiency: counts.simd_efficiency,
             hash: Hash::of(self.packed.primitives(), &run.answers).to_string(),
             differing: answers::differing(self.packed.primitives(), &asked.reference, &run.answers),

@@ -63,7 +63,7 @@ enum Command {
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
-    /// Make a scene of any number of triangles to measure with
+    /// Make a scene of any number of triangles or spheres to measure with
     #[command(after_help = generate::EXAMPLES)]
     Generate(generate::Generate),
 }

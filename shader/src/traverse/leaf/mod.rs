@@ -7,6 +7,8 @@ mod sphere;
 mod tests;
 mod triangle;
 
+#[cfg(not(target_arch = "spirv"))]
+pub use primitives::Triangles;
 pub use primitives::{Primitives, coordinates};
 
 use super::Query;

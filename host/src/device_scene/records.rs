@@ -53,17 +53,13 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
     let flags = |material: u32| if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
-    let mut numbers = 0..;
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
-    records.extend(mesh.triangles.iter().zip(&mesh.materials).zip(&mut numbers).map(
-        |((corners, &material), number)| {
-            let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-            Primitive::triangle(vertices, number, material, flags(material))
-        },
-    ));
-    // Numbers are taken only where there is something to number.
-    let mut numbers = records.len() as u32..;
-    records.extend(scene.spheres.iter().zip(&mut numbers).map(|(sphere, number)| {
+    records.extend(mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), number)| {
+        let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
+        Primitive::triangle(vertices, number, material, flags(material))
+    }));
+    let numbers = records.len() as u32..;
+    records.extend(scene.spheres.iter().zip(numbers).map(|(sphere, number)| {
         let (centre, material) = (normalisation.place(sphere.center), sphere.material);
         Primitive::sphere(centre, length(sphere.radius), number, material, flags(material))
     }));

@@ -60,9 +60,12 @@ impl<'m> Composites<'m> {
 fn inserted<'p>(from: &Instruction, path: &'p [Operand]) -> Option<(Word, &'p [Operand])> {
     let place = &from.operands[2..];
     if path.starts_with(place) {
-        return Some((from.operands[0].id_ref_any()?, &path[place.len()..]));
+        Some((from.operands[0].id_ref_any()?, &path[place.len()..]))
+    } else if place.starts_with(path) {
+        None
+    } else {
+        Some((from.operands[1].id_ref_any()?, path))
     }
-    (!place.starts_with(path)).then(|| Some((from.operands[1].id_ref_any()?, path)))?
 }
 
 fn literal(operand: &Operand) -> u32 {

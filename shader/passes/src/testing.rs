@@ -290,6 +290,29 @@ impl Body<'_> {
         }
     }
 
+    /// A struct of two numbers.
+    pub fn pair(&mut self, x: Word, y: Word) -> Word {
+        let kind = self.b.type_struct([self.ids.float; 2]);
+        self.b.composite_construct(kind, None, [x, y]).unwrap()
+    }
+
+    /// A struct of two numbers with another in one of the places.
+    pub fn pair_with(&mut self, pair: Word, place: u32, x: Word) -> Word {
+        let kind = self.b.type_struct([self.ids.float; 2]);
+        self.b.composite_insert(kind, None, x, pair, [place]).unwrap()
+    }
+
+    /// A vector of so many numbers of parts that are numbers or shorter vectors.
+    pub fn vector(&mut self, numbers: u32, parts: &[Word]) -> Word {
+        let kind = self.b.type_vector(self.ids.float, numbers);
+        self.b.composite_construct(kind, None, parts.iter().copied()).unwrap()
+    }
+
+    /// A number of a struct or a vector.
+    pub fn part(&mut self, composite: Word, place: u32) -> Word {
+        self.b.composite_extract(self.ids.float, None, composite, [place]).unwrap()
+    }
+
     /// A struct that holds a pointer, and is passed through if `live`.
     pub fn pointer_struct(&mut self, live: bool) {
         let Ids { float, input, .. } = self.ids;

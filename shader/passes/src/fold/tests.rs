@@ -66,6 +66,44 @@ fn blocks_that_only_follow_one_another_become_one() {
     assert_eq!([0, 1].map(|value| blocks(value, open)), [3, 3]);
 }
 
+/// As it was put there first, or last.
+#[test]
+fn a_part_of_a_composite_is_what_was_put_there() {
+    let stored = |place: u32, inserted: u32| {
+        folded(0, |b, _| {
+            let (x, one) = (b.load_input(), b.constant_f32(0x3f80_0000));
+            let y = b.f_add(x, one);
+            let z = b.f_mul(x, one);
+            let pair = b.pair(x, y);
+            let pair = b.pair_with(pair, inserted, z);
+            let part = b.part(pair, place);
+            b.store_output(part);
+        })
+    };
+    assert_eq!(stored(0, 1), [Op::Load, Op::Store]);
+    assert_eq!(stored(1, 0), [Op::Load, Op::FAdd, Op::Store]);
+    assert_eq!((stored(0, 0), stored(1, 1)), (stored(1, 1), vec![Op::Load, Op::FMul, Op::Store]));
+}
+
+/// Its places are not those of its parts.
+#[test]
+fn a_part_of_a_vector_of_vectors_is_taken_by_the_device() {
+    let stored = |parts: fn(&mut Body, u32) -> u32| {
+        folded(0, |b, _| {
+            let x = b.load_input();
+            let vector = parts(b, x);
+            let part = b.part(vector, 1);
+            b.store_output(part);
+        })
+    };
+    assert_eq!(stored(|b, x| b.vector(3, &[x, x, x])), [Op::Load, Op::Store]);
+    let nested = stored(|b, x| {
+        let two = b.vector(2, &[x, x]);
+        b.vector(3, &[two, x])
+    });
+    assert_eq!(nested, [Op::Load, Op::CompositeConstruct, Op::CompositeConstruct, Op::CompositeExtract, Op::Store]);
+}
+
 #[test]
 fn a_value_that_is_not_constant_decides_nothing() {
     let ops = folded(0, |b, _| {

@@ -1,7 +1,8 @@
 //! Pixels to rays.
 
-use crate::data::{Frame, Order, numbers};
+use crate::data::{Frame, Launch, Order, numbers};
 use crate::real::{Scalar, V3};
+use crate::sampler;
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
 /// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
@@ -70,17 +71,23 @@ fn even(place: u32) -> u32 {
 
 /// Origin and unit direction of the ray through a sample of a pixel.
 ///
-/// A pixel has N x N samples on a regular grid (thesis chapter 3.4.5); the offset from the image's centre
-/// is a whole number of half samples, so that no division is needed.
+/// A pixel has N x N samples in a grid of as many cells ([`sampler::place`]); the offset of a cell's centre from the
+/// image's is a whole number of half cells, so that no division is needed.
 #[inline(always)]
-pub fn ray<R: Scalar>(frame: &Frame, pixel: Pixel) -> (V3<R>, V3<R>) {
+pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3<R>) {
     let samples = if frame.samples == 0 { 1 } else { frame.samples };
-    let half_steps = |at: u32, size: u32, sample: u32| {
-        let from_edge = 2 * (at * samples + sample) + 1;
+    let (x, y) = (frame.left + pixel.x, frame.top + pixel.y);
+    let half_cells = |at: u32, size: u32, cell: u32| {
+        let from_edge = 2 * (at * samples + cell) + 1;
         R::splat((from_edge as i32 - (size * samples) as i32) as f32)
     };
-    let right = half_steps(frame.left + pixel.x, frame.width, pixel.sample % samples);
-    let down: R = half_steps(frame.top + pixel.y, frame.height, pixel.sample / samples);
+    let place = sampler::place(launch, samples, (x, y), pixel.sample);
+    let mut right = half_cells(x, frame.width, place.column);
+    let mut down: R = half_cells(y, frame.height, place.row);
+    if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
+        right = right + R::splat(place.right);
+        down = down + R::splat(place.down);
+    }
     let direction = frame.lens.direction(right, -down);
     (V3::splat(numbers(frame.lens.eye)), direction.normalised().0)
 }
@@ -137,14 +144,36 @@ mod tests {
     #[test]
     fn the_first_pixel_is_top_left_and_samples_surround_its_centre() {
         let one = frame(2, 2, 1, 0, Order(0), 1);
-        let (origin, d) = ray::<f64>(&one, pixel(&one, Order(0), 0));
+        let regular = Launch(0);
+        let (origin, d) = ray::<f64>(&one, regular, pixel(&one, Order(0), 0));
         assert_eq!((origin.x, origin.y, origin.z), (0.5, 0.0, 0.0));
         assert!((d.x / d.z - 0.5).abs() < 1e-12 && (d.y / d.z + 0.5).abs() < 1e-12, "left and up: {d:?}");
         let four = frame(2, 2, 2, 0, Order(0), 4);
         let grid: Vec<_> = (0..4)
-            .map(|sample| ray::<f64>(&four, pixel(&four, Order(0), sample * four.pixel_slots)).1)
+            .map(|sample| ray::<f64>(&four, regular, pixel(&four, Order(0), sample * four.pixel_slots)).1)
             .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
             .collect();
         assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);
+    }
+
+    /// Wherever in the image, and whichever region a launch renders.
+    #[test]
+    fn a_sample_lies_where_its_sampler_says() {
+        for launch in [Launch::JITTERED, Launch::RANDOM, Launch::SOBOL].map(Launch) {
+            let whole = frame(12, 7, 3, 0, Order(0), 9);
+            let part = Frame { left: 5, top: 2, columns: 4, rows: 4, across: 1, pixel_slots: 32, ..whole };
+            for (x, y, sample) in (0..4).flat_map(|x| (0..4).flat_map(move |y| (0..9).map(move |s| (x, y, s)))) {
+                let at = |x, y| Pixel { x, y, inside: true, index: 0, sample };
+                let (_, d) = ray::<f64>(&whole, launch, at(x + 5, y + 2));
+                let place = sampler::place(launch, 3, (x + 5, y + 2), sample);
+                let share = |cell: u32, half: f32| (f64::from(cell) + 0.5 + 0.5 * f64::from(half)) / 3.0;
+                let want = [
+                    (f64::from(x + 5) + share(place.column, place.right)) / 6.0 - 1.0,
+                    1.0 - (f64::from(y + 2) + share(place.row, place.down)) / 3.5,
+                ];
+                assert!((d.x / -d.z - want[0]).abs() < 1e-6 && (d.y / -d.z - want[1]).abs() < 1e-6, "{want:?}: {d:?}");
+                assert_eq!(ray::<f64>(&part, launch, at(x, y)).1, d, "in a region");
+            }
+        }
     }
 }

@@ -19,6 +19,7 @@ pub mod numerics;
 pub mod ray;
 pub mod real;
 pub mod resources;
+pub mod sampler;
 pub mod scene;
 pub mod stage;
 pub mod traverse;

@@ -53,12 +53,12 @@ impl Preset {
 
     fn of(mut table: Table) -> eyerays::error::Result<Preset> {
         let preset = Preset {
-            device: word(&mut table, "device")?,
-            precision: word(&mut table, "precision")?,
-            triangle: word(&mut table, "triangle")?,
-            method: word(&mut table, "method")?,
-            layout: word(&mut table, "layout")?,
-            bvh: word(&mut table, "bvh")?,
+            device: table.choice("device")?,
+            precision: table.choice("precision")?,
+            triangle: table.choice("triangle")?,
+            method: table.choice("method")?,
+            layout: table.choice("layout")?,
+            bvh: table.choice("bvh")?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,
             min_contribution: table.number("min_contribution", Range::SHARE)?,
@@ -81,12 +81,6 @@ impl Preset {
 /// A choice as the command line and files spell it.
 pub fn name<T: Named>(value: T) -> String {
     value.name().to_owned()
-}
-
-/// A choice by its name.
-fn word<T: Named>(table: &mut Table, key: &'static str) -> eyerays::error::Result<Option<T>> {
-    let words: Vec<(&str, T)> = T::VARIANTS.iter().map(|&value| (value.name(), value)).collect();
-    table.word(key, &words)
 }
 
 /// Writes a choice by its name.

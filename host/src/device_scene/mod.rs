@@ -160,7 +160,7 @@ impl DeviceScene {
         let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
-            launch: Launch(traversal.triangle.bits()),
+            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits()),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,

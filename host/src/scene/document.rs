@@ -19,6 +19,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
     let settings = Settings {
         size: table.pair("size", 1, Settings::MOST_SIDE)?.unwrap_or(default.size),
         samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?.unwrap_or(default.samples),
+        sampler: table.choice("sampler")?.unwrap_or(default.sampler),
         bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.bounces),
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),

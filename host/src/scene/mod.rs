@@ -27,6 +27,7 @@ mod part;
 mod polygon;
 mod primitive;
 mod range;
+mod sampler;
 mod shape;
 mod source;
 mod statement;
@@ -43,6 +44,7 @@ pub use frame::default_camera;
 pub use load::{load, read_table};
 pub use primitive::{Disk, Primitives, Sphere};
 pub use range::Range;
+pub use sampler::Sampler;
 pub use suggest::suggest;
 pub use table::Table;
 
@@ -217,6 +219,8 @@ pub struct Settings {
     pub size: (u32, u32),
     /// Samples along a pixel's edge.
     pub samples: u32,
+    /// Where in a pixel its samples lie.
+    pub sampler: Sampler,
     /// The most times a ray is followed on.
     pub bounces: u32,
     /// A ray whose every weight is less is not followed.
@@ -236,6 +240,13 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Settings { size: (512, 512), samples: 1, bounces: 5, min_contribution: 1.0 / 1024.0, culling: false }
+        Settings {
+            size: (512, 512),
+            samples: 1,
+            sampler: Sampler::default(),
+            bounces: 5,
+            min_contribution: 1.0 / 1024.0,
+            culling: false,
+        }
     }
 }

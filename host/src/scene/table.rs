@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 use super::range::Range;
 use super::source::Source;
 use super::suggest::{is_near, suggest};
+use crate::choice::Named;
 use crate::error::{Error, Result};
 
 /// A table whose keys are taken one by one.
@@ -111,6 +112,12 @@ impl<'s> Table<'s> {
                 format!("unknown {key} {text:?}; {}", suggest(&text, words.iter().map(|(word, _)| *word))),
             )),
         }
+    }
+
+    /// One of the values that have names.
+    pub fn choice<T: Named>(&mut self, key: &'static str) -> Result<Option<T>> {
+        let words: Vec<(&str, T)> = T::VARIANTS.iter().map(|&value| (value.name(), value)).collect();
+        self.word(key, &words)
     }
 
     /// `true` or `false`.

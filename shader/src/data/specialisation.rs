@@ -58,7 +58,7 @@ bits! {
 }
 
 bits! {
-    /// Which rays a launch follows, and by which test it meets triangles.
+    /// Which rays a launch follows, where in a pixel the camera's are, and by which test they meet triangles.
     Launch {
         /// Secondary rays: the slots come from a queue.
         SECONDARY = 0;
@@ -66,6 +66,13 @@ bits! {
         STREAM = 1;
         /// Triangles are met by the test of Moeller and Trumbore, unless [`Real::EXACT`](crate::real::Real::EXACT).
         MOLLER = 2;
+        /// A pixel's samples lie anywhere in the cells of a regular grid, each in its own; without this bit or one of the
+        /// next, in the centres of the cells.
+        JITTERED = 3;
+        /// Anywhere in the pixel.
+        RANDOM = 4;
+        /// At the points of a scrambled Sobol sequence.
+        SOBOL = 5;
     }
 }
 

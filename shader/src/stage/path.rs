@@ -36,7 +36,7 @@ impl<R: Scalar> Path<R> {
             return Self::load(launch.frame.slots, slot, 0, paths);
         }
         let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
-        let (origin, direction) = camera::ray(launch.frame, pixel);
+        let (origin, direction) = camera::ray(launch.frame, launch.spec.launch, pixel);
         Path {
             origin,
             direction,

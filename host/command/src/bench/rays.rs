@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use eyerays_shader::camera::{self, Pixel};
-use eyerays_shader::data::{BOX_PADDING, Frame, Order as OrderBits, Primitive};
+use eyerays_shader::data::{BOX_PADDING, Frame, Launch, Order as OrderBits, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::ray_to_light;
 use eyerays_shader::material::{reflect, refract};
@@ -126,7 +126,7 @@ impl<'a> PrimaryHits<'a> {
         let rays: Vec<StreamRay> = pixels
             .par_iter()
             .map(|&pixel| {
-                let (origin, direction) = camera::ray::<f32>(&view.frame, pixel);
+                let (origin, direction) = camera::ray::<f32>(&view.frame, Launch::default(), pixel);
                 let (origin, direction) = (vector(Ray::from_afar(origin, direction).origin), vector(direction));
                 StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })

@@ -33,7 +33,7 @@ pub(super) struct Diff {
     /// The picture to compare with
     #[arg(conflicts_with_all = [
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
-        "no_passthrough", "size", "samples", "camera", "eye", "target", "fov", "bounces", "min_contribution", "cull",
+        "no_passthrough", "size", "samples", "sampler", "camera", "eye", "target", "fov", "bounces", "min_contribution", "cull",
         "bvh",
     ])]
     second: Option<PathBuf>,

@@ -19,7 +19,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Scene, Settings};
+use eyerays::scene::{self, Camera, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -55,6 +55,9 @@ pub(super) struct Effort {
     /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
+    /// Where in a pixel its samples lie [default: the scene's]
+    #[arg(long, value_parser = choice::<Sampler>())]
+    sampler: Option<Sampler>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
@@ -71,6 +74,7 @@ impl Effort {
     pub fn over(self, file: &Preset) -> Effort {
         Effort {
             samples: self.samples.or(file.samples),
+            sampler: self.sampler,
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),
@@ -174,6 +178,7 @@ impl View {
         let settings = Settings {
             size: self.size.unwrap_or(own.size),
             samples: effort.samples.unwrap_or(own.samples),
+            sampler: effort.sampler.unwrap_or(own.sampler),
             bounces: effort.bounces.unwrap_or(own.bounces),
             min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
             culling: self.cull.unwrap_or(own.culling),

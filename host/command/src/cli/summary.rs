@@ -8,6 +8,7 @@ use serde_json::{Value, json};
 use super::options::Loaded;
 use crate::output::Destination;
 use crate::remedy;
+use eyerays::choice::Named;
 use eyerays::render::{Choice, Rendering};
 
 /// Wall-clock times of the parts of a rendering, one after the other, and the device's beside its own.
@@ -82,6 +83,7 @@ impl<'a> Summary<'a> {
             "width": settings.size.0,
             "height": settings.size.1,
             "samples": settings.samples,
+            "sampler": settings.sampler.name(),
             "bounces": settings.bounces,
             "precision": self.precision(),
             "device": self.rendering.device,

@@ -2,7 +2,7 @@
 
 use crate::data::{Frame, Launch, Order, numbers};
 use crate::real::{Scalar, V3};
-use crate::sampler;
+use crate::sampler::{self, Sample};
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
 /// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
@@ -71,24 +71,24 @@ fn even(place: u32) -> u32 {
 
 /// Origin and unit direction of the ray through a sample of a pixel.
 ///
-/// A pixel has N x N samples in a grid of as many cells ([`sampler::place`]); the offset of a cell's centre from the
-/// image's is a whole number of half cells, so that no division is needed.
+/// A pixel has N x N samples: in the centres of a grid of as many cells, whose offset from the image's centre is a whole
+/// number of half cells, so that no division is needed; or where another sampler has them ([`sampler::place`]).
 #[inline(always)]
 pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3<R>) {
     let samples = if frame.samples == 0 { 1 } else { frame.samples };
     let (x, y) = (frame.left + pixel.x, frame.top + pixel.y);
-    let half_cells = |at: u32, size: u32, cell: u32| {
-        let from_edge = 2 * (at * samples + cell) + 1;
-        R::splat((from_edge as i32 - (size * samples) as i32) as f32)
-    };
-    let place = sampler::place(launch, samples, (x, y), pixel.sample);
-    let mut right = half_cells(x, frame.width, place.column);
-    let mut down: R = half_cells(y, frame.height, place.row);
+    let half_cells =
+        |at: u32, size: u32, from_edge: u32| ((2 * at * samples + from_edge) as i32 - (size * samples) as i32) as f32;
+    let (right, down);
     if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
-        right = right + R::splat(place.right);
-        down = down + R::splat(place.down);
+        let (from_left, from_top) = sampler::place(launch, samples, Sample::new((x, y), samples, pixel.sample));
+        right = half_cells(x, frame.width, 0) + from_left;
+        down = half_cells(y, frame.height, 0) + from_top;
+    } else {
+        right = half_cells(x, frame.width, 2 * (pixel.sample % samples) + 1);
+        down = half_cells(y, frame.height, 2 * (pixel.sample / samples) + 1);
     }
-    let direction = frame.lens.direction(right, -down);
+    let direction = frame.lens.direction(R::splat(right), -R::splat(down));
     (V3::splat(numbers(frame.lens.eye)), direction.normalised().0)
 }
 
@@ -165,11 +165,10 @@ mod tests {
             for (x, y, sample) in (0..4).flat_map(|x| (0..4).flat_map(move |y| (0..9).map(move |s| (x, y, s)))) {
                 let at = |x, y| Pixel { x, y, inside: true, index: 0, sample };
                 let (_, d) = ray::<f64>(&whole, launch, at(x + 5, y + 2));
-                let place = sampler::place(launch, 3, (x + 5, y + 2), sample);
-                let share = |cell: u32, half: f32| (f64::from(cell) + 0.5 + 0.5 * f64::from(half)) / 3.0;
+                let (right, down) = sampler::place(launch, 3, Sample::new((x + 5, y + 2), 3, sample));
                 let want = [
-                    (f64::from(x + 5) + share(place.column, place.right)) / 6.0 - 1.0,
-                    1.0 - (f64::from(y + 2) + share(place.row, place.down)) / 3.5,
+                    (f64::from(x + 5) + f64::from(right) / 6.0) / 6.0 - 1.0,
+                    1.0 - (f64::from(y + 2) + f64::from(down) / 6.0) / 3.5,
                 ];
                 assert!((d.x / -d.z - want[0]).abs() < 1e-6 && (d.y / -d.z - want[1]).abs() < 1e-6, "{want:?}: {d:?}");
                 assert_eq!(ray::<f64>(&part, launch, at(x, y)).1, d, "in a region");

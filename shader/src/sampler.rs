@@ -2,59 +2,52 @@
 
 use crate::data::Launch;
 
-/// Places in a pixel and in a cell are whole numbers of 2^-24 of its edge.
-const BITS: u32 = 24;
+/// Places are whole steps of 2^-17 of a cell's edge, so that one in a pixel of 128 x 128 cells is exact.
+const BITS: u32 = 17;
 
-/// A place in a pixel that is divided into a grid of cells.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
-    /// The cell's, from the left.
-    pub column: u32,
-    /// From the top.
-    pub row: u32,
-    /// From the cell's centre to the right, in halves of its edge, in [-1, 1).
-    pub right: f32,
-    /// Down, likewise.
-    pub down: f32,
+/// A sample of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The pixel's column and row in the image.
+    pub pixel: (u32, u32),
+    /// Its number in the pixel.
+    pub number: u32,
+    /// The column and row of its cell, if each has one.
+    pub cell: (u32, u32),
 }
 
-/// The place of a sample in the pixel at column `x` and row `y` of the image, whose grid has `edge` x `edge` cells, at most
-/// 128 x 128. A sample's place does not depend on how many there are, but for the cells of a grid.
-#[inline(always)]
-pub fn place(launch: Launch, edge: u32, (x, y): (u32, u32), sample: u32) -> Place {
-    if launch.has(Launch::RANDOM) {
-        let drawn = hash([x, y, sample]);
-        return in_pixel(edge, [drawn[0], drawn[1]]);
+impl Sample {
+    /// A sample of a pixel with `edge` x `edge` cells.
+    #[inline(always)]
+    pub fn new(pixel: (u32, u32), edge: u32, number: u32) -> Self {
+        Sample { pixel, number, cell: (number % edge, number / edge) }
     }
-    if launch.has(Launch::SOBOL) {
-        return in_pixel(edge, sobol(sample, hash([x, y, 0])));
-    }
-    let (column, row) = (sample % edge, sample / edge);
+}
+
+/// Where in its pixel a sample lies, from the left and the top edge in halves of a cell, of which the pixel has `edge` x
+/// `edge`, at most 128 x 128. For samplers that draw: a regular grid needs none of this.
+// A function of its own on the GPU, so that a module holds it once. (With a division in it the compiler would inline it.)
+#[cfg_attr(target_arch = "spirv", inline(never))]
+pub fn place(launch: Launch, edge: u32, sample: Sample) -> (f32, f32) {
+    let (x, y) = sample.pixel;
+    let [right, down] = if launch.has(Launch::SOBOL) {
+        sobol(sample.number, hash([x, y, 0]))
+    } else {
+        let [right, down, _] = hash([x, y, sample.number]);
+        [right, down]
+    };
     if launch.has(Launch::JITTERED) {
-        let drawn = hash([x, y, sample]);
-        return Place {
-            column,
-            row,
-            right: from_centre(drawn[0] >> (32 - BITS)),
-            down: from_centre(drawn[1] >> (32 - BITS)),
-        };
+        let in_cell = |cell: u32, drawn: u32| half_cells((cell << BITS) + (drawn >> (32 - BITS)));
+        return (in_cell(sample.cell.0, right), in_cell(sample.cell.1, down));
     }
-    Place { column, row, right: 0.0, down: 0.0 }
+    let in_pixel = |drawn: u32| half_cells(((drawn >> 8) * edge) >> (24 - BITS));
+    (in_pixel(right), in_pixel(down))
 }
 
-/// A place in the whole pixel, each coordinate a share of its edge in steps of 2^-32.
 #[inline(always)]
-fn in_pixel(edge: u32, drawn: [u32; 2]) -> Place {
-    let (across, down) = ((drawn[0] >> (32 - BITS)) * edge, (drawn[1] >> (32 - BITS)) * edge);
-    let in_cell = |at: u32| from_centre(at & ((1 << BITS) - 1));
-    Place { column: across >> BITS, row: down >> BITS, right: in_cell(across), down: in_cell(down) }
-}
-
-/// A share of a cell's edge, from its centre in halves of the edge. Exact.
-#[inline(always)]
-fn from_centre(share: u32) -> f32 {
-    const HALF: u32 = 1 << (BITS - 1);
-    (share as i32 - HALF as i32) as f32 * (1.0 / HALF as f32)
+fn half_cells(steps: u32) -> f32 {
+    const STEP: f32 = 2.0 / (1 << BITS) as f32;
+    steps as f32 * STEP
 }
 
 /// Three numbers that look drawn at random, of three others (pcg3d: Jarzynski and Olano, Hash Functions for GPU Rendering,
@@ -108,35 +101,31 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
-    const SAMPLERS: [u32; 4] = [0, Launch::JITTERED, Launch::RANDOM, Launch::SOBOL];
-
-    /// In [0, 1) from the pixel's left or top edge.
-    fn shares(place: Place, edge: u32) -> [f64; 2] {
-        [(place.column, place.right), (place.row, place.down)]
-            .map(|(cell, half)| (f64::from(cell) + 0.5 + 0.5 * f64::from(half)) / f64::from(edge))
-    }
+    const SAMPLERS: [u32; 3] = [Launch::JITTERED, Launch::RANDOM, Launch::SOBOL];
 
     #[test]
-    fn every_place_is_in_its_cell_and_every_cell_in_the_pixel() {
-        for sampler in SAMPLERS {
-            for edge in [1, 2, 3, 64] {
-                for (pixel, sample) in (0..2000).map(|i| ((i * 7, i * 31), i % (edge * edge))) {
-                    let place = place(Launch(sampler), edge, pixel, sample);
-                    assert!(place.column < edge && place.row < edge, "{sampler}: {place:?}");
-                    assert!([place.right, place.down].iter().all(|x| (-1.0..1.0).contains(x)), "{sampler}: {place:?}");
-                }
+    fn every_place_is_in_its_pixel() {
+        for (sampler, edge) in SAMPLERS.into_iter().flat_map(|sampler| [1, 2, 3, 64, 128].map(|edge| (sampler, edge))) {
+            for (pixel, sample) in (0..20_000).map(|i| ((i * 7, i * 31), i % (edge * edge))) {
+                let (right, down) = place(Launch(sampler), edge, Sample::new(pixel, edge, sample));
+                let size = 2.0 * edge as f32;
+                assert!(
+                    (0.0..size).contains(&right) && (0.0..size).contains(&down),
+                    "{sampler}, {edge}: {right} {down}"
+                );
             }
         }
     }
 
     #[test]
-    fn regular_and_jittered_samples_have_a_cell_each() {
-        for sampler in [0, Launch::JITTERED] {
-            let cells: HashSet<_> =
-                (0..49).map(|sample| place(Launch(sampler), 7, (3, 5), sample)).map(|p| (p.column, p.row)).collect();
-            assert_eq!(cells.len(), 49);
+    fn jittered_samples_have_a_cell_each() {
+        let cell = |(right, down): (f32, f32)| ((right / 2.0) as u32, (down / 2.0) as u32);
+        for (edge, pixel) in [(7, (3, 5)), (128, (0, 1))] {
+            let cells: HashSet<_> = (0..edge * edge)
+                .map(|sample| cell(place(Launch(Launch::JITTERED), edge, Sample::new(pixel, edge, sample))))
+                .collect();
+            assert_eq!(cells.len(), (edge * edge) as usize);
         }
-        assert!((0..49).all(|sample| place(Launch(0), 7, (3, 5), sample).right == 0.0));
     }
 
     /// As the digits themselves give it.
@@ -176,7 +165,10 @@ mod tests {
             .map(|half| {
                 let (edge, count) = (1 << half, 1 << (2 * half));
                 let error = |pixel: u32| {
-                    let at = |sample| shares(place(Launch(sampler), edge, (pixel, 2 * pixel), sample), edge);
+                    let at = |sample| {
+                        let (right, down) = place(Launch(sampler), edge, Sample::new((pixel, 2 * pixel), edge, sample));
+                        [right, down].map(|half_cells| f64::from(half_cells) / f64::from(2 * edge))
+                    };
                     (0..count).map(|sample| integrand(at(sample))).sum::<f64>() / f64::from(count) - exact
                 };
                 let square = (0..96).map(error).map(|e| e * e).sum::<f64>() / 96.0;

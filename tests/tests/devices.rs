@@ -1,10 +1,11 @@
 //! One picture from GPU and CPU, in every bit. Without a GPU these tests do nothing, see [`gpu`].
 
+use eyerays::choice::Named;
 use eyerays::error::{Content, Error};
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::integrator;
 use eyerays::method::{Method, Order, Traversal};
-use eyerays::scene::{Background, Light, Material, Scene, Settings};
+use eyerays::scene::{Background, Light, Material, Sampler, Scene, Settings};
 use eyerays::view::View;
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{Posed, assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
@@ -219,12 +220,30 @@ fn a_scene_larger_than_a_buffer_is_refused_with_both_numbers() {
     }
 }
 
+/// Other rays than those of a regular grid, and the same ones on both devices.
+#[test]
+fn every_sampler() {
+    let Some(gpu) = exact() else { return };
+    let scene = shipped("whitted");
+    let camera = &scene.cameras[0];
+    let regular = pack(&scene, camera, settings(&scene, (37, 23), 3));
+    for &sampler in Sampler::VARIANTS {
+        for samples in [1, 3] {
+            let packed = pack(&scene, camera, Settings { sampler, ..settings(&scene, (37, 23), samples) });
+            assert_same(&gpu, &packed, &format!("{sampler:?} x {samples}"));
+            let is_regular = on_cpu::<f32>(&packed).0.bits_equal(&on_cpu::<f32>(&regular).0);
+            assert_eq!(is_regular, sampler == Sampler::Regular && samples == 3, "{sampler:?} x {samples}");
+        }
+    }
+}
+
 /// However samples come, in flight together or one by one, all at once or in parts.
 #[test]
 fn samples_in_parts() {
     let Some(mut gpu) = exact() else { return };
     let scene = still_life();
-    let packed = pack(&scene, &scene.cameras[0], Settings { samples: 3, bounces: 4, ..scene.settings });
+    let settings = Settings { samples: 3, sampler: Sampler::Sobol, bounces: 4, ..scene.settings };
+    let packed = pack(&scene, &scene.cameras[0], settings);
     let (film, rays) = on_cpu::<f32>(&packed);
     let all = u64::from(integrator::whitted(&packed).paths) * 3 * 16 * 61 * 45;
     for (max_binding, parts) in

@@ -102,6 +102,7 @@ fn json_tells_everything_of_a_rendering() {
     assert_eq!((&json["output"], &json["precision"]), (&"out.png".into(), &"exact".into()));
     assert_eq!((&json["why"], &json["primitives"], &json["bounces"]), (&"--device cpu".into(), &80.into(), &5.into()));
     assert!(json["device"].as_str().unwrap().starts_with("CPU ("));
+    assert_eq!(json["sampler"], "regular");
     place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "out.exr", "--samples", "2"]);
     assert_eq!(json["film_hash"], image::read(&place.path("out.exr")).unwrap().hash());
     let rays = &json["rays"];

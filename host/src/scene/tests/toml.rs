@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
-use crate::scene::{Background, Light, Primitives, Scene, Settings};
+use crate::scene::{Background, Light, Primitives, Sampler, Scene, Settings};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
@@ -26,6 +26,7 @@ fn the_documented_example_loads_as_documented() {
     assert_eq!(scene.mesh.materials.len(), scene.mesh.triangles.len());
     assert_eq!(scene.mesh.normals.len(), scene.mesh.positions.len());
     assert_eq!(scene.settings.size, (640, 480));
+    assert_eq!((scene.settings.samples, scene.settings.sampler), (2, Sampler::Sobol));
     assert_eq!(scene.settings.bounces, 8);
     assert_eq!(scene.cameras[0].fov, 40.0);
     assert_eq!(scene.ambient, Vec3::splat(0.1));
@@ -89,6 +90,8 @@ const REFUSED: &[(&str, usize, &str)] = &[
     ("[render]\nsize = [1.5, 1]\n", 2, "a whole number, not a float"),
     ("[render]\nsize = 5\n", 2, "two whole numbers"),
     ("[render]\nsamples = 65\n", 2, "between 1 and 64"),
+    ("[render]\nsampler = \"sobel\"\n", 2, "unknown sampler \"sobel\"; did you mean \"sobol\"?"),
+    ("[render]\nsampler = 2\n", 2, "not an integer"),
     ("[render]\nbounces = -1\n", 2, "between 0 and 65535"),
     ("[render]\nmin_contribution = 2\n", 2, "between 0 and 1"),
     ("[render]\nculling = 1\n", 2, "true or false"),

@@ -77,16 +77,18 @@ fn even(place: u32) -> u32 {
 pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3<R>) {
     let samples = if frame.samples == 0 { 1 } else { frame.samples };
     let (x, y) = (frame.left + pixel.x, frame.top + pixel.y);
-    let half_cells =
-        |at: u32, size: u32, from_edge: u32| ((2 * at * samples + from_edge) as i32 - (size * samples) as i32) as f32;
+    let half_cells = |at: u32, size: u32, cell: u32, half: u32| {
+        let from_edge = 2 * (at * samples + cell) + half;
+        (from_edge as i32 - (size * samples) as i32) as f32
+    };
     let (right, down);
     if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
         let (from_left, from_top) = sampler::place(launch, samples, Sample::new((x, y), samples, pixel.sample));
-        right = half_cells(x, frame.width, 0) + from_left;
-        down = half_cells(y, frame.height, 0) + from_top;
+        right = half_cells(x, frame.width, 0, 0) + from_left;
+        down = half_cells(y, frame.height, 0, 0) + from_top;
     } else {
-        right = half_cells(x, frame.width, 2 * (pixel.sample % samples) + 1);
-        down = half_cells(y, frame.height, 2 * (pixel.sample / samples) + 1);
+        right = half_cells(x, frame.width, pixel.sample % samples, 1);
+        down = half_cells(y, frame.height, pixel.sample / samples, 1);
     }
     let direction = frame.lens.direction(R::splat(right), -R::splat(down));
     (V3::splat(numbers(frame.lens.eye)), direction.normalised().0)

@@ -36,8 +36,8 @@ impl Case {
     }
 }
 
-/// Shipped scenes of triangles alone, a generated one, and triangles of every shape and size; each with its camera's rays and `count`
-/// others.
+/// Shipped scenes of triangles alone, a generated one, and triangles of every shape and size; each with its camera's rays
+/// and `count` others.
 pub fn cases(count: usize) -> Vec<Case> {
     let mut cases: Vec<Case> = SHIPPED.iter().map(|name| Case::new(name, &tessellated(name), count)).collect();
     cases.push(Case::new("hall", &hall(), count));

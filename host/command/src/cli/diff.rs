@@ -33,8 +33,8 @@ pub(super) struct Diff {
     /// The picture to compare with
     #[arg(conflicts_with_all = [
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
-        "no_passthrough", "size", "samples", "sampler", "camera", "eye", "target", "fov", "bounces", "min_contribution", "cull",
-        "bvh",
+        "no_passthrough", "size", "samples", "sampler", "camera", "eye", "target", "fov", "bounces", "min_contribution",
+        "cull", "bvh",
     ])]
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)

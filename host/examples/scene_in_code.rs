@@ -51,6 +51,8 @@ fn scene() -> Scene {
         transmission: Vec3::ZERO,
         ior: 1.5,
         checker: None,
+        emission: Vec3::ZERO,
+        two_sided: false,
     };
     let mirror = Material { name: "mirror".to_owned(), reflection: Vec3::splat(0.7), ..plain.clone() };
     let floor = [(-2.0, 0.0, 2.0), (2.0, 0.0, 2.0), (2.0, 0.0, -2.0), (-2.0, 0.0, -2.0)];

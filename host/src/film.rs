@@ -1,7 +1,7 @@
 //! The finished picture: linear light, before any encoding for a screen or a file.
 
 use eyerays_shader::real::Scalar;
-use eyerays_shader::stage::NON_FINITE;
+use eyerays_shader::stage::{NON_FINITE, brightness};
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Result};
@@ -17,6 +17,16 @@ pub struct Film {
     pub height: u32,
     /// `width * height` pixels, row-major from the top left.
     pub pixels: Vec<[f32; 3]>,
+    noise: Noise,
+}
+
+/// What tells the noise of a picture whose integrator samples.
+#[derive(Debug, Clone, Copy, Default)]
+struct Noise {
+    /// Of each pixel's mean brightness, added.
+    variances: f64,
+    /// Pixels' mean brightness, added.
+    brightness: f64,
 }
 
 impl Film {
@@ -35,7 +45,7 @@ impl Film {
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         pixels.resize(count, [0.0; 3]);
-        Ok(Film { width, height, pixels })
+        Ok(Film { width, height, pixels, noise: Noise::default() })
     }
 
     /// A film of given pixels, row-major from the top left.
@@ -43,7 +53,7 @@ impl Film {
     /// # Errors
     /// As [`Film::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let film = Film { width, height, pixels };
+        let film = Film { width, height, pixels, noise: Noise::default() };
         film.validate()?;
         Ok(film)
     }
@@ -77,19 +87,33 @@ impl Film {
         Ok(())
     }
 
-    /// Sets a region to the mean of `samples` samples of each pixel, whose sums a gather stage left in `records`, row by row;
-    /// and counts.
+    /// Sets a region to the mean of `samples` samples of each pixel, whose sums a gather or accumulate stage left in
+    /// `records`, row by row; and counts.
     pub(crate) fn develop<R: Scalar>(&mut self, region: Region, records: &[R::Record], samples: u32, rays: &mut Rays) {
-        let samples = R::splat(samples as f32);
-        for (row, line) in records.chunks_exact(region.width as usize).enumerate() {
-            let start = (region.y as usize + row) * self.width as usize + region.x as usize;
-            for (pixel, &record) in self.pixels[start..].iter_mut().zip(line) {
-                let (sum, word) = R::load(record);
-                *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(samples).to_f32());
-                rays.shadow += u64::from(word & !NON_FINITE);
-                rays.non_finite += u64::from(word & NON_FINITE != 0);
+        let count = R::splat(samples as f32);
+        let (sums, rests) = records.split_at(region.pixels() as usize);
+        for (index, &record) in sums.iter().enumerate() {
+            let (row, column) = (index / region.width as usize, index % region.width as usize);
+            let (mut sum, word) = R::load(record);
+            if let Some(&rest) = rests.get(index) {
+                let (rest, squares) = R::load(rest);
+                sum = sum + rest;
+                self.noise.add(brightness(sum).to_f32(), f32::from_bits(squares), samples);
             }
+            let pixel = (region.y as usize + row) * self.width as usize + region.x as usize + column;
+            self.pixels[pixel] = [sum.x, sum.y, sum.z].map(|channel| channel.div(count).to_f32());
+            rays.shadow += u64::from(word & !NON_FINITE);
+            rays.non_finite += u64::from(word & NON_FINITE != 0);
         }
+    }
+
+    /// The noise of a picture whose integrator samples: the standard error of a pixel (root mean square) over the mean of all,
+    /// estimated from how much samples differ within pixels. Of samples that are placed evenly, as Sobol's are, it is too high.
+    /// None of one sample, of a black picture, or without samples.
+    pub fn noise(&self) -> Option<f64> {
+        let pixels = self.pixels.len() as f64;
+        let noise = (self.noise.variances / pixels).sqrt() / (self.noise.brightness / pixels);
+        (self.noise.variances > 0.0 && noise.is_finite()).then_some(noise)
     }
 
     /// The pixel in column `x` and row `y` from the top left; `None` outside.
@@ -120,6 +144,17 @@ impl Film {
             && self.height == other.height
             && self.pixels.len() == other.pixels.len()
             && self.pixels.iter().zip(&other.pixels).all(|(&a, &b)| !bits_differ(a, b))
+    }
+}
+
+impl Noise {
+    /// Adds a pixel by the sums of its samples' brightness and of its squares.
+    fn add(&mut self, sum: f32, squares: f32, samples: u32) {
+        let (count, sum) = (f64::from(samples), f64::from(sum));
+        self.brightness += sum / count;
+        if samples > 1 {
+            self.variances += (f64::from(squares) - sum * sum / count).max(0.0) / (count * (count - 1.0));
+        }
     }
 }
 

@@ -37,7 +37,9 @@ pub struct View {
     lens: Lens,
     width: u32,
     height: u32,
-    /// Along a pixel's edge.
+    /// Edge of the grid that a pixel's samples lie in, 1 without a grid.
+    grid: u32,
+    /// Of a pixel.
     samples: u32,
 }
 
@@ -47,16 +49,22 @@ impl View {
     /// # Errors
     /// There is no way to look so, or the camera is too far away for the scene's numbers.
     pub fn new(packed: &DeviceScene, camera: &Camera) -> Result<View> {
-        View::of(packed, camera, packed.settings().size, packed.settings().samples)
+        View::seen(packed, camera, packed.settings())
     }
 
     /// A camera in a scene, with an image of `width` x `height` pixels and `samples` x `samples` samples a pixel.
     ///
     /// # Errors
     /// As [`View::new`]; or a size that [`Film::check_size`] refuses, or no sample or too many.
-    pub fn of(packed: &DeviceScene, camera: &Camera, (width, height): (u32, u32), samples: u32) -> Result<View> {
-        Film::check_size(width, height)?;
+    pub fn of(packed: &DeviceScene, camera: &Camera, size: (u32, u32), samples: u32) -> Result<View> {
         crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
+        View::seen(packed, camera, &Settings { size, samples, spp: 0, ..*packed.settings() })
+    }
+
+    fn seen(packed: &DeviceScene, camera: &Camera, settings: &Settings) -> Result<View> {
+        let (width, height) = settings.size;
+        Film::check_size(width, height)?;
+        let grid = settings.grid().expect("settings are checked");
         let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
         let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
         if right == DVec3::ZERO {
@@ -68,10 +76,10 @@ impl View {
         })?;
         let half_height = math::tan(f64::from(camera.fov).to_radians() / 2.0);
         // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
-        let step = half_height / f64::from(height * samples);
+        let step = half_height / f64::from(height * grid);
         let vector = |v: DVec3| flushed(v.as_vec3());
         let lens = Lens::new(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
-        Ok(View { lens, width, height, samples })
+        Ok(View { lens, width, height, grid, samples: settings.samples_a_pixel() })
     }
 
     /// The image's width and height in pixels.
@@ -86,7 +94,7 @@ impl View {
 
     /// Samples of a pixel, in both directions together.
     pub fn samples(&self) -> u32 {
-        self.samples * self.samples
+        self.samples
     }
 
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The film is started anew by
@@ -97,7 +105,7 @@ impl View {
             lens: self.lens,
             width: self.width,
             height: self.height,
-            samples: self.samples,
+            samples: self.grid,
             sample: first,
             left: region.x,
             top: region.y,

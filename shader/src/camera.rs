@@ -2,7 +2,7 @@
 
 use crate::data::{Frame, Launch, Order, numbers};
 use crate::real::{Scalar, V3};
-use crate::sampler::{self, Sample};
+use crate::sampler::{self, Key, Sample};
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
 /// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
@@ -69,6 +69,12 @@ fn even(place: u32) -> u32 {
     (x | (x >> 4)) & 0x3f
 }
 
+/// What a pixel's numbers are drawn from, whichever region a launch renders.
+#[inline(always)]
+pub fn key(frame: &Frame, pixel: Pixel) -> Key {
+    Key::new((frame.left + pixel.x, frame.top + pixel.y), frame.seed)
+}
+
 /// Origin and unit direction of the ray through a sample of a pixel.
 ///
 /// A pixel has N x N samples: in the centres of a grid of as many cells, whose offset from the image's centre is a whole
@@ -83,7 +89,7 @@ pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3
     };
     let (right, down);
     if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
-        let (from_left, from_top) = sampler::place(launch, samples, Sample::new((x, y), samples, pixel.sample));
+        let (from_left, from_top) = sampler::place(launch, samples, Sample::new(key(frame, pixel), samples, pixel.sample));
         right = half_cells(x, frame.width, 0, 0) + from_left;
         down = half_cells(y, frame.height, 0, 0) + from_top;
     } else {
@@ -167,7 +173,7 @@ mod tests {
             for (x, y, sample) in (0..4).flat_map(|x| (0..4).flat_map(move |y| (0..9).map(move |s| (x, y, s)))) {
                 let at = |x, y| Pixel { x, y, inside: true, index: 0, sample };
                 let (_, d) = ray::<f64>(&whole, launch, at(x + 5, y + 2));
-                let (right, down) = sampler::place(launch, 3, Sample::new((x + 5, y + 2), 3, sample));
+                let (right, down) = sampler::place(launch, 3, Sample::new(Key::new((x + 5, y + 2), 0), 3, sample));
                 let want = [
                     (f64::from(x + 5) + f64::from(right) / 6.0) / 6.0 - 1.0,
                     1.0 - (f64::from(y + 2) + f64::from(down) / 6.0) / 3.5,

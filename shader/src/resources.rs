@@ -46,6 +46,9 @@ macro_rules! resources {
             14 bounds BOUNDS: Read Bounds, "bounds";
             15 film FILM: Write UVec4, "film";
             16 arguments ARGUMENTS: Write u32, "arguments";
+            17 segments SEGMENTS: Write UVec4, "shadow rays";
+            18 emitters EMITTERS: Read Emitter, "emitters";
+            19 emissions EMISSIONS: Read Emission, "emissions";
         }
     };
 }

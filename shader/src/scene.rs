@@ -4,7 +4,7 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Light, Material, Normals, Primitive, Specialisation,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Material, Normals, Primitive, Specialisation,
     numbers,
 };
 use glam::{UVec4, Vec3};
@@ -95,6 +95,4 @@ pub struct ShadingData<'a> {
     pub normals: &'a [Normals],
     /// Materials.
     pub materials: &'a [Material],
-    /// Lights in file order.
-    pub lights: &'a [Light],
 }

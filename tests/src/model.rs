@@ -32,6 +32,8 @@ pub fn black() -> Material {
         transmission: Vec3::ZERO,
         ior: 1.5,
         checker: None,
+        emission: Vec3::ZERO,
+        two_sided: false,
     }
 }
 

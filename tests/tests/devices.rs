@@ -142,7 +142,7 @@ fn bands() {
     let Some(mut gpu) = exact() else { return };
     let scene = still_life();
     let packed = pack(&scene, &scene.cameras[0], Settings { samples: 2, ..scene.settings });
-    let block = u64::from(integrator::whitted(&packed).paths) * 3 * 16 * 32;
+    let block = u64::from(integrator::needs(&packed).paths) * 3 * 16 * 32;
     for blocks in [1, 2, 9, 40] {
         gpu.report.max_binding = blocks * block;
         assert_same(&gpu, &packed, &format!("{blocks} blocks a band"));
@@ -245,7 +245,7 @@ fn samples_in_parts() {
     let settings = Settings { samples: 3, sampler: Sampler::Sobol, bounces: 4, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
     let (film, rays) = on_cpu::<f32>(&packed);
-    let all = u64::from(integrator::whitted(&packed).paths) * 3 * 16 * 61 * 45;
+    let all = u64::from(integrator::needs(&packed).paths) * 3 * 16 * 61 * 45;
     for (max_binding, parts) in
         [(u64::MAX, &[9][..]), (u64::MAX, &[1, 2, 6]), (3 * all, &[9]), (2 * all, &[4, 5]), (all / 2, &[2, 7])]
     {

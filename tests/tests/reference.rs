@@ -60,7 +60,7 @@ impl Log<'_> {
             return story.events.push(primitive_index);
         }
         let packed = self.packed;
-        let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: packed.lights() };
+        let looks = ShadingData { normals: packed.normals(), materials: packed.materials() };
         let triangle = &geometry.primitive(primitive_index);
         let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, (hit.y, hit.z), path.direction);
         let surface =

@@ -3,11 +3,11 @@
 use std::ops::Range;
 
 use eyerays_shader::camera;
-use eyerays_shader::data::Frame;
-use eyerays_shader::integrator::{self, Wave};
+use eyerays_shader::data::{Frame, Launch as Bits};
+use eyerays_shader::integrator::{self, Exchange, Wave};
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::resources::binding;
-use eyerays_shader::scene::{ShadingData, TraceContext};
+use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, ShadowInputs};
 
 use super::follow::{Job, follow};
@@ -37,6 +37,8 @@ pub struct Records<R: Scalar> {
     pub hits: Vec<R::Record>,
     /// Answers of the shadow stage by light and slot.
     pub shadows: Vec<u32>,
+    /// Shadow rays by record and slot, where the integrator samples.
+    pub segments: Vec<R::Record>,
     /// Colour and counts by slot.
     pub sums: Vec<R::Record>,
 }
@@ -49,6 +51,7 @@ impl<R: Scalar> Records<R> {
             paths: records(binding::PATHS),
             hits: records(binding::HITS),
             shadows: vec![0; count(binding::SHADOWS, 4)],
+            segments: records(binding::SEGMENTS),
             sums: records(binding::SUMS),
         }
     }
@@ -72,10 +75,12 @@ impl<'a> Planned<'a> {
 
     /// An empty film for a region.
     pub fn film<R: Scalar>(&self, region: Region) -> Vec<R::Record> {
-        vec![R::store(V3::zero(), 0); region.pixels() as usize]
+        let records = self.plan.film_bytes / Plan::RECORD_BYTES;
+        vec![R::store(V3::zero(), 0); (records * region.pixels()) as usize]
     }
 
-    /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays), and
+    /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays; where the
+    /// integrator samples, what rounding took off follows), and
     /// returns how many secondary rays they took. Samples that the view does not have are left out.
     ///
     /// # Panics
@@ -95,8 +100,8 @@ impl<'a> Planned<'a> {
         for sample in samples.start..samples.end.min(view.samples()) {
             let frame = view.launch(self.laid.packed, region, sample, 1, order);
             let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
-            let queue = pixels.collect();
-            let mut launch = Launch { planned: self, frame: &frame, queue, records, film, observer, secondary: 0 };
+            let (queue, next) = (pixels.collect(), Vec::new());
+            let mut launch = Launch { planned: self, frame: &frame, queue, next, records, film, observer, secondary: 0 };
             plan::run(&self.plan, &mut launch).expect("a CPU reports no errors");
             secondary += launch.secondary;
             records = launch.records;
@@ -109,7 +114,10 @@ impl<'a> Planned<'a> {
 struct Launch<'l, 'a, R: Scalar> {
     planned: &'l Planned<'a>,
     frame: &'l Frame,
+    /// Slots of the wave.
     queue: Vec<u32>,
+    /// Those of the next.
+    next: Vec<u32>,
     records: Records<R>,
     film: &'l mut [R::Record],
     observer: &'l dyn Observer<R>,
@@ -121,13 +129,29 @@ impl<R: Scalar> Executor for Launch<'_, '_, R> {
         let scene = self.planned.laid.context(self.frame, step.spec);
         let method = step.traversal.map(|traversal| traversal.method).unwrap_or_default();
         match step.stage {
-            Stage::Advance => self.secondary += self.queue.len() as u64,
+            Stage::Advance => {
+                std::mem::swap(&mut self.queue, &mut self.next);
+                self.next.clear();
+                self.secondary += self.queue.len() as u64;
+            }
             Stage::Trace => self.trace(&scene, method),
             Stage::Shadow => self.shadow(&scene, method),
             Stage::Shade => self.shade(&scene),
+            Stage::Generate => {
+                for &slot in &self.queue {
+                    stage::generate::<R>(self.frame, step.spec, slot, &mut self.records.paths);
+                }
+            }
+            Stage::Scatter => self.scatter(&scene),
             Stage::Gather => {
                 for slot in 0..self.frame.pixel_slots {
                     stage::gather::<R>(self.frame, step.spec.order, slot, &self.records.sums, self.film);
+                }
+            }
+            Stage::Accumulate => {
+                let Records { shadows, segments, sums, .. } = &self.records;
+                for slot in 0..self.frame.pixel_slots {
+                    stage::accumulate::<R>(self.frame, step.spec.order, slot, (sums, shadows, segments), self.film);
                 }
             }
         }
@@ -135,7 +159,7 @@ impl<R: Scalar> Executor for Launch<'_, '_, R> {
     }
 
     fn goes_on(&mut self) -> Result<bool> {
-        Ok(!self.queue.is_empty())
+        Ok(!self.next.is_empty())
     }
 }
 
@@ -150,7 +174,8 @@ impl<R: Scalar> Launch<'_, '_, R> {
     }
 
     fn shadow(&mut self, scene: &TraceContext<'_>, method: Method) {
-        let Records { paths, hits, shadows, .. } = &mut self.records;
+        let Records { paths, hits, shadows, segments, .. } = &mut self.records;
+        let paths = if scene.base.spec.launch.has(Bits::STREAM) { segments } else { paths };
         let mut answers = vec![0; self.queue.len()];
         for light in 0..self.frame.shadow_rays {
             let asking = ShadowInputs { lights: self.planned.laid.lights(), paths, hits };
@@ -162,15 +187,26 @@ impl<R: Scalar> Launch<'_, '_, R> {
         }
     }
 
-    /// Leaves the slots of the next wave in the queue.
+    /// Puts the slots that go on in the next queue.
     fn shade(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
-        let Records { paths, hits, shadows, sums } = &mut self.records;
-        let (laid, packed) = (&self.planned.laid, self.planned.laid.packed);
-        let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), lights: laid.lights() };
-        self.queue.retain(|&slot| {
-            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, sums: &mut *sums };
-            integrator::shade(&scene.base, &looks, slot, wave)
-        });
+        let Records { paths, hits, shadows, sums, .. } = &mut self.records;
+        let (lights, shading) = (self.planned.laid.lights(), self.planned.laid.shading());
+        self.next.extend(self.queue.iter().filter(|&&slot| {
+            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, lights, sums: &mut *sums };
+            integrator::shade(&scene.base, &shading, slot, wave)
+        }));
+    }
+
+    /// Likewise.
+    fn scatter(&mut self, scene: &TraceContext<'_>) {
+        self.observer.wave(scene, &self.queue, &self.records);
+        let Records { paths, hits, shadows, segments, sums } = &mut self.records;
+        let (lighting, shading) = (self.planned.laid.lighting(), self.planned.laid.shading());
+        self.next.extend(self.queue.iter().filter(|&&slot| {
+            let exchange =
+                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
+            integrator::scatter(&scene.base, &shading, &lighting, slot, exchange)
+        }));
     }
 }

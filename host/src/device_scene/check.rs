@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::scene::{Disk, Mesh, Scene, Settings, Sphere};
+use crate::scene::{Disk, Integrator, Mesh, Scene, Settings, Sphere};
 
 /// Refuses numbers that name what there is not. Scenes of files have none; those that code makes may.
 ///
@@ -84,11 +84,33 @@ fn mesh(mesh: &Mesh, materials: usize) -> Result<()> {
 /// # Errors
 /// The first of them.
 pub fn settings(settings: &Settings) -> Result<()> {
-    let Settings { size: (width, height), samples, bounces, min_contribution, .. } = *settings;
+    let Settings { size: (width, height), samples, spp, bounces, min_contribution, transport, .. } = *settings;
     Film::check_size(width, height)?;
     crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
     crate::error::within("bounces", &[bounces], 0..=Settings::MOST_BOUNCES)?;
-    crate::error::within("min_contribution", &[min_contribution], 0.0..=1.0)
+    crate::error::within("min_contribution", &[min_contribution], 0.0..=1.0)?;
+    crate::error::within("spp", &[spp], 0..=Settings::MOST_SPP)?;
+    crate::error::within("clamp", &[transport.clamp], 0.0..=f32::MAX)?;
+    crate::error::within("ao_distance", &[transport.ao_distance], f32::MIN_POSITIVE..=f32::INFINITY)?;
+    if settings.grid().is_none() {
+        let many = settings.samples_a_pixel();
+        let remedy = "make it a square up to 4096, or the sampler sobol or random";
+        return Err(Error::new(format!("no grid has {many} samples a pixel: {remedy}")));
+    }
+    Ok(())
+}
+
+/// Refuses to leave out light.
+///
+/// # Errors
+/// The integrator draws no light that materials emit.
+pub fn emission(emissive: Option<&str>, integrator: Integrator) -> Result<()> {
+    match (emissive, integrator) {
+        (Some(name), Integrator::Whitted) => Err(Error::new(format!(
+            "the material {name:?} emits light, which the integrator whitted does not draw: choose path (--integrator path)"
+        ))),
+        _ => Ok(()),
+    }
 }
 
 #[cfg(test)]

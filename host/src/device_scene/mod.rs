@@ -10,19 +10,24 @@ use eyerays_shader::data::{
 };
 
 mod check;
+mod lighting;
 mod normalisation;
 mod records;
 mod view;
 mod words;
 
+pub use lighting::Lighting;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
 pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
+use glam::Vec3;
+use lighting::Sources;
+
 use crate::error::{Error, Result};
 use crate::method::Traversal;
-use crate::scene::{Background, Light, Scene, Settings};
+use crate::scene::{Background, Integrator, Light, Material, Scene, Settings, Transport};
 
 /// References added by splitting triangles, as a share of the triangles.
 const SPLIT_BUDGET: f32 = 0.3;
@@ -37,6 +42,11 @@ pub struct DeviceScene {
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
     lights: Vec<LightRecord>,
+    lighting: Lighting,
+    /// A material that emits, by its name.
+    emissive: Option<String>,
+    /// As it was given, for other lights.
+    sources: Vec<Material>,
     /// Those of any settings.
     effects: Effects,
     background: Background,
@@ -56,6 +66,8 @@ impl DeviceScene {
     pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
         check::scene(scene)?;
         check::settings(&settings)?;
+        let emissive = scene.materials.iter().find(|m| m.emission != Vec3::ZERO).map(|m| m.name.clone());
+        check::emission(emissive.as_deref(), settings.transport.integrator)?;
         let effects = records::effects(scene);
         // The cells of a checkerboard are counted from the world's origin.
         let normalisation = Normalisation::of(scene.extremes(), !effects.has(Effects::CHECKER));
@@ -67,15 +79,27 @@ impl DeviceScene {
         let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
+        let statistics = Statistics::of(&bvh, &primitives);
+        let primitives = bvh.gather(&primitives);
+        let lights = lights(&scene.lights, &normalisation)?;
+        let sources = Sources {
+            lights: (&scene.lights, &lights),
+            materials: &scene.materials,
+            primitives: &primitives,
+        };
+        let lighting = Lighting::new(&sources, &normalisation);
         Ok(DeviceScene {
-            statistics: Statistics::of(&bvh, &primitives),
-            primitives: bvh.gather(&primitives),
+            statistics,
+            primitives,
             normals: if effects.has(Effects::SMOOTH) { bvh.gather(&records::normals(scene)) } else { Vec::new() },
             nodes: bvh.nodes.iter().map(CentredPair::from).collect(),
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(material).collect(),
-            lights: lights(&scene.lights, &normalisation)?,
+            lights,
+            lighting,
+            emissive,
+            sources: scene.materials.clone(),
             effects,
             background: scene.background,
             settings,
@@ -125,6 +149,20 @@ impl DeviceScene {
         &self.lights
     }
 
+    /// What an integrator chooses from that samples one light of all.
+    pub fn lighting(&self) -> &Lighting {
+        &self.lighting
+    }
+
+    /// May a ray find light that no light sample stands for, or not alone?
+    pub(crate) fn finds_light(&self) -> bool {
+        let is_black = match self.background {
+            Background::Colour(colour) => colour == Vec3::ZERO,
+            Background::Gradient { horizon, zenith } => horizon == Vec3::ZERO && zenith == Vec3::ZERO,
+        };
+        self.emissive.is_some() || !is_black
+    }
+
     /// The effects that the scene asks for.
     pub fn effects(&self) -> Effects {
         records::asked(self.effects, &self.settings)
@@ -160,10 +198,20 @@ impl DeviceScene {
         let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
-            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits()),
+            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits()),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,
+        }
+    }
+
+    fn transport_bits(&self) -> u32 {
+        let Transport { integrator, direct, .. } = self.settings.transport;
+        let finds = if self.finds_light() { Launch::FINDS_LIGHT } else { 0 };
+        match integrator {
+            Integrator::Whitted => 0,
+            Integrator::Ao => Launch::OCCLUSION,
+            Integrator::Path => direct.bits() | finds,
         }
     }
 
@@ -173,6 +221,7 @@ impl DeviceScene {
     /// Settings out of range.
     pub fn set(&mut self, settings: Settings) -> Result<()> {
         check::settings(&settings)?;
+        check::emission(self.emissive.as_deref(), settings.transport.integrator)?;
         self.settings = settings;
         Ok(())
     }
@@ -181,7 +230,7 @@ impl DeviceScene {
     ///
     /// # Errors
     /// They are others, or too far away.
-    pub fn relit(&self, others: &[Light]) -> Result<Vec<LightRecord>> {
+    pub fn relit(&self, others: &[Light]) -> Result<(Vec<LightRecord>, Lighting)> {
         let records = lights(others, &self.normalisation)?;
         let kinds = |lights: &[LightRecord]| lights.iter().map(|light| light.position.w).collect::<Vec<_>>();
         if kinds(&records) != kinds(&self.lights) {
@@ -190,7 +239,10 @@ impl DeviceScene {
                 "the scene was packed with {number} lights of other kinds: pack it again to change more than their values"
             )));
         }
-        Ok(records)
+        let sources =
+            Sources { lights: (others, &records), materials: &self.sources, primitives: &self.primitives };
+        let lighting = Lighting::new(&sources, &self.normalisation);
+        Ok((records, lighting))
     }
 
     /// The record of a launch that follows `count` rays of a stream.
@@ -205,13 +257,20 @@ impl DeviceScene {
             Background::Gradient { horizon, zenith } => (horizon, zenith),
         };
         let lights = self.lights.len() as u32;
+        let Transport { integrator, seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
+        let reach = (f64::from(ao_distance) * self.normalisation.scale).min(f32::MAX.into()) as f32;
         Frame {
             horizon: records::colour(horizon, 0),
             zenith: records::colour(zenith, 0),
             bounces: self.settings.bounces,
             min_contribution: self.settings.min_contribution,
             lights,
-            shadow_rays: lights,
+            shadow_rays: if integrator.samples() { 1 } else { lights },
+            seed,
+            emitters: if self.lighting.is_lit { self.lighting.emitters.len() as u32 } else { 0 },
+            roulette,
+            clamp,
+            reach,
             vertices: self.primitives.len() as u32,
             ..Frame::default()
         }

@@ -7,7 +7,7 @@ use glam::{UVec4, Vec3};
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Background, Light, Material, Scene, Settings};
+use crate::scene::{Background, Integrator, Light, Material, Scene, Settings};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
@@ -16,10 +16,19 @@ pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
 
 /// The effects that a scene asks for, of those that it has, under some settings.
 pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
-    let bounced = if settings.bounces > 0 { 0 } else { Effects::REFLECTION | Effects::REFRACTION };
+    let out = match settings.transport.integrator {
+        Integrator::Whitted if settings.bounces == 0 => Effects::REFLECTION | Effects::REFRACTION,
+        Integrator::Whitted => 0,
+        Integrator::Ao => !(GEOMETRY | Effects::TRANSPARENT),
+        // What is behind glass is lit through it, by light that is bent there, or not at all.
+        Integrator::Path => Effects::TRANSPARENT | Effects::SPECULAR,
+    };
     let culled = if settings.culling { Effects::CULLING } else { 0 };
-    Effects(effects.0 & !bounced | culled)
+    Effects(effects.0 & !out | culled)
 }
+
+/// What is of the surfaces alone.
+const GEOMETRY: u32 = Effects::SMOOTH | Effects::SPHERE | Effects::DISK | Effects::GRADIENT;
 
 /// The effects that a scene has, if rays may bounce.
 pub(super) fn effects(scene: &Scene) -> Effects {
@@ -38,6 +47,7 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::LIT, lit);
     ask(Effects::SPHERE, !scene.spheres.is_empty());
     ask(Effects::DISK, !scene.disks.is_empty());
+    ask(Effects::EMISSIVE, used(&|m| m.emission != Vec3::ZERO));
     ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
     Effects(bits)
 }

@@ -4,9 +4,10 @@ use std::borrow::Cow;
 
 use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
-use eyerays_shader::scene::{LaunchContext, TraceContext};
+use eyerays_shader::light as shading;
+use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 
-use super::{DeviceScene, NodeWords, PrimitiveWords};
+use super::{DeviceScene, Lighting, NodeWords, PrimitiveWords};
 use crate::error::Result;
 use crate::method::{Method, Traversal};
 use crate::scene::Light;
@@ -21,6 +22,7 @@ pub struct SceneView<'a> {
     primitives: PrimitiveWords<'a>,
     bvh8: Bvh8View<'a>,
     lights: Cow<'a, [LightRecord]>,
+    lighting: Cow<'a, Lighting>,
 }
 
 impl<'a> SceneView<'a> {
@@ -32,7 +34,7 @@ impl<'a> SceneView<'a> {
             Method::Auto | Method::Wide => packed.bvh8().borrow(),
             _ => Bvh8View::default(),
         };
-        SceneView { packed, traversal, nodes, primitives, bvh8, lights: Cow::Borrowed(packed.lights()) }
+        SceneView { packed, traversal, nodes, primitives, bvh8, lights: Cow::Borrowed(packed.lights()), lighting: Cow::Borrowed(packed.lighting()) }
     }
 
     /// Lights in file order.
@@ -40,12 +42,23 @@ impl<'a> SceneView<'a> {
         &self.lights
     }
 
+    /// What surfaces look like.
+    pub fn shading(&self) -> ShadingData<'_> {
+        ShadingData { normals: self.packed.normals(), materials: self.packed.materials() }
+    }
+
+    /// What an integrator chooses from that samples one light of all.
+    pub fn lighting(&self) -> shading::Lighting<'_> {
+        shading::Lighting { emitters: &self.lighting.emitters, emissions: &self.lighting.emissions }
+    }
+
     /// Takes other lights.
     ///
     /// # Errors
     /// As [`DeviceScene::relit`].
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
-        self.lights = Cow::Owned(self.packed.relit(lights)?);
+        let (records, lighting) = self.packed.relit(lights)?;
+        (self.lights, self.lighting) = (Cow::Owned(records), Cow::Owned(lighting));
         Ok(())
     }
 

@@ -2,14 +2,14 @@
 
 use eyerays_passes::Kernel as Cut;
 use eyerays_shader::launch::WORKGROUP;
-use eyerays_shader::resources::{Access, RESOURCES};
+use eyerays_shader::resources::{Access, RESOURCES, binding};
 use rayon::prelude::*;
 
 use super::device::Gpu;
 use super::hush::Hush;
 use super::module;
 use super::recipe::Recipe;
-use crate::plan::Stage;
+use crate::plan::{Plan, Stage};
 
 /// Workgroups of persistent subgroups: more than any GPU of today runs at once. Those too many find no
 /// ray left.
@@ -42,6 +42,12 @@ impl Kernel {
     /// Does it bind this resource?
     pub fn binds(&self, binding: u32) -> bool {
         self.bindings.contains(&binding)
+    }
+
+    /// The resource whose buffer it takes in the place of another: shadow rays that lie in memory are followed as a stream's.
+    pub fn source(&self, binding: u32, plan: &Plan) -> u32 {
+        let is_stored = self.stage == Stage::Shadow && plan.bytes_of(binding::SEGMENTS) > 0;
+        if is_stored && binding == binding::PATHS { binding::SEGMENTS } else { binding }
     }
 
     /// Runs a thread for each of `slots` slots in each of `rows` rows, or takes them in turn.

@@ -285,7 +285,7 @@ impl Executor for Launch<'_, '_> {
         let rows = if step.stage == Stage::Shadow { self.frame.shadow_rays } else { 1 };
         match step.stage {
             Stage::Advance => kernel.run(pass, group, 1, 1),
-            Stage::Gather => kernel.run(pass, group, self.frame.pixel_slots, 1),
+            Stage::Gather | Stage::Accumulate => kernel.run(pass, group, self.frame.pixel_slots, 1),
             _ if step.spec.launch.has(LaunchBits::SECONDARY) => {
                 let arguments = self.memory.buffers.of(binding::ARGUMENTS);
                 let offset = if step.stage == Stage::Shadow { argument::SHADOWS } else { argument::SLOTS };

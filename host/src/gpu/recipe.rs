@@ -46,7 +46,7 @@ impl Recipe {
         let votes = match step.traversal {
             Some(traversal) => traversal.votes(),
             // A subgroup adds its slots to the next wave at once.
-            None => target.subgroups && step.stage == Stage::Shade && goes_on(&step),
+            None => target.subgroups && goes_on(&step),
         };
         let (module, precision) = match (target.exact, votes) {
             (true, false) => (&EXACT, "exact"),
@@ -71,7 +71,11 @@ impl Recipe {
 }
 
 fn goes_on(step: &Step) -> bool {
-    step.spec.effects.has(Effects::REFLECTION | Effects::REFRACTION)
+    match step.stage {
+        Stage::Shade => step.spec.effects.has(Effects::REFLECTION | Effects::REFRACTION),
+        Stage::Scatter => true,
+        _ => false,
+    }
 }
 
 #[cfg(test)]

@@ -99,10 +99,15 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// As [`DeviceScene::relit`].
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
-        let records = self.packed.relit(lights)?;
-        if let Some(buffer) = self.scene.find(binding::LIGHTS) {
-            self.gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&records));
-        }
+        let (records, lighting) = self.packed.relit(lights)?;
+        let write = |binding, bytes| {
+            if let Some(buffer) = self.scene.find(binding) {
+                self.gpu.queue.write_buffer(buffer, 0, bytes);
+            }
+        };
+        write(binding::LIGHTS, bytemuck::cast_slice(&records));
+        write(binding::EMITTERS, bytemuck::cast_slice(&lighting.emitters));
+        write(binding::EMISSIONS, bytemuck::cast_slice(&lighting.emissions));
         Ok(())
     }
 
@@ -198,11 +203,11 @@ impl<'a> Renderer<'a> {
         while !rest.is_empty() {
             let mut bytes = 0;
             let fits = |band: &&Band| {
-                bytes += Plan::FILM_BYTES * band.region.pixels();
+                bytes += self.plan.film_bytes * band.region.pixels();
                 bytes <= READ
             };
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
-            let films: Vec<_> = now.iter().map(|band| (&band.film, Plan::FILM_BYTES * band.region.pixels())).collect();
+            let films: Vec<_> = now.iter().map(|band| (&band.film, self.plan.film_bytes * band.region.pixels())).collect();
             let read = self.queue.read(&counters, &films, |i, bytes| {
                 let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
                 let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
@@ -251,7 +256,10 @@ impl<'a> Renderer<'a> {
         }
         self.gpu.queue.write_buffer(buffers.of(binding::ARGUMENTS), 0, bytemuck::cast_slice::<u32, u8>(&arguments));
         let group = |kernel: &Kernel, is_second| {
-            kernel.group(self.gpu, |binding| self.scene.find(binding).or_else(|| buffers.find(binding, is_second)))
+            kernel.group(self.gpu, |binding| {
+                let binding = kernel.source(binding, &self.plan);
+                self.scene.find(binding).or_else(|| buffers.find(binding, is_second))
+            })
         };
         let both = |kernel: &Kernel| [group(kernel, false), group(kernel, true)];
         let groups = self.kernels.iter().map(|kernel| (!kernel.binds(binding::FILM)).then(|| both(kernel))).collect();
@@ -261,7 +269,7 @@ impl<'a> Renderer<'a> {
     }
 
     fn band(&self, region: Region) -> Result<Band> {
-        let size = Plan::FILM_BYTES * region.pixels();
+        let size = self.plan.film_bytes * region.pixels();
         let film = buffer(self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
         let kernel = self.kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
         let group = kernel.group(self.gpu, |binding| match binding {

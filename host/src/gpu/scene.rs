@@ -8,6 +8,7 @@ use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
 use crate::method::Layout;
 use crate::plan::Plan;
+use crate::scene::Integrator;
 
 /// The records of a scene as kernels read them, before they are uploaded.
 pub(super) struct SceneRecords<'a> {
@@ -25,9 +26,12 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 7] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 9] {
         let packed = self.packed;
         let wide = if self.wide { packed.wide() } else { &[] };
+        let is_sampled = packed.settings().transport.integrator == Integrator::Path;
+        let (emitters, emissions): (&[_], &[_]) =
+            if is_sampled { (&packed.lighting().emitters, &packed.lighting().emissions) } else { (&[], &[]) };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
@@ -37,6 +41,8 @@ impl<'a> SceneRecords<'a> {
             (binding::NORMALS, bytemuck::cast_slice(normals)),
             (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),
             (binding::LIGHTS, bytemuck::cast_slice(packed.lights())),
+            (binding::EMITTERS, bytemuck::cast_slice(emitters)),
+            (binding::EMISSIONS, bytemuck::cast_slice(emissions)),
         ]
     }
 }

@@ -1,11 +1,21 @@
 //! Which stages a picture asks of devices: a file an integrator. What they do at a hit is in the file of the same name in
 //! the shader.
 
+mod sampled;
 mod whitted;
 
-pub use whitted::whitted;
+use crate::device_scene::DeviceScene;
+use crate::scene::Integrator;
 
-/// What an integrator asks for: the order of the stages is the same for all, see [`crate::plan::Plan`].
+/// What the integrator of a scene's settings asks for.
+pub fn needs(packed: &DeviceScene) -> Needs {
+    match packed.settings().transport.integrator {
+        Integrator::Whitted => whitted::whitted(packed),
+        Integrator::Ao | Integrator::Path => sampled::sampled(packed),
+    }
+}
+
+/// What an integrator asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Needs {
     /// Shadow rays of a hit: one a light, or one in all where a light is chosen at random. Their answers are kept for the
@@ -15,6 +25,8 @@ pub struct Needs {
     pub paths: u32,
     /// How often rays go on.
     pub waves: Waves,
+    /// Does it sample? Then its stages are others, see [`crate::plan::Plan`].
+    pub is_sampled: bool,
 }
 
 /// How many waves follow that of the camera's rays.

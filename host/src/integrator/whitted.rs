@@ -14,7 +14,7 @@ pub fn whitted(packed: &DeviceScene) -> Needs {
     } else {
         Waves::AtMost(packed.settings().bounces)
     };
-    Needs { shadow_rays: packed.lights().len() as u32, paths: paths(packed, waves), waves }
+    Needs { shadow_rays: packed.lights().len() as u32, paths: paths(packed, waves), waves, is_sampled: false }
 }
 
 /// A refracted ray waits at most once a bounce. Waiting rays and the one in hand share their pixel's light, a unit a colour

@@ -4,13 +4,13 @@ mod run;
 
 use eyerays_shader::data::{Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::RECORDS;
+use eyerays_shader::stage::{FILM_RECORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS};
 
 pub use run::{Executor, run};
 
 use crate::device_scene::DeviceScene;
 use crate::error::Result;
-use crate::integrator::{Needs, Waves, whitted};
+use crate::integrator::{Needs, Waves, needs};
 use crate::method::{Coherence, Method, Traversal};
 
 /// Bytes of a record of three numbers and an integer.
@@ -19,6 +19,8 @@ const RECORD: u64 = 16;
 /// What a step does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
+    /// Starts paths with the camera's rays.
+    Generate,
     /// Turns to the next wave.
     Advance,
     /// Follows the rays of a wave.
@@ -27,19 +29,26 @@ pub enum Stage {
     Shadow,
     /// Shades its hits.
     Shade,
+    /// Scatters its paths.
+    Scatter,
     /// Adds what slots have summed to the film.
     Gather,
+    /// The same, and keeps what rounding takes off.
+    Accumulate,
 }
 
 impl Stage {
     /// The last part of its kernels' paths.
     pub fn name(self) -> &'static str {
         match self {
+            Stage::Generate => "generate",
             Stage::Advance => "advance",
             Stage::Trace => "trace",
             Stage::Shadow => "shadow",
             Stage::Shade => "shade",
+            Stage::Scatter => "scatter",
             Stage::Gather => "gather",
+            Stage::Accumulate => "accumulate",
         }
     }
 }
@@ -70,13 +79,15 @@ pub struct Plan {
     pub shadow_rays: u32,
     /// Bytes that a sample in flight takes of each buffer, by its binding.
     pub slot_bytes: Vec<(u32, u64)>,
+    /// Bytes that a pixel takes of the film.
+    pub film_bytes: u64,
 }
 
 impl Plan {
-    /// Bytes that a pixel takes of the film.
-    pub const FILM_BYTES: u64 = RECORD;
+    /// Bytes of a record of three numbers and an integer.
+    pub const RECORD_BYTES: u64 = RECORD;
 
-    /// For a scene by Whitted's model. `resolve` tells the method for rays of some coherence.
+    /// For a scene by the integrator of its settings. `resolve` tells the method for rays of some coherence.
     ///
     /// # Errors
     /// Those of `resolve`.
@@ -85,7 +96,7 @@ impl Plan {
         traversal: &Traversal,
         resolve: impl Fn(Coherence) -> Result<Traversal>,
     ) -> Result<Plan> {
-        Plan::of(&whitted(packed), packed.specialisation(traversal), resolve)
+        Plan::of(&needs(packed), packed.specialisation(traversal), resolve)
     }
 
     /// For what an integrator needs.
@@ -93,40 +104,33 @@ impl Plan {
     /// # Errors
     /// Those of `resolve`.
     pub fn of(needs: &Needs, spec: Specialisation, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
-        let Needs { shadow_rays, paths, waves } = *needs;
-        let wave = |spec, traced, shadowed| -> Result<Vec<Step>> {
-            let follows = |stage, coherence| Ok(Step { stage, traversal: Some(resolve(coherence)?), spec });
-            let mut steps = vec![follows(Stage::Trace, traced)?];
-            if shadow_rays > 0 {
-                steps.push(follows(Stage::Shadow, shadowed)?);
-            }
-            steps.push(Step { stage: Stage::Shade, traversal: None, spec });
-            Ok(steps)
-        };
+        let Needs { waves, shadow_rays, is_sampled, .. } = *needs;
         let plain = |stage, spec| Step { stage, traversal: None, spec };
+        let wave = |spec: Specialisation, traced, shadowed| -> Result<Vec<Step>> {
+            // Rays that an integrator samples lie in memory as those of a stream do.
+            let rays = if is_sampled { spec.with_launch(Launch::STREAM) } else { spec };
+            let follows = |stage, coherence| Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: rays });
+            let trace = follows(Stage::Trace, traced)?;
+            if is_sampled {
+                return Ok(vec![trace, plain(Stage::Scatter, spec), follows(Stage::Shadow, shadowed)?]);
+            }
+            let shadow = if shadow_rays > 0 { Some(follows(Stage::Shadow, shadowed)?) } else { None };
+            Ok([Some(trace), shadow, Some(plain(Stage::Shade, spec))].into_iter().flatten().collect())
+        };
+        let mut first = wave(spec, Coherence::Primary, Coherence::Shadow)?;
+        if is_sampled {
+            first.insert(0, plain(Stage::Generate, spec));
+        }
         let mut further = Vec::new();
         if waves != Waves::AtMost(0) {
             let spec = spec.with_launch(Launch::SECONDARY);
             further.push(plain(Stage::Advance, spec));
             further.extend(wave(spec, Coherence::Secondary, Coherence::Secondary)?);
         }
-        let queue = if further.is_empty() { 0 } else { 4 };
-        let slot_bytes = [
-            (binding::PATHS, u64::from(paths) * u64::from(RECORDS) * RECORD),
-            (binding::HITS, RECORD),
-            (binding::SHADOWS, 4 * u64::from(shadow_rays)),
-            (binding::SUMS, RECORD),
-            (binding::QUEUE, queue),
-            (binding::NEXT, queue),
-        ];
-        Ok(Plan {
-            first: wave(spec, Coherence::Primary, Coherence::Shadow)?,
-            further,
-            last: vec![plain(Stage::Gather, spec)],
-            waves,
-            shadow_rays,
-            slot_bytes: slot_bytes.into_iter().filter(|&(_, bytes)| bytes > 0).collect(),
-        })
+        let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
+        let slot_bytes = slot_bytes(needs, !further.is_empty());
+        let film_bytes = if is_sampled { u64::from(FILM_RECORDS) * RECORD } else { RECORD };
+        Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_bytes })
     }
 
     /// Bytes that a sample in flight takes of a resource, 0 if the plan has not got it.
@@ -154,6 +158,24 @@ impl Plan {
     }
 }
 
+/// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
+fn slot_bytes(needs: &Needs, has_queue: bool) -> Vec<(u32, u64)> {
+    let Needs { shadow_rays, paths, is_sampled, .. } = *needs;
+    let (path, shadow_ray) = if is_sampled { (STATE_RECORDS, SHADOW_RECORDS) } else { (RECORDS, 0) };
+    let records = |count: u32| u64::from(count) * RECORD;
+    let queue = if has_queue { 4 } else { 0 };
+    let all = [
+        (binding::PATHS, records(paths * path)),
+        (binding::HITS, RECORD),
+        (binding::SHADOWS, 4 * u64::from(shadow_rays)),
+        (binding::SEGMENTS, records(shadow_ray)),
+        (binding::SUMS, RECORD),
+        (binding::QUEUE, queue),
+        (binding::NEXT, queue),
+    ];
+    all.into_iter().filter(|&(_, bytes)| bytes > 0).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use eyerays_shader::data::Effects;
@@ -173,18 +195,24 @@ mod tests {
 
     #[test]
     fn rays_that_do_not_go_on_take_one_wave_and_no_queue() {
-        let plan = plan(Needs { shadow_rays: 2, paths: 0, waves: Waves::AtMost(0) });
+        let plan = plan(Needs { shadow_rays: 2, paths: 0, waves: Waves::AtMost(0), is_sampled: false });
         assert_eq!(stages(&plan.first), [Stage::Trace, Stage::Shadow, Stage::Shade]);
         assert_eq!((stages(&plan.further), stages(&plan.last)), (vec![], vec![Stage::Gather]));
         assert_eq!(plan.slot_bytes, [(binding::HITS, 16), (binding::SHADOWS, 8), (binding::SUMS, 16)]);
     }
 
-    /// A path that samples one light at each of its vertices runs in the same order.
+    /// A vertex is scattered before its shadow ray is followed, whose light the next stage of the slot adds.
     #[test]
-    fn one_light_sample_a_vertex_takes_no_more_memory_for_more_lights() {
-        let plan = plan(Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(5) });
-        assert_eq!(stages(&plan.further), [Stage::Advance, Stage::Trace, Stage::Shadow, Stage::Shade]);
-        assert!(plan.slot_bytes.contains(&(binding::SHADOWS, 4)));
-        assert!(plan.slot_bytes.contains(&(binding::PATHS, 48)));
+    fn paths_are_generated_scattered_and_accumulated() {
+        let plan = plan(Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(5), is_sampled: true });
+        assert_eq!(stages(&plan.first), [Stage::Generate, Stage::Trace, Stage::Scatter, Stage::Shadow]);
+        assert_eq!(stages(&plan.further), [Stage::Advance, Stage::Trace, Stage::Scatter, Stage::Shadow]);
+        assert_eq!(stages(&plan.last), [Stage::Accumulate]);
+        for bytes in [(binding::SHADOWS, 4), (binding::PATHS, 64), (binding::SEGMENTS, 48)] {
+            assert!(plan.slot_bytes.contains(&bytes), "{bytes:?}");
+        }
+        assert_eq!(plan.film_bytes, 32);
+        let streams = plan.steps().filter(|step| step.spec.launch.has(Launch::STREAM));
+        assert!(streams.map(|step| step.stage).all(|stage| matches!(stage, Stage::Trace | Stage::Shadow)));
     }
 }

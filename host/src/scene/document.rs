@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::range::Range;
 use super::table::Table;
-use super::{Background, Camera, Light, Settings};
+use super::{Background, Camera, Light, Settings, Transport};
 use crate::error::Result;
 use crate::film::Film;
 
@@ -23,11 +23,29 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.bounces),
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
+        spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
+        transport: transport(&mut table)?,
     };
+    if settings.grid().is_none() {
+        let fault = "no grid has that many samples: make it a square up to 4096, or the sampler sobol or random";
+        return Err(table.fault_of("spp", fault));
+    }
     let (width, height) = settings.size;
     Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message()))?;
     table.done()?;
     Ok(settings)
+}
+
+fn transport(table: &mut Table) -> Result<Transport> {
+    let default = Transport::default();
+    Ok(Transport {
+        integrator: table.choice("integrator")?.unwrap_or(default.integrator),
+        seed: table.whole("seed", 0, u32::MAX)?.unwrap_or(default.seed),
+        roulette: table.whole("roulette", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.roulette),
+        clamp: table.number("clamp", Range::AMOUNT)?.unwrap_or(default.clamp),
+        direct: table.choice("direct")?.unwrap_or(default.direct),
+        ao_distance: table.number("ao_distance", Range::LENGTH)?.unwrap_or(default.ao_distance),
+    })
 }
 
 /// Reads `[background]`: a `color`, or a `horizon` and a `zenith`.

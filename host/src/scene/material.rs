@@ -18,6 +18,8 @@ pub struct Fields {
     pub transmission: Option<Vec3>,
     pub ior: Option<f32>,
     pub checker: Option<Checker>,
+    pub emission: Option<Vec3>,
+    pub two_sided: Option<bool>,
 }
 
 /// The name of the material of a surface that names none.
@@ -46,6 +48,8 @@ impl Fields {
             transmission: table.triple("transmission", Range::SHARE)?,
             ior: table.number("ior", Range::IOR)?,
             checker: table.table("checker")?.map(checker).transpose()?,
+            emission: table.triple("emission", Range::AMOUNT)?,
+            two_sided: table.flag("two_sided")?,
         };
         Ok((name, fields))
     }
@@ -61,6 +65,8 @@ impl Fields {
             transmission: self.transmission.or(under.transmission),
             ior: self.ior.or(under.ior),
             checker: self.checker.or(under.checker),
+            emission: self.emission.or(under.emission),
+            two_sided: self.two_sided.or(under.two_sided),
         }
     }
 
@@ -78,6 +84,8 @@ impl Fields {
             transmission: self.transmission.unwrap_or(Vec3::ZERO),
             ior: self.ior.unwrap_or(GLASS),
             checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
+            emission: self.emission.unwrap_or(Vec3::ZERO),
+            two_sided: self.two_sided.unwrap_or(false),
         }
     }
 }

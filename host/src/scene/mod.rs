@@ -35,6 +35,7 @@ mod suggest;
 mod table;
 mod tally;
 mod transform;
+mod transport;
 mod xyzr;
 
 #[cfg(test)]
@@ -47,6 +48,7 @@ pub use range::Range;
 pub use sampler::Sampler;
 pub use suggest::suggest;
 pub use table::Table;
+pub use transport::{Direct, Integrator, Transport};
 
 use eyerays_shader::data::NodeRef;
 use glam::Vec3;
@@ -138,6 +140,10 @@ pub struct Material {
     pub ior: f32,
     /// A second diffuse colour in cells of a checkerboard.
     pub checker: Option<Checker>,
+    /// Radiance that it sends out, linear RGB, at least 0.
+    pub emission: Vec3,
+    /// Does its back emit too?
+    pub two_sided: bool,
 }
 
 /// A procedural checkerboard over the surface's two major axes.
@@ -219,6 +225,8 @@ pub struct Settings {
     pub size: (u32, u32),
     /// Samples along a pixel's edge.
     pub samples: u32,
+    /// Samples of a pixel; 0 for the square of `samples`.
+    pub spp: u32,
     /// Where in a pixel its samples lie.
     pub sampler: Sampler,
     /// The most times a ray is followed on.
@@ -227,13 +235,31 @@ pub struct Settings {
     pub min_contribution: f32,
     /// Skip triangles seen from behind.
     pub culling: bool,
+    /// How light is carried.
+    pub transport: Transport,
 }
 
 impl Settings {
+    /// Samples of a pixel.
+    pub fn samples_a_pixel(&self) -> u32 {
+        if self.spp > 0 { self.spp } else { self.samples * self.samples }
+    }
+
+    /// The edge of the grid that a pixel's samples lie in, 1 without a grid; none if that many do not fill one.
+    pub fn grid(&self) -> Option<u32> {
+        if !self.sampler.has_cells() {
+            return Some(1);
+        }
+        let edge = self.samples_a_pixel().isqrt();
+        (edge * edge == self.samples_a_pixel() && edge <= Self::MOST_SAMPLES).then_some(edge)
+    }
+
     /// The largest width and height in pixels.
     pub const MOST_SIDE: u32 = crate::film::Film::MAX_SIDE;
     /// The most samples along a pixel's edge.
     pub const MOST_SAMPLES: u32 = 64;
+    /// The most samples of a pixel, which single precision still counts.
+    pub const MOST_SPP: u32 = 1 << 24;
     /// The largest limit of bounces.
     pub const MOST_BOUNCES: u32 = 65_535;
 }
@@ -243,10 +269,12 @@ impl Default for Settings {
         Settings {
             size: (512, 512),
             samples: 1,
+            spp: 0,
             sampler: Sampler::default(),
             bounces: 5,
             min_contribution: 1.0 / 1024.0,
             culling: false,
+            transport: Transport::default(),
         }
     }
 }

@@ -21,6 +21,11 @@ choices! {
 }
 
 impl Sampler {
+    /// Does it place samples in the cells of a grid, so that there must be a square number of them?
+    pub fn has_cells(self) -> bool {
+        matches!(self, Sampler::Regular | Sampler::Jittered)
+    }
+
     /// Bits of the constant of kernels, see [`Launch`].
     pub fn bits(self) -> u32 {
         match self {

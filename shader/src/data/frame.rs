@@ -48,6 +48,22 @@ pub struct Frame {
     pub vertices: u32,
     /// Shadow rays that a slot asks for in a wave.
     pub shadow_rays: u32,
+    /// What pixels draw their numbers from, beside their place.
+    pub seed: u32,
+    /// How many lights an integrator chooses from that samples one of them.
+    pub emitters: u32,
+    /// Bounces before Russian roulette may end a path.
+    pub roulette: u32,
+    /// The most that light adds to a sample which was scattered more than once; 0 for no limit.
+    pub clamp: f32,
+    /// How far ambient occlusion looks, in the normalised scene.
+    pub reach: f32,
+    /// Unused, as the next two: uniform records are multiples of 16 bytes, and may hold no array of less.
+    pub padding_a: u32,
+    /// Unused.
+    pub padding_b: u32,
+    /// Unused.
+    pub padding_c: u32,
 }
 
 /// A pinhole camera for an image of some size: vectors in the normalised scene, whose last integers are unused.

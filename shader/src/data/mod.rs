@@ -7,6 +7,7 @@
 
 mod compact;
 mod cwbvh;
+mod emitter;
 mod frame;
 mod node;
 mod primitive;
@@ -15,6 +16,7 @@ mod specialisation;
 
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
+pub use emitter::{Emission, Emitter};
 pub use frame::{Frame, Lens};
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use primitive::{Bounds, Primitive};

@@ -54,6 +54,8 @@ bits! {
         SPHERE = 11;
         /// Some primitives are disks.
         DISK = 12;
+        /// Some material emits light.
+        EMISSIVE = 13;
     }
 }
 
@@ -73,6 +75,16 @@ bits! {
         RANDOM = 4;
         /// At the points of a scrambled Sobol sequence.
         SOBOL = 5;
+        /// Only how much of its surroundings a surface sees.
+        OCCLUSION = 6;
+        /// Lights with extent are found by chance alone, not sampled.
+        BY_SURFACE = 7;
+        /// They are sampled, and count for nothing where chance finds them.
+        BY_LIGHT = 8;
+        /// Of both, each is weighted as its probability is; without any of these bits, as the square of it.
+        BALANCED = 9;
+        /// A path's last ray may find light: what emits, or a background that is not black.
+        FINDS_LIGHT = 10;
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::buffer::{read, write};
 use crate::data::*;
-use crate::integrator::{self, Wave};
+use crate::integrator::{self, Exchange, Wave};
+use crate::light::Lighting;
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::real::Fast;
 use crate::resources::resources;
@@ -62,10 +63,16 @@ fn enqueue_alone(_: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], 
 #[inline(always)]
 fn enqueue_together(spec: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
     if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
-        let position = append(goes_on, counters, counter::NEXT);
-        if goes_on {
-            write(next, position, slot);
-        }
+        append_together(spec, goes_on, slot, next, counters);
+    }
+}
+
+/// The same where any slot may go on.
+#[inline(always)]
+fn append_together(_: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
+    let position = append(goes_on, counters, counter::NEXT);
+    if goes_on {
+        write(next, position, slot);
     }
 }
 
@@ -131,6 +138,7 @@ macro_rules! precision {
         pub mod $subgroup {
             use super::*;
             shade!($R, enqueue_together);
+            scatter!($R, append_together);
             crate::for_each_method!(methods subgroup $R);
             /// Kernels of persistent subgroups.
             pub mod persistent {

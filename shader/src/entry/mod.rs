@@ -79,8 +79,30 @@ macro_rules! shade {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, primitives };
-                let shading = ShadingData { normals, materials, lights };
-                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, sums });
+                let shading = ShadingData { normals, materials };
+                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, lights, sums });
+                $enqueue(spec, goes_on, slot, next, counters);
+            }
+        }
+    };
+}
+
+/// The same where integrators sample.
+macro_rules! scatter {
+    ($R:ty, $enqueue:ident) => {
+        entry! {
+            /// Scatters the paths of a wave.
+            scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions] {
+                let slot = slot(spec, frame, id.x, queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let launch = LaunchContext { frame, spec, primitives };
+                let shading = ShadingData { normals, materials };
+                let lighting = Lighting { emitters, emissions };
+                let exchange = Exchange { paths, hits, shadows, segments, sums };
+                let goes_on = integrator::scatter::<$R>(&launch, &shading, &lighting, slot, exchange);
                 $enqueue(spec, goes_on, slot, next, counters);
             }
         }
@@ -91,6 +113,23 @@ macro_rules! shade {
 macro_rules! shading {
     ($R:ty) => {
         shade!($R, enqueue_alone);
+        scatter!($R, enqueue_alone);
+
+        entry! {
+            /// Starts the paths of a launch.
+            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths] {
+                if id.x < frame.slots {
+                    stage::generate::<$R>(frame, spec, id.x, paths);
+                }
+            }
+        }
+
+        entry! {
+            /// Folds the sums of slots into pixels, and keeps what rounding takes off.
+            accumulate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame shadows segments sums film] {
+                stage::accumulate::<$R>(frame, spec.order, id.x, (sums, shadows, segments), film);
+            }
+        }
 
         entry! {
             /// Turns to the next wave.
@@ -203,6 +242,7 @@ pub mod bound {
     /// Of subgroups that vote.
     pub mod voting {
         shade!(f32, enqueue_together);
+        scatter!(f32, append_together);
     }
 
     tracing!(f32, ());

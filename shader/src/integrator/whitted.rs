@@ -6,7 +6,7 @@ use crate::camera;
 use crate::data::{Effects, Launch, Light};
 use crate::geometry::SurfaceInteraction;
 use crate::light::LightSample;
-use crate::material::{Surface, eval_phong, fresnel, reflect, refract};
+use crate::material::{Surface, eval_phong, fresnel, mirrored, refract};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
@@ -20,6 +20,8 @@ pub struct Wave<'a, R: Scalar> {
     pub hits: &'a [R::Record],
     /// What [`crate::stage::shadow`] returned, by light and slot.
     pub shadows: &'a [u32],
+    /// Lights in file order.
+    pub lights: &'a [Light],
     /// Linear RGB by slot; the integer counts shadow rays and holds [`NON_FINITE`].
     pub sums: &'a mut [R::Record],
 }
@@ -33,7 +35,7 @@ struct Branches<R: Real> {
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
 pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
-    let Wave { paths, hits, shadows, sums } = wave;
+    let Wave { paths, hits, shadows, lights, sums } = wave;
     // A queue holds no slot of a pixel outside.
     let is_first = !launch.spec.launch.has(Launch::SECONDARY);
     if is_first && !camera::pixel(launch.frame, launch.spec.order, slot).inside {
@@ -49,7 +51,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let primitive = launch.primitive(primitive_index);
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
     let surface = Surface::new(effects, shading, primitive_index, &primitive, path.direction, &interaction);
-    let (light, rays) = lit(launch, shading.lights, slot, path.direction, (&interaction, &surface), shadows);
+    let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return false;
@@ -117,9 +119,7 @@ fn branch<R: Scalar>(
     (interaction, surface): (&SurfaceInteraction<R>, &Surface<R>),
 ) -> Branches<R> {
     let zero = R::splat(0.0);
-    let mirrored = reflect(path.direction, surface.normal);
-    // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
-    let mirrored = V3::select(interaction.faces(mirrored), mirrored, reflect(path.direction, interaction.normal));
+    let mirrored = mirrored(path.direction, interaction, surface);
     let none = path.on(interaction, interaction.position, mirrored, V3::zero());
     if !launch.spec.effects.has(Effects::REFRACTION) || surface.ior.eq(zero) {
         let reflected = path.on(interaction, interaction.offset_ray_origin(mirrored), mirrored, surface.reflection);

@@ -1,8 +1,12 @@
 //! What a surface is made of at a place: its colours and its shading normal. How it answers light is a file a model.
 
+mod lambert;
+mod lobes;
 mod optics;
 mod phong;
 
+pub use lambert::{INVERSE_PI, cosine_direction};
+pub use lobes::{Lobe, Lobes};
 pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
 
@@ -66,6 +70,14 @@ impl<R: Scalar> Surface<R> {
             ior: number(material.reflection.w),
         }
     }
+}
+
+/// The direction in which a surface mirrors. An interpolated normal may mirror a ray into its own surface; the triangle's normal
+/// does not.
+#[inline(always)]
+pub fn mirrored<R: Scalar>(direction: V3<R>, interaction: &SurfaceInteraction<R>, surface: &Surface<R>) -> V3<R> {
+    let mirrored = reflect(direction, surface.normal);
+    V3::select(interaction.faces(mirrored), mirrored, reflect(direction, interaction.normal))
 }
 
 /// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,
@@ -139,7 +151,7 @@ mod tests {
     /// The shading normal where vertices have these.
     fn smooth_of(normals: [Vec3; 3], weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
         let [a, b, c] = normals.map(|n| pack(n, 0));
-        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[], lights: &[] };
+        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[] };
         let interaction = SurfaceInteraction { coordinates: weights, ..contact(own, [0.0; 3]) };
         interpolated(&shading, 0, V3::splat(from), &interaction)
     }

@@ -26,6 +26,7 @@ mod single;
 pub mod soft;
 #[cfg(test)]
 mod tests;
+pub mod turns;
 mod vector;
 
 #[cfg(target_arch = "x86_64")]

@@ -22,10 +22,16 @@ pub fn gather<R: Scalar>(frame: &Frame, order: Order, slot: u32, sums: &[R::Reco
     while at < frame.slots {
         let (sum, own) = R::load(read(sums, at));
         colour = colour + sum;
-        word = ((word | own) & NON_FINITE) | ((word & !NON_FINITE) + (own & !NON_FINITE)) & !NON_FINITE;
+        word = counted(word, own);
         at += frame.pixel_slots;
     }
     write(film, pixel.index, R::store(colour, word));
+}
+
+/// The integers of two sums together: shadow rays are counted, what was left out is remembered.
+#[inline(always)]
+pub fn counted(word: u32, own: u32) -> u32 {
+    ((word | own) & NON_FINITE) | ((word & !NON_FINITE) + (own & !NON_FINITE)) & !NON_FINITE
 }
 
 #[cfg(test)]

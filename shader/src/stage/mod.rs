@@ -5,8 +5,11 @@
 //! The first wave of a launch traces primary rays, one for every slot. Each further wave traces, for
 //! the slots that still have one, the next secondary ray.
 
+mod accumulate;
 mod gather;
+mod generate;
 mod path;
+mod path_state;
 mod persistent;
 mod segment;
 mod shadow;
@@ -14,8 +17,11 @@ mod shadow;
 mod together;
 mod trace;
 
-pub use gather::gather;
+pub use accumulate::{FILM_RECORDS, accumulate, brightness};
+pub use gather::{counted, gather};
+pub use generate::generate;
 pub use path::{Path, RECORDS};
+pub use path_state::{PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay};
 pub use persistent::persistent;
 pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};

@@ -1,26 +1,28 @@
 //! A picture over any numbers: the stages in their order, by the simplest method, on one thread; no executor's loop.
 
 use eyerays::device_scene::SceneView;
-use eyerays::integrator::whitted;
+use eyerays::integrator::needs;
 use eyerays::method::Traversal;
 use eyerays_shader::camera;
 use eyerays_shader::data::Launch;
-use eyerays_shader::integrator::{self, Wave};
+use eyerays_shader::integrator::{self, Exchange, Wave};
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::scene::ShadingData;
-use eyerays_shader::stage::{self, RECORDS, ShadowInputs};
+use eyerays_shader::stage::{self, FILM_RECORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
 use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
 
 /// The film of one sample a pixel, row-major from the top left.
 pub fn picture<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
+    if posed.settings().transport.integrator.samples() { sampled(posed) } else { whitted(posed) }
+}
+
+fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let (scene, region) = (SceneView::new(posed, Traversal::default()), posed.view.region());
     let spec = scene.specialisation();
     let frame = posed.view.launch(posed, region, 0, 1, spec.order);
-    let looks = ShadingData { normals: posed.normals(), materials: posed.materials(), lights: posed.lights() };
     let (slots, black) = (frame.slots as usize, R::store(V3::zero(), 0));
-    let mut paths = vec![black; slots * (whitted(posed).paths * RECORDS) as usize];
+    let mut paths = vec![black; slots * (needs(posed).paths * RECORDS) as usize];
     let (mut hits, mut shadows) = (vec![black; slots], vec![0; slots * posed.lights().len()]);
     let (mut sums, mut film) = (vec![black; slots], vec![V3::zero(); region.pixels() as usize]);
     let pixel = |slot: u32| camera::pixel(&frame, spec.order, slot);
@@ -30,14 +32,15 @@ pub fn picture<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         for &slot in &queue {
             hits[slot as usize] = stage::trace::<R, IfIf, Primitives>(&context, slot, &paths);
             for light in 0..frame.lights {
-                let inputs = ShadowInputs { lights: looks.lights, paths: &paths, hits: &hits };
+                let inputs = ShadowInputs { lights: posed.lights(), paths: &paths, hits: &hits };
                 let answer = stage::shadow::<R, IfIf, Primitives>(&context, inputs, slot, light);
                 shadows[light as usize * slots + slot as usize] = answer;
             }
         }
         queue.retain(|&slot| {
-            let wave = Wave::<R> { paths: &mut paths, hits: &hits, shadows: &shadows, sums: &mut sums };
-            integrator::shade(&context.base, &looks, slot, wave)
+            let lights = posed.lights();
+            let wave = Wave::<R> { paths: &mut paths, hits: &hits, shadows: &shadows, lights, sums: &mut sums };
+            integrator::shade(&context.base, &scene.shading(), slot, wave)
         });
         context.base.spec = spec.with_launch(Launch::SECONDARY);
     }
@@ -45,4 +48,39 @@ pub fn picture<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         film[pixel(slot).index as usize] = R::load(sums[slot as usize]).0;
     }
     film
+}
+
+fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
+    let (scene, region) = (SceneView::new(posed, Traversal::default()), posed.view.region());
+    let mut spec = scene.specialisation();
+    let frame = posed.view.launch(posed, region, 0, 1, spec.order);
+    let (slots, pixels, black) = (frame.slots as usize, region.pixels() as usize, R::store(V3::zero(), 0));
+    let mut paths = vec![black; slots * STATE_RECORDS as usize];
+    let mut segments = vec![black; slots * SHADOW_RECORDS as usize];
+    let (mut hits, mut shadows, mut sums) = (vec![black; slots], vec![0; slots], vec![black; slots]);
+    let inside = |slot: &u32| camera::pixel(&frame, spec.order, *slot).inside;
+    let mut queue: Vec<u32> = (0..frame.slots).filter(inside).collect();
+    queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, slot, &mut paths));
+    while !queue.is_empty() {
+        let streams = scene.context(&frame, spec.with_launch(Launch::STREAM));
+        for &slot in &queue {
+            hits[slot as usize] = stage::trace::<R, IfIf, Primitives>(&streams, slot, &paths);
+        }
+        let (base, wave) = (scene.context(&frame, spec).base, queue.clone());
+        queue.retain(|&slot| {
+            let (paths, segments, sums) = (&mut paths, &mut segments, &mut sums);
+            let exchange = Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums };
+            integrator::scatter::<R>(&base, &scene.shading(), &scene.lighting(), slot, exchange)
+        });
+        for slot in wave {
+            let inputs = ShadowInputs { lights: &[], paths: &segments, hits: &hits };
+            shadows[slot as usize] = stage::shadow::<R, IfIf, Primitives>(&streams, inputs, slot, 0);
+        }
+        spec = spec.with_launch(Launch::SECONDARY);
+    }
+    let mut film = vec![black; FILM_RECORDS as usize * pixels];
+    for slot in 0..frame.pixel_slots {
+        stage::accumulate::<R>(&frame, spec.order, slot, (&sums, &shadows, &segments), &mut film);
+    }
+    film[..pixels].iter().map(|&record| R::load(record).0).collect()
 }

@@ -15,6 +15,7 @@ mod render;
 mod signals;
 mod summary;
 mod tradeoff;
+mod transport;
 
 use std::process::ExitCode;
 

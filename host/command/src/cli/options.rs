@@ -10,9 +10,11 @@ use glam::Vec3;
 
 use super::choice::choice;
 use super::progress;
+use super::transport::Transport;
 use crate::error::{Error, Result, within};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
+use eyerays::choice::Named;
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
@@ -55,6 +57,9 @@ pub(super) struct Effort {
     /// Samples along a pixel's edge: N x N rays a pixel [default: the scene's]
     #[arg(long, value_name = "N")]
     samples: Option<u32>,
+    /// Samples of a pixel instead, any number of them with a sampler that has no grid
+    #[arg(long, value_name = "N", conflicts_with = "samples")]
+    spp: Option<u32>,
     /// Where in a pixel its samples lie [default: the scene's]
     #[arg(long, value_parser = choice::<Sampler>())]
     sampler: Option<Sampler>,
@@ -67,13 +72,17 @@ pub(super) struct Effort {
     /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: medium]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>())]
     bvh: Option<Bvh>,
+    #[command(flatten)]
+    transport: Transport,
 }
 
 impl Effort {
     /// With a settings file below the command line.
     pub fn over(self, file: &Preset) -> Effort {
         Effort {
-            samples: self.samples.or(file.samples),
+            samples: self.samples.or(file.samples.filter(|_| self.spp.is_none())),
+            spp: self.spp,
+            transport: self.transport,
             sampler: self.sampler,
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
@@ -178,6 +187,9 @@ impl View {
         let settings = Settings {
             size: self.size.unwrap_or(own.size),
             samples: effort.samples.unwrap_or(own.samples),
+            // Either option overrides both of the scene's.
+            spp: effort.spp.unwrap_or(if effort.samples.is_some() { 0 } else { own.spp }),
+            transport: effort.transport.over(&own.transport)?,
             sampler: effort.sampler.unwrap_or(own.sampler),
             bounces: effort.bounces.unwrap_or(own.bounces),
             min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
@@ -185,6 +197,12 @@ impl View {
         };
         Film::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
+        within("--spp", effort.spp.as_slice(), 1..=Settings::MOST_SPP)?;
+        if settings.grid().is_none() {
+            let many = settings.samples_a_pixel();
+            let remedy = "take a square up to 4096, or --sampler sobol";
+            return Err(Error::new(format!("--spp {many}: the sampler {} has no grid of so many samples; {remedy}", settings.sampler.name())));
+        }
         within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;
         Ok(settings)

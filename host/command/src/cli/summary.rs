@@ -83,6 +83,10 @@ impl<'a> Summary<'a> {
             "width": settings.size.0,
             "height": settings.size.1,
             "samples": settings.samples,
+            "spp": settings.samples_a_pixel(),
+            "integrator": settings.transport.integrator.name(),
+            "seed": settings.transport.seed,
+            "noise": self.rendering.film.noise(),
             "sampler": settings.sampler.name(),
             "bounces": settings.bounces,
             "precision": self.precision(),
@@ -113,6 +117,9 @@ impl fmt::Display for Summary<'_> {
         let (rendering, rays) = (self.rendering, self.rendering.rays);
         write!(out, "{}: {width}x{height} in {} precision", self.destination, self.precision())?;
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;
+        if let Some(noise) = rendering.film.noise() {
+            write!(out, ", noise {:.2} %", 100.0 * noise)?;
+        }
         write!(out, "; {} primary, {} shadow, {} secondary rays", rays.primary, rays.shadow, rays.secondary)?;
         write!(out, ", {:.1} Mrays/s", self.mrays(self.times.render))?;
         if let Some(time) = self.times.device {

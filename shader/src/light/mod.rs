@@ -1,4 +1,10 @@
-//! Lights without extent: how they reach a place, and the shadow rays that ask whether they do (thesis 3.1, 3.2).
+//! Lights without extent: how they reach a place, and the shadow rays that ask whether they do (thesis 3.1, 3.2). Those with
+//! extent, and the choice among all, are in a file of their own.
+
+mod emitter;
+
+pub(crate) use emitter::on_circle;
+pub use emitter::{Density, EmitterSample, Lighting};
 
 use crate::data::{Effects, Light, numbers};
 use crate::geometry::SurfaceInteraction;
@@ -6,7 +12,7 @@ use crate::real::{FAINT, Real, Scalar, V3};
 
 /// A shadow ray stops short of its light by this share, so that a light that lies on a surface is
 /// not shadowed by it.
-const SHORT: f32 = 1.0 / 16_384.0;
+pub(crate) const SHORT: f32 = 1.0 / 16_384.0;
 
 #[inline(always)]
 fn is(effects: Effects, light: &Light, feature: u32, kind: u32) -> bool {

@@ -1,15 +1,31 @@
-//! Where in a pixel its samples lie (thesis 3.4.5).
+//! Where in a pixel its samples lie (thesis 3.4.5), and the numbers that their paths draw.
+
+mod sobol;
 
 use crate::data::Launch;
+use glam::UVec4;
+use sobol::{sobol, sobol4};
 
 /// Places are whole steps of 2^-17 of a cell's edge, so that one in a pixel of 128 x 128 cells is exact.
 const BITS: u32 = 17;
 
+/// What the numbers of a pixel are drawn from: its column and row, with a seed in the upper halves, which images do not reach.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Key(pub u32, pub u32);
+
+impl Key {
+    /// Of a pixel below 2^16 columns and rows.
+    #[inline(always)]
+    pub fn new((x, y): (u32, u32), seed: u32) -> Self {
+        Key(x | (seed << 16), y | (seed & 0xffff_0000))
+    }
+}
+
 /// A sample of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
-    /// The pixel's column and row in the image.
-    pub pixel: (u32, u32),
+    /// Of its pixel.
+    pub key: Key,
     /// Its number in the pixel.
     pub number: u32,
     /// The column and row of its cell, if each has one.
@@ -19,8 +35,8 @@ pub struct Sample {
 impl Sample {
     /// A sample of a pixel with `edge` x `edge` cells.
     #[inline(always)]
-    pub fn new(pixel: (u32, u32), edge: u32, number: u32) -> Self {
-        Sample { pixel, number, cell: (number % edge, number / edge) }
+    pub fn new(key: Key, edge: u32, number: u32) -> Self {
+        Sample { key, number, cell: (number % edge, number / edge) }
     }
 }
 
@@ -29,7 +45,7 @@ impl Sample {
 // A function of its own on the GPU, so that a module holds it once. (With a division in it the compiler would inline it.)
 #[cfg_attr(target_arch = "spirv", inline(never))]
 pub fn place(launch: Launch, edge: u32, sample: Sample) -> (f32, f32) {
-    let (x, y) = sample.pixel;
+    let Key(x, y) = sample.key;
     let [right, down] = if launch.has(Launch::SOBOL) {
         sobol(sample.number, hash([x, y, 0]))
     } else {
@@ -42,6 +58,36 @@ pub fn place(launch: Launch, edge: u32, sample: Sample) -> (f32, f32) {
     }
     let in_pixel = |drawn: u32| half_cells(((drawn >> 8) * edge) >> (24 - BITS));
     (in_pixel(right), in_pixel(down))
+}
+
+/// The set of the decisions at vertex number 0 of a path, which the other vertices' sets follow; the sets before are those of
+/// directions and places.
+pub const DECISIONS: u32 = 1 << 31;
+
+/// Four numbers for a sample, in steps of 2^-32. Of set `s` below [`DECISIONS`] the first pair chooses the ray that finds
+/// vertex `s` of a path (in set 0, the place in the pixel), the second a place on a light that is seen from there: pairs that
+/// belong together, so Sobol's points are of four dimensions. Samplers with cells have them in the pixel only, and draw these at
+/// random.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+pub fn set(launch: Launch, key: Key, number: u32, set: u32) -> UVec4 {
+    let Key(x, y) = key;
+    if launch.has(Launch::SOBOL) {
+        let [third, fourth, _] = hash([x, y, set ^ FURTHER]);
+        return sobol4(number, hash([x, y, set]), [third, fourth]);
+    }
+    let [a, b, c] = hash([x, y, number]);
+    let [p, q, r] = hash([a, b, c.wrapping_add(set)]);
+    UVec4::new(p, q, r, hash([p, q, r])[0])
+}
+
+/// No set has this bit, but for those of [`DECISIONS`] beyond all bounces.
+const FURTHER: u32 = 1 << 30;
+
+/// A drawn number as one in [0, 1), in steps of 2^-24.
+#[inline(always)]
+pub fn unit(drawn: u32) -> f32 {
+    const STEP: f32 = 1.0 / (1 << 24) as f32;
+    (drawn >> 8) as f32 * STEP
 }
 
 #[inline(always)]
@@ -65,37 +111,6 @@ pub fn hash([x, y, z]: [u32; 3]) -> [u32; 3] {
     [x, y, z]
 }
 
-/// A point of the first two dimensions of Sobol's sequence, shuffled and scrambled as Owen does it (Burley, Practical
-/// Hash-based Owen Scrambling, 2020), in steps of 2^-32. Every aligned run of 2^k points has one in each of the 2^k boxes of
-/// equal size, of every shape that halving gives.
-#[inline(always)]
-pub fn sobol(index: u32, seeds: [u32; 3]) -> [u32; 2] {
-    let index = scrambled(index.reverse_bits(), seeds[0]).reverse_bits();
-    [scrambled(index, seeds[1]).reverse_bits(), scrambled(pascal(index), seeds[2]).reverse_bits()]
-}
-
-/// The digits of the second dimension, the first digit lowest: the index times Pascal's triangle modulo 2. That is the
-/// polynomial whose coefficients are the digits, for x + 1 in the place of x.
-#[inline(always)]
-fn pascal(index: u32) -> u32 {
-    let x = index ^ ((index & 0xaaaa_aaaa) >> 1);
-    let x = x ^ ((x & 0xcccc_cccc) >> 2);
-    let x = x ^ ((x & 0xf0f0_f0f0) >> 4);
-    let x = x ^ ((x & 0xff00_ff00) >> 8);
-    x ^ (x >> 16)
-}
-
-/// Flips each digit as a hash of the lower ones says (Laine and Karras 2011, with the constants of Vegdahl, Owen Scrambling
-/// Based Blue-noise Dithered Sampling and its notes, 2021). The first digit of the number is the lowest one here.
-#[inline(always)]
-fn scrambled(digits: u32, seed: u32) -> u32 {
-    let x = digits ^ digits.wrapping_mul(0x3d20_adea);
-    let x = x.wrapping_add(seed);
-    let x = x.wrapping_mul((seed >> 16) | 1);
-    let x = x ^ x.wrapping_mul(0x0552_6c56);
-    x ^ x.wrapping_mul(0x53a2_2864)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -107,7 +122,7 @@ mod tests {
     fn every_place_is_in_its_pixel() {
         for (sampler, edge) in SAMPLERS.into_iter().flat_map(|sampler| [1, 2, 3, 64, 128].map(|edge| (sampler, edge))) {
             for (pixel, sample) in (0..20_000).map(|i| ((i * 7, i * 31), i % (edge * edge))) {
-                let (right, down) = place(Launch(sampler), edge, Sample::new(pixel, edge, sample));
+                let (right, down) = place(Launch(sampler), edge, Sample::new(Key::new(pixel, 0), edge, sample));
                 let size = 2.0 * edge as f32;
                 assert!(
                     (0.0..size).contains(&right) && (0.0..size).contains(&down),
@@ -122,40 +137,9 @@ mod tests {
         let cell = |(right, down): (f32, f32)| ((right / 2.0) as u32, (down / 2.0) as u32);
         for (edge, pixel) in [(7, (3, 5)), (128, (0, 1))] {
             let cells: HashSet<_> = (0..edge * edge)
-                .map(|sample| cell(place(Launch(Launch::JITTERED), edge, Sample::new(pixel, edge, sample))))
+                .map(|sample| cell(place(Launch(Launch::JITTERED), edge, Sample::new(Key::new(pixel, 0), edge, sample))))
                 .collect();
             assert_eq!(cells.len(), (edge * edge) as usize);
-        }
-    }
-
-    /// As the digits themselves give it.
-    #[test]
-    fn pascals_triangle_modulo_two() {
-        let mut column = [0u32; 32];
-        column[0] = 1;
-        for i in 1..32 {
-            // Row i of the triangle: which digits of the result digit i of the index flips.
-            column[i] = column[i - 1] ^ (column[i - 1] << 1);
-        }
-        for index in [0u32, 1, 2, 3, 0x8000_0000, 0xdead_beef, u32::MAX] {
-            let want = (0..32).filter(|&i| index >> i & 1 == 1).fold(0, |sum, i| sum ^ column[i]);
-            assert_eq!(pascal(index), want, "{index:x}");
-        }
-    }
-
-    /// A (0, k, 2)-net: so many runs, of so many pixels.
-    #[test]
-    fn every_aligned_run_has_one_sample_in_each_box_of_its_size() {
-        for (seed, k) in (0..24).flat_map(|seed| (0..=10).map(move |k| (seed, k))) {
-            let seeds = hash([seed, 5, 0]);
-            let first = (seed * 3) << k;
-            let points: Vec<_> = (first..first + (1 << k)).map(|index| sobol(index, seeds)).collect();
-            for columns in 0..=k {
-                let digits = |x: u32, count: u32| if count == 0 { 0 } else { x >> (32 - count) };
-                let boxes: HashSet<_> =
-                    points.iter().map(|&[x, y]| (digits(x, columns), digits(y, k - columns))).collect();
-                assert_eq!(boxes.len(), 1 << k, "seed {seed}, 2^{k} points, 2^{columns} columns");
-            }
         }
     }
 
@@ -166,7 +150,7 @@ mod tests {
                 let (edge, count) = (1 << half, 1 << (2 * half));
                 let error = |pixel: u32| {
                     let at = |sample| {
-                        let (right, down) = place(Launch(sampler), edge, Sample::new((pixel, 2 * pixel), edge, sample));
+                        let (right, down) = place(Launch(sampler), edge, Sample::new(Key(pixel, 2 * pixel), edge, sample));
                         [right, down].map(|half_cells| f64::from(half_cells) / f64::from(2 * edge))
                     };
                     (0..count).map(|sample| integrand(at(sample))).sum::<f64>() / f64::from(count) - exact

@@ -1,0 +1,173 @@
+//! Every light that an integrator chooses from which samples one of them, and how likely each is.
+
+use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Primitive, pack};
+use glam::{DVec3, UVec4, Vec3};
+use std::f64::consts::PI;
+
+use super::normalisation::Normalisation;
+use super::records::colour;
+use crate::scene::{Light, Material};
+
+/// What emits, as kernels read it.
+#[derive(Debug, Clone, Default)]
+pub struct Lighting {
+    /// The scene's lights, then its primitives that emit, by their numbers.
+    pub emitters: Vec<Emitter>,
+    /// By material; empty if none emits.
+    pub emissions: Vec<Emission>,
+    /// Is any of them not black?
+    pub is_lit: bool,
+}
+
+/// What all of a scene's light comes from.
+pub(super) struct Sources<'a> {
+    pub lights: (&'a [Light], &'a [LightRecord]),
+    pub materials: &'a [Material],
+    pub primitives: &'a [Primitive],
+}
+
+impl Lighting {
+    /// A light is as likely as its power is, in the normalised scene.
+    pub(super) fn new(sources: &Sources<'_>, normalisation: &Normalisation) -> Self {
+        let emissive = emissive(sources);
+        let of_lights = sources.lights.0.iter().map(|light| power(light, normalisation.scale));
+        let of_primitives = emissive.iter().map(|&index| {
+            let primitive = &sources.primitives[index as usize];
+            area(primitive) * flux(&sources.materials[primitive.material() as usize])
+        });
+        let powers: Vec<f64> = of_lights.chain(of_primitives).collect();
+        let total: f64 = powers.iter().sum();
+        let is_lit = total > 0.0;
+        let choices = table(&powers);
+        let lights = sources.lights.0.iter().zip(sources.lights.1).map(|(light, record)| scaled(light, record, normalisation));
+        let primitives = emissive.iter().map(|&index| of_primitive(index));
+        let emitters = lights.chain(primitives).zip(choices).map(|(light, choice)| Emitter { light, choice }).collect();
+        let emission = |material: &Material| {
+            let density = if is_lit { (flux(material) / total) as f32 } else { 0.0 };
+            let sides = UVec4::new(u32::from(material.two_sided), 0, 0, 0);
+            Emission { radiance: colour(material.emission, density.to_bits()), sides }
+        };
+        let emissions = if emissive.is_empty() { Vec::new() } else { sources.materials.iter().map(emission).collect() };
+        Lighting { emitters, emissions, is_lit }
+    }
+}
+
+/// The places in leaf order of all primitives that emit and have an area, by their numbers; of a split one the first.
+fn emissive(sources: &Sources<'_>) -> Vec<u32> {
+    let emits: Vec<bool> = sources.materials.iter().map(|material| material.emission != Vec3::ZERO).collect();
+    if !emits.contains(&true) {
+        return Vec::new();
+    }
+    let is_source = |primitive: &Primitive| emits[primitive.material() as usize] && area(primitive) > 0.0;
+    let places = sources.primitives.iter().zip(0..).filter(|(primitive, _)| is_source(primitive));
+    let mut places: Vec<(u32, u32)> = places.map(|(primitive, index)| (primitive.number(), index)).collect();
+    places.sort_unstable();
+    places.dedup_by_key(|(number, _)| *number);
+    places.into_iter().map(|(_, index)| index).collect()
+}
+
+/// The mean of the channels.
+fn brightness(colour: Vec3) -> f64 {
+    colour.as_dvec3().dot(DVec3::ONE) / 3.0
+}
+
+/// Power of a light without extent. That of a directional one is what reaches a scene within a sphere of radius 1.
+fn power(light: &Light, scale: f64) -> f64 {
+    match *light {
+        Light::Point { colour, .. } => 4.0 * PI * brightness(colour) * scale * scale,
+        Light::Directional { colour, .. } => PI * brightness(colour),
+        Light::Spot { colour, outer, .. } => {
+            let cap = 1.0 - crate::math::cos(f64::from(outer).to_radians());
+            2.0 * PI * cap * brightness(colour) * scale * scale
+        }
+    }
+}
+
+/// Power of a unit of area.
+fn flux(material: &Material) -> f64 {
+    PI * brightness(material.emission) * if material.two_sided { 2.0 } else { 1.0 }
+}
+
+/// The area of a primitive as rays meet it.
+fn area(primitive: &Primitive) -> f64 {
+    let radius = f64::from(primitive.radius());
+    if primitive.is_sphere() {
+        4.0 * PI * radius * radius
+    } else if primitive.is_disk() {
+        PI * radius * radius
+    } else {
+        let [a, b, c] = primitive.vertices().map(|v| v.as_dvec3());
+        (b - a).cross(c - a).length() / 2.0
+    }
+}
+
+/// A light whose falloff is of distances in the normalised scene.
+fn scaled(light: &Light, record: &LightRecord, normalisation: &Normalisation) -> LightRecord {
+    match *light {
+        Light::Directional { .. } => *record,
+        Light::Point { colour: own, .. } | Light::Spot { colour: own, .. } => {
+            let intensity = (own.as_dvec3() * normalisation.scale * normalisation.scale).as_vec3();
+            LightRecord { colour: colour(intensity, record.colour.w), ..*record }
+        }
+    }
+}
+
+fn of_primitive(index: u32) -> LightRecord {
+    LightRecord {
+        position: pack(Vec3::ZERO, Emitter::PRIMITIVE),
+        colour: pack(Vec3::ZERO, 0),
+        axis: pack(Vec3::ZERO, index),
+    }
+}
+
+/// The alias table of some powers (Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991): for
+/// each its threshold, its alias and the bits of its probability.
+fn table(powers: &[f64]) -> Vec<UVec4> {
+    let total: f64 = powers.iter().sum();
+    let share = |power: f64| if total > 0.0 { power / total } else { 0.0 };
+    let mut left: Vec<f64> = powers.iter().map(|&power| share(power) * powers.len() as f64).collect();
+    let (mut less, mut more): (Vec<usize>, Vec<usize>) = (0..powers.len()).partition(|&i| left[i] < 1.0);
+    let mut table: Vec<UVec4> =
+        powers.iter().zip(0..).map(|(&power, i)| UVec4::new(u32::MAX, i, (share(power) as f32).to_bits(), 0)).collect();
+    while let (Some(&small), Some(&large)) = (less.last(), more.last()) {
+        less.pop();
+        table[small].x = (left[small] * 4_294_967_296.0) as u32;
+        table[small].y = large as u32;
+        left[large] -= 1.0 - left[small];
+        if left[large] < 1.0 {
+            more.pop();
+            less.push(large);
+        }
+    }
+    table
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How often a table chooses each, by its thresholds.
+    fn shares(table: &[UVec4]) -> Vec<f64> {
+        let mut shares = vec![0.0; table.len()];
+        for (i, entry) in table.iter().enumerate() {
+            let own = f64::from(entry.x) / f64::from(u32::MAX);
+            shares[i] += own / table.len() as f64;
+            shares[entry.y as usize] += (1.0 - own) / table.len() as f64;
+        }
+        shares
+    }
+
+    #[test]
+    fn each_light_is_chosen_as_often_as_its_power_says() {
+        let many: Vec<f64> = (0..1000).map(|i| f64::from((i * 7919) % 1000)).collect();
+        for powers in [&[1.0][..], &[1.0, 1.0], &[3.0, 0.0, 1.0], &[1e-9, 1.0, 1e9], &many] {
+            let (table, total) = (table(powers), powers.iter().sum::<f64>());
+            for ((share, power), entry) in shares(&table).into_iter().zip(powers).zip(&table) {
+                assert!((share - power / total).abs() < 1e-8, "{powers:?}: {share}");
+                assert_eq!(f32::from_bits(entry.z), (power / total) as f32);
+            }
+        }
+        assert!(table(&[]).is_empty());
+        assert!(table(&[0.0, 0.0]).iter().all(|entry| entry.z == 0));
+    }
+}

@@ -1,0 +1,84 @@
+//! How light is carried: by which integrator, and what those that sample need to know.
+
+use eyerays_shader::data::Launch;
+
+use crate::choice::choices;
+
+choices! {
+    /// How light is carried from lights to the camera.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Integrator {
+        /// Hard shadows, mirrors and glass (thesis 3.3); lights do not fade with distance
+        #[default]
+        Whitted = "whitted",
+        /// How much of a white sky surfaces see (thesis 3.4.2): needs samples
+        Ao = "ao",
+        /// All light that there is, from lights with and without extent (thesis 3.4.4): needs samples
+        Path = "path",
+    }
+}
+
+choices! {
+    /// How a path finds lights with extent. All ways have the same mean.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Direct {
+        /// By samples of lights and of surfaces, weighted by the squares of their probabilities
+        #[default]
+        Power = "power",
+        /// By both, weighted by their probabilities
+        Balance = "balance",
+        /// By samples of lights alone
+        Light = "light",
+        /// By samples of surfaces alone, as chance finds them
+        Surface = "surface",
+    }
+}
+
+/// What an integrator needs to know.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transport {
+    /// How light is carried.
+    pub integrator: Integrator,
+    /// What pixels draw their numbers from, beside their place: other seeds give other noise.
+    pub seed: u32,
+    /// Bounces before Russian roulette may end a path.
+    pub roulette: u32,
+    /// The most that light adds to a sample which was scattered more than once, 0 for no limit. It darkens the picture.
+    pub clamp: f32,
+    /// How a path finds lights with extent.
+    pub direct: Direct,
+    /// How far ambient occlusion looks, in the scene's units; infinite for all the way.
+    pub ao_distance: f32,
+}
+
+impl Integrator {
+    /// Does it need samples, and have noise?
+    pub fn samples(self) -> bool {
+        self != Integrator::Whitted
+    }
+}
+
+impl Direct {
+    /// Bits of the constant of kernels, see [`Launch`].
+    pub fn bits(self) -> u32 {
+        match self {
+            Direct::Power => 0,
+            Direct::Balance => Launch::BALANCED,
+            Direct::Light => Launch::BY_LIGHT,
+            Direct::Surface => Launch::BY_SURFACE,
+        }
+    }
+}
+
+impl Default for Transport {
+    fn default() -> Self {
+        Transport {
+            integrator: Integrator::default(),
+            seed: 0,
+            roulette: 3,
+            clamp: 0.0,
+            direct: Direct::default(),
+            ao_distance: f32::INFINITY,
+        }
+    }
+}

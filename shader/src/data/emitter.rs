@@ -1,0 +1,34 @@
+//! Lights as integrators take them that sample one of them: those without extent, and primitives that emit.
+
+use super::Light;
+use bytemuck::{Pod, Zeroable};
+use glam::UVec4;
+
+/// A light that may be chosen, and an entry of the table by which it is (Walker, An Efficient Method for Generating Discrete
+/// Random Variables with General Distributions, 1977).
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Emitter {
+    /// A light without extent, whose colour is in units of the normalised scene; or of kind [`Emitter::PRIMITIVE`], whose axis'
+    /// integer is the index of the primitive.
+    pub light: Light,
+    /// The threshold below which a draw that came to this entry means it, the number of the emitter that it means otherwise,
+    /// the bits of the probability that this emitter is chosen at all, and 0.
+    pub choice: UVec4,
+}
+
+impl Emitter {
+    /// The kind of a primitive that emits.
+    pub const PRIMITIVE: u32 = 3;
+}
+
+/// What a material emits.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C, align(16))]
+pub struct Emission {
+    /// Radiance, linear RGB; the integer is the bits of the probability density over the area of the normalised scene that a
+    /// place on it is chosen as a light, 0 if it emits nothing.
+    pub radiance: UVec4,
+    /// Not 0 if backs emit too, and three zeros.
+    pub sides: UVec4,
+}

@@ -1,0 +1,36 @@
+//! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
+
+use super::sampled::{Scattered, Vertex};
+use crate::geometry::SurfaceInteraction;
+use crate::material::{Surface, cosine_direction};
+use crate::real::{Scalar, V3};
+use crate::scene::{LaunchContext, ShadingData};
+use crate::stage::ShadowRay;
+
+/// Asks along one direction of the cosine's density.
+#[inline(always)]
+pub(super) fn at<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    vertex: &Vertex<R>,
+) -> Scattered<R> {
+    let (path, effects) = (vertex.path, launch.spec.effects);
+    let primitive = launch.primitive(vertex.primitive_index);
+    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
+    let surface =
+        Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let draws = vertex.draws.set(0);
+    let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
+    let mut shadow = ShadowRay::none();
+    // A direction about an interpolated normal may lie below the surface, where nothing is seen.
+    if interaction.faces(direction) {
+        shadow = ShadowRay {
+            origin: interaction.offset_ray_origin(direction),
+            direction,
+            limit: R::splat(launch.frame.reach),
+            source_primitive: interaction.source_primitive(direction),
+            light: path.weight,
+        };
+    }
+    Scattered { light: V3::zero(), shadow, next: path, goes_on: false }
+}

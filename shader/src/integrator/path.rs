@@ -1,0 +1,188 @@
+//! Path tracing (thesis 3.4.4; Kajiya, The Rendering Equation, 1986): at each vertex one sample of a light and one of the surface,
+//! weighted together by multiple importance sampling (Veach and Guibas 1995).
+
+use super::sampled::{Scattered, Vertex, share};
+use crate::buffer::read;
+use crate::data::{Effects, Frame, Launch, Primitive, numbers};
+use crate::geometry::SurfaceInteraction;
+use crate::light::{Density, EmitterSample, Lighting};
+use crate::material::{INVERSE_PI, Lobes, Surface, cosine_direction};
+use crate::real::{FAINT, Real, Scalar, V3};
+use crate::sampler::DECISIONS;
+use crate::scene::{LaunchContext, ShadingData};
+use crate::stage::{PathState, ShadowRay};
+
+/// A surface where a path has hit it.
+struct At<R: Real> {
+    interaction: SurfaceInteraction<R>,
+    surface: Surface<R>,
+    lobes: Lobes<R>,
+    /// Where rays start on the viewer's side.
+    origin: V3<R>,
+}
+
+/// Adds what the surface emits, asks for the light of one light, and goes on.
+#[inline(always)]
+pub(super) fn at<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+) -> Scattered<R> {
+    let (path, effects) = (vertex.path, launch.spec.effects);
+    let primitive = launch.primitive(vertex.primitive_index);
+    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
+    let light = share(launch, &path, emitted(launch, lighting, vertex, &primitive, &interaction));
+    if path.bounces > launch.frame.bounces {
+        return Scattered { light, shadow: ShadowRay::none(), next: path, goes_on: false };
+    }
+    let surface =
+        Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
+    let origin = interaction.offset_ray_origin(interaction.normal);
+    let at = At { interaction, surface, lobes, origin };
+    let decisions = vertex.draws.set(DECISIONS + path.bounces);
+    let shadow = sampled_light(launch, lighting, vertex, &at, decisions.x);
+    let next = go_on(vertex, &at, decisions.y);
+    let (next, goes_on) = survive(launch.frame, next, decisions.z);
+    Scattered { light, shadow, next, goes_on: goes_on && leads_on(launch, path.bounces) }
+}
+
+/// Can the ray of a vertex that was scattered so often bring light? The last one finds only what emits.
+#[inline(always)]
+fn leads_on(launch: &LaunchContext<'_>, bounces: u32) -> bool {
+    bounces < launch.frame.bounces || launch.spec.launch.has(Launch::FINDS_LIGHT)
+}
+
+/// The radiance that a surface itself sends to the path, by the weight of the strategy that found it.
+#[inline(always)]
+fn emitted<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    primitive: &Primitive,
+    interaction: &SurfaceInteraction<R>,
+) -> V3<R> {
+    let effects = launch.spec.effects;
+    if !effects.has(Effects::EMISSIVE) {
+        return V3::zero();
+    }
+    let emission = read(lighting.emissions, primitive.material());
+    let is_lit = interaction.front || emission.sides.x != 0;
+    if emission.radiance.w == 0 || !is_lit {
+        return V3::zero();
+    }
+    let (radiance, own) = (V3::splat(numbers(emission.radiance)), vertex.path.density);
+    if own.eq(R::splat(0.0)) {
+        return radiance;
+    }
+    let other = Density::of_hit(effects, (primitive, &emission), interaction, vertex.path.origin);
+    (radiance * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own * other.under)).map(|c| c.flush(FAINT))
+}
+
+/// The light of one light, by the same weights.
+#[inline(always)]
+fn sampled_light<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    at: &At<R>,
+    choice: u32,
+) -> ShadowRay<R> {
+    let (path, surface, zero) = (&vertex.path, &at.surface, R::splat(0.0));
+    let is_lit = launch.spec.effects.has(Effects::LIT | Effects::EMISSIVE) && launch.frame.emitters > 0;
+    if !is_lit || !at.lobes.is_diffuse() {
+        return ShadowRay::none();
+    }
+    let places = vertex.draws.set(path.bounces);
+    let sample = EmitterSample::new(launch, lighting, at.origin, choice, (places.z, places.w));
+    let cosine = surface.normal.dot(sample.direction);
+    if !zero.lt(cosine) || !at.interaction.faces(sample.direction) {
+        return ShadowRay::none();
+    }
+    let factor = (cosine * R::splat(INVERSE_PI)).flush(FAINT);
+    let mut light = (surface.diffuse * factor).times(sample.light).map(|c| c.flush(FAINT));
+    if !sample.density.over.eq(zero) {
+        let own = at.lobes.diffuse_probability() * factor * sample.density.under;
+        let share = weight(launch.spec.launch, Launch::BY_LIGHT, own.flush(FAINT), sample.density.over);
+        light = (light * share).map(|c| c.flush(FAINT));
+    }
+    ShadowRay {
+        origin: at.origin,
+        direction: sample.direction,
+        limit: sample.limit,
+        source_primitive: at.interaction.source_primitive(sample.direction),
+        light: share_scattered(launch, path, light),
+    }
+}
+
+/// As [`share`], of light that this vertex scatters once more.
+#[inline(always)]
+fn share_scattered<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, light: V3<R>) -> V3<R> {
+    share(launch, &PathState { bounces: path.bounces + 1, ..*path }, light)
+}
+
+/// What a sample counts whose own density is in the proportion `own` to that of the other strategy: all of it where its strategy,
+/// which `alone` names, is the only one, and nothing where the other is.
+#[inline(always)]
+fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) -> R {
+    /// Beyond this proportion a sample counts for nothing.
+    const MOST: f32 = (1u64 << 40) as f32;
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    if launch.has(Launch::BY_SURFACE | Launch::BY_LIGHT) {
+        return if launch.has(alone) { one } else { zero };
+    }
+    let own_is_none = own.flush(FAINT).eq(zero);
+    let ratio = other.div(R::select(own_is_none, one, own)).min(R::splat(MOST));
+    let ratio = R::select(own_is_none, R::splat(MOST), ratio);
+    let ratio = if launch.has(Launch::BALANCED) { ratio } else { (ratio * ratio).flush(FAINT) };
+    (one + ratio).reciprocal()
+}
+
+/// The next ray, by one lobe of the surface.
+#[inline(always)]
+fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<R> {
+    let (path, surface, interaction) = (&vertex.path, &at.surface, &at.interaction);
+    let on = |origin: V3<R>, direction: V3<R>, factor: V3<R>, density: R| PathState {
+        origin,
+        direction,
+        source_primitive: interaction.source_primitive(direction),
+        weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
+        bounces: path.bounces + 1,
+        density,
+    };
+    let lobe = at.lobes.chosen(decision);
+    if lobe.is_diffuse {
+        let draws = vertex.draws.set(path.bounces + 1);
+        let (direction, cosine) = cosine_direction(surface.normal, (draws.x, draws.y));
+        let probability = at.lobes.diffuse_probability();
+        // About an interpolated normal a direction may lie below the surface.
+        let factor = V3::select(interaction.faces(direction), surface.diffuse * probability.reciprocal(), V3::zero());
+        return on(at.origin, direction, factor, probability * cosine * R::splat(INVERSE_PI));
+    }
+    // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
+    let origin = if lobe.is_lens {
+        interaction.offset_ray_origin_along(lobe.direction)
+    } else {
+        interaction.offset_ray_origin(lobe.direction)
+    };
+    on(origin, lobe.direction, lobe.factor, R::splat(0.0))
+}
+
+/// Russian roulette: a path of little weight ends, or goes on for those that ended. Does it go on?
+#[inline(always)]
+fn survive<R: Scalar>(frame: &Frame, next: PathState<R>, decision: u32) -> (PathState<R>, bool) {
+    /// Probabilities are whole steps of this size, so that decisions compare integers.
+    const STEPS: u32 = 1 << 23;
+    let greatest = next.weight.greatest();
+    if !R::splat(0.0).lt(greatest) {
+        return (next, false);
+    }
+    if next.bounces <= frame.roulette || R::splat(1.0).le(greatest) {
+        return (next, true);
+    }
+    let steps = ((greatest * R::splat(STEPS as f32)).floor_index()).max(1);
+    let raised = R::splat(STEPS as f32).div(R::splat(steps as f32));
+    let weight = (next.weight * raised).map(|c| c.flush(FAINT));
+    (PathState { weight, ..next }, (decision >> 9) < steps as u32)
+}

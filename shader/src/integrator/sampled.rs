@@ -1,0 +1,129 @@
+//! What integrators that sample have in common: a slot's sum, the light that its last vertex waits for, and where its path goes on.
+
+use crate::background::background;
+use crate::buffer::{read, write};
+use crate::camera;
+use crate::data::Launch;
+use crate::light::Lighting;
+use crate::ray::Hit;
+use crate::real::{FAINT, Real, Scalar, V3};
+use crate::sampler::{self, Key};
+use crate::scene::{LaunchContext, ShadingData};
+use crate::stage::{NON_FINITE, PathState, ShadowRay};
+use glam::UVec4;
+
+use super::{occlusion, path};
+
+/// The records that the stages of a wave exchange.
+pub struct Exchange<'a, R: Scalar> {
+    /// [`PathState`]s by record and slot.
+    pub paths: &'a mut [R::Record],
+    /// (t, u, v) and primitive index by slot.
+    pub hits: &'a [R::Record],
+    /// Whether the shadow ray of the vertex before arrived, by slot.
+    pub shadows: &'a [u32],
+    /// [`ShadowRay`]s by record and slot.
+    pub segments: &'a mut [R::Record],
+    /// Linear RGB by slot; the integer counts shadow rays and holds [`NON_FINITE`].
+    pub sums: &'a mut [R::Record],
+}
+
+/// What is known where a slot's ray has hit something.
+pub(super) struct Vertex<R: Real> {
+    pub path: PathState<R>,
+    pub primitive_index: u32,
+    pub coordinates: (R, R),
+    pub draws: Draws,
+}
+
+/// What comes of it.
+pub(super) struct Scattered<R: Real> {
+    /// What the vertex adds at once, linear RGB that reaches the pixel.
+    pub light: V3<R>,
+    /// What it asks for.
+    pub shadow: ShadowRay<R>,
+    /// Where the path goes on.
+    pub next: PathState<R>,
+    /// Does it?
+    pub goes_on: bool,
+}
+
+/// The numbers that a slot draws.
+#[derive(Clone, Copy)]
+pub(super) struct Draws {
+    launch: Launch,
+    key: Key,
+    sample: u32,
+}
+
+impl Draws {
+    /// A set of numbers, see [`sampler::set`].
+    #[inline(always)]
+    pub fn set(self, set: u32) -> UVec4 {
+        sampler::set(self.launch, self.key, self.sample, set)
+    }
+}
+
+/// Scatters a slot's path at its hit. Returns whether it has another ray to trace.
+#[inline(always)]
+pub fn scatter<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    lighting: &Lighting<'_>,
+    slot: u32,
+    exchange: Exchange<'_, R>,
+) -> bool {
+    let Exchange { paths, hits, shadows, segments, sums } = exchange;
+    let (slots, is_first) = (launch.frame.slots, !launch.spec.launch.has(Launch::SECONDARY));
+    let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
+    let path = PathState::<R>::load(slots, slot, paths);
+    let (sum, word) = if is_first {
+        (V3::zero(), 0)
+    } else {
+        let (sum, word) = R::load(read(sums, slot));
+        (sum + ShadowRay::<R>::arrived(slots, slot, shadows, segments), word)
+    };
+    let (hit, primitive_index) = R::load(read(hits, slot));
+    // The ray of a slot outside the image hits nothing.
+    let scattered = if primitive_index == Hit::<R>::NOTHING {
+        let seen = background(launch.spec.effects, launch.frame, path.direction);
+        Scattered { light: share(launch, &path, seen), shadow: ShadowRay::none(), next: path, goes_on: false }
+    } else {
+        let draws = Draws { launch: launch.spec.launch, key: camera::key(launch.frame, pixel), sample: pixel.sample };
+        let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), draws };
+        if launch.spec.launch.has(Launch::OCCLUSION) {
+            occlusion::at(launch, shading, &vertex)
+        } else {
+            path::at(launch, shading, lighting, &vertex)
+        }
+    };
+    let (sum, word) = added(sum, word, &scattered);
+    write(sums, slot, R::store(sum, word));
+    scattered.shadow.store(slots, slot, segments);
+    if scattered.goes_on {
+        scattered.next.store(slots, slot, true, paths);
+    }
+    scattered.goes_on
+}
+
+/// A sum with a vertex' light, and the count of its shadow rays. What is not finite is left out and flagged.
+#[inline(always)]
+fn added<R: Scalar>(sum: V3<R>, word: u32, scattered: &Scattered<R>) -> (V3<R>, u32) {
+    let (light, asked) = (scattered.light, scattered.shadow.light);
+    let is_finite = |v: V3<R>| v.x.is_finite() && v.y.is_finite() && v.z.is_finite();
+    let word = if scattered.shadow.asks() { word + 1 } else { word };
+    let word = if is_finite(light) && is_finite(asked) { word } else { word | NON_FINITE };
+    (if is_finite(light) { sum + light } else { sum }, word)
+}
+
+/// Light that a path brings to its pixel: what was scattered more than once is at most [`Frame::clamp`](crate::data::Frame::clamp),
+/// and what is below 2^-100 is zero.
+#[inline(always)]
+pub(super) fn share<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, light: V3<R>) -> V3<R> {
+    let light = path.weight.times(light).map(|c| c.flush(FAINT));
+    let (most, greatest) = (R::splat(launch.frame.clamp), light.greatest());
+    if path.bounces < 2 || launch.frame.clamp == 0.0 || greatest.le(most) {
+        return light;
+    }
+    (light * most.div(greatest)).map(|c| c.flush(FAINT))
+}

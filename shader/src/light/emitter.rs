@@ -1,0 +1,259 @@
+//! Which light a path's vertex samples, where on it, and how likely that is (thesis 3.4.1, 3.4.4).
+//!
+//! A light is chosen by its power; a triangle or a disk is then sampled by area, a sphere by the solid angle of its cone, or from
+//! inside by area. Densities that are compared by multiple importance sampling are over solid angle as seen from a ray's origin,
+//! and a function here gives them for a place whether it was sampled or hit, so that both know the same.
+
+use super::{LightSample, SHORT};
+use crate::buffer::read;
+use crate::data::{Effects, Emission, Emitter, Light, Primitive, numbers};
+use crate::geometry::{SurfaceInteraction, tangents};
+use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
+use crate::sampler::unit;
+use crate::scene::LaunchContext;
+
+/// What emits in a scene.
+#[derive(Clone, Copy)]
+pub struct Lighting<'a> {
+    /// Every light that may be chosen.
+    pub emitters: &'a [Emitter],
+    /// What each material emits.
+    pub emissions: &'a [Emission],
+}
+
+/// A sample of a light, as seen from a ray's origin.
+#[derive(Clone, Copy)]
+pub struct EmitterSample<R: Real> {
+    /// Unit direction towards it.
+    pub direction: V3<R>,
+    /// How far a shadow ray goes.
+    pub limit: R,
+    /// Linear RGB that arrives over the density of the sample; zero if there is nothing to sample.
+    pub light: V3<R>,
+    /// How likely it was found.
+    pub density: Density<R>,
+}
+
+/// A density over solid angle, as a fraction, since the cosine may be almost zero.
+#[derive(Clone, Copy)]
+pub struct Density<R: Real> {
+    /// Over area times the square of the distance, or over solid angle; 0 for a light without extent.
+    pub over: R,
+    /// The cosine at the light, or 1.
+    pub under: R,
+}
+
+/// The inverse of the least distance to a light without extent, nearer than which it grows no brighter.
+const MOST: f32 = 1.0 / SMALL;
+
+/// Spheres are sampled by solid angle from where the square of the sine of their cone is less: nearer, its rounding counts.
+const OUTSIDE: f32 = 1.0 - 1.0 / 4096.0;
+
+/// The emitter that a draw means: an entry of the table by its upper digits, that one or its alias by the digits below.
+#[inline(always)]
+fn chosen(emitters: &[Emitter], count: u32, drawn: u32) -> Emitter {
+    let (entry, rest) = product(drawn, count);
+    let emitter = read(emitters, entry);
+    if rest < emitter.choice.x { emitter } else { read(emitters, emitter.choice.y) }
+}
+
+/// The upper and the lower word of a product.
+#[inline(always)]
+fn product(a: u32, b: u32) -> (u32, u32) {
+    let (a1, a0, b1, b0) = (a >> 16, a & 0xffff, b >> 16, b & 0xffff);
+    let low = a0.wrapping_mul(b0);
+    let middle = a1.wrapping_mul(b0).wrapping_add(low >> 16);
+    let other = a0.wrapping_mul(b1).wrapping_add(middle & 0xffff);
+    let high = a1.wrapping_mul(b1).wrapping_add(middle >> 16).wrapping_add(other >> 16);
+    (high, (other << 16) | (low & 0xffff))
+}
+
+impl<R: Scalar> EmitterSample<R> {
+    #[inline(always)]
+    fn none() -> Self {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let density = Density { over: zero, under: one };
+        EmitterSample { direction: V3::new(zero, zero, one), limit: -one, light: V3::zero(), density }
+    }
+
+    /// Samples one light of all as seen from `origin`: `choice` draws which, `place` where on it.
+    #[inline(always)]
+    pub fn new(
+        launch: &LaunchContext<'_>,
+        lighting: &Lighting<'_>,
+        origin: V3<R>,
+        choice: u32,
+        place: (u32, u32),
+    ) -> Self {
+        let effects = launch.spec.effects;
+        let emitter = chosen(lighting.emitters, launch.frame.emitters, choice);
+        let probability = R::splat(f32::from_bits(emitter.choice.z));
+        if !effects.has(Effects::EMISSIVE) || emitter.light.position.w != Emitter::PRIMITIVE {
+            return Self::without_extent(effects, &emitter.light, origin, probability);
+        }
+        let primitive = launch.primitive(emitter.light.axis.w);
+        let emission = read(lighting.emissions, primitive.material());
+        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+            Self::of_sphere(&primitive, &emission, origin, place)
+        } else {
+            Self::of_plane(effects, &primitive, &emission, origin, place)
+        }
+    }
+
+    /// A light without extent, by its own intensity and the inverse square of the distance.
+    #[inline(always)]
+    fn without_extent(effects: Effects, light: &Light, origin: V3<R>, probability: R) -> Self {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let LightSample { direction, colour } = LightSample::new(effects, light, origin);
+        let density = Density { over: zero, under: one };
+        if effects.has(Effects::DIRECTIONAL) && light.position.w == Light::DIRECTIONAL {
+            let light = (colour * probability.reciprocal()).map(|c| c.flush(FAINT));
+            return EmitterSample { direction, limit: R::splat(f32::MAX), light, density };
+        }
+        let distance = (V3::<R>::splat(numbers(light.position)) - origin).map(|c| c.flush(SMALL)).normalised().1;
+        if distance.lt(R::splat(TINY)) {
+            return Self::none();
+        }
+        let inverse = one.div(distance).min(R::splat(MOST));
+        let light = ((colour * inverse).map(|c| c.flush(FAINT)) * inverse).map(|c| c.flush(FAINT));
+        let light = (light * probability.reciprocal()).map(|c| c.flush(FAINT));
+        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density }
+    }
+
+    /// A triangle or a disk.
+    #[inline(always)]
+    fn of_plane(effects: Effects, primitive: &Primitive, emission: &Emission, origin: V3<R>, place: (u32, u32)) -> Self {
+        let coordinates = if effects.has(Effects::DISK) && primitive.is_disk() {
+            let (x, y) = on_circle::<R>(place.1);
+            let reach = R::splat(unit(place.0)).sqrt();
+            (x * reach, y * reach)
+        } else {
+            in_triangle(R::splat(unit(place.0)), R::splat(unit(place.1)))
+        };
+        let at = SurfaceInteraction::new(effects, primitive, coordinates, V3::zero());
+        Self::of_place(emission, at.position, at.normal, origin)
+    }
+
+    /// A place on a surface that emits, sampled by area, with its front's normal.
+    #[inline(always)]
+    fn of_place(emission: &Emission, position: V3<R>, normal: V3<R>, origin: V3<R>) -> Self {
+        let away = (position - origin).map(|c| c.flush(SMALL));
+        let (direction, distance) = away.normalised();
+        let facing = -normal.dot(direction).flush(SMALL);
+        let is_seen = if emission.sides.x != 0 { !facing.eq(R::splat(0.0)) } else { R::splat(0.0).lt(facing) };
+        let density = over_area(emission, away, facing.abs());
+        if !is_seen || density.over.eq(R::splat(0.0)) {
+            return Self::none();
+        }
+        let light = density.share_of(V3::splat(numbers(emission.radiance)));
+        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density }
+    }
+
+    #[inline(always)]
+    fn of_sphere(sphere: &Primitive, emission: &Emission, origin: V3<R>, place: (u32, u32)) -> Self {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let (centre, radius) = (V3::<R>::splat(sphere.centre()), R::splat(sphere.radius()));
+        let cone = Cone::new(centre, radius, origin);
+        let (x, y) = on_circle::<R>(place.1);
+        let drawn = R::splat(unit(place.0));
+        if !cone.is_outside {
+            let height = one - (drawn + drawn);
+            let across = (drawn * (one - drawn)).sqrt();
+            let across = across + across;
+            let normal = V3::new(x * across, y * across, height).map(|c| c.flush(TINY));
+            return Self::of_place(emission, centre + normal * radius, normal, origin);
+        }
+        let (axis, distance) = (centre - origin).map(|c| c.flush(SMALL)).normalised();
+        let height = (drawn * cone.height).flush(FAINT);
+        let square = (height * (one + one - height)).flush(FAINT);
+        let (sine, cosine) = (square.sqrt(), one - height);
+        let [right, up] = tangents(axis);
+        let across = (right * x + up * y).map(|c| c.flush(TINY));
+        let direction = (across * sine + axis * cosine).map(|c| c.flush(TINY)).normalised().0;
+        let half = (radius * radius - (distance * distance * square).flush(FAINT)).max(zero).sqrt();
+        let limit = (distance * cosine - half) * R::splat(1.0 - SHORT);
+        let density = cone.density(emission, radius);
+        if density.over.eq(zero) {
+            return Self::none();
+        }
+        let light = density.share_of(V3::splat(numbers(emission.radiance)));
+        EmitterSample { direction, limit, light, density }
+    }
+}
+
+impl<R: Scalar> Density<R> {
+    /// That a ray from `origin` would have been sampled which found an emitter at an interaction.
+    #[inline(always)]
+    pub fn of_hit(
+        effects: Effects,
+        (primitive, emission): (&Primitive, &Emission),
+        at: &SurfaceInteraction<R>,
+        origin: V3<R>,
+    ) -> Self {
+        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+            let (centre, radius) = (V3::<R>::splat(primitive.centre()), R::splat(primitive.radius()));
+            let cone = Cone::new(centre, radius, origin);
+            if cone.is_outside {
+                return cone.density(emission, radius);
+            }
+        }
+        let away = (at.position - origin).map(|c| c.flush(SMALL));
+        over_area(emission, away, at.normal.dot(away.normalised().0).flush(SMALL).abs())
+    }
+
+    /// A radiance over the density.
+    #[inline(always)]
+    fn share_of(&self, radiance: V3<R>) -> V3<R> {
+        let share = self.under.div(self.over).flush(FAINT);
+        (radiance * share).map(|c| c.flush(FAINT))
+    }
+}
+
+/// The density of a place that was sampled by area, so far away.
+#[inline(always)]
+fn over_area<R: Scalar>(emission: &Emission, away: V3<R>, cosine: R) -> Density<R> {
+    let over = (R::splat(f32::from_bits(emission.radiance.w)) * away.dot(away)).flush(FAINT);
+    Density { over, under: cosine }
+}
+
+/// The cone in which a sphere is seen.
+struct Cone<R: Real> {
+    is_outside: bool,
+    /// One less the cosine of half its angle.
+    height: R,
+}
+
+impl<R: Scalar> Cone<R> {
+    #[inline(always)]
+    fn new(centre: V3<R>, radius: R, origin: V3<R>) -> Self {
+        let one = R::splat(1.0);
+        let away = (centre - origin).map(|c| c.flush(SMALL));
+        let (square, own) = (away.dot(away), (radius * radius).flush(FAINT));
+        let is_outside = own.lt(square * R::splat(OUTSIDE));
+        let sine = own.div(R::select(is_outside, square, own));
+        Cone { is_outside, height: sine.div(one + (one - sine).sqrt()) }
+    }
+
+    /// The sphere is chosen as its area is, and each direction of the cone is as likely.
+    #[inline(always)]
+    fn density(&self, emission: &Emission, radius: R) -> Density<R> {
+        let over_area = R::splat(f32::from_bits(emission.radiance.w));
+        // 4 pi r^2 of area over 2 pi h of solid angle.
+        let two = R::splat(2.0);
+        Density { over: (two * (over_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
+    }
+}
+
+/// The cosine and the sine of a drawn angle.
+#[inline(always)]
+pub(crate) fn on_circle<R: Scalar>(drawn: u32) -> (R, R) {
+    let (x, y) = turns::cos_sin(drawn);
+    (R::splat(x), R::splat(y))
+}
+
+/// Weights of a triangle's second and third vertex (Heitz, A Low-Distortion Map Between Triangle and Square, 2019).
+#[inline(always)]
+fn in_triangle<R: Scalar>(u: R, v: R) -> (R, R) {
+    let half = R::splat(0.5);
+    if u.lt(v) { (u * half, v - u * half) } else { (u - v * half, v * half) }
+}

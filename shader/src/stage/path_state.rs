@@ -1,0 +1,99 @@
+//! The path that a slot follows where integrators sample, and the light that its last vertex may get.
+
+use super::REACHED;
+use crate::buffer::{read, write};
+use crate::real::{Real, Scalar, V3};
+
+/// Records that a path takes in device memory: those of a [`super::Segment`] first, so that its ray is traced as a stream's.
+pub const STATE_RECORDS: u32 = 4;
+/// Records of a shadow ray, likewise, with the light that it asks for.
+pub const SHADOW_RECORDS: u32 = 3;
+
+/// No ray: no box lies before so short a limit.
+const NOWHERE: f32 = -1.0;
+
+/// A path's next ray, and what of its light counts.
+#[derive(Clone, Copy)]
+pub struct PathState<R: Real> {
+    /// Where it starts.
+    pub origin: V3<R>,
+    /// Its unit direction.
+    pub direction: V3<R>,
+    /// The primitive that it starts on, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
+    pub source_primitive: u32,
+    /// What of its light reaches the pixel, linear RGB.
+    pub weight: V3<R>,
+    /// How often it was scattered.
+    pub bounces: u32,
+    /// The probability density over solid angle of its direction; 0 if it could be no other: the camera's, a mirror's or a
+    /// lens'.
+    pub density: R,
+}
+
+/// A ray to a sampled light, and the light that arrives if nothing is between.
+#[derive(Clone, Copy)]
+pub struct ShadowRay<R: Real> {
+    /// Where it starts.
+    pub origin: V3<R>,
+    /// Its unit direction.
+    pub direction: V3<R>,
+    /// How far it goes.
+    pub limit: R,
+    /// The primitive that it starts on.
+    pub source_primitive: u32,
+    /// Linear RGB that reaches the pixel.
+    pub light: V3<R>,
+}
+
+impl<R: Scalar> PathState<R> {
+    /// A slot's path.
+    #[inline(always)]
+    pub fn load(slots: u32, slot: u32, paths: &[R::Record]) -> Self {
+        let at = |k| R::load(read(paths, k * slots + slot));
+        let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, _)) = (at(0), at(1), at(2), at(3));
+        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x }
+    }
+
+    /// Keeps it; `follows` unless it is not to be traced.
+    #[inline(always)]
+    pub fn store(&self, slots: u32, slot: u32, follows: bool, paths: &mut [R::Record]) {
+        let limit = if follows { f32::MAX } else { NOWHERE };
+        let at = |k| k * slots + slot;
+        write(paths, at(0), R::store(self.origin, self.source_primitive));
+        write(paths, at(1), R::store(self.direction, limit.to_bits()));
+        write(paths, at(2), R::store(self.weight, self.bounces));
+        write(paths, at(3), R::store(V3::new(self.density, R::splat(0.0), R::splat(0.0)), 0));
+    }
+}
+
+impl<R: Scalar> ShadowRay<R> {
+    /// One that asks for nothing.
+    #[inline(always)]
+    pub fn none() -> Self {
+        let direction = V3::splat(glam::Vec3::Z);
+        ShadowRay { origin: V3::zero(), direction, limit: R::splat(NOWHERE), source_primitive: 0, light: V3::zero() }
+    }
+
+    /// Does it ask for something?
+    #[inline(always)]
+    pub fn asks(&self) -> bool {
+        R::splat(0.0).lt(self.light.greatest())
+    }
+
+    /// Keeps a slot's ray; a stream's limit is of single precision.
+    #[inline(always)]
+    pub fn store(&self, slots: u32, slot: u32, segments: &mut [R::Record]) {
+        let at = |k| k * slots + slot;
+        let limit = if self.asks() { self.limit.to_f32() } else { NOWHERE };
+        write(segments, at(0), R::store(self.origin, self.source_primitive));
+        write(segments, at(1), R::store(self.direction, limit.to_bits()));
+        write(segments, at(2), R::store(self.light, 0));
+    }
+
+    /// The light of a slot's ray that nothing was in the way of, else zero.
+    #[inline(always)]
+    pub fn arrived(slots: u32, slot: u32, shadows: &[u32], segments: &[R::Record]) -> V3<R> {
+        let light = R::load(read(segments, 2 * slots + slot)).0;
+        if read(shadows, slot) == REACHED { light } else { V3::zero() }
+    }
+}

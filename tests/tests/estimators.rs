@@ -1,0 +1,100 @@
+//! Estimates of the same light by different ways: their means agree on each of 64 blocks of the picture, by the standard errors
+//! that seeds tell.
+
+use eyerays::film::Film;
+use eyerays::scene::{Direct, Sampler, Scene, Settings, Transport};
+use eyerays_tests::{on_cpu, pack, shipped};
+
+/// Blocks along an edge of the picture.
+const BLOCKS: usize = 8;
+const SEEDS: u32 = 24;
+
+/// Brightness of each block by each seed.
+fn blocks(film: &Film) -> Vec<f64> {
+    let edge = film.width as usize / BLOCKS;
+    let mut sums = vec![0.0; BLOCKS * BLOCKS];
+    for (index, pixel) in film.pixels.iter().enumerate() {
+        let (x, y) = (index % film.width as usize, index / film.width as usize);
+        sums[y / edge * BLOCKS + x / edge] += pixel.iter().map(|&channel| f64::from(channel)).sum::<f64>();
+    }
+    sums
+}
+
+/// The mean of each block, and the square of its standard error.
+fn estimate(scene: &Scene, settings: Settings) -> Vec<(f64, f64)> {
+    let all: Vec<Vec<f64>> = (0..SEEDS)
+        .map(|seed| {
+            let transport = Transport { seed, ..settings.transport };
+            let (film, rays) = on_cpu::<f32>(&pack(scene, &scene.cameras[0], Settings { transport, ..settings }));
+            assert_eq!(rays.non_finite, 0);
+            blocks(&film)
+        })
+        .collect();
+    let count = f64::from(SEEDS);
+    (0..BLOCKS * BLOCKS)
+        .map(|block| {
+            let mean = all.iter().map(|blocks| blocks[block]).sum::<f64>() / count;
+            let square = all.iter().map(|blocks| (blocks[block] - mean).powi(2)).sum::<f64>() / (count - 1.0);
+            (mean, square / count)
+        })
+        .collect()
+}
+
+fn assert_alike(what: &str, a: &[(f64, f64)], b: &[(f64, f64)]) {
+    let z = |(a, b): (&(f64, f64), &(f64, f64))| {
+        let error = (a.1 + b.1).sqrt();
+        // A block may be black, or as bright in all samples.
+        if (a.0 - b.0).abs() <= 1e-5 * a.0.abs() { 0.0 } else { (a.0 - b.0) / error }
+    };
+    let all: Vec<f64> = a.iter().zip(b).map(z).collect();
+    let worst = all.iter().fold(0.0f64, |worst, z| worst.max(z.abs()));
+    let mean = all.iter().sum::<f64>() / (all.len() as f64).sqrt();
+    println!("{what}: greatest |z| {worst:.2} of {} blocks, {mean:.2} of their sum", all.len());
+    assert!(worst < 4.0 && mean.abs() < 4.0, "{what}: {worst:.2}, {mean:.2}");
+}
+
+fn settings(scene: &Scene) -> Settings {
+    Settings { size: (64, 64), spp: 32, sampler: Sampler::Random, ..scene.settings }
+}
+
+fn by(direct: Direct, settings: Settings) -> Settings {
+    Settings { transport: Transport { direct, ..settings.transport }, ..settings }
+}
+
+/// Samples of lights, of surfaces, and both weighted in either way; with chance ending paths, and without.
+fn assert_scene(scene: &Scene) {
+    let settings = Settings { bounces: 3, ..settings(scene) };
+    let power = estimate(scene, by(Direct::Power, settings));
+    for direct in [Direct::Balance, Direct::Light, Direct::Surface] {
+        assert_alike(&format!("power and {direct:?}"), &power, &estimate(scene, by(direct, settings)));
+    }
+    for roulette in [0, Settings::MOST_BOUNCES] {
+        let transport = Transport { roulette, ..settings.transport };
+        let other = estimate(scene, Settings { transport, ..settings });
+        assert_alike(&format!("roulette after {roulette}"), &power, &other);
+    }
+}
+
+#[test]
+fn a_box_with_a_lamp_and_a_glass_ball() {
+    assert_scene(&shipped("cornell_path"));
+}
+
+#[test]
+fn lamps_of_every_shape() {
+    assert_scene(&shipped("soft_shadows"));
+}
+
+#[test]
+fn colours_that_walls_throw() {
+    assert_scene(&shipped("bleeding"));
+}
+
+#[test]
+fn lights_without_extent_beside_a_lamp() {
+    let mut scene = shipped("lights");
+    let lamp = scene.materials.iter_mut().find(|material| material.reflection == glam::Vec3::ZERO);
+    lamp.expect("one is no mirror").emission = glam::Vec3::splat(0.5);
+    scene.settings.transport.integrator = eyerays::scene::Integrator::Path;
+    assert_scene(&scene);
+}

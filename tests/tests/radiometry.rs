@@ -1,0 +1,199 @@
+//! Sampled light against closed forms. Each answer is given with its standard error, from how much the pixels differ, which see
+//! the same and draw their samples at random; it is below 1e-3, and the answer is within four of them.
+
+use std::f32::consts::PI;
+
+use eyerays::film::Film;
+use eyerays::scene::{Background, Camera, Direct, Disk, Integrator, Light, Material, Sampler, Scene, Settings, Sphere, Transport};
+use eyerays_tests::model::{add_quad, black, empty, matt};
+use eyerays_tests::{on_cpu, pack};
+use glam::Vec3;
+
+const WAYS: [Direct; 4] = [Direct::Power, Direct::Balance, Direct::Light, Direct::Surface];
+
+fn lamp(radiance: f32) -> Material {
+    Material { emission: Vec3::splat(radiance), ..black() }
+}
+
+/// Path tracing by random samples, light reflected once.
+fn once() -> Settings {
+    Settings {
+        size: (32, 32),
+        spp: 256,
+        sampler: Sampler::Random,
+        bounces: 0,
+        transport: Transport { integrator: Integrator::Path, ..Transport::default() },
+        ..Settings::default()
+    }
+}
+
+fn by(direct: Direct, settings: Settings) -> Settings {
+    Settings { transport: Transport { direct, ..settings.transport }, ..settings }
+}
+
+/// A camera that sees almost nothing but one point.
+fn at(eye: Vec3, target: Vec3) -> Camera {
+    Camera { name: "spot".into(), eye, target, up: Vec3::new(0.1, 0.2, 1.0), fov: 0.01 }
+}
+
+fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Film {
+    let (film, rays) = on_cpu::<f32>(&pack(scene, camera, settings));
+    assert_eq!(rays.non_finite, 0);
+    film
+}
+
+/// The mean of all pixels and its standard error.
+fn mean(film: &Film) -> (f64, f64) {
+    let values: Vec<f64> = film.pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean, (square / count).sqrt())
+}
+
+fn assert_is(what: &str, (got, error): (f64, f64), want: f64) {
+    println!("{what}: {got:.6} of {want:.6}, standard error {error:.1e}");
+    assert!(error < 1e-3, "{what}: standard error {error}");
+    // Rounding alone is below a millionth.
+    assert!((got - want).abs() < 4.0 * error + 1e-6, "{what}: {got} of {want}, standard error {error}");
+}
+
+/// A white floor around the origin that faces up.
+fn on_white_floor() -> Scene {
+    let mut scene = empty();
+    let corner = |x: f32, z: f32| Vec3::new(3.0 * x, 0.0, 3.0 * z);
+    add_quad(&mut scene, matt(Vec3::ONE), [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)]);
+    scene
+}
+
+/// A unit square of radiance 1 at height 1 that faces down, whose least corner is given.
+fn add_square(scene: &mut Scene, x: f32, z: f32) {
+    let corner = |i: f32, j: f32| Vec3::new(x + i, 1.0, z + j);
+    add_quad(scene, lamp(1.0), [corner(0.0, 0.0), corner(1.0, 0.0), corner(1.0, 1.0), corner(0.0, 1.0)]);
+}
+
+/// A white floor's radiance is the irradiance over pi.
+fn assert_floor(what: &str, scene: &Scene, irradiance: f64) {
+    let camera = at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO);
+    for direct in WAYS {
+        let film = render(scene, &camera, by(direct, once()));
+        assert_is(&format!("{what}, {direct:?}"), mean(&film), irradiance / f64::from(PI));
+    }
+}
+
+#[test]
+fn below_a_square() {
+    for (what, x, irradiance) in [("below its centre", -0.5, 0.752_275), ("below its corner", 0.0, 0.435_210)] {
+        let mut scene = on_white_floor();
+        add_square(&mut scene, x, x);
+        assert_floor(what, &scene, irradiance);
+    }
+}
+
+#[test]
+fn on_the_axis_of_a_disk() {
+    let mut scene = on_white_floor();
+    scene.materials.push(lamp(1.0));
+    scene.disks.push(Disk { center: Vec3::Y * 2.0, normal: -Vec3::Y, radius: 1.0, material: 1 });
+    assert_floor("below a disk", &scene, f64::from(PI) / 5.0);
+}
+
+#[test]
+fn beside_a_sphere() {
+    let mut scene = on_white_floor();
+    scene.materials.push(lamp(1.0));
+    let center = Vec3::new(-0.8, 0.6, 0.0) * 2.0;
+    scene.spheres.push(Sphere { center, radius: 0.5, material: 1 });
+    assert_floor("beside a sphere", &scene, 0.117_810);
+}
+
+/// The mean over a receiver that is seen from afar, over how much of the picture it takes.
+#[test]
+fn between_parallel_squares() {
+    let receiver = |material: Material| {
+        let mut scene = empty();
+        let corner = |x: f32, z: f32| Vec3::new(x, 0.0, z);
+        add_quad(&mut scene, material, [corner(0.0, 1.0), corner(1.0, 1.0), corner(1.0, 0.0), corner(0.0, 0.0)]);
+        scene
+    };
+    let middle = Vec3::new(0.5, 0.0, 0.5);
+    let away = Vec3::new(0.9, 0.42, 0.1).normalize() * 2000.0;
+    let camera = Camera { fov: 0.045, up: Vec3::Y, ..at(middle + away, middle) };
+    let mut lit = receiver(matt(Vec3::ONE));
+    add_square(&mut lit, 0.0, 0.0);
+    // The lamp is seen from behind, where it is black.
+    let mut bright = receiver(lamp(1.0));
+    let Some(square) = lit.mesh.positions.get(4..8) else { panic!("the lamp's corners") };
+    add_quad(&mut bright, black(), [square[0], square[1], square[2], square[3]]);
+    let settings = Settings { size: (128, 128), spp: 64, ..once() };
+    let (whole, _) = mean(&render(&bright, &camera, settings));
+    for direct in WAYS {
+        let parts: Vec<f64> = (0..16)
+            .map(|seed| {
+                let seeded = Transport { seed, direct, ..settings.transport };
+                mean(&render(&lit, &camera, Settings { spp: 16, transport: seeded, ..settings })).0 / whole
+            })
+            .collect();
+        let got = parts.iter().sum::<f64>() / 16.0;
+        let square = parts.iter().map(|part| (part - got).powi(2)).sum::<f64>() / 15.0;
+        assert_is(&format!("between squares, {direct:?}"), (got, (square / 16.0).sqrt()), 0.199_825);
+    }
+}
+
+/// A camera inside a unit sphere.
+fn inside() -> Camera {
+    Camera { name: "inside".into(), eye: Vec3::new(0.1, -0.2, 0.5), target: Vec3::NEG_X, up: Vec3::Y, fov: 80.0 }
+}
+
+fn in_sphere(material: Material) -> Scene {
+    let mut scene = empty();
+    scene.materials.push(material);
+    scene.spheres.push(Sphere { center: Vec3::ZERO, radius: 1.0, material: 0 });
+    scene
+}
+
+/// Every wall point gets the same from the light, and from all walls, whatever the samples.
+#[test]
+fn a_point_light_in_a_sphere() {
+    let mut scene = in_sphere(matt(Vec3::splat(0.5)));
+    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    for k in 1..=5 {
+        let transport = Transport { roulette: Settings::MOST_BOUNCES, ..once().transport };
+        let film = render(&scene, &inside(), Settings { spp: 4, bounces: k - 1, transport, ..once() });
+        let want = 1.0 - 0.5f32.powi(k as i32);
+        let all = film.pixels.iter().map(|pixel| pixel[1]);
+        let (least, most) = (all.clone().fold(f32::MAX, f32::min), all.fold(0.0, f32::max));
+        println!("{k}: {least} to {most} of {want}");
+        assert!((least - want).abs() < 1e-5 && (most - want).abs() < 1e-5, "{k}: {least} to {most} of {want}");
+        assert!(most - least < 1e-6, "{k}: {least} to {most}");
+    }
+}
+
+/// White, wherever one looks: as much is emitted as is lost.
+#[test]
+fn a_furnace() {
+    let glowing = Material { emission: Vec3::splat(0.5), two_sided: true, ..matt(Vec3::splat(0.5)) };
+    let scene = in_sphere(glowing);
+    for direct in WAYS {
+        for roulette in [3, Settings::MOST_BOUNCES] {
+            let transport = Transport { roulette, direct, ..once().transport };
+            let settings = Settings { bounces: Settings::MOST_BOUNCES, spp: 1024, transport, ..once() };
+            let (got, error) = mean(&render(&scene, &inside(), settings));
+            println!("{direct:?}, roulette {roulette}: {got:.5}, standard error {error:.1e}");
+            assert!((got - 1.0).abs() < 1e-3, "{direct:?}, roulette {roulette}: {got}");
+        }
+    }
+}
+
+/// The background is light that surfaces find.
+#[test]
+fn a_ball_in_white_surroundings() {
+    let mut scene = in_sphere(matt(Vec3::new(0.3, 0.5, 0.9)));
+    scene.background = Background::Colour(Vec3::ONE);
+    let camera = Camera { eye: Vec3::Z * 3.0, fov: 25.0, target: Vec3::ZERO, ..inside() };
+    for integrator in [Integrator::Path] {
+        let transport = Transport { integrator, ..once().transport };
+        let film = render(&scene, &camera, Settings { spp: 16, transport, ..once() });
+        assert!(film.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
+    }
+}

@@ -60,6 +60,14 @@ pub fn pixel(frame: &Frame, order: Order, slot: u32) -> Pixel {
     Pixel { x, y, inside: x < width && y < height, index: y * width + x, sample }
 }
 
+/// Which sample of its pixel a slot follows.
+#[inline(always)]
+pub fn sample(frame: &Frame, slot: u32) -> u32 {
+    let pixel_slots = if frame.pixel_slots == 0 { 1 } else { frame.pixel_slots };
+    // Divisions take long, and most launches have one sample a pixel in flight.
+    if slot < pixel_slots { frame.sample } else { frame.sample + slot / pixel_slots }
+}
+
 /// The even bits of a 12-bit number, put together: a coordinate of a place on a Morton curve.
 #[inline(always)]
 fn even(place: u32) -> u32 {
@@ -89,7 +97,8 @@ pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3
     };
     let (right, down);
     if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
-        let (from_left, from_top) = sampler::place(launch, samples, Sample::new(key(frame, pixel), samples, pixel.sample));
+        let (from_left, from_top) =
+            sampler::place(launch, samples, Sample::new(key(frame, pixel), samples, pixel.sample));
         right = half_cells(x, frame.width, 0, 0) + from_left;
         down = half_cells(y, frame.height, 0, 0) + from_top;
     } else {

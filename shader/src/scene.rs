@@ -4,8 +4,7 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Material, Normals, Primitive, Specialisation,
-    numbers,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Material, Normals, Primitive, Specialisation, numbers,
 };
 use glam::{UVec4, Vec3};
 

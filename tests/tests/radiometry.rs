@@ -4,7 +4,9 @@
 use std::f32::consts::PI;
 
 use eyerays::film::Film;
-use eyerays::scene::{Background, Camera, Direct, Disk, Integrator, Light, Material, Sampler, Scene, Settings, Sphere, Transport};
+use eyerays::scene::{
+    Background, Camera, Direct, Disk, Integrator, Light, Material, Sampler, Scene, Settings, Sphere, Transport,
+};
 use eyerays_tests::model::{add_quad, black, empty, matt};
 use eyerays_tests::{on_cpu, pack};
 use glam::Vec3;

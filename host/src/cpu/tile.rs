@@ -5,7 +5,7 @@ use std::ops::Range;
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::integrator::{self, Exchange, Wave};
-use eyerays_shader::real::{Scalar, V3};
+use eyerays_shader::real::{Scalar, SimdIsa, Task, V3};
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, ShadowInputs};
@@ -101,7 +101,8 @@ impl<'a> Planned<'a> {
             let frame = view.launch(self.laid.packed, region, sample, 1, order);
             let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
             let (queue, next) = (pixels.collect(), Vec::new());
-            let mut launch = Launch { planned: self, frame: &frame, queue, next, records, film, observer, secondary: 0 };
+            let mut launch =
+                Launch { planned: self, frame: &frame, queue, next, records, film, observer, secondary: 0 };
             plan::run(&self.plan, &mut launch).expect("a CPU reports no errors");
             secondary += launch.secondary;
             records = launch.records;
@@ -201,12 +202,31 @@ impl<R: Scalar> Launch<'_, '_, R> {
     /// Likewise.
     fn scatter(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
-        let Records { paths, hits, shadows, segments, sums } = &mut self.records;
-        let (lighting, shading) = (self.planned.laid.lighting(), self.planned.laid.shading());
-        self.next.extend(self.queue.iter().filter(|&&slot| {
+        let (queue, next, records) = (&self.queue[..], &mut self.next, &mut self.records);
+        self.planned.isa.run(Scatter { scene, laid: &self.planned.laid, queue, next, records });
+    }
+}
+
+/// The scattering of a wave's paths, for the instructions of an ISA.
+struct Scatter<'t, 'a, R: Scalar> {
+    scene: &'t TraceContext<'t>,
+    laid: &'t SceneView<'a>,
+    queue: &'t [u32],
+    next: &'t mut Vec<u32>,
+    records: &'t mut Records<R>,
+}
+
+impl<R: Scalar> Task<R> for Scatter<'_, '_, R> {
+    #[inline(always)]
+    fn run<V: SimdIsa<R>>(self) {
+        let Records { paths, hits, shadows, segments, sums } = self.records;
+        let (lighting, shading) = (self.laid.lighting(), self.laid.shading());
+        for &slot in self.queue {
             let exchange =
                 Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
-            integrator::scatter(&scene.base, &shading, &lighting, slot, exchange)
-        }));
+            if integrator::scatter(&self.scene.base, &shading, &lighting, slot, exchange) {
+                self.next.push(slot);
+            }
+        }
     }
 }

@@ -17,6 +17,8 @@ pub struct Lighting {
     pub emissions: Vec<Emission>,
     /// Is any of them not black?
     pub is_lit: bool,
+    /// The least and the greatest corner of the primitives that emit, if there are any.
+    pub lamps: Option<[Vec3; 2]>,
 }
 
 /// What all of a scene's light comes from.
@@ -39,7 +41,8 @@ impl Lighting {
         let total: f64 = powers.iter().sum();
         let is_lit = total > 0.0;
         let choices = table(&powers);
-        let lights = sources.lights.0.iter().zip(sources.lights.1).map(|(light, record)| scaled(light, record, normalisation));
+        let lights =
+            sources.lights.0.iter().zip(sources.lights.1).map(|(light, record)| scaled(light, record, normalisation));
         let primitives = emissive.iter().map(|&index| of_primitive(index));
         let emitters = lights.chain(primitives).zip(choices).map(|(light, choice)| Emitter { light, choice }).collect();
         let emission = |material: &Material| {
@@ -48,7 +51,10 @@ impl Lighting {
             Emission { radiance: colour(material.emission, density.to_bits()), sides }
         };
         let emissions = if emissive.is_empty() { Vec::new() } else { sources.materials.iter().map(emission).collect() };
-        Lighting { emitters, emissions, is_lit }
+        let boxes = emissive.iter().map(|&index| sources.primitives[index as usize].bounds());
+        let lamps = boxes.map(|(least, greatest)| [least, greatest]);
+        let lamps = lamps.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
+        Lighting { emitters, emissions, is_lit, lamps }
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    Normals, Primitive, Specialisation,
+    Normals, Primitive, Specialisation, pack,
 };
 
 mod check;
@@ -31,6 +31,9 @@ use crate::scene::{Background, Integrator, Light, Material, Scene, Settings, Tra
 
 /// References added by splitting triangles, as a share of the triangles.
 const SPLIT_BUDGET: f32 = 0.3;
+
+/// A corner beyond every scene.
+const EVERYWHERE: Vec3 = Vec3::splat((1u64 << 40) as f32);
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
@@ -82,11 +85,8 @@ impl DeviceScene {
         let statistics = Statistics::of(&bvh, &primitives);
         let primitives = bvh.gather(&primitives);
         let lights = lights(&scene.lights, &normalisation)?;
-        let sources = Sources {
-            lights: (&scene.lights, &lights),
-            materials: &scene.materials,
-            primitives: &primitives,
-        };
+        let sources =
+            Sources { lights: (&scene.lights, &lights), materials: &scene.materials, primitives: &primitives };
         let lighting = Lighting::new(&sources, &normalisation);
         Ok(DeviceScene {
             statistics,
@@ -154,13 +154,13 @@ impl DeviceScene {
         &self.lighting
     }
 
-    /// May a ray find light that no light sample stands for, or not alone?
-    pub(crate) fn finds_light(&self) -> bool {
+    /// The least and the greatest corner of all light that rays may find, which are far away where the background is light.
+    pub(crate) fn found_light(&self) -> Option<[Vec3; 2]> {
         let is_black = match self.background {
             Background::Colour(colour) => colour == Vec3::ZERO,
             Background::Gradient { horizon, zenith } => horizon == Vec3::ZERO && zenith == Vec3::ZERO,
         };
-        self.emissive.is_some() || !is_black
+        if is_black { self.lighting.lamps } else { Some([-EVERYWHERE, EVERYWHERE]) }
     }
 
     /// The effects that the scene asks for.
@@ -207,11 +207,10 @@ impl DeviceScene {
 
     fn transport_bits(&self) -> u32 {
         let Transport { integrator, direct, .. } = self.settings.transport;
-        let finds = if self.finds_light() { Launch::FINDS_LIGHT } else { 0 };
         match integrator {
             Integrator::Whitted => 0,
             Integrator::Ao => Launch::OCCLUSION,
-            Integrator::Path => direct.bits() | finds,
+            Integrator::Path => direct.bits(),
         }
     }
 
@@ -239,8 +238,7 @@ impl DeviceScene {
                 "the scene was packed with {number} lights of other kinds: pack it again to change more than their values"
             )));
         }
-        let sources =
-            Sources { lights: (others, &records), materials: &self.sources, primitives: &self.primitives };
+        let sources = Sources { lights: (others, &records), materials: &self.sources, primitives: &self.primitives };
         let lighting = Lighting::new(&sources, &self.normalisation);
         Ok((records, lighting))
     }
@@ -258,8 +256,11 @@ impl DeviceScene {
         };
         let lights = self.lights.len() as u32;
         let Transport { integrator, seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
+        let [least, greatest] = self.found_light().unwrap_or([Vec3::ONE, Vec3::NEG_ONE]);
         let reach = (f64::from(ao_distance) * self.normalisation.scale).min(f32::MAX.into()) as f32;
         Frame {
+            lamps: pack(flushed((least + greatest) * 0.5), 0),
+            lamps_half: pack(flushed((greatest - least) * 0.5), 0),
             horizon: records::colour(horizon, 0),
             zenith: records::colour(zenith, 0),
             bounces: self.settings.bounces,

@@ -34,7 +34,15 @@ impl<'a> SceneView<'a> {
             Method::Auto | Method::Wide => packed.bvh8().borrow(),
             _ => Bvh8View::default(),
         };
-        SceneView { packed, traversal, nodes, primitives, bvh8, lights: Cow::Borrowed(packed.lights()), lighting: Cow::Borrowed(packed.lighting()) }
+        SceneView {
+            packed,
+            traversal,
+            nodes,
+            primitives,
+            bvh8,
+            lights: Cow::Borrowed(packed.lights()),
+            lighting: Cow::Borrowed(packed.lighting()),
+        }
     }
 
     /// Lights in file order.

@@ -93,10 +93,11 @@ impl Gpu {
         if !resolved.votes() || self.device.features().contains(wgpu::Features::SUBGROUP) {
             return Ok(resolved);
         }
-        if resolved.method != traversal.method && traversal.scheduling != Scheduling::Persistent {
-            return Ok(Traversal { method: Method::IfIf, scheduling: Scheduling::Grid, ..traversal });
+        if traversal.method.votes() || traversal.scheduling == Scheduling::Persistent {
+            return Err(Error::NoSubgroups { device: self.report.name.clone() });
         }
-        Err(Error::NoSubgroups { device: self.report.name.clone() })
+        let method = if traversal.method == Method::Auto { Method::IfIf } else { traversal.method };
+        Ok(Traversal { method, scheduling: Scheduling::Grid, ..traversal })
     }
 
     /// Which kernels it takes in a precision.

@@ -207,7 +207,8 @@ impl<'a> Renderer<'a> {
                 bytes <= READ
             };
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
-            let films: Vec<_> = now.iter().map(|band| (&band.film, self.plan.film_bytes * band.region.pixels())).collect();
+            let films: Vec<_> =
+                now.iter().map(|band| (&band.film, self.plan.film_bytes * band.region.pixels())).collect();
             let read = self.queue.read(&counters, &films, |i, bytes| {
                 let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
                 let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);

@@ -105,6 +105,9 @@ impl Plan {
     /// Those of `resolve`.
     pub fn of(needs: &Needs, spec: Specialisation, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
         let Needs { waves, shadow_rays, is_sampled, .. } = *needs;
+        let spec = if is_sampled && waves != Waves::AtMost(0) { spec.with_launch(Launch::GOES_ON) } else { spec };
+        // What surfaces scatter has no order that a grid of threads could keep.
+        let later = if is_sampled { Coherence::Scattered } else { Coherence::Secondary };
         let plain = |stage, spec| Step { stage, traversal: None, spec };
         let wave = |spec: Specialisation, traced, shadowed| -> Result<Vec<Step>> {
             // Rays that an integrator samples lie in memory as those of a stream do.
@@ -125,7 +128,7 @@ impl Plan {
         if waves != Waves::AtMost(0) {
             let spec = spec.with_launch(Launch::SECONDARY);
             further.push(plain(Stage::Advance, spec));
-            further.extend(wave(spec, Coherence::Secondary, Coherence::Secondary)?);
+            further.extend(wave(spec, later, later)?);
         }
         let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
         let slot_bytes = slot_bytes(needs, !further.is_empty());

@@ -16,6 +16,10 @@ pub struct Frame {
     pub horizon: UVec4,
     /// Background straight up, linear RGB.
     pub zenith: UVec4,
+    /// The middle of a box around all light that rays find, in the normalised scene; the integer is 0.
+    pub lamps: UVec4,
+    /// Half its size; below zero if they find none, and very large where the background is light.
+    pub lamps_half: UVec4,
     /// The image's width in pixels.
     pub width: u32,
     /// The image's height in pixels.

@@ -83,8 +83,8 @@ bits! {
         BY_LIGHT = 8;
         /// Of both, each is weighted as its probability is; without any of these bits, as the square of it.
         BALANCED = 9;
-        /// A path's last ray may find light: what emits, or a background that is not black.
-        FINDS_LIGHT = 10;
+        /// Paths go on after this wave's vertices.
+        GOES_ON = 10;
     }
 }
 

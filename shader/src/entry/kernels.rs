@@ -3,8 +3,8 @@
 use crate::buffer::{read, write};
 use crate::data::*;
 use crate::integrator::{self, Exchange, Wave};
-use crate::light::Lighting;
 use crate::launch::{ROW, WORKGROUP, argument, counter};
+use crate::light::Lighting;
 use crate::real::Fast;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};

@@ -103,7 +103,9 @@ macro_rules! scatter {
                 let lighting = Lighting { emitters, emissions };
                 let exchange = Exchange { paths, hits, shadows, segments, sums };
                 let goes_on = integrator::scatter::<$R>(&launch, &shading, &lighting, slot, exchange);
-                $enqueue(spec, goes_on, slot, next, counters);
+                if spec.launch.has(Launch::GOES_ON) {
+                    $enqueue(spec, goes_on, slot, next, counters);
+                }
             }
         }
     };

@@ -9,16 +9,11 @@ use crate::stage::ShadowRay;
 
 /// Asks along one direction of the cosine's density.
 #[inline(always)]
-pub(super) fn at<R: Scalar>(
-    launch: &LaunchContext<'_>,
-    shading: &ShadingData<'_>,
-    vertex: &Vertex<R>,
-) -> Scattered<R> {
+pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
     let primitive = launch.primitive(vertex.primitive_index);
     let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
-    let surface =
-        Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
     let mut shadow = ShadowRay::none();

@@ -7,7 +7,7 @@ use crate::data::{Effects, Frame, Launch, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting};
 use crate::material::{INVERSE_PI, Lobes, Surface, cosine_direction};
-use crate::real::{FAINT, Real, Scalar, V3};
+use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{PathState, ShadowRay};
@@ -36,8 +36,7 @@ pub(super) fn at<R: Scalar>(
     if path.bounces > launch.frame.bounces {
         return Scattered { light, shadow: ShadowRay::none(), next: path, goes_on: false };
     }
-    let surface =
-        Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
     let origin = interaction.offset_ray_origin(interaction.normal);
     let at = At { interaction, surface, lobes, origin };
@@ -45,13 +44,30 @@ pub(super) fn at<R: Scalar>(
     let shadow = sampled_light(launch, lighting, vertex, &at, decisions.x);
     let next = go_on(vertex, &at, decisions.y);
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
-    Scattered { light, shadow, next, goes_on: goes_on && leads_on(launch, path.bounces) }
+    // The last ray finds only what emits.
+    let goes_on = goes_on && (path.bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
+    Scattered { light, shadow, next, goes_on }
 }
 
-/// Can the ray of a vertex that was scattered so often bring light? The last one finds only what emits.
+/// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),
+/// without a division.
 #[inline(always)]
-fn leads_on(launch: &LaunchContext<'_>, bounces: u32) -> bool {
-    bounces < launch.frame.bounces || launch.spec.launch.has(Launch::FINDS_LIGHT)
+fn may_find_light<R: Scalar>(frame: &Frame, path: &PathState<R>) -> bool {
+    // More than all rounding of the coordinates, which lie in [-1, 1] and are flushed below 2^-40.
+    const MARGIN: f32 = 1.0 / (1 << 20) as f32;
+    let (zero, d) = (R::splat(0.0), path.direction.map(|c| c.flush(SMALL)));
+    let half =
+        V3::<R>::splat(numbers(frame.lamps_half)) + V3::new(R::splat(MARGIN), R::splat(MARGIN), R::splat(MARGIN));
+    let from = (path.origin - V3::splat(numbers(frame.lamps))).map(|c| c.flush(SMALL));
+    let leaves = |from: R, half: R, d: R| half.lt(from.abs()) && zero.le(from * d);
+    let (size, way) = (from.cross(d).abs(), d.abs());
+    let beside = |size: R, a: R, b: R| (a + b + R::splat(MARGIN)).lt(size);
+    !(leaves(from.x, half.x, d.x)
+        || leaves(from.y, half.y, d.y)
+        || leaves(from.z, half.z, d.z)
+        || beside(size.x, half.y * way.z, half.z * way.y)
+        || beside(size.y, half.z * way.x, half.x * way.z)
+        || beside(size.z, half.x * way.y, half.y * way.x))
 }
 
 /// The radiance that a surface itself sends to the path, by the weight of the strategy that found it.
@@ -150,6 +166,7 @@ fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<
         weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
         bounces: path.bounces + 1,
         density,
+        pixel: path.pixel,
     };
     let lobe = at.lobes.chosen(decision);
     if lobe.is_diffuse {

@@ -75,7 +75,6 @@ pub fn scatter<R: Scalar>(
 ) -> bool {
     let Exchange { paths, hits, shadows, segments, sums } = exchange;
     let (slots, is_first) = (launch.frame.slots, !launch.spec.launch.has(Launch::SECONDARY));
-    let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
     let path = PathState::<R>::load(slots, slot, paths);
     let (sum, word) = if is_first {
         (V3::zero(), 0)
@@ -89,7 +88,8 @@ pub fn scatter<R: Scalar>(
         let seen = background(launch.spec.effects, launch.frame, path.direction);
         Scattered { light: share(launch, &path, seen), shadow: ShadowRay::none(), next: path, goes_on: false }
     } else {
-        let draws = Draws { launch: launch.spec.launch, key: camera::key(launch.frame, pixel), sample: pixel.sample };
+        let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
+        let draws = Draws { launch: launch.spec.launch, key, sample: camera::sample(launch.frame, slot) };
         let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), draws };
         if launch.spec.launch.has(Launch::OCCLUSION) {
             occlusion::at(launch, shading, &vertex)

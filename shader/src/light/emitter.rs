@@ -110,7 +110,8 @@ impl<R: Scalar> EmitterSample<R> {
             let light = (colour * probability.reciprocal()).map(|c| c.flush(FAINT));
             return EmitterSample { direction, limit: R::splat(f32::MAX), light, density };
         }
-        let distance = (V3::<R>::splat(numbers(light.position)) - origin).map(|c| c.flush(SMALL)).normalised().1;
+        let away = (V3::<R>::splat(numbers(light.position)) - origin).map(|c| c.flush(SMALL));
+        let distance = away.direction_and_length().1;
         if distance.lt(R::splat(TINY)) {
             return Self::none();
         }
@@ -122,7 +123,13 @@ impl<R: Scalar> EmitterSample<R> {
 
     /// A triangle or a disk.
     #[inline(always)]
-    fn of_plane(effects: Effects, primitive: &Primitive, emission: &Emission, origin: V3<R>, place: (u32, u32)) -> Self {
+    fn of_plane(
+        effects: Effects,
+        primitive: &Primitive,
+        emission: &Emission,
+        origin: V3<R>,
+        place: (u32, u32),
+    ) -> Self {
         let coordinates = if effects.has(Effects::DISK) && primitive.is_disk() {
             let (x, y) = on_circle::<R>(place.1);
             let reach = R::splat(unit(place.0)).sqrt();
@@ -138,7 +145,7 @@ impl<R: Scalar> EmitterSample<R> {
     #[inline(always)]
     fn of_place(emission: &Emission, position: V3<R>, normal: V3<R>, origin: V3<R>) -> Self {
         let away = (position - origin).map(|c| c.flush(SMALL));
-        let (direction, distance) = away.normalised();
+        let (direction, distance) = away.direction_and_length();
         let facing = -normal.dot(direction).flush(SMALL);
         let is_seen = if emission.sides.x != 0 { !facing.eq(R::splat(0.0)) } else { R::splat(0.0).lt(facing) };
         let density = over_area(emission, away, facing.abs());
@@ -163,13 +170,13 @@ impl<R: Scalar> EmitterSample<R> {
             let normal = V3::new(x * across, y * across, height).map(|c| c.flush(TINY));
             return Self::of_place(emission, centre + normal * radius, normal, origin);
         }
-        let (axis, distance) = (centre - origin).map(|c| c.flush(SMALL)).normalised();
+        let (axis, distance) = (centre - origin).map(|c| c.flush(SMALL)).direction_and_length();
         let height = (drawn * cone.height).flush(FAINT);
         let square = (height * (one + one - height)).flush(FAINT);
         let (sine, cosine) = (square.sqrt(), one - height);
         let [right, up] = tangents(axis);
         let across = (right * x + up * y).map(|c| c.flush(TINY));
-        let direction = (across * sine + axis * cosine).map(|c| c.flush(TINY)).normalised().0;
+        let direction = (across * sine + axis * cosine).map(|c| c.flush(TINY));
         let half = (radius * radius - (distance * distance * square).flush(FAINT)).max(zero).sqrt();
         let limit = (distance * cosine - half) * R::splat(1.0 - SHORT);
         let density = cone.density(emission, radius);
@@ -198,7 +205,7 @@ impl<R: Scalar> Density<R> {
             }
         }
         let away = (at.position - origin).map(|c| c.flush(SMALL));
-        over_area(emission, away, at.normal.dot(away.normalised().0).flush(SMALL).abs())
+        over_area(emission, away, at.normal.dot(away.direction_and_length().0).flush(SMALL).abs())
     }
 
     /// A radiance over the density.

@@ -9,7 +9,7 @@ use crate::sampler::unit;
 pub const INVERSE_PI: f32 = core::f32::consts::FRAC_1_PI;
 
 /// A direction around a unit normal whose density over solid angle is its cosine over pi, and that cosine, which is at least 2^-12:
-/// uniform on a disk, and up from there (Malley's method).
+/// uniform on a disk, and up from there (Malley's method). Of unit length but for a few roundoffs.
 #[inline(always)]
 pub fn cosine_direction<R: Scalar>(normal: V3<R>, (radius, angle): (u32, u32)) -> (V3<R>, R) {
     let square = R::splat(unit(radius));
@@ -17,7 +17,7 @@ pub fn cosine_direction<R: Scalar>(normal: V3<R>, (radius, angle): (u32, u32)) -
     let (x, y) = on_circle::<R>(angle);
     let [right, up] = tangents(normal);
     let beside = (right * x + up * y).map(|c| c.flush(TINY)) * across;
-    ((beside + normal * cosine).map(|c| c.flush(TINY)).normalised().0, cosine)
+    ((beside + normal * cosine).map(|c| c.flush(TINY)), cosine)
 }
 
 #[cfg(test)]
@@ -47,7 +47,7 @@ mod tests {
                 assert!((mean(&|(d, _)| d.dot(axis) * d.dot(axis)) - 0.25).abs() < error);
             }
             for (d, cosine) in &directions {
-                assert!((d.dot(normal) - cosine).abs() < 1e-6 && (d.dot(*d) - 1.0).abs() < 1e-12);
+                assert!((d.dot(normal) - cosine).abs() < 1e-6 && (d.dot(*d) - 1.0).abs() < 1e-6);
                 assert!(*cosine >= 1.0 / 4096.0);
             }
         }

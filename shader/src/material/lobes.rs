@@ -38,12 +38,7 @@ pub struct Lobe<R: Real> {
 impl<R: Scalar> Lobes<R> {
     /// Of a surface that is seen along `direction`.
     #[inline(always)]
-    pub fn new(
-        effects: Effects,
-        surface: &Surface<R>,
-        interaction: &SurfaceInteraction<R>,
-        direction: V3<R>,
-    ) -> Self {
+    pub fn new(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let diffuse_only = Lobes {
             diffuse: STEPS,

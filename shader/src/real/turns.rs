@@ -1,8 +1,7 @@
 //! Sine and cosine from polynomials of `+` and `*`: the same bits on every device.
 
 /// Taylor's for the sine of f quarters of a turn, over f; largest error on [-1/2, 1/2] 1.8e-9 before rounding.
-const SINE: [f32; 5] =
-    [core::f32::consts::FRAC_PI_2, -0.645_964_1, 0.079_692_624, -0.004_681_754, 0.000_160_441_18];
+const SINE: [f32; 5] = [core::f32::consts::FRAC_PI_2, -0.645_964_1, 0.079_692_624, -0.004_681_754, 0.000_160_441_18];
 
 /// Taylor's for the cosine, likewise; largest error 1.2e-10 before rounding.
 const COSINE: [f32; 6] = [1.0, -1.233_700_5, 0.253_669_5, -0.020_863_48, 0.000_919_260_26, -0.000_025_202_042];
@@ -19,15 +18,9 @@ pub fn cos_sin(turns: u32) -> (f32, f32) {
     let within = ((shifted & 0x3fff_ffff) >> 6) as i32 - (1 << 23);
     let f = within as f32 * STEP;
     let square = f * f;
-    let mut sine = SINE[4];
-    let mut cosine = COSINE[5] * square + COSINE[4];
-    let mut i = 4;
-    while i > 0 {
-        i -= 1;
-        sine = sine * square + SINE[i];
-        cosine = cosine * square + COSINE[i];
-    }
-    let sine = f * sine;
+    let sine = (((SINE[4] * square + SINE[3]) * square + SINE[2]) * square + SINE[1]) * square + SINE[0];
+    let cosine = ((COSINE[5] * square + COSINE[4]) * square + COSINE[3]) * square + COSINE[2];
+    let (sine, cosine) = (f * sine, (cosine * square + COSINE[1]) * square + COSINE[0]);
     match shifted >> 30 {
         0 => (cosine, sine),
         1 => (-sine, cosine),

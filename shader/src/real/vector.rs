@@ -145,6 +145,17 @@ impl<R: Real> V3<R> {
     }
 }
 
+impl<R: Real> V3<R> {
+    /// As [`V3::normalised`], for fewer instructions: of components that are zero or between 2^-40 and 2^60.
+    #[inline(always)]
+    pub fn direction_and_length(self) -> (Self, R) {
+        let length = self.dot(self).sqrt();
+        let none = length.eq(R::splat(0.0));
+        let shrink = R::select(none, R::splat(1.0), length).reciprocal();
+        ((self * shrink).map(|c| c.flush(super::TINY)), length)
+    }
+}
+
 impl<R: Real> Add for V3<R> {
     type Output = Self;
     #[inline(always)]

@@ -137,31 +137,38 @@ mod tests {
         let cell = |(right, down): (f32, f32)| ((right / 2.0) as u32, (down / 2.0) as u32);
         for (edge, pixel) in [(7, (3, 5)), (128, (0, 1))] {
             let cells: HashSet<_> = (0..edge * edge)
-                .map(|sample| cell(place(Launch(Launch::JITTERED), edge, Sample::new(Key::new(pixel, 0), edge, sample))))
+                .map(|sample| {
+                    cell(place(Launch(Launch::JITTERED), edge, Sample::new(Key::new(pixel, 0), edge, sample)))
+                })
                 .collect();
             assert_eq!(cells.len(), (edge * edge) as usize);
         }
     }
 
-    /// The slope of the root mean square error over 96 pixels against the number of samples, 16 to 4096.
-    fn slope(sampler: u32, integrand: impl Fn([f64; 2]) -> f64, exact: f64) -> f64 {
+    /// The slope of the root mean square of an error over 96 pixels against the number of samples, 16 to 4096.
+    fn fitted(error: &dyn Fn(u32, u32) -> f64) -> f64 {
         let points: Vec<(f64, f64)> = (2..=6)
             .map(|half| {
-                let (edge, count) = (1 << half, 1 << (2 * half));
-                let error = |pixel: u32| {
-                    let at = |sample| {
-                        let (right, down) = place(Launch(sampler), edge, Sample::new(Key(pixel, 2 * pixel), edge, sample));
-                        [right, down].map(|half_cells| f64::from(half_cells) / f64::from(2 * edge))
-                    };
-                    (0..count).map(|sample| integrand(at(sample))).sum::<f64>() / f64::from(count) - exact
-                };
-                let square = (0..96).map(error).map(|e| e * e).sum::<f64>() / 96.0;
+                let count = 1 << (2 * half);
+                let square = (0..96).map(|pixel| error(pixel, count).powi(2)).sum::<f64>() / 96.0;
                 (f64::from(count).log2(), square.sqrt().log2())
             })
             .collect();
         let mean = |f: &dyn Fn(&(f64, f64)) -> f64| points.iter().map(f).sum::<f64>() / points.len() as f64;
         let (x, y) = (mean(&|p| p.0), mean(&|p| p.1));
         mean(&|p| (p.0 - x) * (p.1 - y)) / mean(&|p| (p.0 - x) * (p.0 - x))
+    }
+
+    /// That of an integrand over places in the pixel.
+    fn slope(sampler: u32, integrand: impl Fn([f64; 2]) -> f64, exact: f64) -> f64 {
+        fitted(&|pixel, count| {
+            let edge = count.isqrt();
+            let at = |sample| {
+                let (right, down) = place(Launch(sampler), edge, Sample::new(Key(pixel, 2 * pixel), edge, sample));
+                [right, down].map(|half_cells| f64::from(half_cells) / f64::from(2 * edge))
+            };
+            (0..count).map(|sample| integrand(at(sample))).sum::<f64>() / f64::from(count) - exact
+        })
     }
 
     /// Known rates: of what is smooth -3/2 by Owen's scrambling, -1 by jittered cells; along an edge -3/4 by both; -1/2 by
@@ -177,6 +184,46 @@ mod tests {
         assert!(sobol[0] <= -1.3 && sobol[1] <= -0.7, "{sobol:?}");
         assert!(jittered[0] <= -0.9 && jittered[1] <= -0.65, "{jittered:?}");
         assert!(random.iter().all(|slope| (slope + 0.5).abs() < 0.1), "{random:?}");
+    }
+
+    /// One set of four dimensions, which two sets of two would not do: their rate is that of chance.
+    #[test]
+    fn errors_in_four_dimensions_fall_as_fast_as_they_should() {
+        let product = |[a, b, c, d]: [f64; 4]| [a, b, c, d].map(|x| 1.0 + 1.8 * (x - 0.5)).iter().product::<f64>();
+        let drawn = |pixel: u32, sample, number| {
+            let set = set(Launch(Launch::SOBOL), Key(pixel, 7), sample, number);
+            [set.x, set.y, set.z, set.w].map(|x| f64::from(x) / 4_294_967_296.0)
+        };
+        let slope = |at: &dyn Fn(u32, u32) -> [f64; 4]| {
+            fitted(&|pixel, count| {
+                (0..count).map(|sample| product(at(pixel, sample))).sum::<f64>() / f64::from(count) - 1.0
+            })
+        };
+        let together = slope(&|pixel, sample| drawn(pixel, sample, 0));
+        let apart = slope(&|pixel, sample| {
+            let ([a, b, ..], [c, d, ..]) = (drawn(pixel, sample, 0), drawn(pixel, sample, 1));
+            [a, b, c, d]
+        });
+        println!("one set of four {together:.2}, two sets of two {apart:.2}");
+        assert!(together <= -1.1 && apart > -0.7, "{together}, {apart}");
+    }
+
+    /// A disk light's penumbra: how much of the disk is seen past an edge, over places in the pixel and on the light.
+    #[test]
+    fn the_error_of_a_penumbra_falls_as_fast_as_it_should() {
+        let drawn = |pixel: u32, sample| {
+            let set = set(Launch(Launch::SOBOL), Key(pixel, 9), sample, 0);
+            [set.x, set.z, set.w].map(|x| f64::from(x) / 4_294_967_296.0)
+        };
+        // A half plane cuts the disk's height; where, changes over the pixel. The mean is by symmetry a half.
+        let seen = |[x, radius, angle]: [f64; 3]| {
+            let height = radius.sqrt() * (angle * std::f64::consts::TAU).sin();
+            f64::from(u8::from(height < x - 0.5))
+        };
+        let mean = |pixel, count| (0..count).map(|sample| seen(drawn(pixel, sample))).sum::<f64>() / f64::from(count);
+        let slope = fitted(&|pixel, count| mean(pixel, count) - 0.5);
+        println!("penumbra {slope:.2}");
+        assert!(slope <= -0.6, "{slope}");
     }
 
     /// No two dimensions or neighbours go together: means of products, each within five of its standard errors.

@@ -14,33 +14,12 @@ pub fn sobol(index: u32, seeds: [u32; 3]) -> [u32; 2] {
 #[inline(always)]
 pub fn sobol4(index: u32, seeds: [u32; 3], further: [u32; 2]) -> UVec4 {
     let index = scrambled(index.reverse_bits(), seeds[0]).reverse_bits();
-    let (third, fourth) = recurrent(index);
     UVec4::new(
         scrambled(index, seeds[1]).reverse_bits(),
         scrambled(pascal(index), seeds[2]).reverse_bits(),
-        scrambled(third, further[0]).reverse_bits(),
-        scrambled(fourth, further[1]).reverse_bits(),
+        scrambled(third(index), further[0]).reverse_bits(),
+        scrambled(fourth(index), further[1]).reverse_bits(),
     )
-}
-
-/// The digits of the third and fourth dimension, the first digit lowest: the sum modulo 2 of what each digit of the index flips,
-/// which follows from those of the digits before by the primitive polynomials x^2 + x + 1 and x^3 + x + 1 (Bratley and Fox,
-/// Algorithm 659, 1988; starting numbers of Joe and Kuo, 2008: 1, 3 and 1, 3, 1).
-#[inline(always)]
-fn recurrent(index: u32) -> (u32, u32) {
-    let (mut third, mut fourth) = (0, 0);
-    let (mut a, mut next_a) = (1u32, 3u32);
-    let (mut b, mut next_b, mut last_b) = (1u32, 3u32, 4u32);
-    let mut rest = index;
-    while rest != 0 {
-        let flips = 0u32.wrapping_sub(rest & 1);
-        third ^= a & flips;
-        fourth ^= b & flips;
-        (a, next_a) = (next_a, next_a ^ a ^ (a << 2));
-        (b, next_b, last_b) = (next_b, last_b, next_b ^ b ^ (b << 3));
-        rest >>= 1;
-    }
-    (third, fourth)
 }
 
 /// The digits of the second dimension, the first digit lowest: the index times Pascal's triangle modulo 2. That is the
@@ -52,6 +31,47 @@ fn pascal(index: u32) -> u32 {
     let x = x ^ ((x & 0xf0f0_f0f0) >> 4);
     let x = x ^ ((x & 0xff00_ff00) >> 8);
     x ^ (x >> 16)
+}
+
+/// The digits of the third dimension, the first digit lowest: those of the index in base x^2 + x + 1 as a polynomial modulo 2.
+/// (Tezuka, Polynomial Arithmetic Analogue of Halton Sequences, 1993. Sobol's own directions differ from these by what Owen's
+/// scrambling draws anyway.) The square of a polynomial has the squares of its terms, so blocks are halved by division by
+/// x^16 + x^8 + 1, x^8 + x^4 + 1 and so on: without loops, which took a compiler of lavapipe longer than anyone waits.
+#[inline(always)]
+fn third(index: u32) -> u32 {
+    let x = halved(index, 8, 0x0000_ffff, 0x0000_00ff);
+    let x = halved(x, 4, 0x00ff_00ff, 0x000f_000f);
+    let x = halved(x, 2, 0x0f0f_0f0f, 0x0303_0303);
+    halved(x, 1, 0x3333_3333, 0x1111_1111)
+}
+
+/// Divides each block by x^2m + x^m + 1: `half` has the lower halves' bits, `quarter` their lower halves'.
+#[inline(always)]
+fn halved(x: u32, m: u32, half: u32, quarter: u32) -> u32 {
+    let upper = (x >> (2 * m)) & half;
+    let over = (upper >> m) & quarter;
+    let rest = (x & half) ^ upper ^ ((upper << m) & half) ^ over ^ (over << m);
+    rest | ((upper ^ over) << (2 * m))
+}
+
+/// The digits of the fourth dimension, likewise in base x^3 + x + 1, by x^24 + x^8 + 1, x^12 + x^4 + 1 and so on. Its blocks do not
+/// fill a word: the highest ones are shorter.
+#[inline(always)]
+fn fourth(index: u32) -> u32 {
+    let upper = index >> 24;
+    let x = index ^ upper ^ (upper << 8);
+    let x = divided(x & 0x00ff_ffff, 4, 0x0000_0fff, 0x0000_000f) | (x & 0xff00_0000);
+    let x = divided(x, 2, 0x3f03_f03f, 0x0300_3003);
+    divided(x & 0x3fff_ffff, 1, 0x071c_71c7, 0x0104_1041) | (x & 0xc000_0000)
+}
+
+/// Divides each block by x^3m + x^m + 1: `half` has the lower halves' bits, `third` their lowest thirds'.
+#[inline(always)]
+fn divided(x: u32, m: u32, half: u32, third: u32) -> u32 {
+    let upper = (x >> (3 * m)) & half;
+    let over = (upper >> (2 * m)) & third;
+    let rest = (x & half) ^ upper ^ ((upper << m) & half) ^ over ^ (over << m);
+    rest | ((upper ^ over) << (3 * m))
 }
 
 /// Flips each digit as a hash of the lower ones says (Laine and Karras 2011, with the constants of Vegdahl, Owen Scrambling
@@ -85,23 +105,48 @@ mod tests {
         }
     }
 
-    /// As the table of direction numbers of Joe and Kuo (new-joe-kuo-6.21201) gives it, by the definition of the sequence.
+    /// As long division gives them, remainder after remainder.
     #[test]
-    fn further_dimensions_are_those_of_the_tables() {
-        for (degree, coefficients, start) in [(2, 1, vec![1u32, 3]), (3, 1, vec![1, 3, 1])] {
-            let mut m: Vec<u64> = start.iter().map(|&m| u64::from(m)).collect();
-            for i in degree..32 {
-                let mut next = m[i - degree] ^ (m[i - degree] << degree);
-                for k in 1..degree {
-                    next ^= if coefficients >> (degree - 1 - k) & 1 == 1 { m[i - k] << k } else { 0 };
+    fn further_dimensions_are_digits_in_a_base_of_polynomials() {
+        let digits = |mut n: u64, base: u64, degree: u32| {
+            let (mut digits, mut place) = (0u64, 0);
+            while n != 0 {
+                let mut quotient = 0;
+                while n >> degree != 0 {
+                    let shift = 63 - n.leading_zeros() - degree;
+                    n ^= base << shift;
+                    quotient |= 1 << shift;
                 }
-                m.push(next);
+                digits |= n << place;
+                place += degree;
+                n = quotient;
             }
-            for index in [1u32, 2, 3, 7, 0x8000_0001, 0xdead_beef, u32::MAX] {
-                let digits = (0..32).filter(|&i| index >> i & 1 == 1).fold(0, |sum, i| sum ^ (m[i] << (31 - i)) as u32);
-                let (third, fourth) = recurrent(index);
-                let got = if degree == 2 { third } else { fourth };
-                assert_eq!(got.reverse_bits(), digits, "degree {degree}, {index:x}");
+            digits as u32
+        };
+        for index in (0..5000).chain([0x8000_0001, 0xdead_beef, 0xc000_0000, u32::MAX]) {
+            assert_eq!(third(index), digits(u64::from(index), 0b111, 2), "{index:x}");
+            assert_eq!(fourth(index), digits(u64::from(index), 0b1011, 3), "{index:x}");
+        }
+    }
+
+    /// A (3, k, 4)-net, as Sobol's: 8 points in each box of 2^3 times its size.
+    #[test]
+    fn every_aligned_run_is_as_even_in_four_dimensions() {
+        let k = 9u32;
+        for seed in 0..8 {
+            let [a, b, c] = crate::sampler::hash([seed, 6, 0]);
+            let points: Vec<_> = (seed << k..(seed + 1) << k).map(|i| sobol4(i, [a, b, c], [!a, !b])).collect();
+            for cut in 0..7u32.pow(4) {
+                let parts = [cut % 7, cut / 7 % 7, cut / 49 % 7, cut / 343];
+                if parts.iter().sum::<u32>() != k - 3 {
+                    continue;
+                }
+                let mut counts = std::collections::HashMap::new();
+                for point in &points {
+                    let digits = |axis: usize| point[axis].checked_shr(32 - parts[axis]).unwrap_or(0);
+                    *counts.entry([0, 1, 2, 3].map(digits)).or_insert(0) += 1;
+                }
+                assert!(counts.len() == 1 << (k - 3) && counts.values().all(|&n| n == 8), "{seed}, {parts:?}");
             }
         }
     }

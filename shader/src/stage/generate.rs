@@ -20,6 +20,7 @@ pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, slot: u32, paths
         weight: V3::splat(glam::Vec3::ONE),
         bounces: 0,
         density: R::splat(0.0),
+        pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
     path.store(frame.slots, slot, pixel.inside, paths);
 }

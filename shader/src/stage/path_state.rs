@@ -28,6 +28,8 @@ pub struct PathState<R: Real> {
     /// The probability density over solid angle of its direction; 0 if it could be no other: the camera's, a mirror's or a
     /// lens'.
     pub density: R,
+    /// The column and, in the upper half, the row of its pixel in the image.
+    pub pixel: u32,
 }
 
 /// A ray to a sampled light, and the light that arrives if nothing is between.
@@ -50,8 +52,9 @@ impl<R: Scalar> PathState<R> {
     #[inline(always)]
     pub fn load(slots: u32, slot: u32, paths: &[R::Record]) -> Self {
         let at = |k| R::load(read(paths, k * slots + slot));
-        let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, _)) = (at(0), at(1), at(2), at(3));
-        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x }
+        let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, pixel)) =
+            (at(0), at(1), at(2), at(3));
+        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel }
     }
 
     /// Keeps it; `follows` unless it is not to be traced.
@@ -62,7 +65,7 @@ impl<R: Scalar> PathState<R> {
         write(paths, at(0), R::store(self.origin, self.source_primitive));
         write(paths, at(1), R::store(self.direction, limit.to_bits()));
         write(paths, at(2), R::store(self.weight, self.bounces));
-        write(paths, at(3), R::store(V3::new(self.density, R::splat(0.0), R::splat(0.0)), 0));
+        write(paths, at(3), R::store(V3::new(self.density, R::splat(0.0), R::splat(0.0)), self.pixel));
     }
 }
 

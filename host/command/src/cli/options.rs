@@ -201,7 +201,10 @@ impl View {
         if settings.grid().is_none() {
             let many = settings.samples_a_pixel();
             let remedy = "take a square up to 4096, or --sampler sobol";
-            return Err(Error::new(format!("--spp {many}: the sampler {} has no grid of so many samples; {remedy}", settings.sampler.name())));
+            return Err(Error::new(format!(
+                "--spp {many}: the sampler {} has no grid of so many samples; {remedy}",
+                settings.sampler.name()
+            )));
         }
         within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;

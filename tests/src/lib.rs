@@ -24,8 +24,11 @@ use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use eyerays_shader::real::Scalar;
 
-/// The scenes that the project ships.
+/// The scenes that the project ships for Whitted's model.
 pub const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
+
+/// Those whose light is sampled.
+pub const SAMPLED: [&str; 4] = ["cornell_path", "soft_shadows", "bleeding", "occlusion"];
 
 /// A shipped scene by its name.
 ///
@@ -39,7 +42,7 @@ pub fn shipped(name: &str) -> Scene {
 
 /// The scene's own settings at another size and number of samples.
 pub fn settings(scene: &Scene, size: (u32, u32), samples: u32) -> Settings {
-    Settings { size, samples, ..scene.settings }
+    Settings { size, samples, spp: 0, ..scene.settings }
 }
 
 /// A scene packed at medium quality.

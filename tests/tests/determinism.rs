@@ -10,7 +10,7 @@ use eyerays::view::Region;
 use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
 use eyerays_shader::stage::NON_FINITE;
-use eyerays_tests::{Posed, SHIPPED, assert_same_bits, pack, pack_in, settings, shipped, traversals};
+use eyerays_tests::{Posed, SAMPLED, SHIPPED, assert_same_bits, pack, pack_in, settings, shipped, traversals};
 
 /// Edges that no tile's edge divides.
 const SIZE: (u32, u32) = (83, 61);
@@ -21,7 +21,7 @@ fn render<R: Scalar<Record: Send + Sync>>(posed: &Posed, threads: usize) -> (Fil
 
 /// The same film at 1, 2 and 7 threads, and twice with each.
 fn any_number_of_threads<R: Scalar<Record: Send + Sync>>() {
-    for name in SHIPPED {
+    for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
         let (film, rays) = render::<R>(&packed, 1);
@@ -50,7 +50,7 @@ fn threads_change_nothing_in_reference_precision() {
 
 #[test]
 fn a_better_hierarchy_changes_nothing() {
-    for name in SHIPPED {
+    for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         for camera in &scene.cameras {
             let of = |quality| {
@@ -70,7 +70,7 @@ fn a_better_hierarchy_changes_nothing() {
 
 #[test]
 fn another_method_changes_nothing() {
-    for name in SHIPPED {
+    for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         for camera in &scene.cameras {
             let packed = pack(&scene, camera, settings(&scene, (41, 31), 1));
@@ -98,7 +98,7 @@ fn tiles((width, height): (u32, u32), (columns, rows): (u32, u32)) -> Vec<Region
 
 #[test]
 fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
-    for name in SHIPPED {
+    for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[1], settings(&scene, SIZE, 3));
         let (whole, rays) = render::<f32>(&packed, 2);

@@ -1,7 +1,9 @@
 //! How light is carried: by which integrator, and what those that sample need to know.
 
 use eyerays_shader::data::Launch;
+use glam::Vec3;
 
+use super::{Material, Scene};
 use crate::choice::choices;
 
 choices! {
@@ -52,6 +54,20 @@ pub struct Transport {
 }
 
 impl Integrator {
+    /// What of a scene it leaves out, in a line.
+    pub fn ignored(self, scene: &Scene) -> Option<String> {
+        let any = |of: &dyn Fn(&Material) -> bool| scene.materials.iter().any(of);
+        let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient != Vec3::ZERO);
+        let has_highlights = !scene.lights.is_empty() && any(&|m| m.specular != Vec3::ZERO);
+        let what = match (has_ambient, has_highlights) {
+            (true, true) => "ambient light and Phong's highlights are",
+            (true, false) => "ambient light is",
+            (false, true) => "Phong's highlights are",
+            (false, false) => return None,
+        };
+        (self == Integrator::Path).then(|| format!("{what} not drawn: the integrator path finds all light by itself"))
+    }
+
     /// Does it need samples, and have noise?
     pub fn samples(self) -> bool {
         self != Integrator::Whitted

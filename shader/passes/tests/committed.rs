@@ -19,6 +19,8 @@ fn specialisations() -> Vec<Specialisation> {
     let stream = effects(0).with_launch(Launch::STREAM | Launch::MOLLER);
     let wave = effects(Effects::REFLECTION | Effects::REFRACTION | Effects::SMOOTH).with_launch(Launch::SECONDARY);
     let layout = |spec, bits| Specialisation { layout: Layout(bits), ..spec };
+    let path = effects(Effects::LIT | Effects::EMISSIVE | Effects::SPHERE | Effects::SMOOTH | Effects::REFRACTION);
+    let path = path.with_launch(Launch::SECONDARY | Launch::GOES_ON | Launch::SOBOL);
     let order = Specialisation { order: Order(Order::MORTON), ..effects(Effects::LIT) };
     vec![
         effects(0),
@@ -27,6 +29,8 @@ fn specialisations() -> Vec<Specialisation> {
         wave,
         layout(wave, Layout::SPLIT | Layout::INDEXED),
         layout(effects(0), Layout::COMPACT),
+        path,
+        effects(Effects::DISK).with_launch(Launch::OCCLUSION | Launch::RANDOM),
         order,
     ]
 }
@@ -80,6 +84,34 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
     assert_ne!(trace(split), trace(effects(0)));
 }
 
+/// The same where paths are scattered.
+#[test]
+fn what_a_path_does_not_meet_is_not_in_its_kernel() {
+    let kernels = Kernels::parse(modules::EXACT).unwrap();
+    let count = |spec: Specialisation| kernels.cut("exact::scatter", &spec.constants()).unwrap().instructions();
+    let lit = effects(Effects::LIT);
+    for effect in [
+        Effects::SMOOTH,
+        Effects::CHECKER,
+        Effects::REFLECTION,
+        Effects::REFRACTION,
+        Effects::EMISSIVE,
+        Effects::GRADIENT,
+        Effects::SPOT,
+        Effects::DIRECTIONAL,
+        Effects::SPHERE,
+        Effects::DISK,
+    ] {
+        assert!(count(effects(effect | Effects::LIT)) > count(lit), "{effect:#x}");
+    }
+    assert!(count(lit) > count(effects(0)));
+    assert!(count(effects(0).with_launch(Launch::OCCLUSION)) < count(effects(0)));
+    for way in [Launch::BY_LIGHT, Launch::BY_SURFACE] {
+        let emissive = effects(Effects::EMISSIVE);
+        assert!(count(emissive.with_launch(way)) < count(emissive), "{way:#x} weighs nothing");
+    }
+}
+
 #[test]
 fn a_kernel_binds_what_it_reads_and_writes() {
     use eyerays_shader::resources::binding::*;
@@ -114,6 +146,10 @@ fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
                 "shadow" => bound::shadow,
                 "shade" if votes => bound::voting::shade,
                 "shade" => bound::shade,
+                "scatter" if votes => bound::voting::scatter,
+                "scatter" => bound::scatter,
+                "generate" => bound::generate,
+                "accumulate" => bound::accumulate,
                 "advance" => bound::advance,
                 "gather" => bound::gather,
                 other => panic!("a stage {other}"),

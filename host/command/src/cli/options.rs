@@ -172,6 +172,8 @@ impl View {
     pub fn pack(&self, read: Read<'_>, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
         let Read { path, scene, time: read_time } = read;
         let settings = self.settings(&scene, effort)?;
+        let ignored = settings.transport.integrator.ignored(&scene);
+        super::warn(ignored.as_slice(), quiet);
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;
         let threads = cpu::pool(threads)?;
         let pack = || threads.install(|| DeviceScene::new(&scene, settings, effort.quality()));

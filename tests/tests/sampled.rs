@@ -1,0 +1,149 @@
+//! One picture of sampled light from GPU and CPU, in every bit, however its samples come. Without a GPU most of these tests do
+//! nothing, see [`gpu`].
+
+use eyerays::cpu;
+use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
+use eyerays::method::{Method, Traversal};
+use eyerays::quality::Bvh;
+use eyerays::scene::{Background, Direct, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, shipped};
+use glam::Vec3;
+
+fn exact() -> Option<Gpu> {
+    gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() })
+}
+
+/// Of the scene's own, as many samples as this.
+fn settings(scene: &Scene, size: (u32, u32), spp: u32) -> Settings {
+    Settings { size, spp, sampler: Sampler::Sobol, ..scene.settings }
+}
+
+fn assert_same(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
+    let (film, rays) = on_cpu::<f32>(packed);
+    assert_eq!(rays.non_finite, 0, "{what}");
+    assert!(film.pixels.iter().any(|&pixel| pixel != [0.0; 3]), "{what} is black");
+    let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert_same_bits(&rendering.film, &film, what);
+    assert_eq!(rendering.rays, rays, "{what}");
+    let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
+        // Its parts are added in another order.
+        (Some(a), Some(b)) => (a / b - 1.0).abs() < 1e-9,
+        (a, b) => a == b,
+    };
+    assert!(close(rendering.film.noise(), film.noise()), "{what}");
+}
+
+#[test]
+fn shipped_scenes() {
+    let Some(gpu) = exact() else { return };
+    for (name, method) in SAMPLED.into_iter().zip([Method::Auto, Method::Packet, Method::Wide, Method::IfIf]) {
+        let scene = shipped(name);
+        for (camera, size, spp) in [(0, (45, 37), 3), (scene.cameras.len() - 1, (16, 40), 1)] {
+            let packed = pack(&scene, &scene.cameras[camera], settings(&scene, size, spp));
+            assert_same(&gpu, &packed, method.into(), &format!("{name}, camera {camera}, {size:?} x {spp}"));
+        }
+    }
+}
+
+/// Lights with and without extent in one scene, before a sky that is light, with smooth and checkered surfaces, mirrors and
+/// glass, by each way to find lights, with chance at every bounce and a limit to what it brings.
+#[test]
+fn everything_at_once() {
+    let Some(gpu) = exact() else { return };
+    let mut scene = shipped("glass");
+    scene.background = Background::Gradient { horizon: Vec3::new(0.3, 0.2, 0.1), zenith: Vec3::new(0.1, 0.2, 0.5) };
+    scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2) });
+    let (position, target) = (Vec3::new(1.0, 4.0, 2.0), Vec3::ZERO);
+    scene.lights.push(Light::Spot { position, target, colour: Vec3::splat(9.0), outer: 30.0, inner: 10.0 });
+    scene.materials[0].emission = Vec3::new(0.2, 0.3, 0.1);
+    for (direct, sampler) in [(Direct::Power, Sampler::Random), (Direct::Balance, Sampler::Jittered)] {
+        let transport =
+            Transport { integrator: Integrator::Path, direct, roulette: 0, clamp: 3.0, seed: 99, ..Transport::default() };
+        let settings = Settings { transport, sampler, bounces: 6, ..settings(&scene, (40, 30), 4) };
+        let packed = pack(&scene, &scene.cameras[0], settings);
+        assert_same(&gpu, &packed, Traversal::default(), &format!("{direct:?}"));
+    }
+}
+
+/// In flight together or one by one, all at once or in parts: a film is kept with what rounding took off.
+#[test]
+fn samples_in_parts() {
+    let scene = shipped("bleeding");
+    let packed = pack(&scene, &scene.cameras[0], settings(&scene, (61, 45), 16));
+    let (film, rays) = on_cpu::<f32>(&packed);
+    let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
+    for parts in [&[8, 8][..], &[1, 3, 12]] {
+        let mut picture = renderer.start::<f32>(&packed.view);
+        parts.iter().for_each(|&count| renderer.add(&mut picture, count));
+        let (got, counted) = picture.film().unwrap();
+        assert_same_bits(&got, &film, &format!("CPU, {parts:?}"));
+        assert_eq!(counted, rays);
+    }
+    let Some(mut gpu) = exact() else { return };
+    let sample = 64 * 16 * 64 * 48;
+    for (in_flight, parts) in [(16, &[16][..]), (16, &[8, 8]), (4, &[16]), (1, &[16]), (1, &[5, 11])] {
+        gpu.report.max_binding = gpu.report.max_buffer.min(in_flight * sample / 16);
+        let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+        renderer.start(&packed.view).unwrap();
+        for &count in parts {
+            renderer.add(count, &|_| ()).unwrap();
+            renderer.film().unwrap();
+        }
+        let rendering = renderer.film().unwrap();
+        assert_same_bits(&rendering.film, &film, &format!("{in_flight} in flight, {parts:?}"));
+        assert_eq!(rendering.rays, rays);
+    }
+}
+
+/// A hundred thousand samples: their sum has no error to speak of, which one without its rests would have.
+#[test]
+fn long_sums_keep_their_digits() {
+    let mut scene = eyerays_tests::model::empty();
+    scene.background = Background::Colour(Vec3::splat(0.1));
+    let lamp = eyerays_tests::model::matt(Vec3::ONE);
+    eyerays_tests::model::add_wall(&mut scene, lamp, Vec3::new(0.0, 0.0, 5.0), 1.0);
+    let transport = Transport { integrator: Integrator::Path, ..Transport::default() };
+    let packed = pack(&scene, &scene.cameras[0], Settings { transport, ..settings(&scene, (1, 1), 100_000) });
+    let got = on_cpu::<f32>(&packed).0.pixels[0][0];
+    assert_eq!(got, 0.1);
+    let plain = (0..100_000).fold(0f32, |sum, _| sum + 0.1) / 100_000.0;
+    assert!((plain - 0.1).abs() > 1e-6, "this test could not fail: {plain}");
+}
+
+/// The emitters are listed by number, wherever the hierarchy puts them.
+#[test]
+fn every_quality_of_the_hierarchy() {
+    for name in SAMPLED {
+        let scene = shipped(name);
+        let of = |quality: Bvh| {
+            on_cpu::<f32>(&pack_in(&scene, &scene.cameras[0], settings(&scene, (40, 30), 2), quality.quality())).0
+        };
+        assert_same_bits(&of(Bvh::Fast), &of(Bvh::High), name);
+    }
+}
+
+/// Other lights of a scene that is loaded: positions and powers, which lights are chosen by.
+#[test]
+fn lights_change_without_another_scene() {
+    let mut scene = shipped("lights");
+    scene.settings.transport.integrator = Integrator::Path;
+    let settings = settings(&scene, (24, 18), 4);
+    let packed = pack(&scene, &scene.cameras[0], settings);
+    let mut renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
+    for (light, factor) in scene.lights.iter_mut().zip([0.0, 3.0, 0.5].into_iter().cycle()) {
+        match light {
+            Light::Point { colour, .. } | Light::Spot { colour, .. } | Light::Directional { colour, .. } => {
+                *colour *= factor;
+            }
+        }
+    }
+    renderer.set_lights(&scene.lights).unwrap();
+    let film = renderer.render::<f32>(&packed.view, &|_| (), &()).unwrap().0;
+    let fresh = pack(&scene, &scene.cameras[0], settings);
+    assert_same_bits(&film, &on_cpu::<f32>(&fresh).0, "CPU");
+    let Some(gpu) = exact() else { return };
+    let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+    renderer.set_lights(&scene.lights).unwrap();
+    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "GPU");
+}

@@ -48,5 +48,6 @@ pub mod rays;
 pub mod render;
 pub mod scene;
 pub mod stream;
+mod time_limit;
 pub mod view;
 mod why;

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use eyerays_shader::real::Fast;
+use eyerays_shader::real::{Fast, Scalar};
 
 use crate::choice::choices;
 use crate::cpu;
@@ -12,6 +12,7 @@ use crate::film::Film;
 use crate::gpu::{AdapterRequest, Gpu, Renderer, warm};
 use crate::method::{Processor, Traversal};
 use crate::rays::Rays;
+use crate::time_limit;
 use crate::view::View;
 pub use crate::why::Why;
 
@@ -78,6 +79,8 @@ pub struct Backend {
 pub struct Rendering {
     /// The picture.
     pub film: Film,
+    /// Samples of each pixel.
+    pub samples: u32,
     /// What was traced.
     pub rays: Rays,
     /// The device that ran.
@@ -106,6 +109,8 @@ struct Runs {
     warm_up: bool,
     /// At least once.
     repeat: u32,
+    /// How long it may take, instead of the view's samples.
+    limit: Option<Duration>,
     /// When their preparation began; a GPU that then can't is part of it.
     since: Instant,
 }
@@ -178,7 +183,17 @@ impl Backend {
         repeat: u32,
         done: &(dyn Fn(u64) + Sync),
     ) -> Result<Rendering> {
-        self.run((packed, view), Runs { warm_up: false, repeat, since: Instant::now() }, done)
+        self.run((packed, view), Runs { warm_up: false, repeat, limit: None, since: Instant::now() }, done)
+    }
+
+    /// Renders as many samples of each pixel as fit the time, at least one and at most those of the view: the picture has the
+    /// bits of one of [`Rendering::samples`].
+    ///
+    /// # Errors
+    /// As [`Backend::render`].
+    pub fn render_within(&self, packed: &DeviceScene, view: &View, limit: Duration) -> Result<Rendering> {
+        let runs = Runs { warm_up: false, repeat: 1, limit: Some(limit), since: Instant::now() };
+        self.run((packed, view), runs, &|_| ())
     }
 
     /// [`Backend::render`] after a warm-up, which counts for no time.
@@ -186,7 +201,7 @@ impl Backend {
     /// # Errors
     /// As [`Backend::render`].
     pub fn measure(&self, packed: &DeviceScene, view: &View, repeat: u32) -> Result<Rendering> {
-        self.run((packed, view), Runs { warm_up: true, repeat, since: Instant::now() }, &|_| ())
+        self.run((packed, view), Runs { warm_up: true, repeat, limit: None, since: Instant::now() }, &|_| ())
     }
 
     fn run(&self, scene: Seen<'_>, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
@@ -221,7 +236,10 @@ impl Backend {
         }
         let mut device_times = Some(Vec::new());
         let (last, times) = repeated(runs.repeat, || {
-            let rendering = renderer.render(view, done)?;
+            let rendering = match runs.limit {
+                Some(limit) => renderer.render_within(view, limit)?,
+                None => renderer.render(view, done)?,
+            };
             match rendering.device_time.zip(device_times.as_mut()) {
                 Some((time, times)) => times.push(time),
                 None => device_times = None,
@@ -231,6 +249,7 @@ impl Backend {
         let route = if self.choice.no_passthrough { ", through naga" } else { "" };
         Ok(Rendering {
             film: last.film,
+            samples: last.samples,
             rays: last.rays,
             device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
             processor: Processor::Gpu,
@@ -247,18 +266,19 @@ impl Backend {
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact => renderer.render::<f32>(view, done, &()),
-            Precision::Fast => renderer.render::<Fast>(view, done, &()),
-            Precision::Reference => renderer.render::<f64>(view, done, &()),
+            Precision::Exact => rendered::<f32>(&renderer, view, runs.limit, done),
+            Precision::Fast => rendered::<Fast>(&renderer, view, runs.limit, done),
+            Precision::Reference => rendered::<f64>(&renderer, view, runs.limit, done),
         };
         if runs.warm_up {
             render(&|_| ())?;
         }
-        let ((film, rays), times) = repeated(runs.repeat, || render(done))?;
+        let ((film, rays, samples), times) = repeated(runs.repeat, || render(done))?;
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
         Ok(Rendering {
             film,
+            samples,
             rays,
             device: format!("CPU ({threads} thread{plural})"),
             processor: Processor::Cpu,
@@ -269,6 +289,26 @@ impl Backend {
             times,
         })
     }
+}
+
+/// A picture, its rays and the samples of each pixel.
+fn rendered<R: Scalar<Record: Send + Sync>>(
+    renderer: &cpu::Renderer<'_>,
+    view: &View,
+    limit: Option<Duration>,
+    done: &(dyn Fn(u64) + Sync),
+) -> Result<(Film, Rays, u32)> {
+    let Some(limit) = limit else {
+        let (film, rays) = renderer.render::<R>(view, done, &())?;
+        return Ok((film, rays, view.samples()));
+    };
+    let mut picture = renderer.start::<R>(view);
+    time_limit::fill(limit, view.samples(), |count| {
+        renderer.add(&mut picture, count);
+        Ok(())
+    })?;
+    let (film, rays) = picture.film()?;
+    Ok((film, rays, picture.samples()))
 }
 
 /// Runs `repeat` times, at least once, and keeps the last result and all times.

@@ -177,9 +177,12 @@ fn a_furnace() {
     let glowing = Material { emission: Vec3::splat(0.5), two_sided: true, ..matt(Vec3::splat(0.5)) };
     let scene = in_sphere(glowing);
     for direct in WAYS {
-        for roulette in [3, Settings::MOST_BOUNCES] {
+        // Without chance a path ends after a hundred bounces, where it no longer counts.
+        let roulettes = if direct == Direct::Power { &[3, Settings::MOST_BOUNCES][..] } else { &[3] };
+        for &roulette in roulettes {
             let transport = Transport { roulette, direct, ..once().transport };
-            let settings = Settings { bounces: Settings::MOST_BOUNCES, spp: 1024, transport, ..once() };
+            let spp = if roulette == 3 { 1024 } else { 64 };
+            let settings = Settings { bounces: Settings::MOST_BOUNCES, spp, transport, ..once() };
             let (got, error) = mean(&render(&scene, &inside(), settings));
             println!("{direct:?}, roulette {roulette}: {got:.5}, standard error {error:.1e}");
             assert!((got - 1.0).abs() < 1e-3, "{direct:?}, roulette {roulette}: {got}");
@@ -193,9 +196,6 @@ fn a_ball_in_white_surroundings() {
     let mut scene = in_sphere(matt(Vec3::new(0.3, 0.5, 0.9)));
     scene.background = Background::Colour(Vec3::ONE);
     let camera = Camera { eye: Vec3::Z * 3.0, fov: 25.0, target: Vec3::ZERO, ..inside() };
-    for integrator in [Integrator::Path] {
-        let transport = Transport { integrator, ..once().transport };
-        let film = render(&scene, &camera, Settings { spp: 16, transport, ..once() });
-        assert!(film.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
-    }
+    let film = render(&scene, &camera, Settings { spp: 16, ..once() });
+    assert!(film.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
 }

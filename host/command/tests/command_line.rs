@@ -232,3 +232,18 @@ fn cameras_are_named_numbered_or_given() {
     // Straight down, where the usual up has no direction.
     render("h.exr", &["--eye", "0,5,0", "--target", "0,0,0"]);
 }
+
+/// However many samples fit, they are the first ones: as many give the same bits.
+#[test]
+fn a_time_limit_gives_the_bits_of_the_samples_that_it_tells() {
+    let place = Place::new(&[]);
+    let scene = shipped("bleeding");
+    let common = ["render", &scene, "--size", "24x18", "--device", "cpu", "--json", "-o"];
+    let limited = place.succeed(&[&common[..], &["a.exr", "--time-limit", "0.05"]].concat()).json();
+    let samples = limited["spp"].to_string();
+    assert!(samples.parse::<u32>().unwrap() >= 1);
+    let counted = place.succeed(&[&common[..], &["b.exr", "--spp", &samples]].concat()).json();
+    assert_eq!(limited["film_hash"], counted["film_hash"], "{samples} samples");
+    let other = place.succeed(&[&common[..], &["c.exr", "--spp", &samples, "--seed", "1"]].concat()).json();
+    assert_ne!(limited["film_hash"], other["film_hash"]);
+}

@@ -29,7 +29,7 @@ fn the_readmes_pictures_are_what_the_program_renders() {
         toml::from_str(&fs::read_to_string(docs("pictures.toml")).unwrap()).unwrap();
     let readme = fs::read_to_string(docs("../README.md")).unwrap();
     let shown = |name: &str| readme.contains(&format!("](docs/{name})"));
-    assert!(pictures.len() == 4 && pictures.keys().all(|name| shown(name)));
+    assert!(pictures.len() == 8 && pictures.keys().all(|name| shown(name)));
     let place = Place::new(&[]);
     for (name, Picture { scene, options, film_hash }) in &pictures {
         let scene = docs("..").join(scene);

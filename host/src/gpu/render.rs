@@ -24,6 +24,7 @@ use crate::method::Traversal;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
 use crate::scene::Light;
+use crate::time_limit;
 use crate::view::{Region, View};
 
 /// Bytes of films that are read back at once.
@@ -33,6 +34,8 @@ const READ: u64 = 1 << 28;
 pub struct GpuRendering {
     /// The picture.
     pub film: Film,
+    /// Samples of each pixel.
+    pub samples: u32,
     /// What was traced.
     pub rays: Rays,
     /// Time on the device, if it has a clock.
@@ -123,6 +126,19 @@ impl<'a> Renderer<'a> {
         Ok(rendering)
     }
 
+    /// Renders as many samples as fit a time, at least one and at most those of the view.
+    ///
+    /// # Errors
+    /// What the GPU reports.
+    pub fn render_within(&mut self, view: &View, limit: Duration) -> Result<GpuRendering> {
+        self.start(view)?;
+        time_limit::fill(limit, view.samples(), |count| {
+            self.add(count, &|_| ())?;
+            self.gpu.wait()
+        })?;
+        self.film()
+    }
+
     /// Starts a picture without any sample. Memory is taken if no picture before needed as much.
     ///
     /// # Errors
@@ -196,7 +212,7 @@ impl<'a> Renderer<'a> {
         let (mut film, mut rays) = (Film::new(width, height)?, Rays::default());
         let mut device_time = self.queue.has_clock().then_some(Duration::ZERO);
         if *samples == 0 {
-            return Ok(GpuRendering { film, rays, device_time });
+            return Ok(GpuRendering { film, samples: 0, rays, device_time });
         }
         let counters = self.buffers().of(binding::COUNTERS).clone();
         let mut rest = &bands[..];
@@ -218,7 +234,7 @@ impl<'a> Renderer<'a> {
             rest = later;
         }
         rays.primary = view.region().pixels() * u64::from(*samples);
-        Ok(GpuRendering { film, rays, device_time })
+        Ok(GpuRendering { film, samples: *samples, rays, device_time })
     }
 
     fn buffers(&self) -> &LaunchBuffers {

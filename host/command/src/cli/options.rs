@@ -90,6 +90,19 @@ impl Effort {
         }
     }
 
+    /// As many samples as a pixel may have, unless a number is asked for.
+    pub fn endless(self, scene: &Scene) -> Result<Effort> {
+        let sampler = self.sampler.unwrap_or(scene.settings.sampler);
+        if sampler.has_cells() {
+            let name = sampler.name();
+            let remedy = "add --sampler sobol";
+            return Err(Error::new(format!(
+                "--time-limit: the sampler {name} has a grid of a fixed number of samples; {remedy}"
+            )));
+        }
+        Ok(Effort { samples: None, spp: self.spp.or(Some(Settings::MOST_SPP)), ..self })
+    }
+
     fn quality(&self) -> Quality {
         self.bvh.unwrap_or_default().quality()
     }

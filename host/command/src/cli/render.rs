@@ -4,7 +4,7 @@ use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::slice;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use clap::Args;
 
@@ -51,6 +51,9 @@ pub(super) struct Render {
     /// Render this many times and tell the median time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
+    /// Render as many samples of each pixel as fit so many seconds, at least one and at most --spp; for samplers without a grid
+    #[arg(long, value_name = "S", value_parser = seconds, conflicts_with_all = ["repeat", "samples"])]
+    time_limit: Option<Duration>,
     /// Print the summary as JSON to standard output
     #[arg(long)]
     json: bool,
@@ -77,14 +80,23 @@ impl Render {
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
         let read = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
-        let loaded = self.view.pack(read, &self.effort.over(&preset), choice.threads, quiet)?;
+        let mut effort = self.effort.over(&preset);
+        if self.time_limit.is_some() {
+            effort = effort.endless(&read.scene)?;
+        }
+        let loaded = self.view.pack(read, &effort, choice.threads, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let chosen = ManuallyDrop::new(chosen);
         let (width, height) = loaded.packed.settings().size;
         let progress =
             progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
-        let rendering = chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| progress.inc(pixels));
+        let rendering = match self.time_limit {
+            Some(limit) => progress::stage("rendering", quiet || self.json, || {
+                chosen.render_within(&loaded.packed, &loaded.view, limit)
+            }),
+            None => chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| progress.inc(pixels)),
+        };
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
         let start = Instant::now();
@@ -98,6 +110,12 @@ impl Render {
         }
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// A time of at most a year.
+fn seconds(text: &str) -> std::result::Result<Duration, String> {
+    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.0..=31_536_000.0).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "write seconds, 0 to 31536000, for example 2.5".to_owned())
 }
 
 /// The scene's name with another ending, in the current folder.

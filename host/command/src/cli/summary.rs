@@ -83,7 +83,7 @@ impl<'a> Summary<'a> {
             "width": settings.size.0,
             "height": settings.size.1,
             "samples": settings.samples,
-            "spp": settings.samples_a_pixel(),
+            "spp": self.rendering.samples,
             "integrator": settings.transport.integrator.name(),
             "seed": settings.transport.seed,
             "noise": self.rendering.film.noise(),
@@ -118,7 +118,7 @@ impl fmt::Display for Summary<'_> {
         write!(out, "{}: {width}x{height} in {} precision", self.destination, self.precision())?;
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;
         if let Some(noise) = rendering.film.noise() {
-            write!(out, ", noise {:.2} %", 100.0 * noise)?;
+            write!(out, ", {} samples a pixel, noise {:.2} %", rendering.samples, 100.0 * noise)?;
         }
         write!(out, "; {} primary, {} shadow, {} secondary rays", rays.primary, rays.shadow, rays.secondary)?;
         write!(out, ", {:.1} Mrays/s", self.mrays(self.times.render))?;

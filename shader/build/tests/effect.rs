@@ -31,16 +31,16 @@ const SHORTER: [Edit; 2] = [
 ];
 
 /// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
-const DUMMY: [Edit; 5] = [
+const DUMMY: [Edit; 6] = [
     (
         "src/resources.rs",
-        "            16 arguments ARGUMENTS: Write u32, \"arguments\";\n",
-        "            16 arguments ARGUMENTS: Write u32, \"arguments\";\n            17 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            19 emissions EMISSIONS: Read Emission, \"emissions\";\n",
+        "            19 emissions EMISSIONS: Read Emission, \"emissions\";\n            20 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",
-        "        DISK = 12;\n",
-        "        DISK = 12;\n        /// Surfaces have the dummy's light.\n        DUMMY = 13;\n",
+        "        EMISSIVE = 13;\n",
+        "        EMISSIVE = 13;\n        /// Surfaces have the dummy's light.\n        DUMMY = 14;\n",
     ),
     (
         "src/entry/mod.rs",
@@ -49,8 +49,13 @@ const DUMMY: [Edit; 5] = [
     ),
     (
         "src/entry/mod.rs",
-        "let shading = ShadingData { normals, materials, lights };",
-        "let shading = ShadingData { normals, materials, lights, dummy };",
+        "[frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions] {",
+        "[frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions dummy] {",
+    ),
+    (
+        "src/entry/mod.rs",
+        "let shading = ShadingData { normals, materials };",
+        "let shading = ShadingData { normals, materials, dummy };",
     ),
     (
         "src/integrator/whitted.rs",
@@ -62,8 +67,8 @@ const DUMMY: [Edit; 5] = [
 /// The field that hands the dummy on.
 const FIELD: Edit = (
     "src/scene.rs",
-    "    /// Lights in file order.\n    pub lights: &'a [Light],\n",
-    "    /// Lights in file order.\n    pub lights: &'a [Light],\n    /// The dummy.\n    pub dummy: &'a [UVec4],\n",
+    "    /// Materials.\n    pub materials: &'a [Material],\n",
+    "    /// Materials.\n    pub materials: &'a [Material],\n    /// The dummy.\n    pub dummy: &'a [UVec4],\n",
 );
 
 /// The compiler, where there is one.
@@ -162,9 +167,9 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             assert!(old.words() == new.words(), "{scene}: {name} has other words");
             // And the effect is there for those that ask for it.
             if stage == Stage::Shade {
-                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 13), ..spec };
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 14), ..spec };
                 let dummy = cut(&after, &name, asked);
-                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&17), "{scene}: {name}");
+                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&20), "{scene}: {name}");
             }
         }
     }

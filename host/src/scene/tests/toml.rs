@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
-use crate::scene::{Background, Light, Primitives, Sampler, Scene, Settings};
+use crate::scene::{Background, Direct, Integrator, Light, Primitives, Sampler, Scene, Settings, Transport};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
@@ -20,14 +20,19 @@ fn the_documented_example_loads_as_documented() {
     let (scene, warnings) = crate::scene::load(&example).unwrap();
     assert!(warnings.is_empty(), "{warnings:?}");
     let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
-    assert_eq!(names, ["floor", "glass", "mirror", "default"]);
-    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 12 + 6);
+    assert_eq!(names, ["floor", "glass", "mirror", "lamp", "default"]);
+    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 2 + 12 + 6);
     assert_eq!((scene.spheres.len(), scene.disks.len()), (1 + 3, 1));
     assert_eq!(scene.mesh.materials.len(), scene.mesh.triangles.len());
     assert_eq!(scene.mesh.normals.len(), scene.mesh.positions.len());
     assert_eq!(scene.settings.size, (640, 480));
     assert_eq!((scene.settings.samples, scene.settings.sampler), (2, Sampler::Sobol));
     assert_eq!(scene.settings.bounces, 8);
+    assert_eq!(scene.settings.samples_a_pixel(), 10);
+    let Transport { integrator, seed, roulette, clamp, direct, ao_distance } = scene.settings.transport;
+    assert_eq!((integrator, direct), (Integrator::Path, Direct::Power));
+    assert_eq!((seed, roulette, clamp, ao_distance), (1, 4, 20.0, 2.0));
+    assert_eq!((scene.materials[3].emission, scene.materials[3].two_sided), (Vec3::new(4.0, 3.5, 3.0), true));
     assert_eq!(scene.cameras[0].fov, 40.0);
     assert_eq!(scene.ambient, Vec3::splat(0.1));
     assert_eq!(
@@ -39,7 +44,7 @@ fn the_documented_example_loads_as_documented() {
     };
     assert_eq!((outer, inner), (20.0, 10.0));
     assert_eq!(scene.materials[0].checker.unwrap().size, 0.5);
-    assert_eq!(scene.materials[3].ambient, scene.materials[3].diffuse);
+    assert_eq!(scene.materials[4].ambient, scene.materials[4].diffuse);
 }
 
 #[test]

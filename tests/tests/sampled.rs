@@ -1,5 +1,5 @@
 //! One picture of sampled light from GPU and CPU, in every bit, however its samples come. Without a GPU most of these tests do
-//! nothing, see [`gpu`]. Software GPUs take two scenes alone: lavapipe's compiler needs minutes for the others' kernels, whose
+//! nothing, see [`gpu`]. Software GPUs take ambient occlusion alone: lavapipe's compiler needs minutes for paths' kernels, whose
 //! divisions and roots it copies to wherever they are used.
 
 use eyerays::cpu;
@@ -48,7 +48,7 @@ fn assert_same(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
 
 #[test]
 fn walls_that_throw_colours() {
-    let Some(gpu) = exact() else { return };
+    let Some(gpu) = hardware() else { return };
     let scene = shipped("bleeding");
     let packed = pack(&scene, &scene.cameras[0], settings(&scene, (45, 37), 3));
     assert_same(&gpu, &packed, Traversal::default(), "bleeding");
@@ -130,7 +130,8 @@ fn samples_in_parts() {
     }
 }
 
-/// A hundred thousand samples: their sum has no error to speak of, which one without its rests would have.
+/// A hundred thousand samples: their mean errs by less than a millionth of itself, a sum without its rests by a hundredth of a
+/// percent.
 #[test]
 fn long_sums_keep_their_digits() {
     let mut scene = eyerays_tests::model::empty();
@@ -140,9 +141,9 @@ fn long_sums_keep_their_digits() {
     let transport = Transport { integrator: Integrator::Path, ..Transport::default() };
     let packed = pack(&scene, &scene.cameras[0], Settings { transport, ..settings(&scene, (1, 1), 100_000) });
     let got = on_cpu::<f32>(&packed).0.pixels[0][0];
-    assert!((got - 0.1).abs() <= f32::EPSILON * 0.1, "{got}");
+    assert!((got - 0.1).abs() < 1e-7, "{got}");
     let plain = (0..100_000).fold(0f32, |sum, _| sum + 0.1) / 100_000.0;
-    assert!((plain - 0.1).abs() > 1e-6, "this test could not fail: {plain}");
+    assert!((plain - 0.1).abs() > 1e-5, "this test could not fail: {plain}");
 }
 
 /// The emitters are listed by number, wherever the hierarchy puts them.

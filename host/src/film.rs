@@ -94,26 +94,18 @@ impl Film {
         let (sums, rests) = records.split_at(region.pixels() as usize);
         for (row, line) in sums.chunks_exact(region.width as usize).enumerate() {
             let start = (region.y as usize + row) * self.width as usize + region.x as usize;
-            for (pixel, &record) in self.pixels[start..].iter_mut().zip(line) {
-                let (sum, word) = R::load(record);
+            for ((pixel, &record), index) in self.pixels[start..].iter_mut().zip(line).zip(row * line.len()..) {
+                let (mut sum, word) = R::load(record);
+                // Where light is sampled, what rounding took off follows.
+                if let Some(&rest) = rests.get(index) {
+                    let (rest, squares) = R::load(rest);
+                    sum = sum + rest;
+                    self.noise.add(brightness(sum).to_f32(), f32::from_bits(squares), samples);
+                }
                 *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(count).to_f32());
                 rays.shadow += u64::from(word & !NON_FINITE);
                 rays.non_finite += u64::from(word & NON_FINITE != 0);
             }
-            if let Some(rests) = rests.get(row * region.width as usize..) {
-                self.refine::<R>(start, line, rests, samples);
-            }
-        }
-    }
-
-    /// Sets a line of pixels again, with what rounding took off their sums, and adds to the noise.
-    fn refine<R: Scalar>(&mut self, start: usize, sums: &[R::Record], rests: &[R::Record], samples: u32) {
-        let count = R::splat(samples as f32);
-        for ((pixel, &sum), &rest) in self.pixels[start..].iter_mut().zip(sums).zip(rests) {
-            let (rest, squares) = R::load(rest);
-            let sum = R::load(sum).0 + rest;
-            *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(count).to_f32());
-            self.noise.add(brightness(sum).to_f32(), f32::from_bits(squares), samples);
         }
     }
 

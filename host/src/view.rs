@@ -64,7 +64,7 @@ impl View {
     fn seen(packed: &DeviceScene, camera: &Camera, settings: &Settings) -> Result<View> {
         let (width, height) = settings.size;
         Film::check_size(width, height)?;
-        let grid = settings.grid().expect("settings are checked");
+        let grid = settings.grid()?;
         let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
         let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
         if right == DVec3::ZERO {

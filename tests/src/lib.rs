@@ -18,7 +18,7 @@ use eyerays::film::Film;
 use eyerays::gpu::{AdapterRequest, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::rays::Rays;
-use eyerays::scene::{self, Camera, Scene, Settings};
+use eyerays::scene::{self, Camera, Direct, Scene, Settings, Transport};
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
@@ -43,6 +43,11 @@ pub fn shipped(name: &str) -> Scene {
 /// The scene's own settings at another size and number of samples.
 pub fn settings(scene: &Scene, size: (u32, u32), samples: u32) -> Settings {
     Settings { size, samples, spp: 0, ..scene.settings }
+}
+
+/// The same settings, but for the way to find lights with extent.
+pub fn by(direct: Direct, settings: Settings) -> Settings {
+    Settings { transport: Transport { direct, ..settings.transport }, ..settings }
 }
 
 /// A scene packed at medium quality.

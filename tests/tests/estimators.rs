@@ -3,7 +3,7 @@
 
 use eyerays::film::Film;
 use eyerays::scene::{Direct, Sampler, Scene, Settings, Transport};
-use eyerays_tests::{on_cpu, pack, shipped};
+use eyerays_tests::{by, on_cpu, pack, shipped};
 
 /// Blocks along an edge of the picture.
 const BLOCKS: usize = 8;
@@ -55,10 +55,6 @@ fn assert_alike(what: &str, a: &[(f64, f64)], b: &[(f64, f64)]) {
 
 fn settings(scene: &Scene) -> Settings {
     Settings { size: (64, 64), spp: 32, sampler: Sampler::Random, ..scene.settings }
-}
-
-fn by(direct: Direct, settings: Settings) -> Settings {
-    Settings { transport: Transport { direct, ..settings.transport }, ..settings }
 }
 
 /// Samples of lights, of surfaces, and both weighted in either way; with chance ending paths, and without.

@@ -8,7 +8,7 @@ use eyerays::scene::{
     Background, Camera, Direct, Disk, Integrator, Light, Material, Sampler, Scene, Settings, Sphere, Transport,
 };
 use eyerays_tests::model::{add_quad, black, empty, matt};
-use eyerays_tests::{on_cpu, pack};
+use eyerays_tests::{by, on_cpu, pack};
 use glam::Vec3;
 
 const WAYS: [Direct; 4] = [Direct::Power, Direct::Balance, Direct::Light, Direct::Surface];
@@ -27,10 +27,6 @@ fn once() -> Settings {
         transport: Transport { integrator: Integrator::Path, ..Transport::default() },
         ..Settings::default()
     }
-}
-
-fn by(direct: Direct, settings: Settings) -> Settings {
-    Settings { transport: Transport { direct, ..settings.transport }, ..settings }
 }
 
 /// A camera that sees almost nothing but one point.

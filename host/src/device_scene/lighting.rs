@@ -17,59 +17,56 @@ pub struct Lighting {
     pub emissions: Vec<Emission>,
     /// Is any of them not black?
     pub is_lit: bool,
-    /// The least and the greatest corner of the primitives that emit, if there are any.
-    pub lamps: Option<[Vec3; 2]>,
 }
 
-/// What all of a scene's light comes from.
-pub(super) struct Sources<'a> {
-    pub lights: (&'a [Light], &'a [LightRecord]),
-    pub materials: &'a [Material],
-    pub primitives: &'a [Primitive],
+/// The primitives that emit: what does not change with the lights beside them.
+pub(super) struct Lamps {
+    /// The place in leaf order and the power of each that has an area, by their numbers; of a split one the first place.
+    powers: Vec<(u32, f64)>,
+    /// Each material's emission, whose density is left open, and its power of a unit of area; none if there is no lamp.
+    emissions: Vec<(Emission, f64)>,
+    /// The least and the greatest corner around all of them, if there are any.
+    pub bounds: Option<[Vec3; 2]>,
+}
+
+impl Lamps {
+    pub fn new(materials: &[Material], primitives: &[Primitive]) -> Self {
+        if materials.iter().all(|material| material.emission == Vec3::ZERO) {
+            return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None };
+        }
+        let power = |primitive: &Primitive| area(primitive) * flux(&materials[primitive.material() as usize]);
+        let powers = primitives.iter().zip(0..).map(|(primitive, index)| (primitive.number(), index, power(primitive)));
+        let mut powers: Vec<(u32, u32, f64)> = powers.filter(|&(.., power)| power > 0.0).collect();
+        powers.sort_unstable_by_key(|&(number, index, _)| (number, index));
+        powers.dedup_by_key(|&mut (number, ..)| number);
+        let boxes = powers.iter().map(|&(_, index, _)| primitives[index as usize].bounds());
+        let boxes = boxes.map(|(least, greatest)| [least, greatest]);
+        let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
+        let emission = |material: &Material| {
+            let sides = UVec4::new(u32::from(material.two_sided), 0, 0, 0);
+            (Emission { radiance: colour(material.emission, 0), sides }, flux(material))
+        };
+        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().map(emission).collect() };
+        Lamps { powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(), emissions, bounds }
+    }
 }
 
 impl Lighting {
-    /// A light is as likely as its power is, in the normalised scene.
-    pub(super) fn new(sources: &Sources<'_>, normalisation: &Normalisation) -> Self {
-        let emissive = emissive(sources);
-        let of_lights = sources.lights.0.iter().map(|light| power(light, normalisation.scale));
-        let of_primitives = emissive.iter().map(|&index| {
-            let primitive = &sources.primitives[index as usize];
-            area(primitive) * flux(&sources.materials[primitive.material() as usize])
-        });
-        let powers: Vec<f64> = of_lights.chain(of_primitives).collect();
+    /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene.
+    pub(super) fn new(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Self {
+        let of_lights = lights.0.iter().map(|light| power(light, normalisation.scale));
+        let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).collect();
         let total: f64 = powers.iter().sum();
         let is_lit = total > 0.0;
-        let choices = table(&powers);
-        let lights =
-            sources.lights.0.iter().zip(sources.lights.1).map(|(light, record)| scaled(light, record, normalisation));
-        let primitives = emissive.iter().map(|&index| of_primitive(index));
-        let emitters = lights.chain(primitives).zip(choices).map(|(light, choice)| Emitter { light, choice }).collect();
-        let emission = |material: &Material| {
-            let density = if is_lit { (flux(material) / total) as f32 } else { 0.0 };
-            let sides = UVec4::new(u32::from(material.two_sided), 0, 0, 0);
-            Emission { radiance: colour(material.emission, density.to_bits()), sides }
+        let records = lights.0.iter().zip(lights.1).map(|(light, record)| scaled(light, record, normalisation));
+        let records = records.chain(lamps.powers.iter().map(|&(index, _)| of_primitive(index)));
+        let emitters = records.zip(table(&powers)).map(|(light, choice)| Emitter { light, choice }).collect();
+        let with_density = |&(emission, flux): &(Emission, f64)| {
+            let density = if is_lit { (flux / total) as f32 } else { 0.0 };
+            Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
-        let emissions = if emissive.is_empty() { Vec::new() } else { sources.materials.iter().map(emission).collect() };
-        let boxes = emissive.iter().map(|&index| sources.primitives[index as usize].bounds());
-        let lamps = boxes.map(|(least, greatest)| [least, greatest]);
-        let lamps = lamps.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
-        Lighting { emitters, emissions, is_lit, lamps }
+        Lighting { emitters, emissions: lamps.emissions.iter().map(with_density).collect(), is_lit }
     }
-}
-
-/// The places in leaf order of all primitives that emit and have an area, by their numbers; of a split one the first.
-fn emissive(sources: &Sources<'_>) -> Vec<u32> {
-    let emits: Vec<bool> = sources.materials.iter().map(|material| material.emission != Vec3::ZERO).collect();
-    if !emits.contains(&true) {
-        return Vec::new();
-    }
-    let is_source = |primitive: &Primitive| emits[primitive.material() as usize] && area(primitive) > 0.0;
-    let places = sources.primitives.iter().zip(0..).filter(|(primitive, _)| is_source(primitive));
-    let mut places: Vec<(u32, u32)> = places.map(|(primitive, index)| (primitive.number(), index)).collect();
-    places.sort_unstable();
-    places.dedup_by_key(|(number, _)| *number);
-    places.into_iter().map(|(_, index)| index).collect()
 }
 
 /// The mean of the channels.

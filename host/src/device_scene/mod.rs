@@ -23,11 +23,11 @@ pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
 use glam::Vec3;
-use lighting::Sources;
+use lighting::Lamps;
 
 use crate::error::{Error, Result};
 use crate::method::Traversal;
-use crate::scene::{Background, Integrator, Light, Material, Scene, Settings, Transport};
+use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
 
 /// References added by splitting triangles, as a share of the triangles.
 const SPLIT_BUDGET: f32 = 0.3;
@@ -48,8 +48,7 @@ pub struct DeviceScene {
     lighting: Lighting,
     /// A material that emits, by its name.
     emissive: Option<String>,
-    /// As it was given, for other lights.
-    sources: Vec<Material>,
+    lamps: Lamps,
     /// Those of any settings.
     effects: Effects,
     background: Background,
@@ -85,9 +84,8 @@ impl DeviceScene {
         let statistics = Statistics::of(&bvh, &primitives);
         let primitives = bvh.gather(&primitives);
         let lights = lights(&scene.lights, &normalisation)?;
-        let sources =
-            Sources { lights: (&scene.lights, &lights), materials: &scene.materials, primitives: &primitives };
-        let lighting = Lighting::new(&sources, &normalisation);
+        let lamps = Lamps::new(&scene.materials, &primitives);
+        let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
         Ok(DeviceScene {
             statistics,
             primitives,
@@ -99,7 +97,7 @@ impl DeviceScene {
             lights,
             lighting,
             emissive,
-            sources: scene.materials.clone(),
+            lamps,
             effects,
             background: scene.background,
             settings,
@@ -160,7 +158,7 @@ impl DeviceScene {
             Background::Colour(colour) => colour == Vec3::ZERO,
             Background::Gradient { horizon, zenith } => horizon == Vec3::ZERO && zenith == Vec3::ZERO,
         };
-        if is_black { self.lighting.lamps } else { Some([-EVERYWHERE, EVERYWHERE]) }
+        if is_black { self.lamps.bounds } else { Some([-EVERYWHERE, EVERYWHERE]) }
     }
 
     /// The effects that the scene asks for.
@@ -238,8 +236,7 @@ impl DeviceScene {
                 "the scene was packed with {number} lights of other kinds: pack it again to change more than their values"
             )));
         }
-        let sources = Sources { lights: (others, &records), materials: &self.sources, primitives: &self.primitives };
-        let lighting = Lighting::new(&sources, &self.normalisation);
+        let lighting = Lighting::new((others, &records), &self.lamps, &self.normalisation);
         Ok((records, lighting))
     }
 

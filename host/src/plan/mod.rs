@@ -13,9 +13,6 @@ use crate::error::Result;
 use crate::integrator::{Needs, Waves, needs};
 use crate::method::{Coherence, Method, Traversal};
 
-/// Bytes of a record of three numbers and an integer.
-const RECORD: u64 = 16;
-
 /// What a step does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Stage {
@@ -85,7 +82,7 @@ pub struct Plan {
 
 impl Plan {
     /// Bytes of a record of three numbers and an integer.
-    pub const RECORD_BYTES: u64 = RECORD;
+    pub const RECORD_BYTES: u64 = 16;
 
     /// For a scene by the integrator of its settings. `resolve` tells the method for rays of some coherence.
     ///
@@ -132,7 +129,7 @@ impl Plan {
         }
         let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
         let slot_bytes = slot_bytes(needs, !further.is_empty());
-        let film_bytes = if is_sampled { u64::from(FILM_RECORDS) * RECORD } else { RECORD };
+        let film_bytes = if is_sampled { u64::from(FILM_RECORDS) * Plan::RECORD_BYTES } else { Plan::RECORD_BYTES };
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_bytes })
     }
 
@@ -165,14 +162,14 @@ impl Plan {
 fn slot_bytes(needs: &Needs, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, is_sampled, .. } = *needs;
     let (path, shadow_ray) = if is_sampled { (STATE_RECORDS, SHADOW_RECORDS) } else { (RECORDS, 0) };
-    let records = |count: u32| u64::from(count) * RECORD;
+    let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
     let all = [
         (binding::PATHS, records(paths * path)),
-        (binding::HITS, RECORD),
+        (binding::HITS, Plan::RECORD_BYTES),
         (binding::SHADOWS, 4 * u64::from(shadow_rays)),
         (binding::SEGMENTS, records(shadow_ray)),
-        (binding::SUMS, RECORD),
+        (binding::SUMS, Plan::RECORD_BYTES),
         (binding::QUEUE, queue),
         (binding::NEXT, queue),
     ];

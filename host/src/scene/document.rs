@@ -26,10 +26,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
         transport: transport(&mut table)?,
     };
-    if settings.grid().is_none() {
-        let fault = "no grid has that many samples: make it a square up to 4096, or the sampler sobol or random";
-        return Err(table.fault_of("spp", fault));
-    }
+    settings.grid().map_err(|error| table.fault_of("spp", error.message()))?;
     let (width, height) = settings.size;
     Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message()))?;
     table.done()?;

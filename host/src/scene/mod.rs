@@ -53,6 +53,9 @@ pub use transport::{Direct, Integrator, Transport};
 use eyerays_shader::data::NodeRef;
 use glam::Vec3;
 
+use crate::choice::Named;
+use crate::error::{self, Error};
+
 /// The result of a check that does not know whose line it checks: the error is a fault and its remedy.
 type Unplaced<T> = Result<T, String>;
 
@@ -245,13 +248,22 @@ impl Settings {
         if self.spp > 0 { self.spp } else { self.samples * self.samples }
     }
 
-    /// The edge of the grid that a pixel's samples lie in, 1 without a grid; none if that many do not fill one.
-    pub fn grid(&self) -> Option<u32> {
+    /// The edge of the grid that a pixel's samples lie in, 1 without a grid.
+    ///
+    /// # Errors
+    /// That many do not fill one.
+    pub fn grid(&self) -> error::Result<u32> {
         if !self.sampler.has_cells() {
-            return Some(1);
+            return Ok(1);
         }
-        let edge = self.samples_a_pixel().isqrt();
-        (edge * edge == self.samples_a_pixel() && edge <= Self::MOST_SAMPLES).then_some(edge)
+        let samples = self.samples_a_pixel();
+        let edge = samples.isqrt();
+        if edge * edge == samples && edge <= Self::MOST_SAMPLES {
+            return Ok(edge);
+        }
+        let sampler = self.sampler.name();
+        let remedy = "make it a square up to 4096, or the sampler sobol or random";
+        Err(Error::new(format!("the sampler {sampler} has no grid of {samples} samples a pixel: {remedy}")))
     }
 
     /// The largest width and height in pixels.

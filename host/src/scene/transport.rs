@@ -56,6 +56,9 @@ pub struct Transport {
 impl Integrator {
     /// What of a scene it leaves out, in a line.
     pub fn ignored(self, scene: &Scene) -> Option<String> {
+        if self != Integrator::Path {
+            return None;
+        }
         let any = |of: &dyn Fn(&Material) -> bool| scene.materials.iter().any(of);
         let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient != Vec3::ZERO);
         let has_highlights = !scene.lights.is_empty() && any(&|m| m.specular != Vec3::ZERO);
@@ -65,7 +68,7 @@ impl Integrator {
             (false, true) => "Phong's highlights are",
             (false, false) => return None,
         };
-        (self == Integrator::Path).then(|| format!("{what} not drawn: the integrator path finds all light by itself"))
+        Some(format!("{what} not drawn: the integrator path finds all light by itself"))
     }
 
     /// Does it need samples, and have noise?

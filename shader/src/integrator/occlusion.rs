@@ -5,7 +5,7 @@ use crate::geometry::SurfaceInteraction;
 use crate::material::{Surface, cosine_direction};
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::ShadowRay;
+use crate::stage::{Segment, ShadowRay};
 
 /// Asks along one direction of the cosine's density.
 #[inline(always)]
@@ -19,13 +19,13 @@ pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_
     let mut shadow = ShadowRay::none();
     // A direction about an interpolated normal may lie below the surface, where nothing is seen.
     if interaction.faces(direction) {
-        shadow = ShadowRay {
+        let segment = Segment {
             origin: interaction.offset_ray_origin(direction),
             direction,
             limit: R::splat(launch.frame.reach),
             source_primitive: interaction.source_primitive(direction),
-            light: path.weight,
         };
+        shadow = ShadowRay { segment, light: path.weight };
     }
     Scattered { light: V3::zero(), shadow, next: path, goes_on: false }
 }

@@ -10,7 +10,7 @@ use crate::material::{INVERSE_PI, Lobes, Surface, cosine_direction};
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{PathState, ShadowRay};
+use crate::stage::{PathState, Segment, ShadowRay};
 
 /// A surface where a path has hit it.
 struct At<R: Real> {
@@ -123,13 +123,13 @@ fn sampled_light<R: Scalar>(
         let share = weight(launch.spec.launch, Launch::BY_LIGHT, own.flush(FAINT), sample.density.over);
         light = (light * share).map(|c| c.flush(FAINT));
     }
-    ShadowRay {
+    let segment = Segment {
         origin: at.origin,
         direction: sample.direction,
         limit: sample.limit,
         source_primitive: at.interaction.source_primitive(sample.direction),
-        light: share_scattered(launch, path, light),
-    }
+    };
+    ShadowRay { segment, light: share_scattered(launch, path, light) }
 }
 
 /// As [`share`], of light that this vertex scatters once more.

@@ -1,6 +1,7 @@
 //! The path that a slot follows where integrators sample, and the light that its last vertex may get.
 
-use super::REACHED;
+use super::segment::NOWHERE;
+use super::{REACHED, Segment};
 use crate::buffer::{read, write};
 use crate::real::{Real, Scalar, V3};
 
@@ -8,9 +9,6 @@ use crate::real::{Real, Scalar, V3};
 pub const STATE_RECORDS: u32 = 4;
 /// Records of a shadow ray, likewise, with the light that it asks for.
 pub const SHADOW_RECORDS: u32 = 3;
-
-/// No ray: no box lies before so short a limit.
-const NOWHERE: f32 = -1.0;
 
 /// A path's next ray, and what of its light counts.
 #[derive(Clone, Copy)]
@@ -35,14 +33,8 @@ pub struct PathState<R: Real> {
 /// A ray to a sampled light, and the light that arrives if nothing is between.
 #[derive(Clone, Copy)]
 pub struct ShadowRay<R: Real> {
-    /// Where it starts.
-    pub origin: V3<R>,
-    /// Its unit direction.
-    pub direction: V3<R>,
-    /// How far it goes.
-    pub limit: R,
-    /// The primitive that it starts on.
-    pub source_primitive: u32,
+    /// Its unit direction and how far it goes.
+    pub segment: Segment<R>,
     /// Linear RGB that reaches the pixel.
     pub light: V3<R>,
 }
@@ -60,10 +52,10 @@ impl<R: Scalar> PathState<R> {
     /// Keeps it; `follows` unless it is not to be traced.
     #[inline(always)]
     pub fn store(&self, slots: u32, slot: u32, follows: bool, paths: &mut [R::Record]) {
-        let limit = if follows { f32::MAX } else { NOWHERE };
+        let limit = R::splat(if follows { f32::MAX } else { NOWHERE });
+        let PathState { origin, direction, source_primitive, .. } = *self;
+        Segment { origin, direction, limit, source_primitive }.store(slots, slot, paths);
         let at = |k| k * slots + slot;
-        write(paths, at(0), R::store(self.origin, self.source_primitive));
-        write(paths, at(1), R::store(self.direction, limit.to_bits()));
         write(paths, at(2), R::store(self.weight, self.bounces));
         write(paths, at(3), R::store(V3::new(self.density, R::splat(0.0), R::splat(0.0)), self.pixel));
     }
@@ -74,7 +66,8 @@ impl<R: Scalar> ShadowRay<R> {
     #[inline(always)]
     pub fn none() -> Self {
         let direction = V3::splat(glam::Vec3::Z);
-        ShadowRay { origin: V3::zero(), direction, limit: R::splat(NOWHERE), source_primitive: 0, light: V3::zero() }
+        let segment = Segment { origin: V3::zero(), direction, limit: R::splat(NOWHERE), source_primitive: 0 };
+        ShadowRay { segment, light: V3::zero() }
     }
 
     /// Does it ask for something?
@@ -83,14 +76,12 @@ impl<R: Scalar> ShadowRay<R> {
         R::splat(0.0).lt(self.light.greatest())
     }
 
-    /// Keeps a slot's ray; a stream's limit is of single precision.
+    /// Keeps a slot's ray.
     #[inline(always)]
     pub fn store(&self, slots: u32, slot: u32, segments: &mut [R::Record]) {
-        let at = |k| k * slots + slot;
-        let limit = if self.asks() { self.limit.to_f32() } else { NOWHERE };
-        write(segments, at(0), R::store(self.origin, self.source_primitive));
-        write(segments, at(1), R::store(self.direction, limit.to_bits()));
-        write(segments, at(2), R::store(self.light, 0));
+        let limit = if self.asks() { self.segment.limit } else { R::splat(NOWHERE) };
+        Segment { limit, ..self.segment }.store(slots, slot, segments);
+        write(segments, 2 * slots + slot, R::store(self.light, 0));
     }
 
     /// The light of a slot's ray that nothing was in the way of, else zero.

@@ -1,6 +1,6 @@
 //! A ray as it lies in memory.
 
-use crate::buffer::read;
+use crate::buffer::{read, write};
 use crate::ray::Ray;
 use crate::real::{Scalar, V3};
 use crate::scene::TraceContext;
@@ -18,6 +18,9 @@ pub struct Segment<R> {
     pub source_primitive: u32,
 }
 
+/// A limit that no box lies before: a lane or a slot without a ray.
+pub const NOWHERE: f32 = -1.0;
+
 impl<R: Scalar> Segment<R> {
     /// Ray `index` of a stream: two records, all first ones before all second ones, so that
     /// neighbouring lanes load neighbours; the second's integer is the bits of the limit.
@@ -26,6 +29,13 @@ impl<R: Scalar> Segment<R> {
         let (origin, source_primitive) = R::load(read(stream, index));
         let (direction, limit) = R::load(read(stream, context.base.frame.slots + index));
         Segment { origin, direction, limit: R::splat(f32::from_bits(limit)), source_primitive }
+    }
+
+    /// Keeps it where [`Segment::load`] finds it in a stream of `count` rays; the limit in single precision.
+    #[inline(always)]
+    pub fn store(&self, count: u32, index: u32, stream: &mut [R::Record]) {
+        write(stream, index, R::store(self.origin, self.source_primitive));
+        write(stream, count + index, R::store(self.direction, self.limit.to_f32().to_bits()));
     }
 
     /// The ray, ready for boxes and primitives.

@@ -2,6 +2,7 @@
 
 use core::array::from_fn;
 
+use super::segment::NOWHERE;
 use super::{Segment, shadow, trace};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Scalar, V3};
@@ -11,9 +12,6 @@ use crate::traverse::{Closest, Leaf, Occlusion, Query, Together, leaf};
 
 /// Values of lanes that are followed at once.
 const VALUES: usize = 4;
-
-/// A limit that no box lies before: a lane without a ray.
-const NOTHING: f32 = -1.0;
 
 /// As many rays as are followed at once.
 pub const fn most<S: Scalar, P: Lanes<S>>() -> usize {
@@ -71,7 +69,7 @@ fn follow<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf, Q: Query>(
         let from_afar = !Q::ANY && trace::is_of_camera(context.base.spec.launch);
         Ray::prepared(source_primitive, vector(|s| s.origin), vector(|s| s.direction), from_afar)
     });
-    let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOTHING) };
+    let limit = |i| if i < segments.len() { at(i).limit } else { S::splat(NOWHERE) };
     let mut hits: [Hit<P>; VALUES] = from_fn(|value| Hit::none(P::of(|i| limit(value * lanes + i))));
     let values = segments.len().div_ceil(lanes);
     M::together::<P, Q, L>(context, &rays[..values], &mut hits[..values]);

@@ -213,14 +213,7 @@ impl View {
         Film::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
         within("--spp", effort.spp.as_slice(), 1..=Settings::MOST_SPP)?;
-        if settings.grid().is_none() {
-            let many = settings.samples_a_pixel();
-            let remedy = "take a square up to 4096, or --sampler sobol";
-            return Err(Error::new(format!(
-                "--spp {many}: the sampler {} has no grid of so many samples; {remedy}",
-                settings.sampler.name()
-            )));
-        }
+        settings.grid()?;
         within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;
         Ok(settings)

@@ -92,16 +92,17 @@ impl Film {
     pub(crate) fn develop<R: Scalar>(&mut self, region: Region, records: &[R::Record], samples: u32, rays: &mut Rays) {
         let count = R::splat(samples as f32);
         let (sums, rests) = records.split_at(region.pixels() as usize);
+        let folded;
+        let sums = if rests.is_empty() {
+            sums
+        } else {
+            folded = self.noise.fold::<R>(sums, rests, samples);
+            &folded
+        };
         for (row, line) in sums.chunks_exact(region.width as usize).enumerate() {
             let start = (region.y as usize + row) * self.width as usize + region.x as usize;
-            for ((pixel, &record), index) in self.pixels[start..].iter_mut().zip(line).zip(row * line.len()..) {
-                let (mut sum, word) = R::load(record);
-                // Where light is sampled, what rounding took off follows.
-                if let Some(&rest) = rests.get(index) {
-                    let (rest, squares) = R::load(rest);
-                    sum = sum + rest;
-                    self.noise.add(brightness(sum).to_f32(), f32::from_bits(squares), samples);
-                }
+            for (pixel, &record) in self.pixels[start..].iter_mut().zip(line) {
+                let (sum, word) = R::load(record);
                 *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(count).to_f32());
                 rays.shadow += u64::from(word & !NON_FINITE);
                 rays.non_finite += u64::from(word & NON_FINITE != 0);
@@ -150,6 +151,17 @@ impl Film {
 }
 
 impl Noise {
+    /// The sums with what rounding took off them, where light is sampled; their pixels are added.
+    fn fold<R: Scalar>(&mut self, sums: &[R::Record], rests: &[R::Record], samples: u32) -> Vec<R::Record> {
+        let fold = |(&sum, &rest): (&R::Record, &R::Record)| {
+            let ((sum, word), (rest, squares)) = (R::load(sum), R::load(rest));
+            let sum = sum + rest;
+            self.add(brightness(sum).to_f32(), f32::from_bits(squares), samples);
+            R::store(sum, word)
+        };
+        sums.iter().zip(rests).map(fold).collect()
+    }
+
     /// Adds a pixel by the sums of its samples' brightness and of its squares.
     fn add(&mut self, sum: f32, squares: f32, samples: u32) {
         let (count, sum) = (f64::from(samples), f64::from(sum));

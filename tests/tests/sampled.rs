@@ -98,6 +98,11 @@ fn everything_at_once() {
         let packed = pack(&scene, &scene.cameras[0], settings);
         assert_same(&gpu, &packed, Traversal::default(), &format!("{direct:?}"));
     }
+    // Ambient light and highlights, too; and rays that wait while others are followed.
+    let transport = Transport { integrator: Integrator::Distributed, ..scene.settings.transport };
+    let settings = Settings { transport, bounces: 6, ..settings(&scene, (40, 30), 4) };
+    let packed = pack(&scene, &scene.cameras[0], settings);
+    assert_same(&gpu, &packed, Traversal::default(), "distributed");
 }
 
 /// In flight together or one by one, all at once or in parts: a film is kept with what rounding took off.
@@ -158,13 +163,21 @@ fn every_quality_of_the_hierarchy() {
     }
 }
 
-/// Other lights of a scene that is loaded: positions and powers, which lights are chosen by.
+/// Other lights of a scene that is loaded, all of them black: positions and powers, which lights are chosen by.
 #[test]
 fn lights_change_without_another_scene() {
     let mut scene = shipped("lights");
     scene.settings.transport.integrator = Integrator::Path;
     let settings = settings(&scene, (24, 18), 4);
-    let packed = pack(&scene, &scene.cameras[0], settings);
+    let dark = |light: &Light| match *light {
+        Light::Point { position, .. } => Light::Point { position, colour: Vec3::ZERO },
+        Light::Directional { direction, .. } => Light::Directional { direction, colour: Vec3::ZERO },
+        Light::Spot { position, target, outer, inner, .. } => {
+            Light::Spot { position, target, outer, inner, colour: Vec3::ZERO }
+        }
+    };
+    let black = Scene { lights: scene.lights.iter().map(dark).collect(), ..scene.clone() };
+    let packed = pack(&black, &black.cameras[0], settings);
     let mut renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
     for (light, factor) in scene.lights.iter_mut().zip([0.0, 3.0, 0.5].into_iter().cycle()) {
         match light {

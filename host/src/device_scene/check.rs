@@ -102,7 +102,7 @@ pub fn settings(settings: &Settings) -> Result<()> {
 pub fn emission(emissive: Option<&str>, integrator: Integrator) -> Result<()> {
     match (emissive, integrator) {
         (Some(name), Integrator::Whitted) => Err(Error::new(format!(
-            "the material {name:?} emits light, which the integrator whitted does not draw: choose path (--integrator path)"
+            "the material {name:?} emits light, which the integrator whitted does not draw: choose path or distributed (--integrator path)"
         ))),
         _ => Ok(()),
     }

@@ -15,8 +15,6 @@ pub struct Lighting {
     pub emitters: Vec<Emitter>,
     /// By material; empty if none emits.
     pub emissions: Vec<Emission>,
-    /// Is any of them not black?
-    pub is_lit: bool,
 }
 
 /// The primitives that emit: what does not change with the lights beside them.
@@ -57,15 +55,14 @@ impl Lighting {
         let of_lights = lights.0.iter().map(|light| power(light, normalisation.scale));
         let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).collect();
         let total: f64 = powers.iter().sum();
-        let is_lit = total > 0.0;
         let records = lights.0.iter().zip(lights.1).map(|(light, record)| scaled(light, record, normalisation));
         let records = records.chain(lamps.powers.iter().map(|&(index, _)| of_primitive(index)));
         let emitters = records.zip(table(&powers)).map(|(light, choice)| Emitter { light, choice }).collect();
         let with_density = |&(emission, flux): &(Emission, f64)| {
-            let density = if is_lit { (flux / total) as f32 } else { 0.0 };
+            let density = (flux / total) as f32;
             Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
-        Lighting { emitters, emissions: lamps.emissions.iter().map(with_density).collect(), is_lit }
+        Lighting { emitters, emissions: lamps.emissions.iter().map(with_density).collect() }
     }
 }
 
@@ -124,10 +121,10 @@ fn of_primitive(index: u32) -> LightRecord {
 }
 
 /// The alias table of some powers (Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991): for
-/// each its threshold, its alias and the bits of its probability.
+/// each its threshold, its alias and the bits of its probability. All are as likely if all are black.
 fn table(powers: &[f64]) -> Vec<UVec4> {
     let total: f64 = powers.iter().sum();
-    let share = |power: f64| if total > 0.0 { power / total } else { 0.0 };
+    let share = |power: f64| if total > 0.0 { power / total } else { 1.0 / powers.len() as f64 };
     let mut left: Vec<f64> = powers.iter().map(|&power| share(power) * powers.len() as f64).collect();
     let (mut less, mut more): (Vec<usize>, Vec<usize>) = (0..powers.len()).partition(|&i| left[i] < 1.0);
     let mut table: Vec<UVec4> =
@@ -171,6 +168,6 @@ mod tests {
             }
         }
         assert!(table(&[]).is_empty());
-        assert!(table(&[0.0, 0.0]).iter().all(|entry| entry.z == 0));
+        assert_eq!(shares(&table(&[0.0, 0.0])), [0.5, 0.5]);
     }
 }

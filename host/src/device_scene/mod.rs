@@ -208,6 +208,7 @@ impl DeviceScene {
         match integrator {
             Integrator::Whitted => 0,
             Integrator::Ao => Launch::OCCLUSION,
+            Integrator::Distributed => Launch::TREE,
             Integrator::Path => direct.bits(),
         }
     }
@@ -265,7 +266,7 @@ impl DeviceScene {
             lights,
             shadow_rays: if integrator.samples() { 1 } else { lights },
             seed,
-            emitters: if self.lighting.is_lit { self.lighting.emitters.len() as u32 } else { 0 },
+            emitters: self.lighting.emitters.len() as u32,
             roulette,
             clamp,
             reach,

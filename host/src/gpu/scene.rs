@@ -8,7 +8,6 @@ use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
 use crate::method::Layout;
 use crate::plan::Plan;
-use crate::scene::Integrator;
 
 /// The records of a scene as kernels read them, before they are uploaded.
 pub(super) struct SceneRecords<'a> {
@@ -29,9 +28,9 @@ impl<'a> SceneRecords<'a> {
     pub fn bytes(&self) -> [(u32, &[u8]); 9] {
         let packed = self.packed;
         let wide = if self.wide { packed.wide() } else { &[] };
-        let is_sampled = packed.settings().transport.integrator == Integrator::Path;
+        let is_chosen = packed.settings().transport.integrator.chooses_lights();
         let (emitters, emissions): (&[_], &[_]) =
-            if is_sampled { (&packed.lighting().emitters, &packed.lighting().emissions) } else { (&[], &[]) };
+            if is_chosen { (&packed.lighting().emitters, &packed.lighting().emissions) } else { (&[], &[]) };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),

@@ -11,7 +11,7 @@ use crate::scene::Integrator;
 pub fn needs(packed: &DeviceScene) -> Needs {
     match packed.settings().transport.integrator {
         Integrator::Whitted => whitted::whitted(packed),
-        Integrator::Ao | Integrator::Path => sampled::sampled(packed),
+        Integrator::Ao | Integrator::Distributed | Integrator::Path => sampled::sampled(packed),
     }
 }
 

@@ -15,6 +15,8 @@ choices! {
         Whitted = "whitted",
         /// How much of a white sky surfaces see (thesis 3.4.2): needs samples
         Ao = "ao",
+        /// Whitted's mirrors and glass, and soft shadows of lights with extent (thesis 3.4.1): needs samples
+        Distributed = "distributed",
         /// All light that there is, from lights with and without extent (thesis 3.4.4): needs samples
         Path = "path",
     }
@@ -69,6 +71,11 @@ impl Integrator {
             (false, false) => return None,
         };
         Some(format!("{what} not drawn: the integrator path finds all light by itself"))
+    }
+
+    /// Does it choose one light of all at each vertex?
+    pub fn chooses_lights(self) -> bool {
+        matches!(self, Integrator::Distributed | Integrator::Path)
     }
 
     /// Does it need samples, and have noise?

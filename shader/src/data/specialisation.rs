@@ -85,6 +85,8 @@ bits! {
         BALANCED = 9;
         /// Paths go on after this wave's vertices.
         GOES_ON = 10;
+        /// Paths branch at mirrors and glass, and go on from nowhere else.
+        TREE = 11;
     }
 }
 

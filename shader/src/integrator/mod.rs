@@ -1,6 +1,7 @@
 //! What a wave's hits are turned into: each integrator is a file with the stage that shades a hit and decides which rays
 //! go on. The host's file of the same name has its stages in their order.
 
+mod distributed;
 mod occlusion;
 mod path;
 mod sampled;

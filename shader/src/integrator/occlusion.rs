@@ -27,5 +27,5 @@ pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_
         };
         shadow = ShadowRay { segment, light: path.weight };
     }
-    Scattered { light: V3::zero(), shadow, next: path, goes_on: false }
+    Scattered::once(V3::zero(), shadow, path, false)
 }

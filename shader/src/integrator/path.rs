@@ -34,7 +34,7 @@ pub(super) fn at<R: Scalar>(
     let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &primitive, &interaction));
     if path.bounces > launch.frame.bounces {
-        return Scattered { light, shadow: ShadowRay::none(), next: path, goes_on: false };
+        return Scattered::once(light, ShadowRay::none(), path, false);
     }
     let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
@@ -46,7 +46,7 @@ pub(super) fn at<R: Scalar>(
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (path.bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
-    Scattered { light, shadow, next, goes_on }
+    Scattered::once(light, shadow, next, goes_on)
 }
 
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),
@@ -166,7 +166,7 @@ fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<
         weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
         bounces: path.bounces + 1,
         density,
-        pixel: path.pixel,
+        ..*path
     };
     let lobe = at.lobes.chosen(decision);
     if lobe.is_diffuse {
@@ -177,12 +177,7 @@ fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<
         let factor = V3::select(interaction.faces(direction), surface.diffuse * probability.reciprocal(), V3::zero());
         return on(at.origin, direction, factor, probability * cosine * R::splat(INVERSE_PI));
     }
-    // On their own line, since glass magnifies a step beside it; a mirror has corners to escape through.
-    let origin = if lobe.is_lens {
-        interaction.offset_ray_origin_along(lobe.direction)
-    } else {
-        interaction.offset_ray_origin(lobe.direction)
-    };
+    let origin = at.lobes.leave(interaction, lobe.direction);
     on(origin, lobe.direction, lobe.factor, R::splat(0.0))
 }
 

@@ -12,7 +12,7 @@ use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{NON_FINITE, PathState, ShadowRay};
 use glam::UVec4;
 
-use super::{occlusion, path};
+use super::{distributed, occlusion, path};
 
 /// The records that the stages of a wave exchange.
 pub struct Exchange<'a, R: Scalar> {
@@ -46,6 +46,18 @@ pub(super) struct Scattered<R: Real> {
     pub next: PathState<R>,
     /// Does it?
     pub goes_on: bool,
+    /// The path that waits until then, where paths branch.
+    pub other: PathState<R>,
+    /// Is there one?
+    pub waits: bool,
+}
+
+impl<R: Scalar> Scattered<R> {
+    /// Of a path that does not branch.
+    #[inline(always)]
+    pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
+        Scattered { light, shadow, next, goes_on, other: next, waits: false }
+    }
 }
 
 /// The numbers that a slot draws.
@@ -75,7 +87,7 @@ pub fn scatter<R: Scalar>(
 ) -> bool {
     let Exchange { paths, hits, shadows, segments, sums } = exchange;
     let (slots, is_first) = (launch.frame.slots, !launch.spec.launch.has(Launch::SECONDARY));
-    let path = PathState::<R>::load(slots, slot, paths);
+    let path = PathState::<R>::load(slots, slot, 0, paths);
     let (sum, word) = if is_first {
         (V3::zero(), 0)
     } else {
@@ -86,13 +98,15 @@ pub fn scatter<R: Scalar>(
     // The ray of a slot outside the image hits nothing.
     let scattered = if primitive_index == Hit::<R>::NOTHING {
         let seen = background(launch.spec.effects, launch.frame, path.direction);
-        Scattered { light: share(launch, &path, seen), shadow: ShadowRay::none(), next: path, goes_on: false }
+        Scattered::once(share(launch, &path, seen), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
         let draws = Draws { launch: launch.spec.launch, key, sample: camera::sample(launch.frame, slot) };
         let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), draws };
         if launch.spec.launch.has(Launch::OCCLUSION) {
             occlusion::at(launch, shading, &vertex)
+        } else if launch.spec.launch.has(Launch::TREE) {
+            distributed::at(launch, shading, lighting, &vertex)
         } else {
             path::at(launch, shading, lighting, &vertex)
         }
@@ -100,10 +114,50 @@ pub fn scatter<R: Scalar>(
     let (sum, word) = added(sum, word, &scattered);
     write(sums, slot, R::store(sum, word));
     scattered.shadow.store(slots, slot, segments);
+    follow(launch, slot, &path, scattered, paths)
+}
+
+/// Keeps where a slot goes on. Does it?
+#[inline(always)]
+fn follow<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    slot: u32,
+    path: &PathState<R>,
+    scattered: Scattered<R>,
+    paths: &mut [R::Record],
+) -> bool {
+    if launch.spec.launch.has(Launch::TREE) {
+        return branch(launch.frame.slots, slot, path, scattered, paths);
+    }
     if scattered.goes_on {
-        scattered.next.store(slots, slot, true, paths);
+        PathState { pending: 0, vertex: 0, ..scattered.next }.store(launch.frame.slots, slot, 0, true, paths);
     }
     scattered.goes_on
+}
+
+/// Depth first: one branch is taken in hand and the other waits; at a leaf of the tree the last that waits is taken.
+#[inline(always)]
+fn branch<R: Scalar>(
+    slots: u32,
+    slot: u32,
+    path: &PathState<R>,
+    scattered: Scattered<R>,
+    paths: &mut [R::Record],
+) -> bool {
+    let (mut next, mut pending) = (scattered.next, path.pending);
+    if scattered.waits {
+        pending += 1;
+        scattered.other.store(slots, slot, pending, true, paths);
+    }
+    if !scattered.goes_on {
+        if pending == 0 {
+            return false;
+        }
+        next = PathState::load(slots, slot, pending, paths);
+        pending -= 1;
+    }
+    PathState { pending, vertex: path.vertex + 1, ..next }.store(slots, slot, 0, true, paths);
+    true
 }
 
 /// A sum with a vertex' light, and the count of its shadow rays. What is not finite is left out and flagged.

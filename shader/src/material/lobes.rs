@@ -1,6 +1,6 @@
 //! Which part of a surface scatters a path: the diffuse one, a mirror, or what a lens reflects or lets pass.
 
-use super::{Surface, fresnel, mirrored, refract};
+use super::{Specular, Surface};
 use crate::data::Effects;
 use crate::geometry::SurfaceInteraction;
 use crate::real::{FAINT, Real, Scalar, V3};
@@ -15,11 +15,8 @@ pub struct Lobes<R: Real> {
     diffuse: i32,
     /// Steps for that and what is reflected; the rest is refracted.
     reflected: i32,
-    mirrored: V3<R>,
-    mirror: V3<R>,
-    refracted: V3<R>,
-    lens: V3<R>,
-    is_lens: bool,
+    /// Both over their probabilities.
+    specular: Specular<R>,
 }
 
 /// What scatters.
@@ -31,59 +28,42 @@ pub struct Lobe<R: Real> {
     pub factor: V3<R>,
     /// Is it the diffuse part? Then direction and factor are unused.
     pub is_diffuse: bool,
-    /// Is it a lens' part?
-    pub is_lens: bool,
 }
 
 impl<R: Scalar> Lobes<R> {
     /// Of a surface that is seen along `direction`.
     #[inline(always)]
     pub fn new(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Self {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let diffuse_only = Lobes {
-            diffuse: STEPS,
-            reflected: STEPS,
+        let zero = R::splat(0.0);
+        let none = Specular {
             mirrored: direction,
             mirror: V3::zero(),
             refracted: direction,
             lens: V3::zero(),
+            passes: false,
             is_lens: false,
         };
+        let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none };
         if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
             return diffuse_only;
         }
-        let diffuse = surface.diffuse.greatest();
-        let is_lens = effects.has(Effects::REFRACTION) && !surface.ior.eq(zero);
-        let specular = if is_lens { one } else { surface.reflection.greatest() };
-        let total = diffuse + specular;
-        if specular.eq(zero) {
+        let specular = Specular::new(effects, surface, interaction, direction);
+        let (own, other) = (surface.diffuse.greatest(), specular.mirror.greatest());
+        let other = if specular.is_lens { R::splat(1.0) } else { other };
+        if other.eq(zero) {
             return diffuse_only;
         }
         let steps = |share: R, of: i32| (share * R::splat(of as f32)).floor_index();
-        let mut of_diffuse = steps(diffuse.div(total), STEPS);
-        if zero.lt(diffuse) {
-            of_diffuse = of_diffuse.max(1);
-        }
-        let rest = (STEPS - of_diffuse).max(1);
-        of_diffuse = STEPS - rest;
-        let mirrored = mirrored(direction, interaction, surface);
+        let least = if zero.lt(own) { 1 } else { 0 };
+        let diffuse = steps(own.div(own + other), STEPS).max(least).min(STEPS - 1);
+        let rest = STEPS - diffuse;
+        // A lens of one step lets nothing pass.
+        let splits = specular.passes && rest > 1;
+        let reflected = if splits { steps(specular.mirror.x, rest).max(1).min(rest - 1) } else { rest };
         let over = |steps: i32| R::splat(STEPS as f32).div(R::splat(steps as f32));
-        if !is_lens {
-            let mirror = surface.reflection * over(rest);
-            return Lobes { diffuse: of_diffuse, reflected: STEPS, mirrored, mirror, ..diffuse_only };
-        }
-        let eta = interaction.relative_ior(surface.ior);
-        let at = refract(direction, surface.normal, eta);
-        let share = fresnel(&at, eta);
-        let refracted = at.direction.normalised().0;
-        // An interpolated normal may refract a ray back out.
-        let passes = !at.total && !interaction.faces(refracted);
-        let reflected = if passes { steps(share, rest).max(1).min(rest - 1) } else { rest };
-        let mirror = (V3::new(share, share, share) * over(reflected)).map(|c| c.flush(FAINT));
-        // Radiance is compressed into the narrower cones of a denser body.
-        let through = (one - share) * eta * eta;
-        let lens = (surface.transmission * (through * over((rest - reflected).max(1)))).map(|c| c.flush(FAINT));
-        Lobes { diffuse: of_diffuse, reflected: of_diffuse + reflected, mirrored, mirror, refracted, lens, is_lens }
+        let mirror = (specular.mirror * over(reflected)).map(|c| c.flush(FAINT));
+        let lens = (specular.lens * over((rest - reflected).max(1))).map(|c| c.flush(FAINT));
+        Lobes { diffuse, reflected: diffuse + reflected, specular: Specular { mirror, lens, ..specular } }
     }
 
     /// May the diffuse part be chosen?
@@ -105,10 +85,15 @@ impl<R: Scalar> Lobes<R> {
         let step = (drawn >> 9) as i32;
         let passes = step >= self.reflected;
         Lobe {
-            direction: V3::select(passes, self.refracted, self.mirrored),
-            factor: V3::select(passes, self.lens, self.mirror),
+            direction: V3::select(passes, self.specular.refracted, self.specular.mirrored),
+            factor: V3::select(passes, self.specular.lens, self.specular.mirror),
             is_diffuse: step < self.diffuse,
-            is_lens: self.is_lens,
         }
+    }
+
+    /// Where a ray starts that a mirror or a lens scatters.
+    #[inline(always)]
+    pub fn leave(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
+        self.specular.leave(interaction, direction)
     }
 }

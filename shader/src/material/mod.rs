@@ -4,11 +4,13 @@ mod lambert;
 mod lobes;
 mod optics;
 mod phong;
+mod specular;
 
 pub use lambert::{INVERSE_PI, cosine_direction};
 pub use lobes::{Lobe, Lobes};
 pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
+pub use specular::Specular;
 
 use crate::buffer::read;
 use crate::data::{Effects, Material, Primitive, numbers};

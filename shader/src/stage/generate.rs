@@ -20,7 +20,9 @@ pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, slot: u32, paths
         weight: V3::splat(glam::Vec3::ONE),
         bounces: 0,
         density: R::splat(0.0),
+        pending: 0,
+        vertex: 0,
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
-    path.store(frame.slots, slot, pixel.inside, paths);
+    path.store(frame.slots, slot, 0, pixel.inside, paths);
 }

@@ -28,6 +28,10 @@ pub struct PathState<R: Real> {
     pub density: R,
     /// The column and, in the upper half, the row of its pixel in the image.
     pub pixel: u32,
+    /// Paths that wait in this slot, where paths branch.
+    pub pending: u32,
+    /// How many vertices the slot has had, where paths branch.
+    pub vertex: u32,
 }
 
 /// A ray to a sampled light, and the light that arrives if nothing is between.
@@ -40,24 +44,27 @@ pub struct ShadowRay<R: Real> {
 }
 
 impl<R: Scalar> PathState<R> {
-    /// A slot's path.
+    /// The path at a level of a slot: that in hand at level 0, and those that wait above.
     #[inline(always)]
-    pub fn load(slots: u32, slot: u32, paths: &[R::Record]) -> Self {
-        let at = |k| R::load(read(paths, k * slots + slot));
+    pub fn load(slots: u32, slot: u32, level: u32, paths: &[R::Record]) -> Self {
+        let at = |k| R::load(read(paths, (level * STATE_RECORDS + k) * slots + slot));
         let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, pixel)) =
             (at(0), at(1), at(2), at(3));
-        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel }
+        let (pending, vertex) = (rest.y.to_f32() as u32, rest.z.to_f32() as u32);
+        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, pending, vertex }
     }
 
-    /// Keeps it; `follows` unless it is not to be traced.
+    /// Keeps it at a level; `follows` unless it is not to be traced.
     #[inline(always)]
-    pub fn store(&self, slots: u32, slot: u32, follows: bool, paths: &mut [R::Record]) {
+    pub fn store(&self, slots: u32, slot: u32, level: u32, follows: bool, paths: &mut [R::Record]) {
         let limit = R::splat(if follows { f32::MAX } else { NOWHERE });
         let PathState { origin, direction, source_primitive, .. } = *self;
-        Segment { origin, direction, limit, source_primitive }.store(slots, slot, paths);
-        let at = |k| k * slots + slot;
+        let at = |k| (level * STATE_RECORDS + k) * slots + slot;
+        Segment { origin, direction, limit, source_primitive }.store(slots, at(0), paths);
+        // Counts below 2^24 are numbers of single precision.
+        let counts = (R::splat(self.pending as f32), R::splat(self.vertex as f32));
         write(paths, at(2), R::store(self.weight, self.bounces));
-        write(paths, at(3), R::store(V3::new(self.density, R::splat(0.0), R::splat(0.0)), self.pixel));
+        write(paths, at(3), R::store(V3::new(self.density, counts.0, counts.1), self.pixel));
     }
 }
 

@@ -111,6 +111,12 @@ fn powers_err_less_than_stated() {
 const LOG_ULPS: f64 = 4.0;
 const EXP_ULPS: f64 = 2.0;
 
+/// Zero or a normal number of at most 2^126, either sign.
+fn angle_operand(rng: &mut Rng) -> u32 {
+    let size = if rng.u32(..16) == 0 { 0 } else { rng.u32(0x0080_0000..=0x7e80_0000) };
+    size | rng.u32(..) & 0x8000_0000
+}
+
 /// A million operations from the whole domain of a function, special numbers among them.
 fn operations(function: u32, part: u64) -> Vec<UVec4> {
     let mut rng = Rng::with_seed(part << 8 | u64::from(function));
@@ -126,7 +132,9 @@ fn operations(function: u32, part: u64) -> Vec<UVec4> {
             function::RECIPROCAL => (rng.u32(0x0080_0000..0x7e80_0000) | rng.u32(..) & 0x8000_0000, 0),
             function::POWER => (rng.u32(0..=0x3f80_0000), rng.u32(0x2180_0000..0x4e6e_6b28)),
             function::LOGARITHM => (rng.u32(0x0080_0000..0x7f80_0000), 0),
-            _ => ((rng.f32() * 200.0 - 100.0).to_bits(), 0),
+            function::EXPONENTIAL => ((rng.f32() * 200.0 - 100.0).to_bits(), 0),
+            function::ANGLE => (angle_operand(&mut rng), angle_operand(&mut rng)),
+            _ => (rng.u32(..), 0),
         };
         UVec4::new(a, b, function, 0)
     };
@@ -141,7 +149,7 @@ fn same(a: u32, b: u32) -> bool {
 #[test]
 fn the_gpu_has_the_same_bits() {
     let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
-    let names = ["div", "reciprocal", "sqrt", "pow", "log2", "exp2"];
+    let names = ["div", "reciprocal", "sqrt", "pow", "log2", "exp2", "cos", "sin", "atan2"];
     for (name, function) in names.iter().zip(function::QUOTIENT..) {
         let count = count::of(1 << 20, 1 << 27);
         let differing: usize = (0..count as u64 >> 20).map(|part| differing(&gpu, &operations(function, part))).sum();

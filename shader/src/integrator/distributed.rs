@@ -1,0 +1,109 @@
+//! Distributed ray tracing (Cook, Porter and Carpenter, 1984; thesis 3.4.1): Whitted's tree of reflected and refracted rays, where
+//! lights have extent and each vertex asks one of them.
+
+use super::sampled::{Scattered, Vertex, share};
+use crate::buffer::read;
+use crate::data::{Effects, numbers};
+use crate::geometry::SurfaceInteraction;
+use crate::light::{EmitterSample, LightSample, Lighting};
+use crate::material::{INVERSE_PI, Specular, Surface, eval_phong};
+use crate::real::{FAINT, Scalar, V3};
+use crate::sampler::DECISIONS;
+use crate::scene::{LaunchContext, ShadingData};
+use crate::stage::{PathState, Segment, ShadowRay};
+
+/// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
+#[inline(always)]
+pub(super) fn at<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+) -> Scattered<R> {
+    let (path, effects) = (vertex.path, launch.spec.effects);
+    let primitive = launch.primitive(vertex.primitive_index);
+    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
+    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let mut light = surface.ambient;
+    if effects.has(Effects::EMISSIVE) {
+        let emission = read(lighting.emissions, primitive.material());
+        if interaction.front || emission.sides.x != 0 {
+            light = light + V3::splat(numbers(emission.radiance));
+        }
+    }
+    let light = share(launch, &path, light);
+    let shadow = sampled_light(launch, lighting, vertex, &interaction, &surface);
+    if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
+        return Scattered::once(light, shadow, path, false);
+    }
+    let (reflected, refracted) = branches(effects, &path, &interaction, &surface);
+    let (first, second) = (counts(launch, &reflected), counts(launch, &refracted));
+    Scattered {
+        light,
+        shadow,
+        next: if first { reflected } else { refracted },
+        goes_on: first || second,
+        other: refracted,
+        waits: first && second,
+    }
+}
+
+/// The light of one light, by Whitted's model over pi.
+#[inline(always)]
+fn sampled_light<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    interaction: &SurfaceInteraction<R>,
+    surface: &Surface<R>,
+) -> ShadowRay<R> {
+    let (path, effects) = (&vertex.path, launch.spec.effects);
+    if !effects.has(Effects::LIT | Effects::EMISSIVE) || launch.frame.emitters == 0 {
+        return ShadowRay::none();
+    }
+    let (decisions, places) = (vertex.draws.set(DECISIONS + path.vertex), vertex.draws.set(path.vertex));
+    let origin = interaction.offset_ray_origin(interaction.normal);
+    let sample = EmitterSample::new(launch, lighting, origin, decisions.x, (places.z, places.w));
+    if !interaction.faces(sample.direction) {
+        return ShadowRay::none();
+    }
+    let incidence = LightSample { direction: sample.direction, colour: sample.light };
+    let light = eval_phong(effects, surface, path.direction, &incidence);
+    let segment = Segment {
+        origin,
+        direction: sample.direction,
+        limit: sample.limit,
+        source_primitive: interaction.source_primitive(sample.direction),
+    };
+    ShadowRay { segment, light: share(launch, path, (light * R::splat(INVERSE_PI)).map(|c| c.flush(FAINT))) }
+}
+
+/// The reflected and the refracted ray; a zero weight is none.
+#[inline(always)]
+fn branches<R: Scalar>(
+    effects: Effects,
+    path: &PathState<R>,
+    interaction: &SurfaceInteraction<R>,
+    surface: &Surface<R>,
+) -> (PathState<R>, PathState<R>) {
+    let specular = Specular::new(effects, surface, interaction, path.direction);
+    let on = |direction: V3<R>, factor: V3<R>| PathState {
+        origin: specular.leave(interaction, direction),
+        direction,
+        source_primitive: interaction.source_primitive(direction),
+        weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
+        bounces: path.bounces + 1,
+        ..*path
+    };
+    let through = if specular.passes { specular.lens } else { V3::zero() };
+    (on(specular.mirrored, specular.mirror), on(specular.refracted, through))
+}
+
+/// Is it worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
+#[inline(always)]
+fn counts<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> bool {
+    let greatest = path.weight.greatest();
+    path.bounces <= launch.frame.bounces
+        && R::splat(launch.frame.min_contribution).le(greatest)
+        && R::splat(0.0).lt(greatest)
+}

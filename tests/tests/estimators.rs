@@ -90,7 +90,7 @@ fn colours_that_walls_throw() {
 #[test]
 fn lights_without_extent_beside_a_lamp() {
     let mut scene = shipped("lights");
-    let lamp = scene.materials.iter_mut().find(|material| material.reflection == glam::Vec3::ZERO);
+    let lamp = scene.materials.iter_mut().find(|material| material.reflection == Vec3::ZERO);
     lamp.expect("one is no mirror").emission = Vec3::splat(0.5);
     scene.settings.transport.integrator = Integrator::Path;
     assert_scene(&scene);

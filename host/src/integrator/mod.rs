@@ -11,7 +11,9 @@ use crate::scene::Integrator;
 pub fn needs(packed: &DeviceScene) -> Needs {
     match packed.settings().transport.integrator {
         Integrator::Whitted => whitted::whitted(packed),
-        Integrator::Ao | Integrator::Distributed | Integrator::Path => sampled::sampled(packed),
+        Integrator::Ao => sampled::occlusion(),
+        Integrator::Distributed => sampled::distributed(packed),
+        Integrator::Path => sampled::path(packed),
     }
 }
 

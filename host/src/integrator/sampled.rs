@@ -2,19 +2,24 @@
 
 use super::{Needs, Waves, whitted};
 use crate::device_scene::DeviceScene;
-use crate::scene::Integrator;
 
-/// What a scene asks for.
-pub fn sampled(packed: &DeviceScene) -> Needs {
-    let settings = packed.settings();
-    let once = |waves| Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(waves), is_sampled: true };
-    match settings.transport.integrator {
-        Integrator::Whitted | Integrator::Ao => once(0),
-        Integrator::Distributed => {
-            let Needs { paths, waves, .. } = whitted::whitted(packed);
-            Needs { paths: paths.max(1), waves, ..once(0) }
-        }
-        // The last ray finds only what emits.
-        Integrator::Path => once(settings.bounces + u32::from(packed.found_light().is_some())),
-    }
+/// Of the camera's rays alone.
+pub fn occlusion() -> Needs {
+    once(0)
+}
+
+/// The waves of Whitted's tree.
+pub fn distributed(packed: &DeviceScene) -> Needs {
+    let Needs { paths, waves, .. } = whitted::whitted(packed);
+    Needs { paths: paths.max(1), waves, ..once(0) }
+}
+
+/// The last ray finds only what emits.
+pub fn path(packed: &DeviceScene) -> Needs {
+    once(packed.settings().bounces + u32::from(packed.found_light().is_some()))
+}
+
+/// One path a slot, and one shadow ray at each of its vertices.
+fn once(waves: u32) -> Needs {
+    Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(waves), is_sampled: true }
 }

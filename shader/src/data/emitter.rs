@@ -32,3 +32,11 @@ pub struct Emission {
     /// Not 0 if backs emit too, and three zeros.
     pub sides: UVec4,
 }
+
+impl Emission {
+    /// Does it shine to whoever sees its front, or its back?
+    #[inline(always)]
+    pub fn shines(&self, front: bool) -> bool {
+        front || self.sides.x != 0
+    }
+}

@@ -2,6 +2,7 @@
 //! lights have extent and each vertex asks one of them.
 
 use super::sampled::{Scattered, Vertex, share};
+use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
@@ -10,7 +11,7 @@ use crate::material::{INVERSE_PI, Specular, Surface, eval_phong};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{PathState, Segment, ShadowRay};
+use crate::stage::{PathState, ShadowRay};
 
 /// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
 #[inline(always)]
@@ -21,13 +22,12 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
-    let primitive = launch.primitive(vertex.primitive_index);
-    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
-    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let (primitive, interaction) = vertex.met(launch);
+    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
     let mut light = surface.ambient;
     if effects.has(Effects::EMISSIVE) {
         let emission = read(lighting.emissions, primitive.material());
-        if interaction.front || emission.sides.x != 0 {
+        if emission.shines(interaction.front) {
             light = light + V3::splat(numbers(emission.radiance));
         }
     }
@@ -36,8 +36,9 @@ pub(super) fn at<R: Scalar>(
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return Scattered::once(light, shadow, path, false);
     }
-    let (reflected, refracted) = branches(effects, &path, &interaction, &surface);
-    let (first, second) = (counts(launch, &reflected), counts(launch, &refracted));
+    let (reflected, refracted) = branches(effects, vertex, &interaction, &surface);
+    let counts = |path: &PathState<R>| counts(launch, path.bounces, path.weight);
+    let (first, second) = (counts(&reflected), counts(&refracted));
     Scattered {
         light,
         shadow,
@@ -69,41 +70,22 @@ fn sampled_light<R: Scalar>(
     }
     let incidence = LightSample { direction: sample.direction, colour: sample.light };
     let light = eval_phong(effects, surface, path.direction, &incidence);
-    let segment = Segment {
-        origin,
-        direction: sample.direction,
-        limit: sample.limit,
-        source_primitive: interaction.source_primitive(sample.direction),
-    };
-    ShadowRay { segment, light: share(launch, path, (light * R::splat(INVERSE_PI)).map(|c| c.flush(FAINT))) }
+    let light = (light * R::splat(INVERSE_PI)).map(|c| c.flush(FAINT));
+    vertex.asks(launch, (interaction, origin), &sample, light)
 }
 
 /// The reflected and the refracted ray; a zero weight is none.
 #[inline(always)]
 fn branches<R: Scalar>(
     effects: Effects,
-    path: &PathState<R>,
+    vertex: &Vertex<R>,
     interaction: &SurfaceInteraction<R>,
     surface: &Surface<R>,
 ) -> (PathState<R>, PathState<R>) {
-    let specular = Specular::new(effects, surface, interaction, path.direction);
-    let on = |direction: V3<R>, factor: V3<R>| PathState {
-        origin: specular.leave(interaction, direction),
-        direction,
-        source_primitive: interaction.source_primitive(direction),
-        weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
-        bounces: path.bounces + 1,
-        ..*path
+    let specular = Specular::new(effects, surface, interaction, vertex.path.direction);
+    let on = |direction, factor| {
+        vertex.on((interaction, specular.leave(interaction, direction)), direction, factor, R::splat(0.0))
     };
     let through = if specular.passes { specular.lens } else { V3::zero() };
     (on(specular.mirrored, specular.mirror), on(specular.refracted, through))
-}
-
-/// Is it worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
-#[inline(always)]
-fn counts<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> bool {
-    let greatest = path.weight.greatest();
-    path.bounces <= launch.frame.bounces
-        && R::splat(launch.frame.min_contribution).le(greatest)
-        && R::splat(0.0).lt(greatest)
 }

@@ -1,8 +1,7 @@
 //! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
 
 use super::sampled::{Scattered, Vertex};
-use crate::geometry::SurfaceInteraction;
-use crate::material::{Surface, cosine_direction};
+use crate::material::cosine_direction;
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{Segment, ShadowRay};
@@ -10,10 +9,8 @@ use crate::stage::{Segment, ShadowRay};
 /// Asks along one direction of the cosine's density.
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
-    let (path, effects) = (vertex.path, launch.spec.effects);
-    let primitive = launch.primitive(vertex.primitive_index);
-    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
-    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let (primitive, interaction) = vertex.met(launch);
+    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
     let mut shadow = ShadowRay::none();
@@ -25,7 +22,7 @@ pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_
             limit: R::splat(launch.frame.reach),
             source_primitive: interaction.source_primitive(direction),
         };
-        shadow = ShadowRay { segment, light: path.weight };
+        shadow = ShadowRay { segment, light: vertex.path.weight };
     }
-    Scattered::once(V3::zero(), shadow, path, false)
+    Scattered::once(V3::zero(), shadow, vertex.path, false)
 }

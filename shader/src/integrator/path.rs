@@ -10,7 +10,7 @@ use crate::material::{INVERSE_PI, Lobes, Surface, cosine_direction};
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{PathState, Segment, ShadowRay};
+use crate::stage::{PathState, ShadowRay};
 
 /// A surface where a path has hit it.
 struct At<R: Real> {
@@ -30,13 +30,12 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
-    let primitive = launch.primitive(vertex.primitive_index);
-    let interaction = SurfaceInteraction::new(effects, &primitive, vertex.coordinates, path.direction);
+    let (primitive, interaction) = vertex.met(launch);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &primitive, &interaction));
     if path.bounces > launch.frame.bounces {
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
-    let surface = Surface::new(effects, shading, vertex.primitive_index, &primitive, path.direction, &interaction);
+    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
     let origin = interaction.offset_ray_origin(interaction.normal);
     let at = At { interaction, surface, lobes, origin };
@@ -84,8 +83,7 @@ fn emitted<R: Scalar>(
         return V3::zero();
     }
     let emission = read(lighting.emissions, primitive.material());
-    let is_lit = interaction.front || emission.sides.x != 0;
-    if emission.radiance.w == 0 || !is_lit {
+    if emission.radiance.w == 0 || !emission.shines(interaction.front) {
         return V3::zero();
     }
     let (radiance, own) = (V3::splat(numbers(emission.radiance)), vertex.path.density);
@@ -123,19 +121,7 @@ fn sampled_light<R: Scalar>(
         let share = weight(launch.spec.launch, Launch::BY_LIGHT, own.flush(FAINT), sample.density.over);
         light = (light * share).map(|c| c.flush(FAINT));
     }
-    let segment = Segment {
-        origin: at.origin,
-        direction: sample.direction,
-        limit: sample.limit,
-        source_primitive: at.interaction.source_primitive(sample.direction),
-    };
-    ShadowRay { segment, light: share_scattered(launch, path, light) }
-}
-
-/// As [`share`], of light that this vertex scatters once more.
-#[inline(always)]
-fn share_scattered<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, light: V3<R>) -> V3<R> {
-    share(launch, &PathState { bounces: path.bounces + 1, ..*path }, light)
+    vertex.asks(launch, (&at.interaction, at.origin), &sample, light)
 }
 
 /// What a sample counts whose own density is in the proportion `own` to that of the other strategy: all of it where its strategy,
@@ -158,27 +144,19 @@ fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) -> R {
 /// The next ray, by one lobe of the surface.
 #[inline(always)]
 fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<R> {
-    let (path, surface, interaction) = (&vertex.path, &at.surface, &at.interaction);
-    let on = |origin: V3<R>, direction: V3<R>, factor: V3<R>, density: R| PathState {
-        origin,
-        direction,
-        source_primitive: interaction.source_primitive(direction),
-        weight: path.weight.times(factor).map(|c| c.flush(FAINT)),
-        bounces: path.bounces + 1,
-        density,
-        ..*path
-    };
+    let (surface, interaction) = (&at.surface, &at.interaction);
     let lobe = at.lobes.chosen(decision);
     if lobe.is_diffuse {
-        let draws = vertex.draws.set(path.bounces + 1);
+        let draws = vertex.draws.set(vertex.path.bounces + 1);
         let (direction, cosine) = cosine_direction(surface.normal, (draws.x, draws.y));
         let probability = at.lobes.diffuse_probability();
         // About an interpolated normal a direction may lie below the surface.
         let factor = V3::select(interaction.faces(direction), surface.diffuse * probability.reciprocal(), V3::zero());
-        return on(at.origin, direction, factor, probability * cosine * R::splat(INVERSE_PI));
+        let density = probability * cosine * R::splat(INVERSE_PI);
+        return vertex.on((interaction, at.origin), direction, factor, density);
     }
     let origin = at.lobes.leave(interaction, lobe.direction);
-    on(origin, lobe.direction, lobe.factor, R::splat(0.0))
+    vertex.on((interaction, origin), lobe.direction, lobe.factor, R::splat(0.0))
 }
 
 /// Russian roulette: a path of little weight ends, or goes on for those that ended. Does it go on?

@@ -3,13 +3,15 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::Launch;
-use crate::light::Lighting;
+use crate::data::{Launch, Primitive};
+use crate::geometry::SurfaceInteraction;
+use crate::light::{EmitterSample, Lighting};
+use crate::material::Surface;
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{NON_FINITE, PathState, ShadowRay};
+use crate::stage::{NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
 use super::{distributed, occlusion, path};
@@ -34,6 +36,63 @@ pub(super) struct Vertex<R: Real> {
     pub primitive_index: u32,
     pub coordinates: (R, R),
     pub draws: Draws,
+}
+
+impl<R: Scalar> Vertex<R> {
+    /// The primitive that is hit, and the place on it.
+    #[inline(always)]
+    pub fn met(&self, launch: &LaunchContext<'_>) -> (Primitive, SurfaceInteraction<R>) {
+        let primitive = launch.primitive(self.primitive_index);
+        let direction = self.path.direction;
+        (primitive, SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction))
+    }
+
+    /// What is known of its surface.
+    #[inline(always)]
+    pub fn surface(
+        &self,
+        launch: &LaunchContext<'_>,
+        shading: &ShadingData<'_>,
+        (primitive, interaction): (&Primitive, &SurfaceInteraction<R>),
+    ) -> Surface<R> {
+        let direction = self.path.direction;
+        Surface::new(launch.spec.effects, shading, self.primitive_index, primitive, direction, interaction)
+    }
+
+    /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.
+    #[inline(always)]
+    pub fn asks(
+        &self,
+        launch: &LaunchContext<'_>,
+        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
+        sample: &EmitterSample<R>,
+        light: V3<R>,
+    ) -> ShadowRay<R> {
+        let EmitterSample { direction, limit, .. } = *sample;
+        let segment = Segment { origin, direction, limit, source_primitive: interaction.source_primitive(direction) };
+        let path = PathState { bounces: self.path.bounces + 1, ..self.path };
+        ShadowRay { segment, light: share(launch, &path, light) }
+    }
+
+    /// The path that goes on from here: `factor` of its light counts, `density` is that of its direction.
+    #[inline(always)]
+    pub fn on(
+        &self,
+        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
+        direction: V3<R>,
+        factor: V3<R>,
+        density: R,
+    ) -> PathState<R> {
+        PathState {
+            origin,
+            direction,
+            source_primitive: interaction.source_primitive(direction),
+            weight: self.path.weight.times(factor).map(|c| c.flush(FAINT)),
+            bounces: self.path.bounces + 1,
+            density,
+            ..self.path
+        }
+    }
 }
 
 /// What comes of it.

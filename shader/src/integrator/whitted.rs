@@ -159,15 +159,13 @@ impl<R: Scalar> Path<R> {
             source_primitive: from.source_primitive(direction),
         }
     }
+}
 
-    /// Is it worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
-    #[inline(always)]
-    fn counts(&self, launch: &LaunchContext<'_>) -> bool {
-        let least = R::splat(launch.frame.min_contribution);
-        self.bounces <= launch.frame.bounces
-            && least.le(self.weight.greatest())
-            && R::splat(0.0).lt(self.weight.greatest())
-    }
+/// Is a path worth following? Bounce limit and least contribution end a ray tree (thesis 3.3.1).
+#[inline(always)]
+pub(super) fn counts<R: Scalar>(launch: &LaunchContext<'_>, bounces: u32, weight: V3<R>) -> bool {
+    let least = R::splat(launch.frame.min_contribution);
+    bounces <= launch.frame.bounces && least.le(weight.greatest()) && R::splat(0.0).lt(weight.greatest())
 }
 
 /// Depth first, reflection before refraction: takes one branch in hand and lets the other wait.
@@ -180,8 +178,8 @@ fn follow<R: Scalar>(
     paths: &mut [R::Record],
 ) -> bool {
     let Branches { mut reflected, refracted } = branches;
-    let second = refracted.counts(launch);
-    if reflected.counts(launch) {
+    let second = counts(launch, refracted.bounces, refracted.weight);
+    if counts(launch, reflected.bounces, reflected.weight) {
         if second {
             reflected.pending += 1;
             refracted.store(launch.frame.slots, slot, reflected.pending, paths);

@@ -2,11 +2,12 @@
 
 use eyerays::gpu::{AdapterRequest, Gpu, numerics};
 use eyerays_shader::numerics::{evaluate, function};
-use eyerays_shader::real::{power, soft};
+use eyerays_shader::real::{power, soft, turns};
 use eyerays_tests::{count, gpu};
 use fastrand::Rng;
 use glam::UVec4;
 use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// The distance from a double's nearest `f32` of the same binade to the next.
 fn ulp(x: f64) -> f64 {
@@ -105,6 +106,28 @@ fn powers_err_less_than_stated() {
         "pow: largest relative error {relative:.2e} of the greater of 1 and |log2| of the result, {ulps:.0} ulp, over {count} powers"
     );
     assert!(relative <= 4e-7);
+}
+
+/// All slopes of (0, 1] in full, else every 499th, in four places each; and any points.
+#[test]
+fn angles_err_less_than_stated() {
+    let off = |y: f32, x: f32| (f64::from(turns::atan2(y, x)) - f64::from(y).atan2(f64::from(x)) / TAU).abs();
+    let step = if count::full() { 1 } else { 499 };
+    let slopes = (1..=1f32.to_bits() / step).into_par_iter().map(|i| f32::from_bits(i * step));
+    let [of_slopes] = most(slopes.map(|t| {
+        let places = [off(t, 1.0), off(1.0, t), off(-t, -1.0), off(-1.0, -t)];
+        [places.into_iter().fold(0.0, f64::max)]
+    }));
+    let count = count::of(1 << 21, 1 << 30) as u64;
+    let [of_points] = most((0..count).into_par_iter().map(|i| {
+        let mut rng = Rng::with_seed(i);
+        let mut coordinate = || f32::from_bits(angle_operand(&mut rng));
+        let (x, y) = (coordinate(), coordinate());
+        // The standard library tells the sides of a cut by the signs of zeros.
+        [if y == 0.0 { 0.0 } else { off(y, x) }]
+    }));
+    println!("atan2: largest error {of_slopes:.2e} turns of slopes, {of_points:.2e} of {count} points");
+    assert!(of_slopes.max(of_points) <= 4e-8, "{of_slopes:e}, {of_points:e}");
 }
 
 /// Units that log2 and exp2 may be off by.

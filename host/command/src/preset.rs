@@ -9,7 +9,7 @@ use crate::error::Result;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::{Range, Settings, Table, read_table};
+use eyerays::scene::{Integrator, Range, Sampler, Settings, Table, read_table};
 
 /// What a settings file says; its keys are the names of options of `eyerays render`, with `_` for `-`. What it
 /// does not say is left to the command line and the scene.
@@ -33,20 +33,32 @@ pub struct Preset {
     /// Quality of the hierarchy.
     #[serde(serialize_with = "wish")]
     pub bvh: Option<Bvh>,
+    /// How light is carried.
+    #[serde(serialize_with = "wish")]
+    pub integrator: Option<Integrator>,
+    /// Where in a pixel its samples lie.
+    #[serde(serialize_with = "wish")]
+    pub sampler: Option<Sampler>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,
+    /// Samples of a pixel instead.
+    pub spp: Option<u32>,
     /// The most times a ray is followed on.
     pub bounces: Option<u32>,
     /// A ray whose every weight is less is not followed.
     pub min_contribution: Option<f32>,
+    /// Bounces before Russian roulette may end a path.
+    pub roulette: Option<u32>,
+    /// The most that light adds to a sample which was scattered more than once, 0 for no limit.
+    pub clamp: Option<f32>,
 }
 
 impl Preset {
     /// Reads a settings file.
     ///
     /// # Errors
-    /// No readable TOML file, an unknown key or value, a number out of range, or a triangle test that the
-    /// precision has not: one line that names file, line and remedy.
+    /// No readable TOML file, an unknown key or value, a number out of range, two numbers of samples, or a triangle
+    /// test that the precision has not: one line that names file, line and remedy.
     pub fn read(path: &Path) -> Result<Preset> {
         Ok(read_table(path, Self::of)?)
     }
@@ -59,10 +71,18 @@ impl Preset {
             method: table.choice("method")?,
             layout: table.choice("layout")?,
             bvh: table.choice("bvh")?,
+            integrator: table.choice("integrator")?,
+            sampler: table.choice("sampler")?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
+            spp: table.whole("spp", 1, Settings::MOST_SPP)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,
             min_contribution: table.number("min_contribution", Range::SHARE)?,
+            roulette: table.whole("roulette", 0, Settings::MOST_BOUNCES)?,
+            clamp: table.number("clamp", Range::AMOUNT)?,
         };
+        if preset.samples.is_some() && preset.spp.is_some() {
+            return Err(table.fault_of("spp", "samples and spp both say how many samples a pixel has; remove one"));
+        }
         if preset.triangle == Some(TriangleTest::Moller) && preset.precision != Some(Precision::Fast) {
             let fault = "triangle \"moller\" is for fast precision; add precision = \"fast\" or remove it";
             return Err(table.fault_of("triangle", fault));

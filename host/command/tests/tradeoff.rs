@@ -113,6 +113,40 @@ fn the_gpu_is_measured_by_its_own_clock() {
     assert_eq!(again["why"], "--device gpu");
 }
 
+/// Light that is sampled: what is kept is what was measured, and renders the same picture again.
+#[test]
+fn sampled_light_is_recommended_by_its_noise() {
+    let place = Place::new(&[]);
+    let scene = shipped("cornell_path");
+    let few = ["--size", "16x16", "--device", "cpu", "--repeat", "1", "--methods", "auto", "--layout", "gathered"];
+    let more = ["--bvh", "fast", "--precision", "exact", "--spp", "1,4", "--sampler", "sobol,random", "--bounces", "3"];
+    let wish = ["--clamp", "0,1", "--roulette", "0,65535", "--budget", "60000", "--save", "kept.toml", "-o", "a.json"];
+    let outcome = place.succeed(&[&["tradeoff", &scene], &few[..], &more, &wish].concat());
+    for part in
+        ["two pictures of 32 samples", "its standard error is", "### Sampler", "### Russian roulette", "### Clamp"]
+    {
+        assert!(outcome.text().contains(part), "{part}: {}", outcome.text());
+    }
+    let json: serde_json::Value = serde_json::from_slice(&fs::read(place.path("a.json")).unwrap()).unwrap();
+    let best = json["records"].as_array().unwrap().iter().find(|record| record["recommended"] == true).unwrap().clone();
+    assert_eq!(best["spp"], 4, "{best}");
+    let kept = fs::read_to_string(place.path("kept.toml")).unwrap();
+    assert!(kept.contains("integrator = \"path\"\n") && kept.contains("spp = 4\n"), "{kept}");
+    let render = |output: &str, more: &[&str]| {
+        let json =
+            place.succeed(&[&["render", &scene, "--size", "16x16", "-o", output, "--json"], more].concat()).json();
+        (json["film_hash"].to_string(), json["spp"].clone())
+    };
+    let by_options = ["sampler", "roulette", "clamp"].map(|key| match &best[key] {
+        serde_json::Value::String(word) => format!("--{key}={word}"),
+        other => format!("--{key}={other}"),
+    });
+    let by_options: Vec<&str> = by_options.iter().map(String::as_str).chain(["--spp=4", "--bounces=3"]).collect();
+    let by_options = [&by_options[..], &["--device", "cpu", "--bvh", "fast"]].concat();
+    assert_eq!(render("again.exr", &["--settings", "kept.toml"]), render("asked.exr", &by_options));
+    assert_eq!(render("again.exr", &["--settings", "kept.toml", "--samples", "3"]).1, 9);
+}
+
 /// The command line over the file, the file over the scene.
 #[test]
 fn options_override_a_settings_file_and_it_the_scene() {
@@ -143,6 +177,12 @@ fn bad_settings_files() {
         ("bounces = 65536\n", &["kept.toml:1: ", "\"bounces\"", "65535"]),
         ("min_contribution = 1.5\n", &["kept.toml:1: ", "between 0 and 1"]),
         ("min_contribution = nan\n", &["kept.toml:1: ", "between 0 and 1"]),
+        ("samples = 2\nspp = 4\n", &["kept.toml:2: ", "remove one"]),
+        ("spp = 0\n", &["kept.toml:1: ", "\"spp\" must be between 1 and"]),
+        ("integrator = \"paths\"\n", &["kept.toml:1: ", "\"paths\"", "did you mean \"path\"?"]),
+        ("sampler = \"halton\"\n", &["kept.toml:1: ", "\"halton\"", "sobol"]),
+        ("roulette = -1\n", &["kept.toml:1: ", "\"roulette\""]),
+        ("clamp = inf\n", &["kept.toml:1: ", "\"clamp\""]),
         ("method = 3\n", &["kept.toml:1: ", "\"method\" must be a string"]),
         ("bvh = \"best\"\n", &["kept.toml:1: ", "unknown bvh \"best\"", "fast, high, medium"]),
         ("device = \"tpu\"\n", &["kept.toml:1: ", "\"tpu\"", "\"cpu\""]),
@@ -181,6 +221,11 @@ fn runs_that_can_not_be() {
         (&["--samples", "0"], &["--samples 0"]),
         (&["--bounces", "65536"], &["--bounces 65536"]),
         (&["--min-contribution", "0.5,2"], &["--min-contribution 2"]),
+        (&["--spp", "4,0"], &["--spp 0"]),
+        (&["--clamp", "1,nan"], &["--clamp NaN"]),
+        (&["--roulette", "65536"], &["--roulette 65536"]),
+        (&["--reference-spp", "1"], &["--reference-spp 1", "2 to"]),
+        (&["--sampler", "regular", "--spp", "8"], &["scene.toml", "no grid of 8"]),
         (&["--precision", "exact", "--triangle", "moller"], &["--triangle moller", "--precision fast"]),
         (&["--threads", "0"], &["--threads 0"]),
         (&["--adapter", "0"], &["--adapter", "--device cpu"]),

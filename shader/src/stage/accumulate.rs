@@ -43,13 +43,15 @@ pub fn accumulate<R: Scalar>(
     while at < frame.slots {
         let (sum, own) = R::load(read(sums, at));
         let sample = sum + ShadowRay::<R>::arrived(frame.slots, at, shadows, segments);
-        let (total, off) = colour.difference_and_rest(-sample);
-        (colour, rest) = (total, rest + off);
+        // Kahan's sum: the rest goes into the next addition, so that it never grows. Flushed here and not where it is stored, where
+        // n samples and n more would otherwise not be 2n.
+        (colour, rest) = colour.difference_and_rest(-(sample + rest));
+        rest = rest.map(|c| c.flush(FAINT));
         let bright = brightness(sample).flush(FAINT);
         squares += (bright * bright).flush(FAINT).to_f32();
         word = counted(word, own);
         at += frame.pixel_slots;
     }
     write(film, pixel.index, R::store(colour, word));
-    write(film, further, R::store(rest.map(|c| c.flush(FAINT)), squares.to_bits()));
+    write(film, further, R::store(rest, squares.to_bits()));
 }

@@ -81,9 +81,9 @@ impl Effort {
     pub fn over(self, file: &Preset) -> Effort {
         Effort {
             samples: self.samples.or(file.samples.filter(|_| self.spp.is_none())),
-            spp: self.spp,
-            transport: self.transport,
-            sampler: self.sampler,
+            spp: self.spp.or(file.spp.filter(|_| self.samples.is_none())),
+            transport: self.transport.over_file(file),
+            sampler: self.sampler.or(file.sampler),
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),

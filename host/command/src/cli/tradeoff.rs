@@ -16,7 +16,7 @@ use crate::tradeoff::{self, Axes, Plan, Record, Report, Subject, Wish};
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::Settings;
+use eyerays::scene::{Integrator, Sampler, Settings};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -27,6 +27,8 @@ Exit code 1 tells that no setting serves --max-error or --budget.";
 
 /// Exit code of a wish that nothing serves.
 const UNSERVED: u8 = 1;
+/// How many times more samples than is tried the reference has, where light is sampled.
+const MORE: u32 = 16;
 /// What a file of `--save` begins with, as a comment.
 const SAVED: &str = "eyerays tradeoff";
 
@@ -46,6 +48,9 @@ pub(super) struct Tradeoff {
     /// The most settings that are tried [default: 100]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     trials: Option<u32>,
+    /// Samples of a pixel of the reference where light is sampled [default: 16 times the most that are tried]
+    #[arg(long, value_name = "N")]
+    reference_spp: Option<u32>,
     #[command(flatten)]
     wishes: Wishes,
     #[command(flatten)]
@@ -90,15 +95,32 @@ struct Tried {
     /// Qualities of the hierarchy [default: all]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>(), value_delimiter = ',')]
     bvh: Vec<Bvh>,
+    /// How light is carried; the reference is by the one that leaves out least [default: the scene's]
+    #[arg(long, value_parser = choice::<Integrator>(), value_delimiter = ',')]
+    integrator: Vec<Integrator>,
+    /// Where in a pixel its samples lie [default: the scene's, and where light is sampled all that draw]
+    #[arg(long, value_parser = choice::<Sampler>(), value_delimiter = ',')]
+    sampler: Vec<Sampler>,
     /// Samples along a pixel's edge; the reference has the most [default: the scene's and 1,2,4; 1,2 with --quick]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     samples: Vec<u32>,
+    /// Samples of a pixel, instead or beside [default where light is sampled: the scene's, a fourth and so on; with
+    /// --quick at most 4]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    spp: Vec<u32>,
     /// Limits of bounces [default: the scene's, 0 and the powers of two below]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     bounces: Vec<u32>,
     /// Least shares of a pixel that rays are followed for [default: the scene's, and 4, 16 and 64 times that]
     #[arg(long, value_name = "SHARE", value_delimiter = ',')]
     min_contribution: Vec<f32>,
+    /// Path: bounces before chance may end a path [default: the scene's, 0 and 65535]
+    #[arg(long, value_name = "N", value_delimiter = ',')]
+    roulette: Vec<u32>,
+    /// Path, distributed: the most that light adds to a sample which was scattered more than once, 0 for no limit
+    /// [default: the scene's, 0, 10 and 1]
+    #[arg(long, value_name = "RADIANCE", value_delimiter = ',')]
+    clamp: Vec<f32>,
 }
 
 /// On what.
@@ -139,7 +161,7 @@ impl Tradeoff {
         let outputs = self.outputs()?;
         let choice = self.choice()?;
         let subject = self.subject(quiet)?;
-        let plan = self.plan(&subject, wish)?;
+        let plan = self.plan(&subject, wish, quiet)?;
         let device = Backend::new(&choice)?;
         let progress = progress::steps(tradeoff::steps(&plan), quiet);
         let report = tradeoff::run(&plan, &subject, device, &|step| console::step(&progress, step));
@@ -227,14 +249,25 @@ impl Tradeoff {
         Ok(Subject { name, file: self.scene.clone(), scene, camera, settings })
     }
 
-    fn plan(&self, subject: &Subject, wish: Option<Wish>) -> Result<Plan> {
-        let mut axes = Axes::of(&subject.scene, &subject.settings);
+    fn plan(&self, subject: &Subject, wish: Option<Wish>, quiet: bool) -> Result<Plan> {
+        let mut axes = Axes::of(&subject.scene, &subject.settings, &self.tried.integrator);
         if self.quick {
-            axes.samples.retain(|&samples| samples <= 2 || samples == subject.settings.samples);
+            axes.hurry(&subject.settings);
         }
         self.tried.restrict(&mut axes)?;
+        for integrator in &axes.integrators {
+            super::warn(integrator.ignored(&subject.scene).as_slice(), quiet);
+        }
         let (repeat, trials) = if self.quick { (3, 40) } else { (5, 100) };
-        Ok(Plan { axes, repeat: self.repeat.unwrap_or(repeat), trials: self.trials.unwrap_or(trials) as usize, wish })
+        within("--reference-spp", self.reference_spp.as_slice(), 2..=Settings::MOST_SPP)?;
+        let many = axes.most_samples().saturating_mul(MORE).clamp(2, Settings::MOST_SPP);
+        Ok(Plan {
+            repeat: self.repeat.unwrap_or(repeat),
+            trials: self.trials.unwrap_or(trials) as usize,
+            reference_spp: self.reference_spp.unwrap_or(many),
+            axes,
+            wish,
+        })
     }
 }
 
@@ -269,14 +302,22 @@ impl Tried {
             _ => self.exact(),
         });
         within("--samples", &self.samples, 1..=Settings::MOST_SAMPLES)?;
+        within("--spp", &self.spp, 1..=Settings::MOST_SPP)?;
         within("--bounces", &self.bounces, 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &self.min_contribution, 0.0..=1.0)?;
         replace(&mut axes.methods, &self.methods);
         replace(&mut axes.layouts, &self.layout);
         replace(&mut axes.bvhs, &self.bvh);
-        replace(&mut axes.samples, &self.samples);
+        within("--roulette", &self.roulette, 0..=Settings::MOST_BOUNCES)?;
+        within("--clamp", &self.clamp, 0.0..=f32::MAX)?;
+        let edges = self.samples.iter().map(|&edge| (edge, 0));
+        let samples: Vec<_> = edges.chain(self.spp.iter().map(|&spp| (1, spp))).collect();
+        replace(&mut axes.samples, &samples);
+        replace(&mut axes.samplers, &self.sampler);
         replace(&mut axes.bounces, &self.bounces);
         replace(&mut axes.min_contributions, &self.min_contribution);
+        replace(&mut axes.roulettes, &self.roulette);
+        replace(&mut axes.clamps, &self.clamp);
         axes.sort();
         Ok(())
     }

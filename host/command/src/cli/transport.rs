@@ -4,6 +4,7 @@ use clap::Args;
 
 use super::choice::choice;
 use crate::error::{Result, within};
+use crate::preset::Preset;
 use eyerays::scene::{self, Direct, Integrator, Settings};
 
 /// How light is carried.
@@ -32,6 +33,16 @@ pub(super) struct Transport {
 }
 
 impl Transport {
+    /// With a settings file below the command line.
+    pub fn over_file(self, file: &Preset) -> Transport {
+        Transport {
+            integrator: self.integrator.or(file.integrator),
+            roulette: self.roulette.or(file.roulette),
+            clamp: self.clamp.or(file.clamp),
+            ..self
+        }
+    }
+
     /// With a scene's settings below.
     pub fn over(&self, own: &scene::Transport) -> Result<scene::Transport> {
         within("--roulette", self.roulette.as_slice(), 0..=Settings::MOST_BOUNCES)?;

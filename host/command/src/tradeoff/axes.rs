@@ -6,10 +6,16 @@ use super::Setting;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::Precision;
-use eyerays::scene::{Material, Scene, Settings};
+use eyerays::scene::{Integrator, Material, Sampler, Scene, Settings, Transport};
 
 /// Samples along a pixel's edge that are tried unless others are asked for.
 const SAMPLES: [u32; 3] = [4, 2, 1];
+/// Samples of a pixel where light is sampled: from one value to the next a fourth, which a grid has, too.
+const FEWER: u32 = 4;
+/// The most samples of a pixel in a hurry.
+const HURRIED: u32 = 4;
+/// Limits of what light adds to a sample: none, rarely and often met in a picture of a screen's brightness.
+const CLAMPS: [f32; 3] = [0.0, 10.0, 1.0];
 /// How much more a ray must contribute from one value to the next ...
 const STEP: f32 = 4.0;
 /// ... and how many values there are.
@@ -28,12 +34,20 @@ pub struct Axes {
     pub layouts: Vec<Layout>,
     /// Qualities of the hierarchy.
     pub bvhs: Vec<Bvh>,
-    /// Samples along a pixel's edge, the most first.
-    pub samples: Vec<u32>,
+    /// How light is carried, those that leave out least first.
+    pub integrators: Vec<Integrator>,
+    /// Where in a pixel its samples lie, the most even ones first.
+    pub samplers: Vec<Sampler>,
+    /// Samples along a pixel's edge and of a pixel, as [`Setting`] has them; the most first.
+    pub samples: Vec<(u32, u32)>,
     /// Limits of bounces, the highest first.
     pub bounces: Vec<u32>,
     /// Least contributions, the lowest first.
     pub min_contributions: Vec<f32>,
+    /// Bounces before Russian roulette, the most first.
+    pub roulettes: Vec<u32>,
+    /// The most that light adds to a sample, no limit first and then the highest.
+    pub clamps: Vec<f32>,
 }
 
 /// A part of a setting.
@@ -47,22 +61,50 @@ pub enum Axis {
     Layout,
     /// Quality of the hierarchy.
     Bvh,
-    /// Samples along a pixel's edge.
+    /// How light is carried.
+    Integrator,
+    /// Where in a pixel its samples lie.
+    Sampler,
+    /// The number of samples.
     Samples,
     /// The limit of bounces.
     Bounces,
     /// The least contribution.
     MinContribution,
+    /// Bounces before Russian roulette.
+    Roulette,
+    /// The most that light adds to a sample.
+    Clamp,
 }
 
 impl Axis {
     /// All of them.
-    pub const ALL: [Axis; 7] =
-        [Axis::Arithmetic, Axis::Method, Axis::Layout, Axis::Bvh, Axis::Samples, Axis::Bounces, Axis::MinContribution];
+    pub const ALL: [Axis; 11] = [
+        Axis::Arithmetic,
+        Axis::Method,
+        Axis::Layout,
+        Axis::Bvh,
+        Axis::Integrator,
+        Axis::Sampler,
+        Axis::Samples,
+        Axis::Bounces,
+        Axis::MinContribution,
+        Axis::Roulette,
+        Axis::Clamp,
+    ];
     /// Those that leave a picture as it is: the fastest value is the best one.
     pub const FREE: [Axis; 3] = [Axis::Method, Axis::Layout, Axis::Bvh];
     /// Those that trade accuracy for speed.
-    pub const TRADING: [Axis; 4] = [Axis::Arithmetic, Axis::Samples, Axis::Bounces, Axis::MinContribution];
+    pub const TRADING: [Axis; 8] = [
+        Axis::Arithmetic,
+        Axis::Integrator,
+        Axis::Sampler,
+        Axis::Samples,
+        Axis::Bounces,
+        Axis::MinContribution,
+        Axis::Roulette,
+        Axis::Clamp,
+    ];
 
     /// `setting` with the value that `other` has on this axis.
     pub fn taken(self, setting: Setting, other: &Setting) -> Setting {
@@ -71,61 +113,133 @@ impl Axis {
             Axis::Method => Setting { method: other.method, ..setting },
             Axis::Layout => Setting { layout: other.layout, ..setting },
             Axis::Bvh => Setting { bvh: other.bvh, ..setting },
-            Axis::Samples => Setting { samples: other.samples, ..setting },
+            Axis::Integrator => Setting { integrator: other.integrator, ..setting },
+            Axis::Sampler => Setting { sampler: other.sampler, ..setting },
+            Axis::Samples => Setting { samples: other.samples, spp: other.spp, ..setting },
             Axis::Bounces => Setting { bounces: other.bounces, ..setting },
             Axis::MinContribution => Setting { min_contribution: other.min_contribution, ..setting },
+            Axis::Roulette => Setting { roulette: other.roulette, ..setting },
+            Axis::Clamp => Setting { clamp: other.clamp, ..setting },
         }
     }
 }
 
 impl Axes {
-    /// What is tried of a scene with these settings of its own. Only where rays are followed on does it matter
-    /// how often.
-    pub fn of(scene: &Scene, own: &Settings) -> Axes {
-        let followed = |m: &Material| m.reflection != Vec3::ZERO || m.transmission != Vec3::ZERO;
+    /// What is tried of a scene with these settings of its own, by these integrators (none: its own). Only where rays are
+    /// followed on does it matter how often, and only where light is sampled how that is done.
+    pub fn of(scene: &Scene, own: &Settings, integrators: &[Integrator]) -> Axes {
+        let Transport { integrator, roulette, clamp, .. } = own.transport;
+        let integrators = if integrators.is_empty() { vec![integrator] } else { integrators.to_vec() };
         let fast = [TriangleTest::Watertight, TriangleTest::Moller].map(|test| (Precision::Fast, test));
         let mut axes = Axes {
             arithmetic: [&[(Precision::Exact, TriangleTest::Watertight)], &fast[..]].concat(),
             methods: [&[Method::Auto], &Method::ALL[..]].concat(),
             layouts: vec![Layout::Gathered, Layout::Indexed, Layout::Compact],
             bvhs: vec![Bvh::Medium, Bvh::Fast, Bvh::High],
-            samples: [&[own.samples], &SAMPLES[..]].concat(),
+            integrators,
+            samplers: vec![own.sampler],
+            samples: vec![(if own.spp > 0 { 1 } else { own.samples }, own.spp)],
             bounces: vec![own.bounces],
             min_contributions: vec![own.min_contribution],
+            roulettes: vec![roulette],
+            clamps: vec![clamp],
         };
-        if scene.materials.iter().any(followed) {
-            axes.bounces.extend(halvings(own.bounces));
-            axes.min_contributions.extend(contributions(own.min_contribution));
-        }
+        axes.extend(scene, own);
         axes.sort();
         axes
     }
 
+    /// Adds what else is tried of a scene by the integrators.
+    fn extend(&mut self, scene: &Scene, own: &Settings) {
+        let followed = |m: &Material| m.reflection != Vec3::ZERO || m.transmission != Vec3::ZERO;
+        let has_specular = scene.materials.iter().any(followed);
+        let any = |of: fn(Integrator) -> bool| self.integrators.iter().copied().any(of);
+        let (is_path, has_tree) = (
+            any(|i| i == Integrator::Path),
+            has_specular && any(|i| matches!(i, Integrator::Whitted | Integrator::Distributed)),
+        );
+        if is_path || has_tree {
+            self.bounces.extend(halvings(own.bounces));
+        }
+        if has_tree {
+            self.min_contributions.extend(contributions(own.min_contribution));
+        }
+        if is_path {
+            self.roulettes.extend([Settings::MOST_BOUNCES, 0]);
+        }
+        if any(Integrator::chooses_lights) {
+            self.clamps.extend(CLAMPS);
+        }
+        if any(Integrator::samples) {
+            self.samplers.extend([Sampler::Sobol, Sampler::Jittered, Sampler::Random]);
+            let fewer = std::iter::successors(Some(own.samples_a_pixel() / FEWER), |spp| Some(spp / FEWER));
+            self.samples.extend(fewer.take_while(|&spp| spp > 0).map(|spp| (1, spp)));
+        } else {
+            self.samples.extend(SAMPLES.map(|edge| (edge, 0)));
+        }
+    }
+
+    /// Leaves out what takes long: of samples all but a few, and where light is not sampled the scene's own.
+    pub fn hurry(&mut self, own: &Settings) {
+        let is_sampled = self.integrators.iter().any(|integrator| integrator.samples());
+        let is_own = |samples| !is_sampled && a_pixel(samples) == own.samples_a_pixel();
+        self.samples.retain(|&samples| a_pixel(samples) <= HURRIED || is_own(samples));
+        if self.samples.is_empty() {
+            self.samples.push((1, HURRIED));
+        }
+    }
+
     /// Puts what can be ordered into the order of accuracy, each value once.
     pub fn sort(&mut self) {
-        self.samples.sort_unstable_by(|a, b| b.cmp(a));
+        let unevenness = |sampler: &Sampler| match sampler {
+            Sampler::Sobol => 0,
+            Sampler::Jittered => 1,
+            Sampler::Regular => 2,
+            Sampler::Random => 3,
+        };
+        let left_out = |integrator: &Integrator| match integrator {
+            Integrator::Path => 0,
+            Integrator::Distributed => 1,
+            Integrator::Whitted => 2,
+            Integrator::Ao => 3,
+        };
+        self.integrators.sort_by_key(left_out);
+        self.samplers.sort_by_key(unevenness);
+        self.samples.sort_by_key(|&samples| (std::cmp::Reverse(a_pixel(samples)), samples));
         self.bounces.sort_unstable_by(|a, b| b.cmp(a));
         self.min_contributions.sort_unstable_by(f32::total_cmp);
-        self.samples.dedup();
+        self.roulettes.sort_unstable_by(|a, b| b.cmp(a));
+        self.clamps.sort_unstable_by(|&a, &b| limit(b).total_cmp(&limit(a)));
+        self.integrators.dedup();
+        self.samplers.dedup();
+        self.samples.dedup_by_key(|samples| a_pixel(*samples));
         self.bounces.dedup();
         self.min_contributions.dedup();
+        self.roulettes.dedup();
+        self.clamps.dedup();
     }
 
     /// `setting` with every value on an axis.
     pub fn along(&self, axis: Axis, setting: Setting) -> Vec<Setting> {
+        fn each<T: Copy>(values: &[T], with: impl Fn(T) -> Setting) -> Vec<Setting> {
+            values.iter().map(|&value| with(value)).collect()
+        }
         match axis {
             Axis::Arithmetic => {
-                let with = |&(precision, triangle): &_| Setting { precision, triangle, ..setting };
-                self.arithmetic.iter().map(with).collect()
+                each(&self.arithmetic, |(precision, triangle)| Setting { precision, triangle, ..setting })
             }
-            Axis::Method => self.methods.iter().map(|&method| Setting { method, ..setting }).collect(),
-            Axis::Layout => self.layouts.iter().map(|&layout| Setting { layout, ..setting }).collect(),
-            Axis::Bvh => self.bvhs.iter().map(|&bvh| Setting { bvh, ..setting }).collect(),
-            Axis::Samples => self.samples.iter().map(|&samples| Setting { samples, ..setting }).collect(),
-            Axis::Bounces => self.bounces.iter().map(|&bounces| Setting { bounces, ..setting }).collect(),
+            Axis::Method => each(&self.methods, |method| Setting { method, ..setting }),
+            Axis::Layout => each(&self.layouts, |layout| Setting { layout, ..setting }),
+            Axis::Bvh => each(&self.bvhs, |bvh| Setting { bvh, ..setting }),
+            Axis::Integrator => each(&self.integrators, |integrator| Setting { integrator, ..setting }),
+            Axis::Sampler => each(&self.samplers, |sampler| Setting { sampler, ..setting }),
+            Axis::Samples => each(&self.samples, |(samples, spp)| Setting { samples, spp, ..setting }),
+            Axis::Bounces => each(&self.bounces, |bounces| Setting { bounces, ..setting }),
             Axis::MinContribution => {
-                self.min_contributions.iter().map(|&share| Setting { min_contribution: share, ..setting }).collect()
+                each(&self.min_contributions, |share| Setting { min_contribution: share, ..setting })
             }
+            Axis::Roulette => each(&self.roulettes, |roulette| Setting { roulette, ..setting }),
+            Axis::Clamp => each(&self.clamps, |clamp| Setting { clamp, ..setting }),
         }
     }
 
@@ -137,16 +251,44 @@ impl Axes {
         })
     }
 
-    /// What the reference is rendered with: a scene's own settings, but the most samples that are tried, and
-    /// no fewer bounces and no higher contribution than is tried.
+    /// What the reference is rendered with: a scene's own settings, but by the integrator that leaves out least, with
+    /// the most samples that are tried, and no fewer bounces, no higher contribution and no lower limits than is tried.
     pub fn reference(&self, own: Settings) -> Settings {
+        let (samples, spp) = self.samples[0];
+        let transport = Transport {
+            integrator: self.integrators[0],
+            roulette: own.transport.roulette.max(self.roulettes[0]),
+            clamp: if limit(own.transport.clamp) > limit(self.clamps[0]) {
+                own.transport.clamp
+            } else {
+                self.clamps[0]
+            },
+            ..own.transport
+        };
         Settings {
-            samples: self.samples[0],
+            samples,
+            spp,
             bounces: own.bounces.max(self.bounces[0]),
             min_contribution: own.min_contribution.min(self.min_contributions[0]),
+            transport,
             ..own
         }
     }
+
+    /// The most samples of a pixel.
+    pub fn most_samples(&self) -> u32 {
+        a_pixel(self.samples[0])
+    }
+}
+
+/// How many samples that is, of a pixel.
+fn a_pixel((edge, spp): (u32, u32)) -> u32 {
+    if spp > 0 { spp } else { edge * edge }
+}
+
+/// What a clamp lets pass.
+fn limit(clamp: f32) -> f32 {
+    if clamp > 0.0 { clamp } else { f32::INFINITY }
 }
 
 /// 0, 1 and further powers of two below a limit.

@@ -8,15 +8,20 @@ use crate::preset::name;
 type Column = (&'static str, fn(&Record) -> String);
 
 /// The fields of [`Record`].
-const COLUMNS: [Column; 20] = [
+const COLUMNS: [Column; 25] = [
     ("precision", |r| name(r.setting.precision)),
     ("triangle", |r| name(r.setting.triangle)),
     ("method", |r| name(r.setting.method)),
     ("layout", |r| name(r.setting.layout)),
     ("bvh", |r| name(r.setting.bvh)),
+    ("integrator", |r| name(r.setting.integrator)),
+    ("sampler", |r| name(r.setting.sampler)),
     ("samples", |r| r.setting.samples.to_string()),
+    ("spp", |r| r.setting.spp.to_string()),
     ("bounces", |r| r.setting.bounces.to_string()),
     ("min_contribution", |r| r.setting.min_contribution.to_string()),
+    ("roulette", |r| r.setting.roulette.to_string()),
+    ("clamp", |r| r.setting.clamp.to_string()),
     ("time_ms", |r| r.time_ms.to_string()),
     ("spread", |r| r.spread.to_string()),
     ("slowest_ms", |r| r.slowest_ms.to_string()),
@@ -26,7 +31,7 @@ const COLUMNS: [Column; 20] = [
     ("t_error_max_ulp", |r| number(r.t_error_max_ulp)),
     ("rmse", |r| r.rmse.to_string()),
     ("psnr_db", |r| r.psnr_db.to_string()),
-    ("rmse_same_samples", |r| r.rmse_same_samples.to_string()),
+    ("rmse_same_samples", |r| number(r.rmse_same_samples)),
     ("front", |r| r.front.map_or_else(String::new, |place| place.to_string())),
     ("recommended", |r| r.recommended.to_string()),
 ];

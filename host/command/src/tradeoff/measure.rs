@@ -4,17 +4,16 @@ use std::path::PathBuf;
 
 use super::hits::{HitErrors, Primary};
 use super::record::mark;
+use super::reference::References;
 use super::{Axes, Record, Report, Setting, Wish, recommended, search};
 use crate::bench::{Timing, cpu_model};
 use crate::error::{Error, Result};
 use crate::remedy;
 use eyerays::compare::compare;
-use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
-use eyerays::method::{Processor, Traversal};
+use eyerays::method::{Layout, Method, Processor, TriangleTest};
 use eyerays::quality::Bvh;
-use eyerays::render::Backend;
+use eyerays::render::{Backend, Precision};
 use eyerays::scene::{Camera, Scene, Settings};
 use eyerays::view::View;
 
@@ -27,6 +26,8 @@ pub struct Plan {
     pub repeat: u32,
     /// The most settings.
     pub trials: usize,
+    /// Samples of a pixel of the reference where light is sampled.
+    pub reference_spp: u32,
     /// What is to be recommended.
     pub wish: Option<Wish>,
 }
@@ -47,11 +48,11 @@ pub struct Subject {
 
 /// The most steps that [`run`] reports.
 pub fn steps(plan: &Plan) -> usize {
-    plan.axes.samples.len() + plan.trials
+    References::steps(plan) + plan.trials
 }
 
 /// Renders a scene with settings of a plan, as [`search`] chooses them, on a device, and compares each picture with
-/// one in double precision. `begins` is called with every step.
+/// one in double precision or, where light is sampled, of many samples. `begins` is called with every step.
 ///
 /// # Errors
 /// A scene that can't be packed, or the base, which all is compared with, fails on the device. Other settings that
@@ -68,14 +69,21 @@ pub fn run(plan: &Plan, subject: &Subject, device: Backend, begins: &dyn Fn(&str
     if let Some(best) = plan.wish.and_then(|wish| recommended(&records, wish)) {
         records[best].recommended = true;
     }
+    let setup = setup(plan, subject, &judge);
     let mut notes = judge.notes;
+    let least = records.iter().map(|record| record.rmse).fold(f64::INFINITY, f64::min);
+    if judge.references.standard_error.is_some_and(|error| error > TELLING * least) {
+        notes.push("the reference errs nearly as much as the best pictures: raise --reference-spp".to_owned());
+    }
     if stopped {
         let note = format!("stopped after {} settings, the front may not be whole: raise --trials", plan.trials);
         notes.push(note);
     }
-    let setup = setup(plan, subject, &judge.place);
     Ok(Report { scene: subject.name.clone(), setup, base, records, notes })
 }
+
+/// The share of a picture's RMSE from which the reference's own error is told: it adds an eighth to the RMSE.
+const TELLING: f64 = 0.5;
 
 /// Where pictures were rendered, and by which clock.
 struct Place {
@@ -83,6 +91,9 @@ struct Place {
     device: String,
     clock: &'static str,
 }
+
+/// What the hits of primary rays depend on.
+type Seen = (Precision, TriangleTest, Method, Layout, Bvh);
 
 /// What settings are measured by.
 struct Judge<'a> {
@@ -92,41 +103,24 @@ struct Judge<'a> {
     packed: DeviceScene,
     bvh: Bvh,
     primary: Primary,
-    /// By samples along a pixel's edge.
-    references: Vec<(u32, Film)>,
+    references: References,
     /// By settings that lead to the same hits.
-    hits: Vec<(Setting, HitErrors)>,
+    hits: Vec<(Seen, HitErrors)>,
     /// Of the first setting; one that runs elsewhere is left out.
     place: Option<Place>,
     notes: Vec<String>,
 }
 
 impl<'a> Judge<'a> {
-    fn new(plan: &'a Plan, subject: &'a Subject, device: Backend, begins: &dyn Fn(&str)) -> Result<Self> {
+    fn new(plan: &'a Plan, subject: &'a Subject, mut device: Backend, begins: &dyn Fn(&str)) -> Result<Self> {
         let best = plan.axes.reference(subject.settings);
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
-        let once = Settings { samples: 1, ..best };
+        let once = Settings { samples: 1, spp: 0, ..best };
         let mut packed = DeviceScene::new(&subject.scene, once, bvh.quality())?;
         let primary = Primary::new(&packed, &View::new(&packed, &subject.camera)?, threads)?;
-        let mut references = Vec::new();
-        for &samples in &plan.axes.samples {
-            begins(&format!("reference, {samples}x{samples} samples"));
-            packed.set(Settings { samples, ..best })?;
-            let view = View::new(&packed, &subject.camera)?;
-            references.push((samples, cpu::render::<f64>(&packed, &view, Traversal::default(), threads, &|_| ())?.0));
-        }
-        Ok(Judge {
-            plan,
-            subject,
-            device,
-            packed,
-            bvh,
-            primary,
-            references,
-            hits: Vec::new(),
-            place: None,
-            notes: Vec::new(),
-        })
+        let references = References::new(plan, subject, &mut packed, &mut device, begins)?;
+        let (hits, notes) = (Vec::new(), Vec::new());
+        Ok(Judge { plan, subject, device, packed, bvh, primary, references, hits, place: None, notes })
     }
 
     /// Measures a setting; the first one must not fail.
@@ -153,8 +147,9 @@ impl<'a> Judge<'a> {
         let hits = self.hits(setting, rendering.processor)?;
         let timing = Timing::of(&rendering.times);
         let slowest = rendering.times.iter().max().map_or(0.0, |time| time.as_secs_f64());
-        let judged = compare(&rendering.film, self.reference(self.plan.axes.samples[0]))?;
-        let alike = compare(&rendering.film, self.reference(setting.samples))?;
+        let judged = compare(&rendering.film, self.references.best())?;
+        let alike = self.references.alike(self.packed.settings());
+        let alike = alike.map(|alike| compare(&rendering.film, alike)).transpose()?;
         self.place.get_or_insert(Place {
             processor: rendering.processor,
             clock: if rendering.device_time.is_some() { "device time, by timestamps" } else { "wall-clock time" },
@@ -171,7 +166,7 @@ impl<'a> Judge<'a> {
             t_error_max_ulp: hits.max_ulp,
             rmse: judged.rmse,
             psnr_db: judged.psnr,
-            rmse_same_samples: alike.rmse,
+            rmse_same_samples: alike.map(|alike| alike.rmse),
             front: None,
             recommended: false,
         })
@@ -188,14 +183,9 @@ impl<'a> Judge<'a> {
         Ok(self.packed.set(settings)?)
     }
 
-    fn reference(&self, samples: u32) -> &Film {
-        let found = self.references.iter().find(|(of, _)| *of == samples);
-        &found.expect("every number of samples that is tried has a reference").1
-    }
-
     /// What a setting's primary rays meet does not depend on what follows.
     fn hits(&mut self, setting: &Setting, processor: Processor) -> Result<HitErrors> {
-        let key = Setting { samples: 0, bounces: 0, min_contribution: 0.0, ..*setting };
+        let key = (setting.precision, setting.triangle, setting.method, setting.layout, setting.bvh);
         if let Some((_, errors)) = self.hits.iter().find(|(of, _)| *of == key) {
             return Ok(*errors);
         }
@@ -207,10 +197,9 @@ impl<'a> Judge<'a> {
 }
 
 /// Names and values of all that figures depend on.
-fn setup(plan: &Plan, subject: &Subject, place: &Option<Place>) -> Vec<(String, String)> {
+fn setup(plan: &Plan, subject: &Subject, judge: &Judge<'_>) -> Vec<(String, String)> {
     let (width, height) = subject.settings.size;
-    let Settings { samples, bounces, min_contribution, .. } = plan.axes.reference(subject.settings);
-    let (device, clock) = place.as_ref().map_or(("", ""), |place| (place.device.as_str(), place.clock));
+    let (device, clock) = judge.place.as_ref().map_or(("", ""), |place| (place.device.as_str(), place.clock));
     let triangles = subject.scene.mesh.triangles.len();
     let lines = [
         ("program", format!("eyerays {}", env!("CARGO_PKG_VERSION"))),
@@ -218,13 +207,7 @@ fn setup(plan: &Plan, subject: &Subject, place: &Option<Place>) -> Vec<(String, 
         ("device", device.to_owned()),
         ("scene", format!("{}, {triangles} triangles, camera {}", subject.file.display(), subject.camera.name)),
         ("size", format!("{width}x{height} pixels")),
-        (
-            "reference",
-            format!(
-                "double precision, {samples}x{samples} samples a pixel, at most {bounces} bounces, least contribution \
-                 {min_contribution}"
-            ),
-        ),
+        ("reference", judge.references.says(plan, subject)),
         ("time", format!("{clock}, median of {} after a warm-up; without building", plan.repeat)),
     ];
     lines.into_iter().map(|(name, value)| (name.to_owned(), value)).collect()

@@ -12,6 +12,7 @@ mod measure;
 mod plot;
 mod recommend;
 mod record;
+mod reference;
 mod scale;
 mod search;
 mod setting;

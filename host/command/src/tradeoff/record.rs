@@ -30,8 +30,8 @@ pub struct Record {
     pub rmse: f64,
     /// Peak signal-to-noise ratio in dB with a peak of 1.0: infinite if the picture is the reference.
     pub psnr_db: f64,
-    /// As `rmse`, from a reference with as few samples: without the error of sampling.
-    pub rmse_same_samples: f64,
+    /// As `rmse`, from a reference with as few samples: without the error of sampling. None where light is sampled.
+    pub rmse_same_samples: Option<f64>,
     /// Its place on the Pareto front of time and RMSE, from 1 by time.
     pub front: Option<usize>,
     /// Does it serve the wish best?

@@ -40,6 +40,7 @@ struct Search<'a> {
 impl Search<'_> {
     fn next(&self) -> Option<Setting> {
         let single = Axis::ALL.into_iter().flat_map(|axis| self.axes.along(axis, self.base));
+        let single = single.filter(Setting::is_possible).map(|setting| setting.plain(&self.base));
         std::iter::once(self.base).chain(single).find(|setting| self.is_new(setting)).or_else(|| self.combined())
     }
 
@@ -84,11 +85,6 @@ impl Search<'_> {
             let near = here.map_or([None, None], |i| [i.checked_sub(1), Some(i + 1)]);
             near.into_iter().flatten().filter_map(move |i| all.get(i).copied())
         });
-        // Without bounces no ray contributes less than all.
-        let plain = |s: Setting| match s.bounces {
-            0 => Setting { min_contribution: self.base.min_contribution, ..s },
-            _ => s,
-        };
-        near.map(plain).collect()
+        near.filter(Setting::is_possible).map(|setting| setting.plain(&self.base)).collect()
     }
 }

@@ -6,7 +6,7 @@ use crate::preset::{Preset, name, named};
 use eyerays::method::{Layout, Method, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::Settings;
+use eyerays::scene::{Integrator, Sampler, Settings, Transport};
 
 /// A value on each [`Axis`](super::Axis).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -26,12 +26,24 @@ pub struct Setting {
     /// Quality of the hierarchy.
     #[serde(serialize_with = "named")]
     pub bvh: Bvh,
-    /// Samples along a pixel's edge.
+    /// How light is carried.
+    #[serde(serialize_with = "named")]
+    pub integrator: Integrator,
+    /// Where in a pixel its samples lie.
+    #[serde(serialize_with = "named")]
+    pub sampler: Sampler,
+    /// Samples along a pixel's edge, 1 where `spp` counts.
     pub samples: u32,
+    /// Samples of a pixel; 0 for the square of `samples`.
+    pub spp: u32,
     /// The most times a ray is followed on.
     pub bounces: u32,
     /// A ray whose every weight is less is not followed.
     pub min_contribution: f32,
+    /// Bounces before Russian roulette may end a path.
+    pub roulette: u32,
+    /// The most that light adds to a sample which was scattered more than once, 0 for no limit.
+    pub clamp: f32,
 }
 
 impl Setting {
@@ -43,9 +55,14 @@ impl Setting {
             method: Method::default(),
             layout: Layout::default(),
             bvh: Bvh::default(),
-            samples: own.samples,
+            integrator: own.transport.integrator,
+            sampler: own.sampler,
+            samples: if own.spp > 0 { 1 } else { own.samples },
+            spp: own.spp,
             bounces: own.bounces,
             min_contribution: own.min_contribution,
+            roulette: own.transport.roulette,
+            clamp: own.transport.clamp,
         }
     }
 
@@ -56,7 +73,28 @@ impl Setting {
 
     /// A scene's own settings with these instead.
     pub fn settings(&self, own: Settings) -> Settings {
-        Settings { samples: self.samples, bounces: self.bounces, min_contribution: self.min_contribution, ..own }
+        let Setting { integrator, sampler, samples, spp, bounces, min_contribution, roulette, clamp, .. } = *self;
+        let transport = Transport { integrator, roulette, clamp, ..own.transport };
+        Settings { samples, spp, sampler, bounces, min_contribution, transport, ..own }
+    }
+
+    /// Can the sampler place so many samples?
+    pub fn is_possible(&self) -> bool {
+        self.settings(Settings::default()).grid().is_ok()
+    }
+
+    /// With the values of another one where its own make no difference.
+    pub fn plain(self, base: &Setting) -> Setting {
+        let (integrator, follows) = (self.integrator, self.bounces > 0);
+        let has_tree = matches!(integrator, Integrator::Whitted | Integrator::Distributed);
+        let is = |matters: bool, own: f32, other: f32| if matters { own } else { other };
+        Setting {
+            bounces: if integrator == Integrator::Ao { base.bounces } else { self.bounces },
+            min_contribution: is(follows && has_tree, self.min_contribution, base.min_contribution),
+            roulette: if follows && integrator == Integrator::Path { self.roulette } else { base.roulette },
+            clamp: is(follows && integrator.chooses_lights(), self.clamp, base.clamp),
+            ..self
+        }
     }
 
     /// As a file keeps it.
@@ -68,42 +106,72 @@ impl Setting {
             method: Some(self.method),
             layout: Some(self.layout),
             bvh: Some(self.bvh),
-            samples: Some(self.samples),
+            integrator: Some(self.integrator),
+            sampler: Some(self.sampler),
+            samples: (self.spp == 0).then_some(self.samples),
+            spp: (self.spp > 0).then_some(self.spp),
             bounces: Some(self.bounces),
             min_contribution: Some(self.min_contribution),
+            roulette: Some(self.roulette),
+            clamp: Some(self.clamp),
         }
     }
 
     /// Where it differs from another one, in words: `fast, packet, 2x2 samples`; `as it is` if nowhere.
     pub fn beside(&self, other: &Setting) -> String {
-        let plural = |n: u32| if n == 1 { "" } else { "s" };
+        let counted = |n: u32, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
+        let samples = match self.spp {
+            0 => format!("{}x{}", self.samples, counted(self.samples, "sample")),
+            spp => counted(spp, "sample"),
+        };
+        let roulette = match self.roulette {
+            Settings::MOST_BOUNCES => "no roulette".to_owned(),
+            bounces => format!("roulette after {}", counted(bounces, "bounce")),
+        };
+        let clamp = if self.clamp == 0.0 { "no clamp".to_owned() } else { format!("clamp {}", self.clamp) };
         let words = [
             (self.precision != other.precision, name(self.precision)),
             (self.triangle != other.triangle, name(self.triangle)),
             (self.method != other.method, name(self.method)),
             (self.layout != other.layout, name(self.layout)),
             (self.bvh != other.bvh, format!("BVH {}", name(self.bvh))),
-            (self.samples != other.samples, format!("{0}x{0} sample{1}", self.samples, plural(self.samples))),
-            (self.bounces != other.bounces, format!("{} bounce{}", self.bounces, plural(self.bounces))),
+            (self.integrator != other.integrator, name(self.integrator)),
+            (self.sampler != other.sampler, name(self.sampler)),
+            ((self.samples, self.spp) != (other.samples, other.spp), samples),
+            (self.bounces != other.bounces, counted(self.bounces, "bounce")),
             (self.min_contribution != other.min_contribution, format!("contribution {}", share(self.min_contribution))),
+            (self.roulette != other.roulette, roulette),
+            (self.clamp != other.clamp, clamp),
         ];
         let words: Vec<String> = words.into_iter().filter(|(differs, _)| *differs).map(|(_, word)| word).collect();
         if words.is_empty() { "as it is".to_owned() } else { words.join(", ") }
     }
 
-    /// The options of `eyerays render` that ask for it.
+    /// The options of `eyerays render` that ask for it, without those that make no difference to its integrator.
     pub fn options(&self) -> String {
-        let words = [
+        let mut words = vec![
             ("precision", name(self.precision)),
             ("triangle", name(self.triangle)),
             ("method", name(self.method)),
             ("layout", name(self.layout)),
             ("bvh", name(self.bvh)),
-            ("samples", self.samples.to_string()),
+            ("integrator", name(self.integrator)),
+            ("sampler", name(self.sampler)),
+            if self.spp > 0 { ("spp", self.spp.to_string()) } else { ("samples", self.samples.to_string()) },
             ("bounces", self.bounces.to_string()),
-            ("min-contribution", self.min_contribution.to_string()),
         ];
-        words.map(|(option, word)| format!("--{option} {word}")).join(" ")
+        match self.integrator {
+            Integrator::Whitted | Integrator::Distributed => {
+                words.push(("min-contribution", self.min_contribution.to_string()));
+            }
+            Integrator::Path => words.push(("roulette", self.roulette.to_string())),
+            Integrator::Ao => (),
+        }
+        if self.integrator.chooses_lights() {
+            words.push(("clamp", self.clamp.to_string()));
+        }
+        let options: Vec<String> = words.iter().map(|(option, word)| format!("--{option} {word}")).collect();
+        options.join(" ")
     }
 }
 

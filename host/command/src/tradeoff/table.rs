@@ -7,8 +7,8 @@ const CAPTION: &str = "\
 Time: the median of a rendering, and from the 10th to the 90th percentile as a share of it. Wrong primitives and the
 error of the distance t (in units of the last place of single precision, where the primitive is right): of the rays
 through pixels' centres, against double precision. RMSE and PSNR: of the picture, in linear light, against the
-reference; \"RMSE, same samples\" against a reference with as few samples, so without the error of sampling. A number
-in the first column is a place on the front: nothing that was tried is both faster and nearer to the reference.";
+reference; \"RMSE, same samples\" against a reference with as few samples, so without the error of sampling (none where
+light is sampled). A number in the first column is a place on the front: nothing that was tried is both faster and nearer to the reference.";
 
 /// Everything, as tables.
 pub fn markdown(report: &Report) -> String {
@@ -39,9 +39,13 @@ fn sections(report: &Report) -> Vec<(&'static str, Vec<&Record>)> {
         (Some(Axis::Method), "Method"),
         (Some(Axis::Layout), "Layout of nodes and triangles"),
         (Some(Axis::Bvh), "Quality of the hierarchy"),
+        (Some(Axis::Integrator), "Integrator"),
+        (Some(Axis::Sampler), "Sampler"),
         (Some(Axis::Samples), "Samples"),
         (Some(Axis::Bounces), "Bounces"),
         (Some(Axis::MinContribution), "Least contribution"),
+        (Some(Axis::Roulette), "Russian roulette"),
+        (Some(Axis::Clamp), "Clamp"),
         (None, "Combinations"),
     ];
     let of = |axis| report.records.iter().filter(|r| r.setting != report.base && only(r, report) == axis).collect();
@@ -91,7 +95,7 @@ fn row(record: &Record, base: &Setting) -> Vec<String> {
         ulps(record.t_error_max_ulp),
         scientific(record.rmse),
         if record.psnr_db.is_finite() { format!("{:.1}", record.psnr_db) } else { record.psnr_db.to_string() },
-        scientific(record.rmse_same_samples),
+        record.rmse_same_samples.map_or_else(|| "-".to_owned(), scientific),
     ]
 }
 

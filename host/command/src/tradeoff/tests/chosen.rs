@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::error::Error;
-use eyerays::scene::{Material, Settings};
+use eyerays::scene::{Integrator, Material, Sampler, Settings, Transport};
 
 /// Is it beaten?
 fn is_beaten(point: (f64, f64), all: &[(f64, f64)]) -> bool {
@@ -173,10 +173,13 @@ fn scene(reflection: f32) -> eyerays::scene::Scene {
 #[test]
 fn bounces_are_tried_where_rays_are_followed() {
     let own = Settings { samples: 3, bounces: 6, min_contribution: 0.0, ..Settings::default() };
-    let mirrors = Axes::of(&scene(0.5), &own);
-    assert_eq!((&mirrors.samples[..], &mirrors.bounces[..]), (&[4, 3, 2, 1][..], &[6, 4, 2, 1, 0][..]));
+    let mirrors = Axes::of(&scene(0.5), &own, &[]);
+    assert_eq!(
+        (&mirrors.samples[..], &mirrors.bounces[..]),
+        (&[(4, 0), (3, 0), (2, 0), (1, 0)][..], &[6, 4, 2, 1, 0][..])
+    );
     assert_eq!(mirrors.min_contributions, [0.0, 1.0 / 1024.0, 1.0 / 256.0, 1.0 / 64.0]);
-    let matt = Axes::of(&scene(0.0), &own);
+    let matt = Axes::of(&scene(0.0), &own, &[]);
     assert_eq!((matt.bounces, matt.min_contributions), (vec![6], vec![0.0]));
 }
 
@@ -189,7 +192,61 @@ fn the_reference_has_a_scenes_own_settings_and_no_less_than_is_tried() {
         (samples, bounces, min_contribution)
     };
     assert_eq!(of(axes()), (4, 8, 1.0 / 1024.0));
-    assert_eq!(of(Axes { samples: vec![1], bounces: vec![1], min_contributions: vec![0.5], ..axes() }), (1, 4, 0.01));
+    assert_eq!(
+        of(Axes { samples: vec![(1, 0)], bounces: vec![1], min_contributions: vec![0.5], ..axes() }),
+        (1, 4, 0.01)
+    );
     let base = axes().base(Setting { samples: 3, method: Method::IfIf, ..setting() });
     assert_eq!(base, setting(), "what is not tried is replaced by the first of what is");
+}
+
+#[test]
+fn where_light_is_sampled_it_is_tried_how() {
+    let transport = Transport { integrator: Integrator::Path, clamp: 3.0, ..Transport::default() };
+    let own = Settings { spp: 20, bounces: 2, sampler: Sampler::Regular, transport, ..Settings::default() };
+    let path = Axes::of(&scene(0.0), &own, &[]);
+    assert_eq!(path.samples, [(1, 20), (1, 5), (1, 1)]);
+    assert_eq!(path.samplers, [Sampler::Sobol, Sampler::Jittered, Sampler::Regular, Sampler::Random]);
+    assert_eq!((&path.bounces[..], &path.roulettes[..]), (&[2, 1, 0][..], &[65_535, 3, 0][..]));
+    assert_eq!((&path.clamps[..], &path.min_contributions[..]), (&[0.0, 10.0, 3.0, 1.0][..], &[1.0 / 1024.0][..]));
+    let best = path.reference(own).transport;
+    assert_eq!((best.clamp, best.roulette, best.integrator), (0.0, 65_535, Integrator::Path));
+    let both = Axes::of(&scene(0.5), &own, &[Integrator::Whitted, Integrator::Distributed]);
+    assert_eq!(both.integrators, [Integrator::Distributed, Integrator::Whitted]);
+    assert!(both.min_contributions.len() > 1 && both.roulettes == [3]);
+    let occlusion = Axes::of(&scene(0.5), &own, &[Integrator::Ao]);
+    assert_eq!((occlusion.bounces.len(), occlusion.clamps.len(), occlusion.roulettes.len()), (1, 1, 1));
+    let mut hurried = path.clone();
+    hurried.hurry(&own);
+    assert_eq!(hurried.samples, [(1, 1)]);
+}
+
+/// Nothing is tried that can not be or that makes no difference.
+#[test]
+fn a_search_leaves_out_what_makes_no_difference() {
+    let base = Setting { integrator: Integrator::Path, sampler: Sampler::Sobol, samples: 1, spp: 8, ..setting() };
+    let axes = Axes {
+        integrators: vec![Integrator::Path, Integrator::Whitted],
+        samplers: vec![Sampler::Sobol, Sampler::Jittered],
+        samples: vec![(1, 8), (1, 4), (1, 1)],
+        roulettes: vec![65_535, 3],
+        clamps: vec![0.0, 1.0],
+        ..axes()
+    };
+    let tried = RefCell::new(Vec::new());
+    let error = |s: &Setting| 1.0 / f64::from(s.spp) + f64::from(s.clamp) + 1.0 / f64::from(1 + s.bounces);
+    let time = |s: &Setting| f64::from(s.spp) * (1.0 - 0.1 * f64::from(s.clamp)) * f64::from(1 + s.bounces);
+    search(&axes, base, 10_000, &mut |s| {
+        tried.borrow_mut().push(*s);
+        Ok(Some(record(*s, time(s), error(s))))
+    })
+    .unwrap();
+    let tried = tried.into_inner();
+    assert!(tried.iter().any(|s| s.sampler == Sampler::Jittered) && tried.iter().any(|s| s.clamp == 1.0 && s.spp == 1));
+    for s in &tried {
+        assert!(s.sampler == Sampler::Sobol || s.spp != 8, "no grid has 8 cells");
+        let is_path = s.integrator == Integrator::Path;
+        assert!(!is_path || s.min_contribution == base.min_contribution, "{}", s.options());
+        assert!(is_path && s.bounces > 0 || (s.roulette, s.clamp) == (base.roulette, base.clamp), "{}", s.options());
+    }
 }

@@ -9,7 +9,7 @@ use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::Processor;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{self, Settings};
+use eyerays::scene::{self, Integrator, Sampler, Settings, Transport};
 use eyerays::stream::StreamRay;
 use eyerays::view::View;
 
@@ -36,7 +36,7 @@ fn subject() -> Subject {
 }
 
 fn plan(axes: Axes) -> Plan {
-    Plan { axes, repeat: 1, trials: 60, wish: None }
+    Plan { axes, repeat: 1, trials: 60, reference_spp: 64, wish: None }
 }
 
 fn on_cpu() -> Backend {
@@ -67,7 +67,7 @@ fn reference(subject: &Subject, samples: u32) -> Film {
 #[test]
 fn every_error_is_that_of_the_picture_beside_the_reference() {
     let subject = subject();
-    let axes = Axes { methods: vec![Method::Auto, Method::IfIf], samples: vec![2, 1], ..axes() };
+    let axes = Axes { methods: vec![Method::Auto, Method::IfIf], samples: vec![(2, 0), (1, 0)], ..axes() };
     let report = run(&plan(axes), &subject, on_cpu(), &|_| ()).unwrap();
     assert_eq!(report.base, Setting { samples: 1, ..setting() });
     assert!(report.notes.iter().all(|note| note.contains("raise --trials")), "{:?}", report.notes);
@@ -78,7 +78,7 @@ fn every_error_is_that_of_the_picture_beside_the_reference() {
             .map(|reference| compare(&film, reference).unwrap());
         let what = record.setting.options();
         assert_eq!((record.rmse, record.psnr_db), (judged.rmse, judged.psnr), "{what}");
-        assert_eq!(record.rmse_same_samples, alike.rmse, "{what}");
+        assert_eq!(record.rmse_same_samples, Some(alike.rmse), "{what}");
         assert!(record.time_ms > 0.0 && record.slowest_ms >= record.time_ms);
         assert!(record.t_error_median_ulp <= record.t_error_max_ulp && record.t_error_max_ulp.is_some());
     }
@@ -92,7 +92,7 @@ fn every_error_is_that_of_the_picture_beside_the_reference() {
 fn what_is_free_changes_no_error_and_what_trades_does() {
     let subject = subject();
     let arithmetic = vec![(Precision::Exact, TriangleTest::Watertight)];
-    let axes = Axes { arithmetic, samples: vec![1], methods: Method::ALL.to_vec(), ..axes() };
+    let axes = Axes { arithmetic, samples: vec![(1, 0)], methods: Method::ALL.to_vec(), ..axes() };
     let report = run(&plan(axes), &subject, on_cpu(), &|_| ()).unwrap();
     let of = |r: &Record| (r.rmse, r.wrong_primitives, r.t_error_median_ulp, r.t_error_max_ulp);
     let base = of(&report.records[0]);
@@ -140,4 +140,44 @@ fn a_scene_that_can_not_be_packed_is_an_error() {
     subject.scene.lights = vec![scene::Light::Point { position: glam::Vec3::splat(1e30), colour: glam::Vec3::ONE }];
     let error = run(&plan(axes()), &subject, on_cpu(), &|_| ()).unwrap_err();
     assert!(error.file == Some(subject.file) && error.message.contains("too far away"), "{error}");
+}
+
+/// What a reference tells of its own error is what it adds to the error of pictures, and more samples make it less.
+#[test]
+fn a_reference_of_samples_tells_its_own_error() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/bleeding.toml");
+    let (scene, _) = scene::load(&file).unwrap();
+    let camera = scene.cameras[0].clone();
+    let transport = Transport { clamp: 0.0, ..scene.settings.transport };
+    let settings = Settings { size: (96, 72), spp: 4, bounces: 3, transport, ..scene.settings };
+    let subject = Subject { name: "walls".to_owned(), file, scene, camera, settings };
+    let of = |reference_spp: u32| {
+        let axes = Axes {
+            arithmetic: vec![(Precision::Exact, TriangleTest::Watertight)],
+            methods: vec![Method::Auto],
+            layouts: vec![Layout::Gathered],
+            bvhs: vec![Bvh::Medium],
+            integrators: vec![Integrator::Path],
+            samplers: vec![Sampler::Random],
+            samples: vec![(1, 16), (1, 4)],
+            bounces: vec![3],
+            roulettes: vec![Settings::MOST_BOUNCES],
+            clamps: vec![0.0],
+            ..axes()
+        };
+        let report = run(&Plan { reference_spp, ..plan(axes) }, &subject, on_cpu(), &|_| ()).unwrap();
+        let line = &report.setup.iter().find(|(name, _)| name == "reference").unwrap().1;
+        let error: f64 = line.rsplit(' ').next().unwrap().parse().unwrap();
+        let rmse = |spp: u32| report.records.iter().find(|r| r.setting.spp == spp).unwrap().rmse;
+        assert!(report.records.iter().all(|record| record.rmse_same_samples.is_none()));
+        (error, rmse(16), rmse(4), report.notes.len())
+    };
+    let (fine, fine_16, fine_4, told) = of(512);
+    let (coarse, coarse_16, ..) = of(16);
+    assert!(fine < 0.3 * coarse, "{fine} {coarse}");
+    assert!((fine_4 / fine_16 - 2.0).abs() < 0.3, "noise of random samples: {fine_4} {fine_16}");
+    let expected = (fine_16 * fine_16 + coarse * coarse).sqrt();
+    assert!((coarse_16 / expected - 1.0).abs() < 0.2, "{coarse_16} {expected}");
+    assert_eq!(told, 0);
+    assert_eq!(of(2).3, 1, "a reference that errs as much as what it judges is told");
 }

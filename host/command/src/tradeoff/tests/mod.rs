@@ -6,6 +6,7 @@ use super::*;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::Precision;
+use eyerays::scene::{Integrator, Sampler};
 
 /// The default for four samples, eight bounces and 1/1024.
 fn setting() -> Setting {
@@ -15,9 +16,14 @@ fn setting() -> Setting {
         method: Method::Auto,
         layout: Layout::Gathered,
         bvh: Bvh::Medium,
+        integrator: Integrator::Whitted,
+        sampler: Sampler::Regular,
         samples: 4,
+        spp: 0,
         bounces: 8,
         min_contribution: 1.0 / 1024.0,
+        roulette: 3,
+        clamp: 0.0,
     }
 }
 
@@ -33,7 +39,7 @@ fn record(setting: Setting, time_ms: f64, rmse: f64) -> Record {
         t_error_max_ulp: Some(2.0),
         rmse,
         psnr_db: -20.0 * rmse.log10(),
-        rmse_same_samples: 0.0,
+        rmse_same_samples: Some(0.0),
         front: None,
         recommended: false,
     }
@@ -50,8 +56,12 @@ fn axes() -> Axes {
         methods: vec![Method::Auto, Method::Packet, Method::Wide],
         layouts: vec![Layout::Gathered, Layout::Compact],
         bvhs: vec![Bvh::Medium, Bvh::Fast, Bvh::High],
-        samples: vec![4, 2, 1],
+        integrators: vec![Integrator::Whitted],
+        samplers: vec![Sampler::Regular],
+        samples: vec![(4, 0), (2, 0), (1, 0)],
         bounces: vec![8, 2, 0],
         min_contributions: vec![1.0 / 1024.0, 1.0 / 64.0],
+        roulettes: vec![3],
+        clamps: vec![0.0],
     }
 }

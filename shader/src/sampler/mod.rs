@@ -208,6 +208,36 @@ mod tests {
         assert!(together <= -1.1 && apart > -0.7, "{together}, {apart}");
     }
 
+    /// Pictures hang on every bit of them: pcg3d by its authors' definition, step by step in wide numbers.
+    #[test]
+    fn hashes_are_those_of_the_paper() {
+        let low = |x: u64| x & 0xffff_ffff;
+        let mixed = |[x, y, z]: [u64; 3]| {
+            let x = low(x + y * z);
+            let y = low(y + z * x);
+            [x, y, low(z + x * y)]
+        };
+        for v in [[0, 0, 0], [1, 2, 3], [0xdead_beef, 0x8000_0000, 77], [u32::MAX; 3]] {
+            let stepped = mixed(v.map(|x| low(u64::from(x) * 1_664_525 + 1_013_904_223)));
+            assert_eq!(hash(v).map(u64::from), mixed(stepped.map(|x| x ^ (x / 65_536))), "{v:x?}");
+        }
+    }
+
+    #[test]
+    fn a_drawn_number_is_a_share_of_all() {
+        assert_eq!([0, 255, 256, 1 << 31].map(unit), [0.0, 0.0, 1.0 / 16_777_216.0, 0.5]);
+        assert_eq!(unit(u32::MAX), 1.0 - 1.0 / 16_777_216.0);
+    }
+
+    /// No two sets share a dimension's scrambling, and no set has two dimensions of one.
+    #[test]
+    fn sets_are_scrambled_each_by_itself() {
+        let sets = (0..200).chain((0..200).map(|i| DECISIONS + i));
+        let first: Vec<UVec4> = sets.map(|number| set(Launch(Launch::SOBOL), Key(5, 6), 0, number)).collect();
+        let all: HashSet<u32> = first.iter().flat_map(|set| set.to_array()).collect();
+        assert_eq!(all.len(), 4 * first.len());
+    }
+
     /// A disk light's penumbra: how much of the disk is seen past an edge, over places in the pixel and on the light.
     #[test]
     fn the_error_of_a_penumbra_falls_as_fast_as_it_should() {
@@ -223,7 +253,7 @@ mod tests {
         let mean = |pixel, count| (0..count).map(|sample| seen(drawn(pixel, sample))).sum::<f64>() / f64::from(count);
         let slope = fitted(&|pixel, count| mean(pixel, count) - 0.5);
         println!("penumbra {slope:.2}");
-        assert!(slope <= -0.6, "{slope}");
+        assert!(slope <= -0.69, "{slope}");
     }
 
     /// No two dimensions or neighbours go together: means of products, each within five of its standard errors.

@@ -90,6 +90,27 @@ mod tests {
     use super::*;
     use std::collections::HashSet;
 
+    /// A digit is flipped by what lies below it and by nothing above, and by either half of the seed.
+    #[test]
+    fn digits_are_flipped_by_lower_ones_and_the_seed() {
+        let drawn = |i: u32| crate::sampler::hash([i, 1, 2]);
+        for bit in 0..32 {
+            let flipped = |change: &dyn Fn([u32; 2]) -> [u32; 2]| {
+                let differs = |i| {
+                    let [x, seed, _] = drawn(i);
+                    let [other, another] = change([x, seed]);
+                    (scrambled(x, seed) ^ x ^ scrambled(other, another) ^ other) >> bit & 1
+                };
+                (0..4096).map(differs).sum::<u32>()
+            };
+            let above = flipped(&|[x, seed]| [x ^ (0xffff_fffe << bit), seed]);
+            let (low, high) = (flipped(&|[x, seed]| [x, seed ^ 0xffff]), flipped(&|[x, seed]| [x, seed ^ 0xffff_0000]));
+            assert_eq!(above, 0, "digit {bit}");
+            assert!(bit < 4 || (300..3800).contains(&low), "digit {bit}: {low}");
+            assert!(bit < 4 || (300..3800).contains(&high), "digit {bit}: {high}");
+        }
+    }
+
     /// As the digits themselves give it.
     #[test]
     fn pascals_triangle_modulo_two() {

@@ -179,7 +179,8 @@ impl Axes {
         }
     }
 
-    /// Leaves out what takes long: of samples all but a few, and where light is not sampled the scene's own.
+    /// Keeps few samples, which take little time: at most 4 of a pixel, and where light is not sampled the scene's own
+    /// number, too.
     pub fn hurry(&mut self, own: &Settings) {
         let is_sampled = self.integrators.iter().any(|integrator| integrator.samples());
         let is_own = |samples| !is_sampled && a_pixel(samples) == own.samples_a_pixel();

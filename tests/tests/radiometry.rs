@@ -167,6 +167,35 @@ fn a_point_light_in_a_sphere() {
     }
 }
 
+/// As far away as it is, and no further: neither what lies right behind it nor what it lies on shadows it.
+#[test]
+fn a_point_light_that_lies_on_a_ceiling() {
+    let mut scene = on_white_floor();
+    let corner = |x: f32, z: f32| Vec3::new(5.0 * x, 2.0, 5.0 * z);
+    let ceiling = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
+    add_quad(&mut scene, black(), ceiling);
+    scene.lights.push(Light::Point { position: Vec3::new(0.7, 2.0, -0.4), colour: Vec3::splat(10.0) });
+    let square = 0.7 * 0.7 + 2.0 * 2.0 + 0.4 * 0.4;
+    let want = 10.0 / square * (2.0 / f64::sqrt(square)) / f64::from(PI);
+    let (got, _) = mean(&render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), once()));
+    assert!((got - want).abs() < 1e-4 * want, "{got} of {want}");
+}
+
+/// In a glowing sphere each bounce halves the light: what was scattered more than once is at most the clamp, each by itself.
+#[test]
+fn a_clamp() {
+    let scene = in_sphere(Material { emission: Vec3::splat(0.5), two_sided: true, ..matt(Vec3::splat(0.5)) });
+    for clamp in [0.05f32, 0.1, 0.125, 0.25, 7.0] {
+        let transport =
+            Transport { clamp, roulette: Settings::MOST_BOUNCES, direct: Direct::Surface, ..once().transport };
+        let film = render(&scene, &inside(), Settings { spp: 4, bounces: 4, transport, ..once() });
+        let scattered = (2..=5).map(|n| (0.5 * 0.5f32.powi(n)).min(clamp));
+        let want = 0.5 + 0.25 + scattered.sum::<f32>();
+        let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
+        assert!(far < 1e-5, "clamp {clamp}: {far} off {want}");
+    }
+}
+
 /// White, wherever one looks: as much is emitted as is lost.
 #[test]
 fn a_furnace() {

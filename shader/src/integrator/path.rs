@@ -176,3 +176,71 @@ fn survive<R: Scalar>(frame: &Frame, next: PathState<R>, decision: u32) -> (Path
     let weight = (next.weight * raised).map(|c| c.flush(FAINT));
     (PathState { weight, ..next }, (decision >> 9) < steps as u32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::data::pack;
+    use bytemuck::Zeroable;
+    use glam::Vec3;
+    use proptest::prelude::*;
+
+    fn finds(lamps: (Vec3, Vec3), origin: Vec3, direction: Vec3) -> bool {
+        let frame = Frame { lamps: pack(lamps.0, 0), lamps_half: pack(lamps.1, 0), ..Zeroable::zeroed() };
+        let of = |v: Vec3| V3::<f32>::new(v.x, v.y, v.z);
+        let path = PathState {
+            origin: of(origin),
+            direction: of(direction.normalize()),
+            source_primitive: 0,
+            weight: V3::zero(),
+            bounces: 0,
+            density: 0.0,
+            pixel: 0,
+            pending: 0,
+            vertex: 0,
+        };
+        may_find_light(&frame, &path)
+    }
+
+    fn place() -> impl Strategy<Value = Vec3> {
+        (-1f32..1.0, -1f32..1.0, -1f32..1.0).prop_map(Vec3::from)
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 5000, failure_persistence: None, ..Default::default() })]
+
+        /// A ray to a place in the box is always taken to find it: thin boxes, too, and from inside.
+        #[test]
+        fn no_lamp_is_overlooked(middle in place(), half in place(), flat in 0..4usize, from in place(), at in place()) {
+            let mut half = half.abs() * 0.3;
+            if flat < 3 {
+                half[flat] = 0.0;
+            }
+            let target = middle + at * half;
+            prop_assume!(target.distance(from) > 1e-3);
+            prop_assert!(finds((middle, half), from, target - from));
+        }
+
+        /// A ray that misses the box by far is not: as the slabs of its axes, in double precision, tell.
+        #[test]
+        fn a_ray_that_passes_by_finds_none(middle in place(), half in place(), from in place(), d in place()) {
+            prop_assume!(d.length() > 0.01);
+            let (half, d) = (half.abs() * 0.3, d.normalize());
+            let (mut near, mut far) = (0f64, f64::INFINITY);
+            for axis in 0..3 {
+                let (from, d) = (f64::from(from[axis] - middle[axis]), f64::from(d[axis]));
+                let half = f64::from(half[axis]) + 1e-3;
+                let (a, b) = ((-half - from) / d, (half - from) / d);
+                near = near.max(a.min(b));
+                far = far.min(a.max(b));
+            }
+            prop_assert_eq!(near <= far || !finds((middle, half), from, d), true);
+        }
+    }
+
+    #[test]
+    fn without_lamps_none_is_found() {
+        assert!(!finds((Vec3::ZERO, Vec3::splat(-1.0)), Vec3::splat(0.5), Vec3::X));
+        assert!(finds((Vec3::ZERO, Vec3::splat(1e9)), Vec3::splat(0.5), Vec3::X));
+    }
+}

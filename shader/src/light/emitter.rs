@@ -264,3 +264,33 @@ fn in_triangle<R: Scalar>(u: R, v: R) -> (R, R) {
     let half = R::splat(0.5);
     if u.lt(v) { (u * half, v - u * half) } else { (u - v * half, v * half) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use bytemuck::Zeroable;
+    use glam::UVec4;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn products_have_two_words(a: u32, b: u32) {
+            let (high, low) = product(a, b);
+            prop_assert_eq!(u64::from(high) << 32 | u64::from(low), u64::from(a) * u64::from(b));
+        }
+    }
+
+    /// A draw means the entry that it came to where it is below the threshold, which an entry of none never is.
+    #[test]
+    fn draws_mean_their_entry_or_its_alias() {
+        let entry =
+            |threshold, alias, own| Emitter { choice: UVec4::new(threshold, alias, own, 0), ..Zeroable::zeroed() };
+        let table = [entry(0, 1, 10), entry(u32::MAX, 1, 11), entry(1 << 31, 0, 12), entry(1 << 30, 1, 13)];
+        let share = |own| {
+            let draws = (0..1u32 << 16).map(|i| i << 16);
+            draws.filter(|&drawn| chosen(&table, 4, drawn).choice.z == own).count()
+        };
+        assert_eq!([10, 11, 12, 13].map(share), [1 << 13, (1 << 15) + 3 * (1 << 12), 1 << 13, 1 << 12]);
+        assert_eq!(chosen(&table, 4, 0).choice.z, 11, "a rest of zero is not below a threshold of zero");
+    }
+}

@@ -194,6 +194,39 @@ fn a_clamp() {
         let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
         assert!(far < 1e-5, "clamp {clamp}: {far} off {want}");
     }
+    // Light that is asked for is scattered once more when it arrives.
+    let mut scene = in_sphere(matt(Vec3::splat(0.5)));
+    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    for clamp in [0.1f32, 0.2, 0.25] {
+        let transport = Transport { clamp, roulette: Settings::MOST_BOUNCES, ..once().transport };
+        let film = render(&scene, &inside(), Settings { spp: 4, bounces: 3, transport, ..once() });
+        let want = 0.5 + (2..=4).map(|n| 0.5f32.powi(n).min(clamp)).sum::<f32>();
+        let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
+        assert!(far < 1e-5, "clamp {clamp}, asked for: {far} off {want}");
+    }
+}
+
+/// What covers a lamp, however near to it, leaves no light.
+#[test]
+fn lids_before_lamps() {
+    let lid = |height: f32, radius: f32| {
+        let mut scene = on_white_floor();
+        scene.materials.extend([black(), lamp(1.0)]);
+        let material = scene.materials.len() as u32 - 2;
+        let (center, normal) = (Vec3::new(0.0, height, 0.0), Vec3::NEG_Y);
+        scene.disks.push(Disk { center, normal, radius, material });
+        (scene, material + 1)
+    };
+    let (mut below_sphere, material) = lid(1.47, 2.0);
+    below_sphere.spheres.push(Sphere { center: Vec3::new(0.0, 2.0, 0.0), radius: 0.5, material });
+    let (mut below_disk, material) = lid(1.99, 1.5);
+    below_disk.disks.push(Disk { center: Vec3::new(0.0, 2.0, 0.0), normal: Vec3::NEG_Y, radius: 1.0, material });
+    for (what, scene) in [("sphere", below_sphere), ("disk", below_disk)] {
+        for direct in WAYS {
+            let film = render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), by(direct, once()));
+            assert!(film.pixels.as_flattened().iter().all(|&channel| channel == 0.0), "{what}, {direct:?}");
+        }
+    }
 }
 
 /// White, wherever one looks: as much is emitted as is lost.

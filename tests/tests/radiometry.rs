@@ -175,6 +175,8 @@ fn a_point_light_that_lies_on_a_ceiling() {
     let ceiling = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     add_quad(&mut scene, black(), ceiling);
     scene.lights.push(Light::Point { position: Vec3::new(0.7, 2.0, -0.4), colour: Vec3::splat(10.0) });
+    // Another kind of light beside it, which sends none.
+    scene.lights.push(Light::Directional { direction: Vec3::NEG_Y, colour: Vec3::ZERO });
     let square = 0.7 * 0.7 + 2.0 * 2.0 + 0.4 * 0.4;
     let want = 10.0 / square * (2.0 / f64::sqrt(square)) / f64::from(PI);
     let (got, _) = mean(&render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), once()));

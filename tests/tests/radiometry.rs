@@ -150,11 +150,17 @@ fn in_sphere(material: Material) -> Scene {
     scene
 }
 
+/// With a point light in its centre.
+fn lit_sphere() -> Scene {
+    let mut scene = in_sphere(matt(Vec3::splat(0.5)));
+    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    scene
+}
+
 /// Every wall point gets the same from the light, and from all walls, whatever the samples.
 #[test]
 fn a_point_light_in_a_sphere() {
-    let mut scene = in_sphere(matt(Vec3::splat(0.5)));
-    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    let scene = lit_sphere();
     for k in 1..=5 {
         let transport = Transport { roulette: Settings::MOST_BOUNCES, ..once().transport };
         let film = render(&scene, &inside(), Settings { spp: 4, bounces: k - 1, transport, ..once() });
@@ -183,6 +189,11 @@ fn a_point_light_that_lies_on_a_ceiling() {
     assert!((got - want).abs() < 1e-4 * want, "{got} of {want}");
 }
 
+fn assert_everywhere(what: &str, film: &Film, want: f32) {
+    let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
+    assert!(far < 1e-5, "{what}: {far} off {want}");
+}
+
 /// In a glowing sphere each bounce halves the light: what was scattered more than once is at most the clamp, each by itself.
 #[test]
 fn a_clamp() {
@@ -193,18 +204,15 @@ fn a_clamp() {
         let film = render(&scene, &inside(), Settings { spp: 4, bounces: 4, transport, ..once() });
         let scattered = (2..=5).map(|n| (0.5 * 0.5f32.powi(n)).min(clamp));
         let want = 0.5 + 0.25 + scattered.sum::<f32>();
-        let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
-        assert!(far < 1e-5, "clamp {clamp}: {far} off {want}");
+        assert_everywhere(&format!("clamp {clamp}"), &film, want);
     }
     // Light that is asked for is scattered once more when it arrives.
-    let mut scene = in_sphere(matt(Vec3::splat(0.5)));
-    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    let scene = lit_sphere();
     for clamp in [0.1f32, 0.2, 0.25] {
         let transport = Transport { clamp, roulette: Settings::MOST_BOUNCES, ..once().transport };
         let film = render(&scene, &inside(), Settings { spp: 4, bounces: 3, transport, ..once() });
         let want = 0.5 + (2..=4).map(|n| 0.5f32.powi(n).min(clamp)).sum::<f32>();
-        let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
-        assert!(far < 1e-5, "clamp {clamp}, asked for: {far} off {want}");
+        assert_everywhere(&format!("clamp {clamp}, asked for"), &film, want);
     }
 }
 

@@ -3,6 +3,7 @@
 use glam::Vec3;
 
 use super::Setting;
+use super::setting::has_tree;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::Precision;
@@ -94,17 +95,11 @@ impl Axis {
     ];
     /// Those that leave a picture as it is: the fastest value is the best one.
     pub const FREE: [Axis; 3] = [Axis::Method, Axis::Layout, Axis::Bvh];
+
     /// Those that trade accuracy for speed.
-    pub const TRADING: [Axis; 8] = [
-        Axis::Arithmetic,
-        Axis::Integrator,
-        Axis::Sampler,
-        Axis::Samples,
-        Axis::Bounces,
-        Axis::MinContribution,
-        Axis::Roulette,
-        Axis::Clamp,
-    ];
+    pub fn trading() -> impl Iterator<Item = Axis> {
+        Axis::ALL.into_iter().filter(|axis| !Axis::FREE.contains(axis))
+    }
 
     /// `setting` with the value that `other` has on this axis.
     pub fn taken(self, setting: Setting, other: &Setting) -> Setting {
@@ -128,21 +123,20 @@ impl Axes {
     /// What is tried of a scene with these settings of its own, by these integrators (none: its own). Only where rays are
     /// followed on does it matter how often, and only where light is sampled how that is done.
     pub fn of(scene: &Scene, own: &Settings, integrators: &[Integrator]) -> Axes {
-        let Transport { integrator, roulette, clamp, .. } = own.transport;
-        let integrators = if integrators.is_empty() { vec![integrator] } else { integrators.to_vec() };
+        let base = Setting::of(own);
         let fast = [TriangleTest::Watertight, TriangleTest::Moller].map(|test| (Precision::Fast, test));
         let mut axes = Axes {
             arithmetic: [&[(Precision::Exact, TriangleTest::Watertight)], &fast[..]].concat(),
             methods: [&[Method::Auto], &Method::ALL[..]].concat(),
             layouts: vec![Layout::Gathered, Layout::Indexed, Layout::Compact],
             bvhs: vec![Bvh::Medium, Bvh::Fast, Bvh::High],
-            integrators,
-            samplers: vec![own.sampler],
-            samples: vec![(if own.spp > 0 { 1 } else { own.samples }, own.spp)],
-            bounces: vec![own.bounces],
-            min_contributions: vec![own.min_contribution],
-            roulettes: vec![roulette],
-            clamps: vec![clamp],
+            integrators: if integrators.is_empty() { vec![base.integrator] } else { integrators.to_vec() },
+            samplers: vec![base.sampler],
+            samples: vec![(base.samples, base.spp)],
+            bounces: vec![base.bounces],
+            min_contributions: vec![base.min_contribution],
+            roulettes: vec![base.roulette],
+            clamps: vec![base.clamp],
         };
         axes.extend(scene, own);
         axes.sort();
@@ -154,10 +148,7 @@ impl Axes {
         let followed = |m: &Material| m.reflection != Vec3::ZERO || m.transmission != Vec3::ZERO;
         let has_specular = scene.materials.iter().any(followed);
         let any = |of: fn(Integrator) -> bool| self.integrators.iter().copied().any(of);
-        let (is_path, has_tree) = (
-            any(|i| i == Integrator::Path),
-            has_specular && any(|i| matches!(i, Integrator::Whitted | Integrator::Distributed)),
-        );
+        let (is_path, has_tree) = (any(|i| i == Integrator::Path), has_specular && any(has_tree));
         if is_path || has_tree {
             self.bounces.extend(halvings(own.bounces));
         }

@@ -1,5 +1,6 @@
 //! What pictures are compared with.
 
+use super::setting::clamp;
 use super::{Axes, Plan, Subject};
 use crate::error::Result;
 use eyerays::choice::Named;
@@ -11,6 +12,7 @@ use eyerays::method::Traversal;
 use eyerays::render::{Backend, Precision};
 use eyerays::scene::{Sampler, Settings, Transport};
 use eyerays::view::View;
+use eyerays_shader::real::Scalar;
 
 /// The most accurate picture, and others as far as they are of use.
 pub struct References {
@@ -22,8 +24,29 @@ pub struct References {
     pub standard_error: Option<f64>,
 }
 
-/// Called with every step.
-type Begins<'a> = &'a dyn Fn(&str);
+/// What the pictures are rendered of, and on.
+struct Studio<'a> {
+    plan: &'a Plan,
+    subject: &'a Subject,
+    packed: &'a mut DeviceScene,
+    device: &'a Backend,
+    begins: &'a dyn Fn(&str),
+}
+
+impl Studio<'_> {
+    /// The scene by these settings, as it is seen; `step` is what begins.
+    fn seen(&mut self, settings: Settings, step: &str) -> Result<View> {
+        (self.begins)(step);
+        self.packed.set(settings)?;
+        Ok(View::new(self.packed, &self.subject.camera)?)
+    }
+
+    /// On the CPU.
+    fn on_cpu<R: Scalar<Record: Send + Sync>>(&self, view: &View) -> Result<Film> {
+        let threads = self.device.choice().threads;
+        Ok(cpu::render::<R>(self.packed, view, Traversal::default(), threads, &|_| ())?.0)
+    }
+}
 
 impl References {
     /// How many pictures there are at most.
@@ -31,42 +54,32 @@ impl References {
         if is_sampled(&plan.axes) { 2 } else { plan.axes.samples.len() * plan.axes.samplers.len() }
     }
 
-    /// Renders them.
+    /// Renders them; `begins` is called with every step.
     ///
     /// # Errors
     /// Settings that the scene or the device refuses.
     pub fn new(
         plan: &Plan,
         subject: &Subject,
-        packed: &mut DeviceScene,
-        device: &mut Backend,
-        begins: Begins<'_>,
+        (packed, device): (&mut DeviceScene, &Backend),
+        begins: &dyn Fn(&str),
     ) -> Result<Self> {
-        if is_sampled(&plan.axes) {
-            Self::sampled(plan, subject, packed, device, begins)
-        } else {
-            Self::without_noise(plan, subject, packed, device.choice().threads, begins)
-        }
+        let studio = Studio { plan, subject, packed, device, begins };
+        if is_sampled(&plan.axes) { Self::sampled(studio) } else { Self::without_noise(studio) }
     }
 
     /// One for every number of samples, in double precision.
-    fn without_noise(
-        plan: &Plan,
-        subject: &Subject,
-        packed: &mut DeviceScene,
-        threads: usize,
-        begins: Begins<'_>,
-    ) -> Result<Self> {
-        let best = plan.axes.reference(subject.settings);
+    fn without_noise(mut studio: Studio<'_>) -> Result<Self> {
+        let axes = &studio.plan.axes;
+        let best = axes.reference(studio.subject.settings);
         let mut render = |settings: Settings| -> Result<Film> {
-            begins(&format!("reference, {} samples, {}", settings.samples_a_pixel(), settings.sampler));
-            packed.set(settings)?;
-            let view = View::new(packed, &subject.camera)?;
-            Ok(cpu::render::<f64>(packed, &view, Traversal::default(), threads, &|_| ())?.0)
+            let step = format!("reference, {} samples, {}", settings.samples_a_pixel(), settings.sampler);
+            let view = studio.seen(settings, &step)?;
+            studio.on_cpu::<f64>(&view)
         };
         let mut alike = Vec::new();
-        let wanted = plan.axes.samplers.iter().flat_map(|&sampler| {
-            plan.axes.samples.iter().map(move |&(samples, spp)| Settings { samples, spp, sampler, ..best })
+        let wanted = axes.samplers.iter().flat_map(|&sampler| {
+            axes.samples.iter().map(move |&(samples, spp)| Settings { samples, spp, sampler, ..best })
         });
         for settings in wanted.filter(|settings| settings.grid().is_ok()) {
             alike.push(((settings.samples_a_pixel(), settings.sampler), render(settings)?));
@@ -81,25 +94,18 @@ impl References {
 
     /// The mean of two pictures in exact precision whose noise has nothing in common with each other's and with that of
     /// pictures which they judge: their difference tells the error of their mean, for samplers of every kind.
-    fn sampled(
-        plan: &Plan,
-        subject: &Subject,
-        packed: &mut DeviceScene,
-        device: &mut Backend,
-        begins: Begins<'_>,
-    ) -> Result<Self> {
-        let best = plan.axes.reference(subject.settings);
-        let spp = halves(plan);
+    fn sampled(mut studio: Studio<'_>) -> Result<Self> {
+        let best = studio.plan.axes.reference(studio.subject.settings);
+        let spp = halves(studio.plan);
         let mut half = |place: u32| -> Result<Film> {
-            begins(&format!("reference, {spp} samples, {place} of 2"));
             let transport = Transport { seed: seed(best.transport.seed, place), ..best.transport };
-            packed.set(Settings { samples: 1, spp, sampler: Sampler::Sobol, transport, ..best })?;
-            let view = View::new(packed, &subject.camera)?;
-            if device.choice().precision == Precision::Exact {
-                return Ok(device.render(packed, &view, 1, &|_| ())?.film);
+            let settings = Settings { samples: 1, spp, sampler: Sampler::Sobol, transport, ..best };
+            let view = studio.seen(settings, &format!("reference, {spp} samples, {place} of 2"))?;
+            if studio.device.choice().precision == Precision::Exact {
+                return Ok(studio.device.render(studio.packed, &view, 1, &|_| ())?.film);
             }
             // A device that was opened for fast precision may have no other.
-            Ok(cpu::render::<f32>(packed, &view, Traversal::default(), device.choice().threads, &|_| ())?.0)
+            studio.on_cpu::<f32>(&view)
         };
         let (first, second) = (half(1)?, half(2)?);
         let standard_error = Some(compare(&first, &second)?.rmse / 2.0);
@@ -134,15 +140,12 @@ impl References {
                  {min_contribution}"
             );
         };
-        let clamp = match best.transport.clamp {
-            0.0 => "no clamp".to_owned(),
-            clamp => format!("clamp {clamp}"),
-        };
         format!(
             "exact precision, {}, two pictures of {} samples a pixel with seeds of their own (sobol), at most {bounces} \
-             bounces, {clamp}; its standard error is {standard_error:.2e}",
+             bounces, {}; its standard error is {standard_error:.2e}",
             best.transport.integrator.name(),
-            halves(plan)
+            halves(plan),
+            clamp(best.transport.clamp)
         )
     }
 }

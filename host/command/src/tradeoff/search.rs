@@ -79,7 +79,7 @@ impl Search<'_> {
 
     /// One step on one trading axis.
     fn neighbours(&self, setting: Setting) -> Vec<Setting> {
-        let near = Axis::TRADING.into_iter().flat_map(|axis| {
+        let near = Axis::trading().flat_map(|axis| {
             let all = self.axes.along(axis, setting);
             let here = all.iter().position(|other| *other == setting);
             let near = here.map_or([None, None], |i| [i.checked_sub(1), Some(i + 1)]);

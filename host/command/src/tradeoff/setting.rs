@@ -86,11 +86,10 @@ impl Setting {
     /// With the values of another one where its own make no difference.
     pub fn plain(self, base: &Setting) -> Setting {
         let (integrator, follows) = (self.integrator, self.bounces > 0);
-        let has_tree = matches!(integrator, Integrator::Whitted | Integrator::Distributed);
         let is = |matters: bool, own: f32, other: f32| if matters { own } else { other };
         Setting {
             bounces: if integrator == Integrator::Ao { base.bounces } else { self.bounces },
-            min_contribution: is(follows && has_tree, self.min_contribution, base.min_contribution),
+            min_contribution: is(follows && has_tree(integrator), self.min_contribution, base.min_contribution),
             roulette: if follows && integrator == Integrator::Path { self.roulette } else { base.roulette },
             clamp: is(follows && integrator.chooses_lights(), self.clamp, base.clamp),
             ..self
@@ -128,7 +127,6 @@ impl Setting {
             Settings::MOST_BOUNCES => "no roulette".to_owned(),
             bounces => format!("roulette after {}", counted(bounces, "bounce")),
         };
-        let clamp = if self.clamp == 0.0 { "no clamp".to_owned() } else { format!("clamp {}", self.clamp) };
         let words = [
             (self.precision != other.precision, name(self.precision)),
             (self.triangle != other.triangle, name(self.triangle)),
@@ -141,7 +139,7 @@ impl Setting {
             (self.bounces != other.bounces, counted(self.bounces, "bounce")),
             (self.min_contribution != other.min_contribution, format!("contribution {}", share(self.min_contribution))),
             (self.roulette != other.roulette, roulette),
-            (self.clamp != other.clamp, clamp),
+            (self.clamp != other.clamp, clamp(self.clamp)),
         ];
         let words: Vec<String> = words.into_iter().filter(|(differs, _)| *differs).map(|(_, word)| word).collect();
         if words.is_empty() { "as it is".to_owned() } else { words.join(", ") }
@@ -160,12 +158,11 @@ impl Setting {
             if self.spp > 0 { ("spp", self.spp.to_string()) } else { ("samples", self.samples.to_string()) },
             ("bounces", self.bounces.to_string()),
         ];
-        match self.integrator {
-            Integrator::Whitted | Integrator::Distributed => {
-                words.push(("min-contribution", self.min_contribution.to_string()));
-            }
-            Integrator::Path => words.push(("roulette", self.roulette.to_string())),
-            Integrator::Ao => (),
+        if has_tree(self.integrator) {
+            words.push(("min-contribution", self.min_contribution.to_string()));
+        }
+        if self.integrator == Integrator::Path {
+            words.push(("roulette", self.roulette.to_string()));
         }
         if self.integrator.chooses_lights() {
             words.push(("clamp", self.clamp.to_string()));
@@ -173,6 +170,16 @@ impl Setting {
         let options: Vec<String> = words.iter().map(|(option, word)| format!("--{option} {word}")).collect();
         options.join(" ")
     }
+}
+
+/// Does it follow mirrored and refracted rays by what they contribute at least?
+pub(super) fn has_tree(integrator: Integrator) -> bool {
+    matches!(integrator, Integrator::Whitted | Integrator::Distributed)
+}
+
+/// A clamp in words.
+pub(super) fn clamp(most: f32) -> String {
+    if most == 0.0 { "no clamp".to_owned() } else { format!("clamp {most}") }
 }
 
 /// A share of a pixel as a fraction where it is a plain one.

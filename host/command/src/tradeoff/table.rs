@@ -8,7 +8,8 @@ Time: the median of a rendering, and from the 10th to the 90th percentile as a s
 error of the distance t (in units of the last place of single precision, where the primitive is right): of the rays
 through pixels' centres, against double precision. RMSE and PSNR: of the picture, in linear light, against the
 reference; \"RMSE, same samples\" against a reference with as few samples, so without the error of sampling (none where
-light is sampled). A number in the first column is a place on the front: nothing that was tried is both faster and nearer to the reference.";
+light is sampled). A number in the first column is a place on the front: nothing that was tried is both faster and nearer
+to the reference.";
 
 /// Everything, as tables.
 pub fn markdown(report: &Report) -> String {

@@ -82,7 +82,7 @@ proptest! {
         }
         let all: Vec<_> = records.iter().map(|r| (r.time_ms, r.rmse)).collect();
         for i in front(&all) {
-            for axis in Axis::TRADING {
+            for axis in Axis::trading() {
                 let line = axes().along(axis, records[i].setting);
                 let here = line.iter().position(|s| *s == records[i].setting).unwrap();
                 for near in [here.checked_sub(1), Some(here + 1)].into_iter().flatten().filter_map(|n| line.get(n)) {

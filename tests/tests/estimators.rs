@@ -121,13 +121,14 @@ fn distributed_rays_and_paths_without_bounces() {
 /// ambient light, but for pi of the light.
 #[test]
 fn distributed_trees_are_whitteds() {
-    for name in ["whitted", "glass"] {
+    // By a least contribution a mirrored or a refracted ray goes on alone.
+    for (name, min_contribution) in [("whitted", 0.0), ("glass", 0.0), ("whitted", 0.07)] {
         let mut scene = shipped(name);
         let settings = Settings {
             size: (96, 64),
             samples: 1,
             bounces: 8,
-            min_contribution: 0.0,
+            min_contribution,
             sampler: Sampler::Regular,
             ..scene.settings
         };
@@ -144,9 +145,14 @@ fn distributed_trees_are_whitteds() {
             let (tree, want) = (film(Integrator::Distributed, std::f32::consts::PI), film(Integrator::Whitted, 1.0));
             let off = |(got, want): (&[f32; 3], &[f32; 3])| got.iter().zip(want).any(|(a, b)| (a - b).abs() > 2e-5);
             let others = tree.pixels.iter().zip(&want.pixels).filter(|&pair| off(pair)).count();
-            println!("{name}, camera {camera}: {others} of {} pixels differ", want.pixels.len());
-            // Balls that mirror each other magnify the rounding of a ray's start.
-            assert!(others <= want.pixels.len() / 500, "{name}, camera {camera}: {others}");
+            println!(
+                "{name}, camera {camera}, least {min_contribution}: {others} of {} pixels differ",
+                want.pixels.len()
+            );
+            // Balls that mirror each other magnify the rounding of a ray's start; within glass, where light is compressed, the
+            // least contribution ends other rays.
+            let share = if min_contribution == 0.0 { 500 } else { 100 };
+            assert!(others <= want.pixels.len() / share, "{name}, camera {camera}: {others}");
         }
     }
 }

@@ -239,6 +239,26 @@ fn lids_before_lamps() {
     }
 }
 
+/// About interpolated normals light from below a surface seems to come from above.
+#[test]
+fn no_light_comes_from_below_a_smooth_surface() {
+    let scene = |height: f32| {
+        let mut scene = on_white_floor();
+        scene.mesh.normals = vec![Vec3::new(0.9, 0.4, 0.0).normalize(); scene.mesh.positions.len()];
+        scene.materials.push(Material { two_sided: true, ..lamp(1.0) });
+        let center = Vec3::new(6.0, height, 0.0);
+        scene.disks.push(Disk { center, normal: Vec3::NEG_X, radius: 0.5, material: 1 });
+        scene.lights.push(Light::Point { position: center + Vec3::NEG_X, colour: Vec3::ONE });
+        scene
+    };
+    let camera = at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO);
+    for direct in WAYS {
+        let brightness = |height| mean(&render(&scene(height), &camera, by(direct, once()))).0;
+        assert!(brightness(1.0) > 0.0, "{direct:?}: nothing comes from above");
+        assert_eq!(brightness(-1.0), 0.0, "{direct:?}");
+    }
+}
+
 /// White, wherever one looks: as much is emitted as is lost.
 #[test]
 fn a_furnace() {

@@ -238,22 +238,31 @@ mod tests {
         assert_eq!(all.len(), 4 * first.len());
     }
 
-    /// A disk light's penumbra: how much of the disk is seen past an edge, over places in the pixel and on the light.
+    /// Disk lights' penumbras: of a disk that is sampled by area, what a half plane leaves.
     #[test]
     fn the_error_of_a_penumbra_falls_as_fast_as_it_should() {
         let drawn = |pixel: u32, sample| {
             let set = set(Launch(Launch::SOBOL), Key(pixel, 9), sample, 0);
             [set.x, set.z, set.w].map(|x| f64::from(x) / 4_294_967_296.0)
         };
-        // A half plane cuts the disk's height; where, changes over the pixel. The mean is by symmetry a half.
-        let seen = |[x, radius, angle]: [f64; 3]| {
-            let height = radius.sqrt() * (angle * std::f64::consts::TAU).sin();
-            f64::from(u8::from(height < x - 0.5))
+        let is_seen = |edge: f64, radius: f64, angle: f64| {
+            f64::from(u8::from(radius.sqrt() * (angle * std::f64::consts::TAU).sin() < edge))
         };
-        let mean = |pixel, count| (0..count).map(|sample| seen(drawn(pixel, sample))).sum::<f64>() / f64::from(count);
-        let slope = fitted(&|pixel, count| mean(pixel, count) - 0.5);
-        println!("penumbra {slope:.2}");
-        assert!(slope <= -0.69, "{slope}");
+        let of = |seen: &dyn Fn(u32, [f64; 3]) -> f64, exact: &dyn Fn(u32) -> f64| {
+            fitted(&|pixel, count| {
+                let sum: f64 = (0..count).map(|sample| seen(pixel, drawn(pixel, sample))).sum();
+                sum / f64::from(count) - exact(pixel)
+            })
+        };
+        // Each place of the penumbra, which here is a pixel, has its edge across the disk.
+        let edge = |pixel: u32| (f64::from(pixel) + 0.5) / 48.0 - 1.0;
+        let segment = |edge: f64| 0.5 + (edge.asin() + edge * (1.0 - edge * edge).sqrt()) / std::f64::consts::PI;
+        let at_places =
+            of(&|pixel, [_, radius, angle]| is_seen(edge(pixel), radius, angle), &|pixel| segment(edge(pixel)));
+        // With the edge anywhere in the pixel, too: in three dimensions -2/3 is known. The mean is by symmetry a half.
+        let over_pixels = of(&|_, [x, radius, angle]| is_seen(x - 0.5, radius, angle), &|_| 0.5);
+        println!("penumbra at places {at_places:.3}, over pixels {over_pixels:.3}");
+        assert!(at_places <= -0.7 && over_pixels <= -0.66, "{at_places}, {over_pixels}");
     }
 
     /// No two dimensions or neighbours go together: means of products, each within five of its standard errors.

@@ -1,18 +1,18 @@
 //! Axis-aligned boxes, made by exact operations only, so that containment is exact.
 
 use eyerays_shader::data::{Bounds as Record, NodeRef, Primitive, numbers, pack};
-use glam::Vec3;
+use glam::{Vec3, Vec3A};
 
 /// A closed box; the least and greatest corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Bounds {
-    pub min: [f32; 3],
-    pub max: [f32; 3],
+    pub min: Vec3A,
+    pub max: Vec3A,
 }
 
 impl Bounds {
     /// The neutral element of [`Bounds::union`].
-    pub const EMPTY: Bounds = Bounds { min: [f32::INFINITY; 3], max: [f32::NEG_INFINITY; 3] };
+    pub const EMPTY: Bounds = Bounds { min: Vec3A::INFINITY, max: Vec3A::NEG_INFINITY };
 
     /// A primitive's own box, padding included.
     pub fn of(primitive: &Primitive) -> Self {
@@ -31,29 +31,28 @@ impl Bounds {
     }
 
     /// The box between two corners.
-    pub fn new(min: Vec3, max: Vec3) -> Self {
+    pub fn new(min: impl Into<Vec3A>, max: impl Into<Vec3A>) -> Self {
         Bounds { min: min.into(), max: max.into() }
+    }
+
+    /// The box of one point.
+    pub fn point(point: Vec3A) -> Self {
+        Bounds { min: point, max: point }
     }
 
     /// The least box around both, by compare and select: no coordinate is ever rounded.
     pub fn union(self, other: Self) -> Self {
-        Bounds {
-            min: zip(self.min, other.min, |a, b| if a < b { a } else { b }),
-            max: zip(self.max, other.max, |a, b| if a > b { a } else { b }),
-        }
+        Bounds { min: self.min.min(other.min), max: self.max.max(other.max) }
     }
 
     /// The intersection, which may be empty ([`Bounds::is_empty`]).
     pub fn intersection(self, other: Self) -> Self {
-        Bounds {
-            min: zip(self.min, other.min, |a, b| if a > b { a } else { b }),
-            max: zip(self.max, other.max, |a, b| if a < b { a } else { b }),
-        }
+        Bounds { min: self.min.max(other.min), max: self.max.min(other.max) }
     }
 
     /// Is there no point inside?
     pub fn is_empty(self) -> bool {
-        (0..3).any(|i| self.min[i] > self.max[i])
+        self.min.cmpgt(self.max).any()
     }
 
     /// The least box around all.
@@ -63,23 +62,22 @@ impl Bounds {
 
     /// Does every point of `other` lie inside? False if a coordinate is NaN.
     pub fn contains(self, other: Self) -> bool {
-        (0..3).all(|i| self.min[i] <= other.min[i] && self.max[i] >= other.max[i])
+        (self.min.cmple(other.min) & self.max.cmpge(other.max)).all()
     }
 
     /// Twice the centre, which spares a rounding.
-    pub fn centre(self) -> [f32; 3] {
-        zip(self.min, self.max, |a, b| a + b)
+    pub fn centre(self) -> Vec3A {
+        self.min + self.max
     }
 
     /// Edge lengths.
-    pub fn extent(self) -> [f32; 3] {
-        zip(self.max, self.min, |a, b| a - b)
+    pub fn extent(self) -> Vec3A {
+        self.max - self.min
     }
 
     /// Half the surface area.
     pub fn half_area(self) -> f32 {
-        let [x, y, z] = self.extent();
-        x * y + y * z + z * x
+        half_area(self.extent())
     }
 
     /// The box with its reference, as a node pair takes it.
@@ -88,6 +86,8 @@ impl Bounds {
     }
 }
 
-fn zip(a: [f32; 3], b: [f32; 3], f: impl Fn(f32, f32) -> f32) -> [f32; 3] {
-    [f(a[0], b[0]), f(a[1], b[1]), f(a[2], b[2])]
+/// Half the surface area of a box of these edge lengths.
+pub(crate) fn half_area(extent: Vec3A) -> f32 {
+    let [x, y, z] = extent.to_array();
+    x * y + y * z + z * x
 }

@@ -111,7 +111,7 @@ mod tests {
 
     /// Unit cubes at these places along an axis.
     fn cubes(places: impl Iterator<Item = f32>) -> Vec<Bounds> {
-        let cube = |x| Bounds { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 1.0] };
+        let cube = |x| Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
         places.map(cube).collect()
     }
 

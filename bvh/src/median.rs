@@ -1,6 +1,7 @@
 //! Median splits, which always halve.
 
 use eyerays_shader::data::MAX_LEAF;
+use glam::Vec3A;
 
 use crate::bounds::Bounds;
 
@@ -17,7 +18,7 @@ pub(crate) fn height(primitives: u32) -> u32 {
 pub(crate) fn split(primitives: &mut [u32], bounds: &[Bounds]) -> usize {
     let middle = primitives.len() / 2;
     let all = primitives.iter().map(|&t| bounds[t as usize]);
-    let centres = Bounds::around(all.clone().map(|b| point(b.centre())));
+    let centres = Bounds::around(all.clone().map(|b| Bounds::point(b.centre())));
     let axis = longest(centres.extent());
     if centres.extent()[axis] > 0.0 {
         halve(primitives, middle, |t| bounds[t as usize].centre()[axis]);
@@ -33,12 +34,8 @@ fn halve(primitives: &mut [u32], middle: usize, key: impl Fn(u32) -> f32) {
     primitives.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
 }
 
-fn point(p: [f32; 3]) -> Bounds {
-    Bounds { min: p, max: p }
-}
-
 /// The axis of the greatest extent; the first of equals.
-fn longest(extent: [f32; 3]) -> usize {
+fn longest(extent: Vec3A) -> usize {
     let longer = |a: usize, b: usize| if extent[b] > extent[a] { b } else { a };
     longer(longer(0, 1), 2)
 }
@@ -48,7 +45,7 @@ mod tests {
     use super::*;
 
     fn cube(centre: [f32; 3], half: f32) -> Bounds {
-        Bounds { min: centre.map(|c| c - half), max: centre.map(|c| c + half) }
+        Bounds::new(centre.map(|c| c - half), centre.map(|c| c + half))
     }
 
     #[test]

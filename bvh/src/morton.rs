@@ -7,7 +7,7 @@ const BITS: u32 = 21;
 
 /// The numbers of the boxes, sorted by the Morton code of their centres, then by number.
 pub(crate) fn sorted(bounds: &[Bounds]) -> Vec<u32> {
-    let scene = Bounds::around(bounds.iter().map(|b| Bounds { min: b.centre(), max: b.centre() }));
+    let scene = Bounds::around(bounds.iter().map(|b| Bounds::point(b.centre())));
     let mut keys: Vec<(u64, u32)> = bounds.iter().map(|b| code(b, &scene)).zip(0..).collect();
     keys.sort_unstable();
     keys.into_iter().map(|(_, number)| number).collect()
@@ -50,7 +50,7 @@ mod tests {
     fn corners_of_a_cube_follow_the_curve_and_equals_their_numbers() {
         let corner = |i: u32| {
             let p = [0, 1, 2].map(|axis| (i >> axis & 1) as f32);
-            Bounds { min: p, max: p }
+            Bounds::new(p, p)
         };
         let boxes: Vec<Bounds> = [7, 3, 0, 5, 5, 1, 0].map(corner).into();
         assert_eq!(sorted(&boxes), [2, 6, 5, 1, 3, 4, 0]);

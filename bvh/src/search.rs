@@ -58,5 +58,5 @@ fn polish(mut tree: Bvh2, parameters: &BvhBuildParams) -> Bvh2 {
 }
 
 fn aabb(bounds: &Bounds) -> Aabb {
-    Aabb::new(bounds.min.into(), bounds.max.into())
+    Aabb::new(bounds.min, bounds.max)
 }

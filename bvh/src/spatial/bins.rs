@@ -1,12 +1,12 @@
-//! The cheapest plane, among those between bins.
+//! Bins along the axes, and the cheapest plane between them.
 
-use eyerays_shader::data::{BOX_PADDING, Primitive};
+use eyerays_shader::data::BOX_PADDING;
+use glam::Vec3A;
 
-use super::part::Part;
-use crate::bounds::Bounds;
+use crate::bounds::{Bounds, half_area};
 
 /// Bins an axis. With 16, Conference's rays visit a quarter more nodes.
-const BINS: usize = 32;
+pub(super) const BINS: usize = 32;
 
 /// A way to split a node, and its cost: the sum of the children's areas times references.
 #[derive(Clone, Copy, Debug)]
@@ -14,147 +14,205 @@ pub(super) struct Split {
     pub cost: f32,
     pub axis: usize,
     /// The first bin on the right.
-    bin: usize,
+    pub bin: usize,
     /// The children's boxes.
     pub children: [Bounds; 2],
 }
 
-/// The bins of an axis.
-#[derive(Clone, Copy)]
-pub(super) struct Axis {
-    start: f32,
-    width: f32,
-}
-
-impl Axis {
-    /// Bins between two coordinates; none if they are equal.
-    fn between(start: f32, end: f32) -> Option<Self> {
-        let width = (end - start) / BINS as f32;
-        (width > 0.0).then_some(Axis { start, width })
-    }
-
-    fn bin(self, place: f32) -> usize {
-        (((place - self.start) / self.width) as usize).min(BINS - 1)
-    }
-
-    /// Where a bin starts.
-    fn plane(self, bin: usize) -> f32 {
-        self.start + self.width * bin as f32
+impl Split {
+    /// The cheaper split; the first of equals.
+    pub fn cheaper(a: Option<Split>, b: Option<Split>) -> Option<Split> {
+        match (a, b) {
+            (Some(a), Some(b)) => Some(if b.cost < a.cost { b } else { a }),
+            (a, b) => a.or(b),
+        }
     }
 }
 
 /// Half the surface area of a box with its padding, so that boxes without extent differ too.
 pub(super) fn area(bounds: Bounds) -> f32 {
-    if bounds.is_empty() {
-        return 0.0;
+    if bounds.is_empty() { 0.0 } else { half_area(bounds.extent() + 2.0 * BOX_PADDING) }
+}
+
+/// Where the bins of every axis lie.
+#[derive(Clone, Copy)]
+pub(super) struct Grid {
+    start: Vec3A,
+    width: Vec3A,
+}
+
+impl Grid {
+    /// Bins across a box. An axis without extent has all in its first bin.
+    pub fn across(bounds: Bounds) -> Self {
+        let width = bounds.extent() / BINS as f32;
+        Grid { start: bounds.min, width: Vec3A::select(width.cmpgt(Vec3A::ZERO), width, Vec3A::ONE) }
     }
-    let [x, y, z] = bounds.extent().map(|e| e + 2.0 * BOX_PADDING);
-    x * y + y * z + z * x
+
+    /// A place's bin along each axis.
+    pub fn bins(&self, place: Vec3A) -> [usize; 3] {
+        ((place - self.start) / self.width).to_array().map(bin)
+    }
+
+    /// A coordinate's bin along an axis.
+    pub fn bin(&self, axis: usize, coordinate: f32) -> usize {
+        bin((coordinate - self.start[axis]) / self.width[axis])
+    }
+
+    /// Where a bin starts.
+    pub fn plane(&self, axis: usize, bin: usize) -> f32 {
+        self.start[axis] + self.width[axis] * bin as f32
+    }
+}
+
+fn bin(steps: f32) -> usize {
+    (steps as u32).min(BINS as u32 - 1) as usize
 }
 
 /// What is in a bin: the box around it, how many parts start here, and how many end.
-type Bin = (Bounds, u32, u32);
-
-const NOTHING: Bin = (Bounds::EMPTY, 0, 0);
-
-/// The cheapest plane between bins.
-fn cheapest(bins: &[Bin; BINS], axis: usize) -> Option<Split> {
-    let mut right = [(Bounds::EMPTY, 0); BINS + 1];
-    for i in (0..BINS).rev() {
-        right[i] = (right[i + 1].0.union(bins[i].0), right[i + 1].1 + bins[i].2);
-    }
-    let (mut left, mut count) = (Bounds::EMPTY, 0);
-    let mut best: Option<Split> = None;
-    for bin in 1..BINS {
-        left = left.union(bins[bin - 1].0);
-        count += bins[bin - 1].1;
-        let (right, others) = right[bin];
-        let cost = area(left) * count as f32 + area(right) * others as f32;
-        if count > 0 && others > 0 && best.is_none_or(|b| cost < b.cost) {
-            best = Some(Split { cost, axis, bin, children: [left, right] });
-        }
-    }
-    best
+#[derive(Clone, Copy)]
+pub(super) struct Bin {
+    bounds: Bounds,
+    starts: u32,
+    ends: u32,
 }
 
-/// The cheaper split; the first of equals.
-fn cheaper(a: Option<Split>, b: Option<Split>) -> Option<Split> {
-    match (a, b) {
-        (Some(a), Some(b)) => Some(if b.cost < a.cost { b } else { a }),
-        (a, b) => a.or(b),
+impl Bin {
+    const EMPTY: Bin = Bin { bounds: Bounds::EMPTY, starts: 0, ends: 0 };
+
+    fn union(self, other: Bin) -> Bin {
+        Bin {
+            bounds: self.bounds.union(other.bounds),
+            starts: self.starts + other.starts,
+            ends: self.ends + other.ends,
+        }
     }
 }
 
-/// Splits between parts, by their centres.
-pub(super) struct Objects([Option<Axis>; 3]);
+/// The bins of an axis. Most nodes have few parts, so bins count only once something is in them.
+#[derive(Clone, Copy)]
+pub(super) struct Bins {
+    /// A bit for each bin with something in it.
+    occupied: u32,
+    bins: [Bin; BINS],
+}
 
-impl Objects {
-    /// Bins around the centres of parts.
-    pub fn of(parts: &[Part]) -> Self {
-        let centre = |part: &Part| {
-            let centre = part.bounds.centre();
-            Bounds { min: centre, max: centre }
-        };
-        let Bounds { min, max } = Bounds::around(parts.iter().map(centre));
-        Objects(std::array::from_fn(|axis| Axis::between(min[axis], max[axis])))
+impl Bins {
+    pub const EMPTY: Bins = Bins { occupied: 0, bins: [Bin::EMPTY; BINS] };
+
+    /// Empties all bins.
+    pub fn clear(&mut self) {
+        self.occupied = 0;
     }
 
-    /// The cheapest; none if all centres coincide.
-    pub fn cheapest(&self, parts: &[Part]) -> Option<Split> {
-        (0..3).filter_map(|axis| self.along(axis, parts)).map(Some).fold(None, cheaper)
+    /// Puts a whole part into a bin.
+    pub fn put(&mut self, bin: usize, bounds: Bounds) {
+        self.add(bin, Bin { bounds, starts: 1, ends: 1 });
     }
 
-    fn along(&self, axis: usize, parts: &[Part]) -> Option<Split> {
-        let along = self.0[axis]?;
-        let mut bins = [NOTHING; BINS];
-        for part in parts {
-            let bin = &mut bins[along.bin(part.bounds.centre()[axis])];
-            *bin = (bin.0.union(part.bounds), bin.1 + 1, bin.2 + 1);
+    /// Counts a part that starts in one bin and ends in another.
+    pub fn span(&mut self, first: usize, last: usize) {
+        self.add(first, Bin { starts: 1, ..Bin::EMPTY });
+        self.add(last, Bin { ends: 1, ..Bin::EMPTY });
+    }
+
+    /// Grows a bin's box, without a part.
+    pub fn grow(&mut self, bin: usize, bounds: Bounds) {
+        self.add(bin, Bin { bounds, ..Bin::EMPTY });
+    }
+
+    /// Adds all that is in other bins of the same axis.
+    pub fn merge(&mut self, other: &Bins) {
+        for bin in other.all() {
+            self.add(bin, other.bins[bin]);
         }
-        cheapest(&bins, axis)
     }
 
-    /// Does a part belong to the left child?
-    pub fn is_left(&self, split: &Split, part: &Part) -> bool {
-        self.0[split.axis].is_some_and(|along| along.bin(part.bounds.centre()[split.axis]) < split.bin)
+    fn add(&mut self, bin: usize, what: Bin) {
+        let bit = 1 << bin;
+        let before = if self.occupied & bit == 0 { Bin::EMPTY } else { self.bins[bin] };
+        self.occupied |= bit;
+        self.bins[bin] = before.union(what);
+    }
+
+    /// The bins with something in them.
+    fn all(&self) -> impl DoubleEndedIterator<Item = usize> + use<> {
+        let occupied = self.occupied;
+        (0..BINS).filter(move |bin| occupied >> bin & 1 == 1)
+    }
+
+    /// The cheapest plane between bins along an axis.
+    pub fn cheapest(&self, axis: usize) -> Option<Split> {
+        if self.occupied & self.occupied.wrapping_sub(1) == 0 {
+            return None;
+        }
+        let mut right = [(0, Bin::EMPTY); BINS];
+        let (mut rest, mut count, mut sum) = (self.occupied, BINS, Bin::EMPTY);
+        while rest != 0 {
+            let bin = rest.ilog2() as usize;
+            rest &= !(1 << bin);
+            sum = sum.union(self.bins[bin]);
+            count -= 1;
+            right[count] = (bin, sum);
+        }
+        let (mut left, mut best): (Bin, Option<Split>) = (Bin::EMPTY, None);
+        for pair in right[count..].windows(2) {
+            let (bin, right) = (pair[0].0, pair[1].1);
+            left = left.union(self.bins[bin]);
+            let cost = area(left.bounds) * left.starts as f32 + area(right.bounds) * right.ends as f32;
+            if left.starts > 0 && right.ends > 0 && best.is_none_or(|b| cost < b.cost) {
+                best = Some(Split { cost, axis, bin: bin + 1, children: [left.bounds, right.bounds] });
+            }
+        }
+        best
     }
 }
 
-/// The cheapest split through parts within `bounds`, and its plane.
-pub(super) fn through(triangles: &[Primitive], parts: &[Part], bounds: Bounds) -> Option<(Split, f32)> {
-    let along = |axis: usize| -> Option<(Split, f32)> {
-        // Slabs thinner than padding would separate nothing.
-        let extent = bounds.extent()[axis];
-        let along = Axis::between(bounds.min[axis], bounds.max[axis]).filter(|_| extent > 8.0 * BOX_PADDING)?;
-        let mut bins = [NOTHING; BINS];
-        for part in parts {
-            chop(&triangles[part.triangle as usize], *part, axis, along, &mut bins);
-        }
-        cheapest(&bins, axis).map(|split| (split, along.plane(split.bin)))
-    };
-    let better = |a: Option<(Split, f32)>, b: (Split, f32)| match a {
-        Some(a) if a.0.cost <= b.0.cost => Some(a),
-        _ => Some(b),
-    };
-    (0..3).filter_map(along).fold(None, better)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
 
-/// Puts a part into all bins that it overlaps, cut at their planes.
-fn chop(triangle: &Primitive, part: Part, axis: usize, along: Axis, bins: &mut [Bin; BINS]) {
-    let first = along.bin(part.bounds.min[axis]);
-    let last = along.bin(part.bounds.max[axis]).max(first);
-    let mut rest = Some(part);
-    for (number, bin) in bins.iter_mut().enumerate().take(last).skip(first) {
-        let Some(part) = rest else { break };
-        let [left, right] = part.cut(triangle, axis, along.plane(number + 1));
-        if let Some(left) = left {
-            bin.0 = bin.0.union(left.bounds);
+    /// Boxes within [0, 32] with the bins along x that they start and end in, a bin wide each.
+    fn boxes() -> impl Strategy<Value = Vec<Bounds>> {
+        let corner = || prop::array::uniform3(0.0f32..32.0);
+        let span = (corner(), corner()).prop_map(|(a, b)| Bounds::new(a, a).union(Bounds::new(b, b)));
+        prop::collection::vec(span, 2..40)
+    }
+
+    /// What is on either side of the plane before a bin, box by box.
+    fn sides(boxes: &[Bounds], plane: usize) -> [Vec<Bounds>; 2] {
+        let bin = |place: f32| (place as usize).min(BINS - 1);
+        let left = boxes.iter().filter(|b| bin(b.min.x) < plane);
+        let right = boxes.iter().filter(|b| bin(b.max.x) >= plane);
+        [left.copied().collect(), right.copied().collect()]
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+        /// As trying every plane finds it, where boxes in several bins lie in each of these as far as they reach.
+        #[test]
+        fn the_cheapest_plane_costs_least_and_is_the_first_of_equals(boxes in boxes()) {
+            let grid = Grid::across(Bounds::new([0.0; 3], [32.0; 3]));
+            let mut bins = Bins::EMPTY;
+            for b in &boxes {
+                let (first, last) = (grid.bin(0, b.min.x), grid.bin(0, b.max.x));
+                if first == last {
+                    bins.put(first, *b);
+                    continue;
+                }
+                bins.span(first, last);
+                (first..=last).for_each(|bin| bins.grow(bin, *b));
+            }
+            let mut best: Option<(f32, usize)> = None;
+            for plane in 1..BINS {
+                let sides = sides(&boxes, plane);
+                let cost: f32 = sides.iter().map(|side| area(Bounds::around(side.iter().copied())) * side.len() as f32).sum();
+                if sides.iter().all(|side| !side.is_empty()) && best.is_none_or(|best| cost < best.0) {
+                    best = Some((cost, plane));
+                }
+            }
+            prop_assert_eq!(bins.cheapest(0).map(|split| (split.cost, split.bin)), best);
         }
-        rest = right;
     }
-    if let Some(rest) = rest {
-        bins[last].0 = bins[last].0.union(rest.bounds);
-    }
-    bins[first].1 += 1;
-    bins[last].2 += 1;
 }

@@ -3,9 +3,11 @@
 use eyerays_shader::data::{MAX_LEAF, Primitive};
 
 use super::{
-    bins::{Objects, Split, area, through},
+    bins::{Bins, Grid, Split, area},
+    many,
     part::Part,
-    tree::Branch,
+    through::through,
+    tree::{Branch, Chunk},
 };
 use crate::bounds::Bounds;
 
@@ -18,10 +20,53 @@ const LEVELS: u32 = 56;
 /// From this many parts on, two threads grow a node's children.
 const MANY: usize = 2048;
 
-/// Grows a tree over parts; splits may add `room` parts.
-pub(super) fn grow(triangles: &[Primitive], parts: Vec<Part>, room: usize) -> Branch {
-    let scene = area(around(&parts));
-    Grower { triangles, least_overlap: OVERLAP * scene }.branch(parts, room, 0)
+/// Grows a tree over the first `count` of these parts; splits may take the room behind them.
+pub(super) fn grow(triangles: &[Primitive], parts: &mut [Part], count: usize) -> Branch {
+    let scene = area(around(&parts[..count]));
+    let grower = Grower { triangles, least_overlap: OVERLAP * scene };
+    grower.branch(Node { parts, count, level: 0 })
+}
+
+/// A node that is still to be split: at least one part, and behind them room for more.
+struct Node<'p> {
+    parts: &'p mut [Part],
+    count: usize,
+    level: u32,
+}
+
+impl<'p> Node<'p> {
+    fn parts(&self) -> &[Part] {
+        &self.parts[..self.count]
+    }
+
+    fn room(&self) -> usize {
+        self.parts.len() - self.count
+    }
+
+    /// Makes children of the first `left` parts and of the other `right`, which share the room in proportion to the area of
+    /// their parts, since large ones are split.
+    fn halves(self, left: usize, right: usize) -> [Node<'p>; 2] {
+        let (Node { parts, level, .. }, count) = (self, left + right);
+        let one = share(parts.len() - count, parts[..count].split_at(left));
+        parts.copy_within(left..count, left + one);
+        let (first, second) = parts.split_at_mut(left + one);
+        [(first, left), (second, right)].map(|(parts, count)| Node { parts, count, level: level + 1 })
+    }
+}
+
+/// What a thread needs again and again.
+struct Workspace {
+    bins: Box<[Bins; 3]>,
+    /// Parts on their way to the right.
+    right: Vec<Part>,
+    /// Parts that a plane crosses.
+    met: Vec<Part>,
+}
+
+impl Workspace {
+    fn new() -> Self {
+        Workspace { bins: Box::new([Bins::EMPTY; 3]), right: Vec::new(), met: Vec::new() }
+    }
 }
 
 struct Grower<'a> {
@@ -31,83 +76,142 @@ struct Grower<'a> {
 }
 
 impl Grower<'_> {
-    /// A node of at least one part.
-    fn branch(&self, parts: Vec<Part>, room: usize, level: u32) -> Branch {
-        if parts.len() == 1 || level == LEVELS {
-            return Branch::Leaf(parts);
+    /// The tree below a node.
+    fn branch(&self, node: Node<'_>) -> Branch {
+        if node.count < MANY || node.level == LEVELS {
+            let mut chunk = Chunk::new(node.count);
+            self.fill(node, 0, &mut chunk, &mut Workspace::new());
+            return Branch::Chunk(chunk);
         }
-        let count = parts.len();
-        let [left, right] = self.children(parts, room);
-        let room = room - (left.len() + right.len() - count);
-        let (one, other) = share(room, &left, &right);
-        let left = || self.branch(left, one, level + 1);
-        let right = || self.branch(right, other, level + 1);
-        let (left, right) = if count < MANY { (left(), right()) } else { rayon::join(left, right) };
+        let [left, right] = self.children(node, &mut Workspace::new());
+        let (left, right) = rayon::join(|| self.branch(left), || self.branch(right));
         Branch::Inner(Box::new([left, right]))
     }
 
-    /// Splits a node in two, neither of which is empty.
-    fn children(&self, mut parts: Vec<Part>, room: usize) -> [Vec<Part>; 2] {
-        let objects = Objects::of(&parts);
-        let between = objects.cheapest(&parts);
-        if room > 0
-            && let Some(children) = self.through(&parts, room, between)
-        {
-            return children;
+    /// Grows node `number` of a chunk.
+    fn fill(&self, node: Node<'_>, number: usize, chunk: &mut Chunk, space: &mut Workspace) {
+        if node.count == 1 || node.level == LEVELS {
+            chunk.leaf(number, node.parts());
+            return;
         }
-        let Some(split) = between else {
-            let half = parts.split_off(parts.len() / 2);
-            return [parts, half];
-        };
-        let (left, right) = parts.into_iter().partition(|part| objects.is_left(&split, part));
-        [left, right]
+        let first = chunk.inner(number);
+        for (child, number) in self.children(node, space).into_iter().zip(first..) {
+            self.fill(child, number, chunk, space);
+        }
     }
 
-    /// Cuts parts at a plane, if that is cheaper than `between` them, and cheaper than a leaf.
-    fn through(&self, parts: &[Part], room: usize, between: Option<Split>) -> Option<[Vec<Part>; 2]> {
+    /// Splits a node in two, neither of which is empty.
+    fn children<'p>(&self, mut node: Node<'p>, space: &mut Workspace) -> [Node<'p>; 2] {
+        if let [left, right] = node.parts()
+            && let Some(children) = self.two(left, right)
+        {
+            node.parts[..2].copy_from_slice(&children);
+            return node.halves(1, 1);
+        }
+        let grid = Grid::across(many::around(node.parts(), |part| Bounds::point(part.bounds().centre())));
+        many::sort_into(&mut space.bins, node.parts(), |bins, parts| by_centre(bins, &grid, parts));
+        let between = (0..3).map(|axis| space.bins[axis].cheapest(axis)).fold(None, Split::cheaper);
+        if node.room() > 0
+            && let Some([left, right]) = self.through(&mut node, between, space)
+        {
+            return node.halves(left, right);
+        }
+        let count = node.count;
+        let Some(split) = between else {
+            return node.halves(count / 2, count - count / 2);
+        };
+        let is_left = |part: &Part| grid.bin(split.axis, part.bounds().centre()[split.axis]) < split.bin;
+        let left = many::partition(&mut node.parts[..count], &mut space.right, is_left);
+        node.halves(left, count - left)
+    }
+
+    /// Two parts in their order along the first axis that tells them apart, as half of all nodes have them: the plane between
+    /// them costs the same along any. None where a plane through them may cost less.
+    fn two(&self, a: &Part, b: &Part) -> Option<[Part; 2]> {
+        let [one, other] = [a, b].map(Part::bounds);
+        if area(one.intersection(other)) > self.least_overlap {
+            return None;
+        }
+        let (one, other) = (one.centre(), other.centre());
+        let axis = (0..3).find(|&axis| one[axis] != other[axis]).unwrap_or(0);
+        Some(if other[axis] < one[axis] { [*b, *a] } else { [*a, *b] })
+    }
+
+    /// Cuts parts at a plane, if that is cheaper than `between` them, and cheaper than a leaf. Returns how many are on
+    /// either side.
+    fn through(&self, node: &mut Node<'_>, between: Option<Split>, space: &mut Workspace) -> Option<[usize; 2]> {
         if between.is_some_and(|split| area(split.children[0].intersection(split.children[1])) <= self.least_overlap) {
             return None;
         }
-        let bounds = around(parts);
-        let (split, plane) = through(self.triangles, parts, bounds)?;
+        let (parts, bounds) = (node.parts(), around(node.parts()));
+        let most = between.map_or(f32::INFINITY, |split| split.cost);
+        let (split, plane) = through(&mut space.bins, self.triangles, parts, bounds, most)?;
         let leaf = area(bounds) * parts.len() as f32;
         let pays = parts.len() >= MAX_LEAF as usize || split.cost + area(bounds) < leaf;
-        if !pays || between.is_some_and(|between| between.cost <= split.cost) {
+        if !pays || most <= split.cost {
             return None;
         }
-        let children = self.cut(parts, room, split.axis, plane);
-        children.iter().all(|child| !child.is_empty()).then_some(children)
+        self.cut(node, split.axis, plane, space)
     }
 
-    /// Sorts parts to the sides of a plane. Those that it crosses are cut, unless it costs less to keep
-    /// them whole on one side, or there is no room.
-    fn cut(&self, parts: &[Part], mut room: usize, axis: usize, plane: f32) -> [Vec<Part>; 2] {
-        let (mut sides, mut met) = ([Vec::new(), Vec::new()], Vec::new());
-        for &part in parts {
-            match (part.bounds.max[axis] <= plane, part.bounds.min[axis] >= plane) {
-                (true, _) => sides[0].push(part),
-                (_, true) => sides[1].push(part),
+    /// Sorts parts to the sides of a plane, if neither side stays empty. Those that it crosses are cut, unless it costs less
+    /// to keep them whole on one side, or there is no room. Returns how many are on either side.
+    fn cut(&self, node: &mut Node<'_>, axis: usize, plane: f32, space: &mut Workspace) -> Option<[usize; 2]> {
+        let Workspace { right, met, .. } = space;
+        right.clear();
+        met.clear();
+        let mut left = Vec::new();
+        let mut boxes = [Bounds::EMPTY; 2];
+        for &part in node.parts() {
+            let bounds = part.bounds();
+            match (bounds.max[axis] <= plane, bounds.min[axis] >= plane) {
+                (true, _) => {
+                    boxes[0] = boxes[0].union(bounds);
+                    left.push(part);
+                }
+                (_, true) => {
+                    boxes[1] = boxes[1].union(bounds);
+                    right.push(part);
+                }
                 _ => met.push(part),
             }
         }
-        let mut boxes = [around(&sides[0]), around(&sides[1])];
-        let mut counts = [0, 1].map(|side| (sides[side].len() + met.len()) as f32);
-        for part in met {
-            let cut = part.cut(&self.triangles[part.triangle as usize], axis, plane);
+        let mut room = node.room();
+        let mut counts = [left.len() + met.len(), right.len() + met.len()].map(|count| count as f32);
+        let sides = [&mut left, right];
+        for &part in met.iter() {
+            let cut = part.cut(&self.triangles[part.triangle() as usize], axis, plane);
             let goes = goes(&part, &cut, &boxes, &counts, room > 0);
-            room -= usize::from(goes == [true; 2]);
+            let is_cut = goes == [true; 2];
+            room -= usize::from(is_cut);
             for side in 0..2 {
-                let whole = goes != [true; 2];
-                match cut[side].filter(|_| !whole).or((whole && goes[side]).then_some(part)) {
+                match if is_cut { cut[side] } else { goes[side].then_some(part) } {
                     Some(part) => {
-                        boxes[side] = boxes[side].union(part.bounds);
+                        boxes[side] = boxes[side].union(part.bounds());
                         sides[side].push(part);
                     }
                     None => counts[side] -= 1.0,
                 }
             }
         }
-        sides
+        let [left, right] = sides;
+        if left.is_empty() || right.is_empty() {
+            return None;
+        }
+        let counts = [left.len(), right.len()];
+        node.parts[..counts[0]].copy_from_slice(left);
+        node.parts[counts[0]..][..counts[1]].copy_from_slice(right);
+        Some(counts)
+    }
+}
+
+/// Puts whole parts into bins by their centres.
+fn by_centre(bins: &mut [Bins; 3], grid: &Grid, parts: &[Part]) {
+    for part in parts {
+        let bounds = part.bounds();
+        for (bins, bin) in bins.iter_mut().zip(grid.bins(bounds.centre())) {
+            bins.put(bin, bounds);
+        }
     }
 }
 
@@ -117,10 +221,10 @@ fn goes(part: &Part, cut: &[Option<Part>; 2], boxes: &[Bounds; 2], counts: &[f32
     let cost = |left: Bounds, fewer_left: f32, right: Bounds, fewer_right: f32| {
         area(left) * (counts[0] - fewer_left) + area(right) * (counts[1] - fewer_right)
     };
-    let left = cost(boxes[0].union(part.bounds), 0.0, boxes[1], 1.0);
-    let right = cost(boxes[0], 1.0, boxes[1].union(part.bounds), 0.0);
+    let left = cost(boxes[0].union(part.bounds()), 0.0, boxes[1], 1.0);
+    let right = cost(boxes[0], 1.0, boxes[1].union(part.bounds()), 0.0);
     let both = match cut {
-        [Some(a), Some(b)] if may_cut => cost(boxes[0].union(a.bounds), 0.0, boxes[1].union(b.bounds), 0.0),
+        [Some(a), Some(b)] if may_cut => cost(boxes[0].union(a.bounds()), 0.0, boxes[1].union(b.bounds()), 0.0),
         _ => f32::INFINITY,
     };
     match cut {
@@ -131,17 +235,15 @@ fn goes(part: &Part, cut: &[Option<Part>; 2], boxes: &[Bounds; 2], counts: &[f32
     }
 }
 
-/// How much room either side gets: in proportion to the area of its parts, since large ones are split.
-fn share(room: usize, left: &[Part], right: &[Part]) -> (usize, usize) {
+/// How much of the room the left side gets.
+fn share(room: usize, (left, right): (&[Part], &[Part])) -> usize {
     if room == 0 {
-        return (0, 0);
+        return 0;
     }
-    let sum = |parts: &[Part]| parts.iter().map(|part| f64::from(area(part.bounds))).sum::<f64>();
-    let (one, other) = (sum(left), sum(right));
-    let one = ((room as f64 * one / (one + other)) as usize).min(room);
-    (one, room - one)
+    let (one, other) = (many::total_area(left), many::total_area(right));
+    ((room as f64 * one / (one + other)) as usize).min(room)
 }
 
 fn around(parts: &[Part]) -> Bounds {
-    Bounds::around(parts.iter().map(|part| part.bounds))
+    many::around(parts, Part::bounds)
 }

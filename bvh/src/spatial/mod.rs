@@ -10,12 +10,15 @@
 
 mod bins;
 mod grow;
+mod many;
 mod part;
+mod through;
 mod tree;
 
 pub(crate) use tree::{Kind, Tree};
 
 use eyerays_shader::data::Primitive;
+use rayon::prelude::*;
 
 use crate::{Reference, References};
 use part::Part;
@@ -23,12 +26,14 @@ use part::Part;
 /// Splits triangles in the normalised scene into at most `room` references more than there are
 /// triangles.
 pub(crate) fn references(triangles: &[Primitive], room: usize) -> References {
-    let whole = (0..).zip(triangles).map(|(number, triangle)| Part::whole(number, triangle)).collect();
-    let branch = grow::grow(triangles, whole, room);
-    let (tree, parts) = tree::flat(branch);
-    let reference = |part: &Part| Reference {
-        primitive: part.triangle,
-        bounds: part.own_box(&triangles[part.triangle as usize]).write(),
-    };
-    References { list: parts.iter().map(reference).collect(), tree: Some(tree) }
+    let mut parts = vec![Part::NONE; triangles.len() + room];
+    let whole = |(number, (part, triangle)): (usize, (&mut Part, _))| *part = Part::whole(number as u32, triangle);
+    parts.par_iter_mut().zip(triangles).enumerate().for_each(whole);
+    let grown = grow::grow(triangles, &mut parts, triangles.len());
+    drop(parts);
+    let list = grown.parts(|part| Reference {
+        primitive: part.triangle(),
+        bounds: part.own_box(&triangles[part.triangle() as usize]).write(),
+    });
+    References { list, tree: Some(grown.flat()) }
 }

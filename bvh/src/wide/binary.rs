@@ -121,7 +121,7 @@ mod tests {
     use super::*;
 
     fn cube(x: f32) -> Bounds {
-        Bounds { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 1.0] }
+        Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])
     }
 
     #[test]

@@ -189,7 +189,7 @@ mod tests {
     }
 
     fn cubes(count: u32, step: f32) -> Vec<Bounds> {
-        let cube = |x: f32| Bounds { min: [x, 0.0, 0.0], max: [x + 1.0, 1.0, 1.0] };
+        let cube = |x: f32| Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]);
         (0..count).map(|i| cube(i as f32 * step)).collect()
     }
 

@@ -75,7 +75,7 @@ impl Grid {
         let place = |side: usize, axis: usize| {
             (f64::from(self.origin[axis]) + f64::from(planes[side][axis]) * step(self.exponent[axis])) as f32
         };
-        Bounds { min: std::array::from_fn(|axis| place(0, axis)), max: std::array::from_fn(|axis| place(1, axis)) }
+        Bounds::new([0, 1, 2].map(|axis| place(0, axis)), [0, 1, 2].map(|axis| place(1, axis)))
     }
 
     /// Are origin and steps as the module's proof assumes?
@@ -125,7 +125,7 @@ mod tests {
 
     fn bounds() -> impl Strategy<Value = Bounds> {
         let corner = || [coordinate(), coordinate(), coordinate()];
-        (corner(), corner()).prop_map(|(a, b)| Bounds { min: a, max: a }.union(Bounds { min: b, max: b }))
+        (corner(), corner()).prop_map(|(a, b)| Bounds::new(a, a).union(Bounds::new(b, b)))
     }
 
     proptest! {
@@ -143,7 +143,7 @@ mod tests {
                     let Some(plane) = (if side == 0 { planes[0][axis].checked_add(1) } else { planes[1][axis].checked_sub(1) })
                     else { continue };
                     closer[side][axis] = plane;
-                    let lattice = child.min.iter().chain(&child.max).all(|c| (f64::from(*c) / FINEST).fract() == 0.0);
+                    let lattice = child.min.to_array().iter().chain(&child.max.to_array()).all(|c| (f64::from(*c) / FINEST).fract() == 0.0);
                     prop_assert!(!lattice || !grid.contains(closer, child));
                 }
             }
@@ -163,9 +163,9 @@ mod tests {
 
     #[test]
     fn the_scene_and_a_point() {
-        let whole = Bounds { min: [-1.0; 3], max: [1.0; 3] };
+        let whole = Bounds::new([-1.0; 3], [1.0; 3]);
         assert_eq!(Grid::around(whole).exponent, [-6; 3]);
-        let point = Bounds { min: [1.0; 3], max: [1.0; 3] };
+        let point = Bounds::new([1.0; 3], [1.0; 3]);
         let grid = Grid::around(point);
         assert_eq!(grid.exponent, [-25; 3]);
         assert_eq!(grid.origin, [(1.0 - CwbvhNode::MARGIN).next_down(); 3]);

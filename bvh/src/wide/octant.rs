@@ -66,7 +66,7 @@ mod tests {
     use super::*;
 
     fn cube(centre: [f32; 3]) -> Bounds {
-        Bounds { min: centre.map(|c| c - 0.1), max: centre.map(|c| c + 0.1) }
+        Bounds::new(centre.map(|c| c - 0.1), centre.map(|c| c + 0.1))
     }
 
     #[test]

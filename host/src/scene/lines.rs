@@ -25,7 +25,17 @@ pub struct Lines<'p, R> {
 impl<'p, R: BufRead> Lines<'p, R> {
     /// The lines of what `reader` gives; errors name the file `path`.
     pub fn new(path: &'p Path, reader: R) -> Self {
-        Lines { path, reader, line: Vec::new(), next: 1 }
+        Lines::after(path, reader, 0)
+    }
+
+    /// The same of a file's rest, before which there are so many lines.
+    pub fn after(path: &'p Path, reader: R, lines: usize) -> Self {
+        Lines { path, reader, line: Vec::new(), next: lines + 1 }
+    }
+
+    /// How many lines were read, those before included.
+    pub fn count(&self) -> usize {
+        self.next - 1
     }
 
     /// Reads the next line, if there is one, and its number from 1.

@@ -7,10 +7,8 @@
 //! ```
 
 mod budget;
-mod checked;
 mod document;
 mod extent;
-mod face;
 mod file;
 mod files;
 mod frame;
@@ -30,7 +28,6 @@ mod range;
 mod sampler;
 mod shape;
 mod source;
-mod statement;
 mod suggest;
 mod table;
 mod tally;

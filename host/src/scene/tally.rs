@@ -19,6 +19,12 @@ impl Tally {
         self.count += 1;
     }
 
+    /// Adds those of later lines.
+    pub fn append(&mut self, later: Tally) {
+        self.first = self.first.take().or(later.first);
+        self.count += later.count;
+    }
+
     /// The warning, if there was anything: what was first, how many more, and `why`.
     pub fn warn(&self, path: &Path, why: &str) -> Option<String> {
         self.fault(path, why).map(|fault| fault.to_string())

@@ -1,0 +1,214 @@
+//! The statements of a block, checked one by one.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use glam::{DVec3, Vec3};
+
+use super::super::Unplaced;
+use super::super::lines::{self, Lines, NOT_UTF8};
+use super::super::normal::unit;
+use super::super::tally::Tally;
+use super::face::Faces;
+use crate::error::{Error, Result};
+
+/// How many lines and vertices there are before a block.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Before {
+    pub lines: usize,
+    pub positions: usize,
+    pub textures: usize,
+    pub normals: usize,
+}
+
+impl Before {
+    /// How many a block has; a file's first may begin with a mark.
+    pub fn count(path: &Path, text: &[u8], is_first: bool) -> Self {
+        let (mut count, before) = (Before::default(), usize::from(!is_first));
+        let mut lines = Lines::after(path, text, before);
+        // A block that cannot be read to its end is the last.
+        while let Ok(Some((_, line))) = lines.advance() {
+            match lines::split(&lines::text(line)).map_or("", |(key, _)| key) {
+                "v" => count.positions += 1,
+                "vt" => count.textures += 1,
+                "vn" => count.normals += 1,
+                _ => {}
+            }
+        }
+        Before { lines: lines.count() - before, ..count }
+    }
+
+    /// With so many more.
+    pub fn and(self, more: Self) -> Self {
+        Before {
+            lines: self.lines + more.lines,
+            positions: self.positions + more.positions,
+            textures: self.textures + more.textures,
+            normals: self.normals + more.normals,
+        }
+    }
+}
+
+/// A statement about materials, and how many of the block's faces precede it.
+pub(super) struct Event {
+    pub line: usize,
+    pub face: usize,
+    pub what: About,
+}
+
+/// What a statement about materials names.
+pub(super) enum About {
+    Material(String),
+    Libraries(String),
+}
+
+/// What is ignored of a file.
+#[derive(Default)]
+pub(super) struct Notes {
+    latin: Tally,
+    unknown: Tally,
+    absent: Tally,
+    crossing: Tally,
+}
+
+impl Notes {
+    /// Adds those of the next block.
+    pub fn append(&mut self, notes: Notes, faces: Faces) {
+        self.latin.append(notes.latin);
+        self.unknown.append(notes.unknown);
+        self.absent.append(faces.absent);
+        self.crossing.append(faces.crossing);
+    }
+
+    /// The faces that cannot be drawn, if there were any.
+    pub fn left_out(&self, path: &Path) -> Option<Error> {
+        self.crossing.fault(path, "left out: the outline crosses itself; split it into simple polygons")
+    }
+
+    /// One warning each.
+    pub fn warnings(&self, path: &Path) -> [Option<String>; 4] {
+        [
+            self.latin.warn(path, NOT_UTF8),
+            self.unknown.warn(path, "ignored: only polygons are read"),
+            self.absent.warn(path, "ignored: none precede the face"),
+            self.left_out(path).map(|fault| fault.to_string()),
+        ]
+    }
+}
+
+/// What a block holds.
+pub(super) struct Block {
+    pub positions: Vec<Vec3>,
+    pub normals: Vec<Vec3>,
+    pub faces: Faces,
+    pub events: Vec<Event>,
+    pub notes: Notes,
+    /// What makes no sense ends a block.
+    pub fault: Option<Error>,
+}
+
+impl Block {
+    /// Reads a block that has so much before it.
+    pub fn read(path: &Path, text: &[u8], before: Before) -> Self {
+        let mut block = Block {
+            positions: Vec::new(),
+            normals: Vec::new(),
+            faces: Faces::after(before),
+            events: Vec::new(),
+            notes: Notes::default(),
+            fault: None,
+        };
+        block.fault = block.lines(Lines::after(path, text, before.lines), path).err();
+        block
+    }
+
+    fn lines(&mut self, mut lines: Lines<'_, &[u8]>, path: &Path) -> Result<()> {
+        while let Some((number, line)) = lines.advance()? {
+            self.line(number, line).map_err(|fault| Error::line(path, number, fault))?;
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: usize, bytes: &[u8]) -> Unplaced<()> {
+        let text = lines::text(bytes);
+        if let Cow::Owned(_) = text {
+            self.notes.latin.add(line, "line");
+        }
+        let Some((key, rest)) = lines::split(&text) else {
+            return Ok(());
+        };
+        let event = |what| Event { line, face: self.faces.len(), what };
+        match key {
+            "v" => {
+                self.positions.push(position(rest)?);
+                self.faces.before.positions += 1;
+            }
+            "vn" => {
+                self.normals.push(normal(rest)?);
+                self.faces.before.normals += 1;
+            }
+            "vt" => self.faces.before.textures += 1,
+            "f" | "fo" => self.faces.read(line, rest)?,
+            "usemtl" => self.events.push(event(About::Material(rest.to_owned()))),
+            "mtllib" => self.events.push(event(About::Libraries(rest.to_owned()))),
+            "o" | "g" | "s" | "l" | "p" => {}
+            _ => self.notes.unknown.add(line, format_args!("statement {key:?}")),
+        }
+        Ok(())
+    }
+
+    /// Ends the block at the line from which on so many of its triangles and vertices do not fit.
+    pub fn end_where_full(
+        &mut self,
+        path: &Path,
+        text: &[u8],
+        before: Before,
+        fits: impl Fn(usize, usize) -> Unplaced<()>,
+    ) {
+        let (mut faces, mut positions) = (0, 0);
+        let mut lines = Lines::after(path, text, before.lines);
+        while let Ok(Some((number, line))) = lines.advance() {
+            match lines::split(&lines::text(line)).map_or("", |(key, _)| key) {
+                "v" => positions += 1,
+                "f" | "fo" => faces += 1,
+                _ => continue,
+            }
+            // A fault has ended it already.
+            if faces > self.faces.len() || positions > self.positions.len() {
+                return;
+            }
+            if let Err(fault) = fits(self.faces.triangles_before(faces), positions) {
+                self.events.retain(|event| event.line < number);
+                self.fault = Some(Error::line(path, number, fault));
+                return;
+            }
+        }
+    }
+}
+
+fn position(rest: &str) -> Unplaced<Vec3> {
+    // What follows is a weight or a colour.
+    let [x, y, z] = three("v", rest)?.map(|word| lines::number("v", word));
+    Ok(Vec3::new(x?, y?, z?))
+}
+
+/// A normal of unit length, or zero.
+fn normal(rest: &str) -> Unplaced<Vec3> {
+    let mut xyz = [0.0; 3];
+    for (word, to) in three("vn", rest)?.into_iter().zip(&mut xyz) {
+        match word.parse::<f32>() {
+            Ok(number) => *to = f64::from(number),
+            Err(_) => return lines::number("vn", word).map(|_| Vec3::ZERO),
+        }
+    }
+    // Exporters write NaN for the normal of a face without area: it is flat.
+    Ok(unit(DVec3::from(xyz)))
+}
+
+fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {
+    let mut words = lines::words(rest);
+    match (words.next(), words.next(), words.next()) {
+        (Some(x), Some(y), Some(z)) => Ok([x, y, z]),
+        _ => Err(format!("{key} takes three numbers, not {rest:?}; add what is missing")),
+    }
+}

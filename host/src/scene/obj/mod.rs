@@ -1,0 +1,165 @@
+//! Wavefront meshes, read by all threads: a window of the file at a time, cut into blocks of whole lines.
+//!
+//! The lines of a block are counted first, so that each statement knows its line, and what its numbers may name. Blocks
+//! are then read side by side, and what they hold is put together in their order: a file gives the same mesh, or the same
+//! error, however many threads there are.
+
+mod block;
+mod blocks;
+mod face;
+mod library;
+mod vertices;
+
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use self::block::{Before, Block, Event, Notes};
+use self::blocks::{Sizes, Windows};
+use self::library::Libraries;
+use self::vertices::Corners;
+use super::budget::Budget;
+use super::material::Fields;
+use super::{Mesh, file};
+use crate::error::{Error, Result};
+
+/// A mesh, the materials that its triangles index (the first is the default), and what was ignored.
+#[derive(Debug)]
+pub struct Obj {
+    pub mesh: Mesh,
+    pub materials: Vec<(String, Fields)>,
+    pub warnings: Vec<String>,
+    /// The material files that were read.
+    pub libraries: Vec<PathBuf>,
+}
+
+/// Reads a mesh file and the material files it names. A normal is zero where the file has none.
+///
+/// # Errors
+/// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget
+/// has room for.
+pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
+    let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
+    parse(path, file.take(file::MOST_MESH), budget)
+}
+
+/// The mesh of a text.
+pub(super) fn parse(path: &Path, reader: impl Read, budget: Budget) -> Result<Obj> {
+    parse_by(Sizes::USUAL, path, reader, budget)
+}
+
+fn parse_by(sizes: Sizes, path: &Path, reader: impl Read, budget: Budget) -> Result<Obj> {
+    let mut found = Found::new(path, budget);
+    let mut windows = Windows::new(path, reader, sizes.window);
+    while let Some(window) = windows.advance()? {
+        found.read(blocks::of(window, sizes.block))?;
+    }
+    found.finish()
+}
+
+/// What the blocks so far hold.
+struct Found<'p> {
+    path: &'p Path,
+    budget: Budget,
+    before: Before,
+    positions: Vec<Vec3>,
+    normals: Vec<Vec3>,
+    corners: Corners,
+    /// Of every triangle.
+    materials: Vec<u32>,
+    /// That of the next faces.
+    material: u32,
+    libraries: Libraries<'p>,
+    notes: Notes,
+}
+
+impl<'p> Found<'p> {
+    fn new(path: &'p Path, budget: Budget) -> Self {
+        Found {
+            path,
+            budget,
+            before: Before::default(),
+            positions: Vec::new(),
+            normals: Vec::new(),
+            corners: Corners::default(),
+            materials: Vec::new(),
+            material: 0,
+            libraries: Libraries::new(path),
+            notes: Notes::default(),
+        }
+    }
+
+    /// Reads the blocks of a window.
+    fn read(&mut self, texts: Vec<&[u8]>) -> Result<()> {
+        let is_first = |number| number == 0 && self.before == Before::default();
+        let count = |(number, text): (usize, &&[u8])| Before::count(self.path, text, is_first(number));
+        let counts: Vec<Before> = texts.par_iter().enumerate().map(count).collect();
+        let mut before = Vec::with_capacity(texts.len());
+        for count in counts {
+            before.push(self.before);
+            self.before = self.before.and(count);
+        }
+        let mut blocks: Vec<Block> =
+            texts.par_iter().zip(&before).map(|(text, &before)| Block::read(self.path, text, before)).collect();
+        if let Some(last) = blocks.iter().position(|block| block.fault.is_some()) {
+            blocks.truncate(last + 1);
+        }
+        for block in &blocks {
+            self.positions.extend_from_slice(&block.positions);
+            self.normals.extend_from_slice(&block.normals);
+        }
+        blocks.par_iter_mut().for_each(|block| block.faces.cut(&self.positions));
+        for ((block, text), before) in blocks.into_iter().zip(texts).zip(before) {
+            self.add(block, text, before)?;
+        }
+        Ok(())
+    }
+
+    /// Adds a block's faces, by the materials that its statements name.
+    fn add(&mut self, mut block: Block, text: &[u8], before: Before) -> Result<()> {
+        let triangles = block.faces.triangles.len();
+        let vertices = before.positions + block.positions.len();
+        if self.budget.check(self.corners.len() + triangles, vertices).is_err() {
+            let fits =
+                |more: usize, positions| self.budget.check(self.corners.len() + more, before.positions + positions);
+            block.end_where_full(self.path, text, before, fits);
+        }
+        self.corners.extend(&block.faces.triangles);
+        for Event { line, face, what } in std::mem::take(&mut block.events) {
+            // Those of the faces before.
+            let triangles = self.corners.len() - triangles + block.faces.triangles_before(face);
+            self.materials.resize(triangles, self.material);
+            self.material = self.libraries.event(line, what, self.material)?;
+        }
+        self.materials.resize(self.corners.len(), self.material);
+        self.notes.append(block.notes, block.faces);
+        block.fault.map_or(Ok(()), Err)
+    }
+
+    /// What was found, once all is read.
+    ///
+    /// # Errors
+    /// There was no face.
+    fn finish(self) -> Result<Obj> {
+        let Found { path, positions, normals, corners, materials, libraries, notes, .. } = self;
+        if corners.len() == 0 {
+            let none = || Error::file(path, "there is no face in it; is it a Wavefront OBJ mesh?");
+            return Err(notes.left_out(path).unwrap_or_else(none));
+        }
+        let (libraries, of_libraries) = libraries.finish();
+        let [latin, others @ ..] = notes.warnings(path);
+        let [missing, nameless] = of_libraries.faults;
+        let warnings = [latin, missing, nameless].into_iter().chain(others).flatten();
+        Ok(Obj {
+            mesh: corners.mesh(&positions, &normals, materials),
+            materials: libraries.materials,
+            warnings: of_libraries.warnings.into_iter().chain(warnings).collect(),
+            libraries: libraries.paths,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests;

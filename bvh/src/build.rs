@@ -5,7 +5,6 @@ use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, MAX_LEAF, N
 use crate::{
     BuildError, MAX_DEPTH, Quality, Reference, References,
     bounds::Bounds,
-    cluster::Clusters,
     layout, search,
     spatial::Tree,
     topology::Topology,
@@ -82,22 +81,10 @@ fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topolog
     if count <= MAX_LEAF {
         return Topology::run(count);
     }
-    let clusters = match tree {
-        Some(tree) => Clusters::between(&tree.starts),
-        None => Clusters::of(bounds),
-    };
-    let primitives: Vec<Bounds> = (0..clusters.len() as u32)
-        .map(|group| {
-            let members = clusters.members(group).iter();
-            Bounds::around(members.map(|&t| bounds[t as usize]))
-        })
-        .collect();
-    let parameters = quality.parameters();
-    let found = match tree {
-        Some(tree) => search::improve(tree, &primitives, &parameters),
-        None => search::search(&primitives, &parameters),
-    };
-    Topology::of(&found, &clusters)
+    match tree {
+        Some(tree) => search::improve(tree, bounds, quality),
+        None => search::search(bounds, quality),
+    }
 }
 
 /// The number of references, if a node reference can index so many.

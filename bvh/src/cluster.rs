@@ -39,13 +39,6 @@ impl Clusters {
         Clusters { order, starts }
     }
 
-    /// Groups of primitives that are in a row already: where each starts, and the number of primitives at
-    /// the end.
-    pub fn between(starts: &[u32]) -> Self {
-        let count = starts.last().copied().unwrap_or(0);
-        Clusters { order: (0..count).collect(), starts: starts.to_vec() }
-    }
-
     /// How many groups there are.
     pub fn len(&self) -> usize {
         self.starts.len() - 1

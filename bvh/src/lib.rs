@@ -2,12 +2,12 @@
 //!
 //! [`split`] turns triangles into references, once a scene; [`build`] turns references into the node
 //! pairs that most traversal methods walk and the wide nodes that one walks, over one order of slots.
-//! obvhs searches the topology by surface area; this crate keeps away from it input that it cannot
-//! handle, bounds the depth, computes every box itself and validates the result, because the kernels
-//! index without checks and cull without tolerance.
+//! The tree that splits triangles is where builds begin; obvhs improves it, and clusters references that were not split.
+//! This crate keeps away from it input that it cannot handle, bounds the depth, computes every box itself and validates
+//! the result, because the kernels index without checks and cull without tolerance.
 //!
-//! The stages run one way, a file each: bounds, reference, spatial, cluster (with morton), search (with
-//! reinsertion), topology, depth, layout (with median), wide, validate.
+//! The stages run one way, a file each: bounds, reference, spatial, search (with cluster, morton and reinsertion), topology,
+//! depth, layout (with median), wide, validate.
 
 mod bounds;
 mod build;

@@ -1,9 +1,5 @@
 //! A tree over primitives, without boxes.
 
-use obvhs::bvh2::Bvh2;
-
-use crate::cluster::Clusters;
-
 /// What a node of a [`Topology`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -38,27 +34,26 @@ impl Topology {
         Topology { nodes: vec![node], order: (0..primitives).collect() }
     }
 
-    /// The tree that obvhs found over clusters, in depth-first order, with the clusters' primitives
-    /// in the leaves.
-    pub fn of(tree: &Bvh2, clusters: &Clusters) -> Self {
-        let mut topology = Topology { nodes: Vec::with_capacity(tree.nodes.len()), order: Vec::new() };
+    /// A tree in depth-first order, of about so many nodes: `children` tells those of a node, `members` adds the primitives of
+    /// a leaf. Node 0 is the root.
+    pub fn of(
+        nodes: usize,
+        children: impl Fn(u32) -> Option<[u32; 2]>,
+        mut members: impl FnMut(u32, &mut Vec<u32>),
+    ) -> Self {
+        let mut topology = Topology { nodes: Vec::with_capacity(nodes), order: Vec::new() };
         let mut open = vec![(0u32, None)];
         while let Some((number, parent)) = open.pop() {
-            let node = &tree.nodes[number as usize];
             let new = topology.nodes.len() as u32;
             if let Some((parent, side)) = parent {
                 topology.link(parent, side, new);
             }
             topology.nodes.push(Node { kind: Kind::Run, first: topology.order.len() as u32, count: 0 });
-            if node.is_leaf() {
-                let primitives = node.first_index..node.first_index + node.prim_count;
-                for primitive in primitives {
-                    let group = tree.primitive_indices[primitive as usize];
-                    topology.order.extend(clusters.members(group));
+            match children(number) {
+                None => members(number, &mut topology.order),
+                Some([left, right]) => {
+                    open.extend([(right, Some((new, Side::Right))), (left, Some((new, Side::Left)))])
                 }
-            } else {
-                open.push((node.first_index + 1, Some((new, Side::Right))));
-                open.push((node.first_index, Some((new, Side::Left))));
             }
         }
         topology.count();

@@ -9,7 +9,7 @@ use super::{
     through::through,
     tree::{Branch, Chunk},
 };
-use crate::bounds::Bounds;
+use crate::{Reference, bounds::Bounds};
 
 /// Planes through triangles are tried where the children of the best plane between them overlap by more
 /// than this share of the scene's surface area (Stich et al.: 1e-5, which on Conference and Sibenik makes
@@ -81,7 +81,7 @@ impl Grower<'_> {
         if node.count < MANY || node.level == LEVELS {
             let mut chunk = Chunk::new(node.count);
             self.fill(node, 0, &mut chunk, &mut Workspace::new());
-            return Branch::Chunk(chunk);
+            return Branch::Chunk(chunk.collapsed());
         }
         let [left, right] = self.children(node, &mut Workspace::new());
         let (left, right) = rayon::join(|| self.branch(left), || self.branch(right));
@@ -91,13 +91,18 @@ impl Grower<'_> {
     /// Grows node `number` of a chunk.
     fn fill(&self, node: Node<'_>, number: usize, chunk: &mut Chunk, space: &mut Workspace) {
         if node.count == 1 || node.level == LEVELS {
-            chunk.leaf(number, node.parts());
+            chunk.leaf(number, node.parts().iter().map(|part| self.reference(part)));
             return;
         }
         let first = chunk.inner(number);
         for (child, number) in self.children(node, space).into_iter().zip(first..) {
             self.fill(child, number, chunk, space);
         }
+    }
+
+    fn reference(&self, part: &Part) -> Reference {
+        let own = part.own_box(&self.triangles[part.triangle() as usize]);
+        Reference { primitive: part.triangle(), bounds: own.write() }
     }
 
     /// Splits a node in two, neither of which is empty.

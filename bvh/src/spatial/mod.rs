@@ -20,7 +20,7 @@ pub(crate) use tree::{Kind, Tree};
 use eyerays_shader::data::Primitive;
 use rayon::prelude::*;
 
-use crate::{Reference, References};
+use crate::References;
 use part::Part;
 
 /// Splits triangles in the normalised scene into at most `room` references more than there are
@@ -31,9 +31,5 @@ pub(crate) fn references(triangles: &[Primitive], room: usize) -> References {
     parts.par_iter_mut().zip(triangles).enumerate().for_each(whole);
     let grown = grow::grow(triangles, &mut parts, triangles.len());
     drop(parts);
-    let list = grown.parts(|part| Reference {
-        primitive: part.triangle(),
-        bounds: part.own_box(&triangles[part.triangle() as usize]).write(),
-    });
-    References { list, tree: Some(grown.flat()) }
+    References { list: grown.references(), tree: Some(grown.flat()) }
 }

@@ -93,7 +93,7 @@ fn coordinates_that_are_no_finite_numbers() {
 }
 
 #[test]
-fn colours_that_tobj_panics_on() {
+fn colours_without_all_numbers() {
     let place = Place::new(&[
         ("mesh.obj", &format!("mtllib mesh.mtl\nusemtl red\n{TRIANGLE}")),
         ("mesh.mtl", "newmtl red\nKd 1 0\n"),

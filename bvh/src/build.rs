@@ -70,8 +70,8 @@ pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildErro
         order: order.iter().map(|slot| at(slot).primitive).collect(),
         bounds: order.iter().map(|slot| at(slot).bounds).collect(),
     };
-    validate(&bvh.nodes, &bvh.bounds)?;
-    validate_wide(&bvh.wide, &bvh.bounds)?;
+    let proofs = rayon::join(|| validate(&bvh.nodes, &bvh.bounds), || validate_wide(&bvh.wide, &bvh.bounds));
+    proofs.0.and(proofs.1)?;
     Ok(bvh)
 }
 

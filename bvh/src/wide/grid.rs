@@ -43,7 +43,8 @@ impl Grid {
             PLANES * step(e) >= high - f64::from(low(axis, e))
         };
         let exponent: [i32; 3] = std::array::from_fn(|axis| {
-            (LEAST_EXPONENT..GREATEST_EXPONENT).find(|&e| fits(axis, e)).unwrap_or(GREATEST_EXPONENT)
+            let first = exponent(bounds.extent()[axis] / PLANES as f32 * 0.99).clamp(LEAST_EXPONENT, GREATEST_EXPONENT);
+            (first..GREATEST_EXPONENT).find(|&e| fits(axis, e)).unwrap_or(GREATEST_EXPONENT)
         });
         Grid { origin: std::array::from_fn(|axis| low(axis, exponent[axis])), exponent }
     }
@@ -84,6 +85,11 @@ impl Grid {
         let exponent = |e: &i32| (LEAST_EXPONENT..=GREATEST_EXPONENT).contains(e);
         self.origin.iter().all(origin) && self.exponent.iter().all(exponent)
     }
+}
+
+/// The greatest power of two up to a positive number; less than any that counts for 0.
+fn exponent(number: f32) -> i32 {
+    (number.to_bits() >> 23) as i32 - 127
 }
 
 /// 2 to a power that double precision holds.

@@ -1,6 +1,7 @@
 //! Wide nodes, and the order of primitives that both hierarchies share.
 
 use eyerays_shader::data::{CwbvhNode, NodePair, NodeRef};
+use rayon::prelude::*;
 
 use super::{
     binary::{Binary, Node},
@@ -32,55 +33,84 @@ pub(crate) struct Wide {
 /// sorted within large leaves of the pairs; [`Wide::renumber`] does the rest.
 pub(crate) fn wide(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Wide {
     let tree = Binary::of(pairs.iter().map(children), order, bounds, Leaves::WIDE.most);
-    let plan = Plan::of(&tree, Leaves::WIDE);
+    let levels = levels(&tree, &Plan::of(&tree, Leaves::WIDE));
     let mut wide = Wide { nodes: vec![nothing()], slots: Vec::with_capacity(order.len()) };
-    let mut list = Vec::new();
-    let mut open = vec![Open { number: 0, node: 0, level: 0 }];
-    while let Some(Open { number, node, level }) = open.pop() {
-        plan.children_at(&tree, node, level, &mut list);
-        let first = open.len();
-        wide.add(number, &tree, &list, |number, node| open.push(Open { number, node, level: level + 1 }));
-        open[first..].reverse();
+    wide.nodes.resize(levels.iter().map(Vec::len).sum(), nothing());
+    let (mut open, mut next) = (vec![(0, 0, 0)], 1);
+    while let Some((level, place, number)) = open.pop() {
+        let made: &Made = &levels[level][place as usize];
+        let mut record = made.record;
+        (record.first_child, record.first_triangle) = (next, wide.slots.len() as u32);
+        wide.nodes[number as usize] = record.encode();
+        wide.slots.extend(made.leaves().flat_map(|leaf| run(&tree.nodes[leaf as usize])));
+        let inner = made.inner().count() as u32;
+        open.extend((0..inner).rev().map(|i| (level + 1, made.first + i, next + i)));
+        next += inner;
     }
     wide
 }
 
-/// A wide node that is still to be made.
-struct Open {
-    /// Its number among wide nodes.
-    number: u32,
-    /// Its number in the binary tree.
-    node: u32,
-    /// Wide nodes above it.
-    level: u32,
+/// A wide node, whose children are not numbered yet.
+struct Made {
+    record: Record,
+    /// The binary node in each slot with a child.
+    children: [u32; CwbvhNode::ARITY],
+    /// The place of the first inner child on the next level.
+    first: u32,
+}
+
+/// The nodes of every level, those of a parent in a row. Threads share a level.
+fn levels(tree: &Binary, plan: &Plan) -> Vec<Vec<Made>> {
+    let (mut levels, mut open) = (Vec::new(), vec![0]);
+    while !open.is_empty() {
+        let level = levels.len() as u32;
+        let make = |list: &mut _, &node: &u32| Made::of(tree, plan, node, level, list);
+        let mut made: Vec<Made> = open.par_iter().map_init(Vec::new, make).collect();
+        open.clear();
+        for node in &mut made {
+            node.first = open.len() as u32;
+            open.extend(node.inner());
+        }
+        levels.push(made);
+    }
+    levels
+}
+
+impl Made {
+    /// The wide node that a binary one becomes, so many wide ones below the root. `list` is for any use.
+    fn of(tree: &Binary, plan: &Plan, number: u32, level: u32, list: &mut Vec<(u32, bool)>) -> Self {
+        plan.children_at(tree, number, level, list);
+        let node = |child: usize| &tree.nodes[list[child].0 as usize];
+        let boxes: Vec<Bounds> = (0..list.len()).map(|i| node(i).bounds).collect();
+        let grid = Grid::around(Bounds::around(boxes.iter().copied()));
+        let record = Record { grid, first_child: 0, first_triangle: 0, children: [Record::NOWHERE; CwbvhNode::ARITY] };
+        let mut made = Made { record, children: [0; CwbvhNode::ARITY], first: 0 };
+        for (slot, child) in octant::slots(&boxes, |i| list[i].1).into_iter().enumerate() {
+            let Some(i) = child else { continue };
+            let (binary, is_leaf) = list[i];
+            let what = if is_leaf { Child::Leaf { count: node(i).count } } else { Child::Inner };
+            made.record.children[slot] = (what, grid.planes(boxes[i]));
+            made.children[slot] = binary;
+        }
+        made
+    }
+
+    /// The binary nodes of inner children, in the order of slots.
+    fn inner(&self) -> impl Iterator<Item = u32> {
+        self.of_kind(|child| child == Child::Inner)
+    }
+
+    /// Those of leaves.
+    fn leaves(&self) -> impl Iterator<Item = u32> {
+        self.of_kind(|child| matches!(child, Child::Leaf { .. }))
+    }
+
+    fn of_kind(&self, is: impl Fn(Child) -> bool) -> impl Iterator<Item = u32> {
+        self.record.children.iter().zip(self.children).filter(move |((child, _), _)| is(*child)).map(|(_, node)| node)
+    }
 }
 
 impl Wide {
-    /// Makes wide node `number` of its children. Calls `open` with the numbers, wide and binary, of inner ones.
-    fn add(&mut self, number: u32, tree: &Binary, children: &[(u32, bool)], mut open: impl FnMut(u32, u32)) {
-        let node = |child: usize| &tree.nodes[children[child].0 as usize];
-        let mut record = Record {
-            grid: Grid::around(Bounds::around((0..children.len()).map(|i| node(i).bounds))),
-            first_child: self.nodes.len() as u32,
-            first_triangle: self.slots.len() as u32,
-            children: [Record::NOWHERE; CwbvhNode::ARITY],
-        };
-        let boxes: Vec<Bounds> = (0..children.len()).map(|i| node(i).bounds).collect();
-        for (slot, child) in octant::slots(&boxes, |i| children[i].1).into_iter().enumerate() {
-            let Some(i) = child else { continue };
-            let (binary, is_leaf) = children[i];
-            let what = if is_leaf { Child::Leaf { count: node(i).count } } else { Child::Inner };
-            record.children[slot] = (what, record.grid.planes(boxes[i]));
-            if is_leaf {
-                self.slots.extend(run(node(i)));
-            } else {
-                open(self.nodes.len() as u32, binary);
-                self.nodes.push(nothing());
-            }
-        }
-        self.nodes[number as usize] = record.encode();
-    }
-
     /// Brings `order`, and the leaves of `pairs`, from the slots of depth-first order to those of the
     /// wide nodes.
     pub fn renumber(&self, pairs: &mut [NodePair], order: &mut Vec<u32>) {

@@ -32,27 +32,20 @@ pub(crate) fn search(bounds: &[Bounds], quality: Quality) -> Topology {
     reinsert(&mut tree, share);
     collapse(&mut tree, parameters.max_prims_per_leaf, parameters.collapse_traversal_cost);
     reinsert(&mut tree, share * parameters.post_collapse_reinsertion_batch_ratio_multiplier);
-    let members = |leaf: &Bvh2Node, order: &mut Vec<u32>| {
+    Topology::of(tree.nodes.len(), kind(&tree), |number, order| {
+        let leaf = &tree.nodes[number as usize];
         for primitive in leaf.first_index..leaf.first_index + leaf.prim_count {
             order.extend(clusters.members(tree.primitive_indices[primitive as usize]));
         }
-    };
-    topology(&tree, members)
+    })
 }
 
 /// The tree that split primitives, or a better one of its leaves.
 pub(crate) fn improve(start: &Tree, bounds: &[Bounds], quality: Quality) -> Topology {
     let share = quality.reinsertion();
     if share == 0.0 {
-        let children = |number| match start.nodes[number as usize] {
-            Kind::Inner(left, right) => Some([left, right]),
-            Kind::Leaf(_) => None,
-        };
-        let members = |number, order: &mut Vec<u32>| match start.nodes[number as usize] {
-            Kind::Leaf(leaf) => order.extend(start.members(leaf)),
-            Kind::Inner(..) => {}
-        };
-        return Topology::of(start.nodes.len(), children, members);
+        let kind = |number| start.nodes[number as usize];
+        return Topology::of(start.nodes.len(), kind, |leaf, order| order.extend(start.members(leaf)));
     }
     let mut tree = Bvh2::zeroed(start.nodes.len().div_ceil(2));
     let mut around = vec![Bounds::EMPTY; start.nodes.len()];
@@ -67,7 +60,8 @@ pub(crate) fn improve(start: &Tree, bounds: &[Bounds], quality: Quality) -> Topo
         };
     }
     reinsert(&mut tree, share);
-    topology(&tree, |leaf, order| order.extend(start.members(leaf.first_index)))
+    let leaf = |number: u32| tree.nodes[number as usize].first_index;
+    Topology::of(tree.nodes.len(), kind(&tree), |number, order| order.extend(start.members(leaf(number))))
 }
 
 /// Moves nodes where that costs less; the first pass tries `share` of them.
@@ -78,11 +72,12 @@ fn reinsert(tree: &mut Bvh2, share: f32) {
     Reinsertion::new(share).run(tree);
 }
 
-/// The tree without boxes; `members` adds the primitives of a leaf.
-fn topology(tree: &Bvh2, mut members: impl FnMut(&Bvh2Node, &mut Vec<u32>)) -> Topology {
-    let node = |number: u32| &tree.nodes[number as usize];
-    let children = |number| (!node(number).is_leaf()).then(|| [node(number).first_index, node(number).first_index + 1]);
-    Topology::of(tree.nodes.len(), children, |number, order| members(node(number), order))
+/// What each node of a tree is: an inner one, or a leaf by its own number.
+fn kind(tree: &Bvh2) -> impl Fn(u32) -> Kind {
+    |number| match &tree.nodes[number as usize] {
+        leaf if leaf.is_leaf() => Kind::Leaf(number),
+        inner => Kind::Inner(inner.first_index, inner.first_index + 1),
+    }
 }
 
 fn aabb(bounds: &Bounds) -> Aabb {

@@ -1,5 +1,7 @@
 //! A tree over primitives, without boxes.
 
+use crate::spatial::Kind as Given;
+
 /// What a node of a [`Topology`] is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
@@ -34,13 +36,9 @@ impl Topology {
         Topology { nodes: vec![node], order: (0..primitives).collect() }
     }
 
-    /// A tree in depth-first order, of about so many nodes: `children` tells those of a node, `members` adds the primitives of
-    /// a leaf. Node 0 is the root.
-    pub fn of(
-        nodes: usize,
-        children: impl Fn(u32) -> Option<[u32; 2]>,
-        mut members: impl FnMut(u32, &mut Vec<u32>),
-    ) -> Self {
+    /// A tree in depth-first order, of about so many nodes: `given` tells what a node of another tree is, `members` adds the
+    /// primitives of a leaf. Node 0 is the root of both.
+    pub fn of(nodes: usize, given: impl Fn(u32) -> Given, members: impl Fn(u32, &mut Vec<u32>)) -> Self {
         let mut topology = Topology { nodes: Vec::with_capacity(nodes), order: Vec::new() };
         let mut open = vec![(0u32, None)];
         while let Some((number, parent)) = open.pop() {
@@ -49,9 +47,9 @@ impl Topology {
                 topology.link(parent, side, new);
             }
             topology.nodes.push(Node { kind: Kind::Run, first: topology.order.len() as u32, count: 0 });
-            match children(number) {
-                None => members(number, &mut topology.order),
-                Some([left, right]) => {
+            match given(number) {
+                Given::Leaf(leaf) => members(leaf, &mut topology.order),
+                Given::Inner(left, right) => {
                     open.extend([(right, Some((new, Side::Right))), (left, Some((new, Side::Left)))])
                 }
             }

@@ -6,7 +6,7 @@ use glam::Vec3A;
 use crate::bounds::{Bounds, half_area};
 
 /// Bins an axis. With 16, Conference's rays visit a quarter more nodes.
-pub(super) const BINS: usize = 32;
+const BINS: usize = 32;
 
 /// A way to split a node, and its cost: the sum of the children's areas times references.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,7 @@ fn bin(steps: f32) -> usize {
 
 /// What is in a bin: the box around it, how many parts start here, and how many end.
 #[derive(Clone, Copy)]
-pub(super) struct Bin {
+struct Bin {
     bounds: Bounds,
     starts: u32,
     ends: u32,
@@ -122,7 +122,7 @@ impl Bins {
 
     /// Adds all that is in other bins of the same axis.
     pub fn merge(&mut self, other: &Bins) {
-        for bin in other.all() {
+        for bin in (0..BINS).filter(|bin| other.occupied >> bin & 1 == 1) {
             self.add(bin, other.bins[bin]);
         }
     }
@@ -132,12 +132,6 @@ impl Bins {
         let before = if self.occupied & bit == 0 { Bin::EMPTY } else { self.bins[bin] };
         self.occupied |= bit;
         self.bins[bin] = before.union(what);
-    }
-
-    /// The bins with something in them.
-    fn all(&self) -> impl DoubleEndedIterator<Item = usize> + use<> {
-        let occupied = self.occupied;
-        (0..BINS).filter(move |bin| occupied >> bin & 1 == 1)
     }
 
     /// The cheapest plane between bins along an axis.

@@ -57,15 +57,15 @@ impl<'p> Node<'p> {
 /// What a thread needs again and again.
 struct Workspace {
     bins: Box<[Bins; 3]>,
-    /// Parts on their way to the right.
-    right: Vec<Part>,
+    /// Parts on their way to the left and to the right.
+    sides: [Vec<Part>; 2],
     /// Parts that a plane crosses.
     met: Vec<Part>,
 }
 
 impl Workspace {
     fn new() -> Self {
-        Workspace { bins: Box::new([Bins::EMPTY; 3]), right: Vec::new(), met: Vec::new() }
+        Workspace { bins: Box::new([Bins::EMPTY; 3]), sides: Default::default(), met: Vec::new() }
     }
 }
 
@@ -126,7 +126,7 @@ impl Grower<'_> {
             return node.halves(count / 2, count - count / 2);
         };
         let is_left = |part: &Part| grid.bin(split.axis, part.bounds().centre()[split.axis]) < split.bin;
-        let left = many::partition(&mut node.parts[..count], &mut space.right, is_left);
+        let left = many::partition(&mut node.parts[..count], &mut space.sides[1], is_left);
         node.halves(left, count - left)
     }
 
@@ -162,10 +162,8 @@ impl Grower<'_> {
     /// Sorts parts to the sides of a plane, if neither side stays empty. Those that it crosses are cut, unless it costs less
     /// to keep them whole on one side, or there is no room. Returns how many are on either side.
     fn cut(&self, node: &mut Node<'_>, axis: usize, plane: f32, space: &mut Workspace) -> Option<[usize; 2]> {
-        let Workspace { right, met, .. } = space;
-        right.clear();
-        met.clear();
-        let mut left = Vec::new();
+        let Workspace { sides: [left, right], met, .. } = space;
+        [&mut *left, right, met].into_iter().for_each(Vec::clear);
         let mut boxes = [Bounds::EMPTY; 2];
         for &part in node.parts() {
             let bounds = part.bounds();
@@ -183,7 +181,7 @@ impl Grower<'_> {
         }
         let mut room = node.room();
         let mut counts = [left.len() + met.len(), right.len() + met.len()].map(|count| count as f32);
-        let sides = [&mut left, right];
+        let sides = [left, right];
         for &part in met.iter() {
             let cut = part.cut(&self.triangles[part.triangle() as usize], axis, plane);
             let goes = goes(&part, &cut, &boxes, &counts, room > 0);

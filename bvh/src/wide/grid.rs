@@ -43,6 +43,7 @@ impl Grid {
             PLANES * step(e) >= high - f64::from(low(axis, e))
         };
         let exponent: [i32; 3] = std::array::from_fn(|axis| {
+            // No smaller step has planes enough; 0.99 leaves room for rounding.
             let first = exponent(bounds.extent()[axis] / PLANES as f32 * 0.99).clamp(LEAST_EXPONENT, GREATEST_EXPONENT);
             (first..GREATEST_EXPONENT).find(|&e| fits(axis, e)).unwrap_or(GREATEST_EXPONENT)
         });

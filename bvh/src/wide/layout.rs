@@ -34,8 +34,8 @@ pub(crate) struct Wide {
 pub(crate) fn wide(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Wide {
     let tree = Binary::of(pairs.iter().map(children), order, bounds, Leaves::WIDE.most);
     let levels = levels(&tree, &Plan::of(&tree, Leaves::WIDE));
-    let mut wide = Wide { nodes: vec![nothing()], slots: Vec::with_capacity(order.len()) };
-    wide.nodes.resize(levels.iter().map(Vec::len).sum(), nothing());
+    let count = levels.iter().map(Vec::len).sum();
+    let mut wide = Wide { nodes: vec![nothing(); count], slots: Vec::with_capacity(order.len()) };
     let (mut open, mut next) = (vec![(0, 0, 0)], 1);
     while let Some((level, place, number)) = open.pop() {
         let made: &Made = &levels[level][place as usize];

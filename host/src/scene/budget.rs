@@ -17,7 +17,7 @@ pub struct Budget {
 /// on a CPU, a triangle: 654 to 687 for halls and forests of 1 and 4 million, 721 for a hall with `--bvh high`,
 /// 646 to 664 for tessellated spheres of 1.3 and 3.9 million with either quality; a sphere, 636 to 671 of 1 and 4 million.
 const PRIMITIVE: u64 = 720;
-/// What a vertex takes, used or not: its numbers here and in tobj, whose list doubles as it grows.
+/// What a vertex takes, used or not: its numbers while it is read, in a list that doubles as it grows.
 const VERTEX: u64 = 36;
 
 impl Budget {

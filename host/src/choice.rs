@@ -69,6 +69,19 @@ macro_rules! choices {
             }
         }
 
+        impl ::serde::Serialize for $choice {
+            fn serialize<S: ::serde::Serializer>(&self, serializer: S) -> ::std::result::Result<S::Ok, S::Error> {
+                serializer.serialize_str($crate::choice::Named::name(*self))
+            }
+        }
+
+        impl<'de> ::serde::Deserialize<'de> for $choice {
+            fn deserialize<D: ::serde::Deserializer<'de>>(from: D) -> ::std::result::Result<Self, D::Error> {
+                let name = <::std::string::String as ::serde::Deserialize>::deserialize(from)?;
+                $crate::choice::Named::from_name(&name).map_err(::serde::de::Error::custom)
+            }
+        }
+
         impl ::std::str::FromStr for $choice {
             type Err = $crate::error::Error;
 

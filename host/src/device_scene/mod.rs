@@ -66,7 +66,7 @@ impl DeviceScene {
     /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
     /// or no ray meet: too many triangles, a light too far away for the scene's numbers.
     pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
-        check::scene(scene)?;
+        scene.check()?;
         check::settings(&settings)?;
         let emissive = scene.materials.iter().find(|m| m.emission != Vec3::ZERO).map(|m| m.name.clone());
         check::emission(emissive.as_deref(), settings.transport.integrator)?;

@@ -106,9 +106,7 @@ fn camera(table: &mut Table) -> Result<Camera> {
         let fault = format!("{named} looks at its own eye; move its target");
         return Err(table.fault_of("target", fault));
     }
-    let sine = view.normalize().cross(camera.up.as_dvec3().normalize_or_zero());
-    // Nearer than this, single precision no longer tells which way is up.
-    if sine.length() < 1e-6 {
+    if !camera.is_upright() {
         let fault = format!("{named} has its up along its view; turn up aside");
         let key = if table.has("up") { "up" } else { "target" };
         return Err(table.fault_of(key, fault));

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
+use super::binary;
 use super::budget::Budget;
 use super::document;
 use super::file;
@@ -21,12 +22,13 @@ use super::{Background, Scene, Settings};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
-/// Loads a TOML scene or a bare Wavefront mesh, and says in warnings what of it is not drawn.
+/// Loads a TOML scene, a bare Wavefront mesh or a binary scene ([`write`](super::write)), and says in warnings what of it
+/// is not drawn.
 ///
 /// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky.
 ///
 /// # Errors
-/// A path that is no readable `.toml` or `.obj` file, or anything in it that makes no sense: each is one line
+/// A path that is no readable `.toml`, `.obj` or `.eyerays` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
     load_within(path, Budget::new(Room::now()))
@@ -34,13 +36,15 @@ pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
 
 /// As [`load`], of a scene within the budget.
 pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    if is(path, "toml") {
+    file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
+    if is(path, binary::ENDING) {
+        Ok((binary::load(path, budget)?, Vec::new()))
+    } else if is(path, "toml") {
         load_toml(path, budget)
     } else if is(path, "obj") {
         load_obj(path, budget)
     } else {
-        let fault = "unknown kind of scene; name a .toml scene or an .obj mesh";
+        let fault = "unknown kind of scene; name a .toml or .eyerays scene or an .obj mesh";
         Err(Error::file(path, fault))
     }
 }

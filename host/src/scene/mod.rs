@@ -6,7 +6,9 @@
 #![doc = include_str!("example.toml")]
 //! ```
 
+mod binary;
 mod budget;
+mod check;
 mod document;
 mod extent;
 mod file;
@@ -38,6 +40,7 @@ mod xyzr;
 #[cfg(test)]
 mod tests;
 
+pub use binary::{ENDING, write};
 pub use frame::default_camera;
 pub use load::{load, read_table};
 pub use primitive::{Disk, Primitives, Sphere};
@@ -49,6 +52,7 @@ pub use transport::{Direct, Integrator, Transport};
 
 use eyerays_shader::data::NodeRef;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use crate::choice::Named;
 use crate::error::{self, Error};
@@ -88,7 +92,7 @@ pub struct Scene {
 }
 
 /// What one `[[mesh]]` of a scene file adds to the scene, or the bare mesh file.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {
     /// The file as the scene names it or the shape's word, and the material where one is named: `sphere (glass)`.
     /// Several parts may have the same name.
@@ -120,7 +124,7 @@ impl Mesh {
 }
 
 /// The thesis' illumination model (chapters 3.1 and 3.3); colours are linear RGB in [0, 1].
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Material {
     /// By this name a scene file overrides it.
     pub name: String,
@@ -147,7 +151,7 @@ pub struct Material {
 }
 
 /// A procedural checkerboard over the surface's two major axes.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Checker {
     /// The diffuse colour of every second cell; the others have the material's.
     pub colour: Vec3,
@@ -158,7 +162,7 @@ pub struct Checker {
 }
 
 /// A light without extent; `colour` is linear RGB times intensity, at least 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Light {
     /// Shines every way from a place.
     Point {
@@ -190,7 +194,7 @@ pub enum Light {
 }
 
 /// A pinhole camera.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// By this name the command line picks it.
     pub name: String,
@@ -204,8 +208,17 @@ pub struct Camera {
     pub fov: f32,
 }
 
+impl Camera {
+    /// Does its `up` tell which way is up? Not if it lies along the view, nearer than single precision tells apart.
+    fn is_upright(&self) -> bool {
+        let view = self.target.as_dvec3() - self.eye.as_dvec3();
+        let sine = view.normalize_or_zero().cross(self.up.as_dvec3().normalize_or_zero());
+        sine.length() >= 1e-6
+    }
+}
+
 /// What a ray that hits nothing returns, linear RGB.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Background {
     /// The same every way.
     Colour(Vec3),
@@ -219,7 +232,7 @@ pub enum Background {
 }
 
 /// A scene file's `[render]` table.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Settings {
     /// Image width and height in pixels.
     pub size: (u32, u32),

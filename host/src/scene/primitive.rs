@@ -2,10 +2,13 @@
 
 use std::ops::Range;
 
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
 
 /// A sphere; its front is its outside.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Sphere {
     /// Finite, in world units.
     pub center: Vec3,
@@ -16,7 +19,8 @@ pub struct Sphere {
 }
 
 /// A flat disk without thickness.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[repr(C)]
 pub struct Disk {
     /// Finite, in world units.
     pub center: Vec3,
@@ -29,7 +33,7 @@ pub struct Disk {
 }
 
 /// What a part is made of, and where that stands.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Primitives {
     /// In [`super::Mesh::triangles`].
     Triangles(Range<usize>),

@@ -1,6 +1,7 @@
 //! What numbers mean something where.
 
 /// The numbers that a key takes.
+#[derive(Clone, Copy)]
 pub struct Range {
     holds: fn(f32) -> bool,
     says: &'static str,

@@ -2,6 +2,7 @@
 
 use eyerays_shader::data::Launch;
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 
 use super::{Material, Scene};
 use crate::choice::choices;
@@ -39,7 +40,7 @@ choices! {
 }
 
 /// What an integrator needs to know.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Transport {
     /// How light is carried.
     pub integrator: Integrator,

@@ -4,6 +4,7 @@ mod bench;
 mod check;
 mod choice;
 mod console;
+mod convert;
 mod diff;
 mod generate;
 mod info;
@@ -64,6 +65,9 @@ enum Command {
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
+    /// Write a scene in the binary form, which is read many times faster
+    #[command(after_help = convert::EXAMPLES)]
+    Convert(convert::Convert),
     /// Make a scene of any number of triangles or spheres to measure with
     #[command(after_help = generate::EXAMPLES)]
     Generate(generate::Generate),
@@ -101,6 +105,7 @@ fn execute(cli: Cli) -> Result<ExitCode> {
         Command::Tradeoff(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
+        Command::Convert(command) => command.run(cli.quiet),
         Command::Generate(command) => command.run(cli.quiet),
     }
 }

@@ -1,0 +1,51 @@
+//! `eyerays convert`.
+
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use clap::Args;
+
+use super::options::Read;
+use super::{console, plural, progress};
+use crate::error::{Error, Result};
+use crate::output::{self, Destination};
+use eyerays::scene;
+
+pub(super) const EXAMPLES: &str = "\
+Examples:
+  eyerays convert hall.toml hall.eyerays
+  eyerays render hall.eyerays --camera view1 -o hall.png
+The file holds all that the scene's files say, and renders to the same picture without them.
+It is read many times faster than a mesh in text; its hash is checked each time.";
+
+#[derive(Args)]
+pub(super) struct Convert {
+    /// The scene: .toml, .obj or .eyerays
+    scene: PathBuf,
+    /// The file to write, .eyerays
+    #[arg(value_name = "FILE.eyerays")]
+    output: OsString,
+}
+
+impl Convert {
+    pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let path = Path::new(&self.output);
+        if !path.extension().is_some_and(|end| end.eq_ignore_ascii_case(scene::ENDING)) {
+            let ending = scene::ENDING;
+            return Err(Error::file(path, format!("the ending chooses the form; end the name in .{ending}")));
+        }
+        let destination = Destination::File(path.to_owned());
+        output::check_writable(&destination)?;
+        let Read { scene, .. } = Read::scene(&self.scene, std::slice::from_ref(&destination), quiet)?;
+        output::check_apart(std::slice::from_ref(&destination), [&self.scene])?;
+        let write = || output::write_atomically(path, |out| Ok(scene::write(&scene, out)?));
+        progress::stage("writing", quiet, write)?;
+        if !quiet {
+            let primitives = scene.mesh.triangles.len() + scene.spheres.len() + scene.disks.len();
+            let bytes = std::fs::metadata(path).map_or(0, |file| file.len());
+            console::say(format_args!("{}: {}, {bytes} bytes", path.display(), plural(primitives, "primitive")));
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+}

@@ -1,0 +1,72 @@
+//! What a scene is beside its geometry, as TOML.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Part, Scene, Settings, Sphere, Unplaced};
+
+/// The fields of a [`Scene`] but for its geometry and the files that it came from.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    ambient: Vec3,
+    background: Background,
+    settings: Settings,
+    parts: Vec<Part>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    cameras: Vec<Camera>,
+}
+
+impl Description {
+    /// That of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        Description {
+            ambient: scene.ambient,
+            background: scene.background,
+            settings: scene.settings,
+            parts: scene.parts.clone(),
+            materials: scene.materials.clone(),
+            lights: scene.lights.clone(),
+            cameras: scene.cameras.clone(),
+        }
+    }
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// No TOML, or other fields.
+    pub fn parse(text: &[u8]) -> Unplaced<Self> {
+        let text = std::str::from_utf8(text).map_err(|_| "its description is not UTF-8".to_owned())?;
+        toml::from_str(text).map_err(|error| {
+            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("line {line} of its description: {}", error.message().replace('\n', " "))
+        })
+    }
+
+    /// As text.
+    ///
+    /// # Errors
+    /// None that a scene could make.
+    pub fn text(&self) -> Unplaced<String> {
+        toml::to_string(self).map_err(|error| error.to_string())
+    }
+
+    /// The scene of this geometry.
+    pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>) -> Scene {
+        let Description { ambient, background, settings, parts, materials, lights, cameras } = self;
+        Scene {
+            mesh,
+            spheres,
+            disks,
+            parts,
+            files: Vec::new(),
+            materials,
+            lights,
+            cameras,
+            background,
+            ambient,
+            settings,
+        }
+    }
+}

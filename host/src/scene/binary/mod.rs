@@ -1,0 +1,23 @@
+//! The binary form of a scene: what a text form says, at once where memory wants it.
+//!
+//! A file is a [`Header`], then sections that each begin at a multiple of 64 bytes: the description (TOML: all of a
+//! [`Scene`](super::Scene) but its geometry), positions, normals, triangles, their materials, spheres and disks, as
+//! [`Scene`](super::Scene) has them, little-endian, zeros between. A file is mapped, its hash and every number in it are
+//! checked, and nothing is parsed but the description.
+
+mod description;
+mod header;
+mod read;
+mod write;
+
+#[cfg(test)]
+mod tests;
+
+pub(super) use read::load;
+pub use write::write;
+
+/// How names of such files end.
+pub const ENDING: &str = "eyerays";
+
+// Sections are memory as it is.
+const _: () = assert!(cfg!(target_endian = "little"), "binary scenes are little-endian");

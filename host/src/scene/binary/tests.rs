@@ -1,0 +1,176 @@
+use std::path::Path;
+use std::sync::LazyLock;
+
+use bytemuck::bytes_of;
+use proptest::prelude::*;
+
+use super::header::Header;
+use super::read::parse;
+use super::write;
+use crate::memory::Room;
+use crate::scene::{Light, Scene, Unplaced, budget::Budget, load};
+
+/// A scene of a text form, and no files, as binary ones have none.
+fn text(path: &str) -> Scene {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    Scene { files: Vec::new(), ..load(&path).expect("a scene").0 }
+}
+
+fn binary(scene: &Scene) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    write(scene, &mut bytes).expect("a scene in range");
+    bytes
+}
+
+fn read(bytes: &[u8]) -> Unplaced<Scene> {
+    parse(bytes, Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
+}
+
+/// Gives a file the hash of what it holds, if it is whole.
+fn sign(bytes: &mut [u8]) {
+    if let Ok((header, sections)) = Header::split(bytes) {
+        let header = Header::of(header.counts, &sections);
+        bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
+    }
+}
+
+/// All that a scene file can say, and primitives of every kind.
+static EXAMPLE: LazyLock<Vec<u8>> = LazyLock::new(|| binary(&text("src/scene/example.toml")));
+
+#[test]
+fn every_scene_is_the_same_in_either_form() {
+    let shipped = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).unwrap();
+    let names = shipped.map(|entry| format!("../scenes/{}", entry.unwrap().file_name().display()));
+    for name in names.chain(["src/scene/example.toml".into(), "src/scene/pyramid.obj".into()]) {
+        let scene = text(&name);
+        assert_eq!(read(&binary(&scene)), Ok(scene), "{name}");
+    }
+}
+
+#[test]
+fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so() {
+    let refused = |spoil: fn(&mut Vec<u8>)| {
+        let mut bytes = EXAMPLE.clone();
+        spoil(&mut bytes);
+        read(&bytes).expect_err("accepted")
+    };
+    assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
+    assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
+    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 1 is what is read"));
+    assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));
+    assert!(refused(|b| b.push(0)).contains("are not what its header tells"));
+    assert!(refused(|b| b[55] = 0xff).contains("are not what its header tells"));
+    assert!(refused(|b| *b.last_mut().unwrap() ^= 1).starts_with("its contents have another hash"));
+    assert!(refused(|b| b[130] ^= 1).starts_with("its contents have another hash"));
+}
+
+#[test]
+fn a_file_for_which_there_is_no_memory_is_refused_before_any_is_taken() {
+    let fault = parse(&EXAMPLE, Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
+    assert!(fault.ends_with("this test leaves 0 MB; use fewer"), "{fault}");
+}
+
+#[test]
+fn a_scene_out_of_range_is_not_written_nor_read_under_a_right_hash() {
+    let mut scene = text("src/scene/example.toml");
+    scene.cameras[0].target = scene.cameras[0].eye;
+    let refused = write(&scene, &mut Vec::new()).expect_err("written").message();
+    assert_eq!(refused, "the camera \"front\" looks at its own eye; move its target");
+    let mut bytes = EXAMPLE.clone();
+    let last = bytes.len() - 4;
+    bytes[last..].copy_from_slice(&u32::MAX.to_le_bytes());
+    sign(&mut bytes);
+    let refused = read(&bytes).expect_err("accepted");
+    assert!(refused.contains("has material 4294967295, but there are"), "{refused}");
+}
+
+/// A change to a file: bytes from `at` on, in shares of the file.
+#[derive(Debug, Clone)]
+enum Change {
+    Put(f64, Vec<u8>),
+    Flip(f64, u8),
+    Cut(f64),
+    Insert(f64, Vec<u8>),
+    Copy(f64, f64, usize),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    // The header and the description are a small part of a file, and where most can go wrong.
+    let at = || prop_oneof![0.0..0.03f64, 0.0..1.0f64];
+    let number = prop_oneof![Just(0u64), Just(1), Just(u64::MAX), Just(1 << 40), any::<u64>()];
+    let float = prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(-1.0), Just(3e38), Just(1e-45)];
+    prop_oneof![
+        (at(), prop::collection::vec(any::<u8>(), 1..16)).prop_map(|(at, bytes)| Change::Put(at, bytes)),
+        (at(), number).prop_map(|(at, number)| Change::Put(at, number.to_le_bytes().into())),
+        (at(), float).prop_map(|(at, float)| Change::Put(at, float.to_le_bytes().into())),
+        (at(), "[-0-9a-z\"=\\[\\]\n]{1,8}").prop_map(|(at, text)| Change::Put(at, text.into())),
+        (at(), 0..8u8).prop_map(|(at, bit)| Change::Flip(at, bit)),
+        at().prop_map(Change::Cut),
+        (at(), prop::collection::vec(any::<u8>(), 1..200)).prop_map(|(at, bytes)| Change::Insert(at, bytes)),
+        (at(), at(), 1..300usize).prop_map(|(from, to, count)| Change::Copy(from, to, count)),
+    ]
+}
+
+fn changed(mut bytes: Vec<u8>, change: &Change) -> Vec<u8> {
+    let place = |at: f64, bytes: &[u8]| (at * bytes.len() as f64) as usize;
+    let put = |to: usize, new: &[u8], bytes: &mut [u8]| {
+        let end = (to + new.len()).min(bytes.len());
+        bytes[to..end].copy_from_slice(&new[..end - to]);
+    };
+    match change {
+        // On a word, where numbers are.
+        Change::Put(at, new) => put(place(*at, &bytes) & !3, new, &mut bytes),
+        Change::Flip(at, bit) => {
+            if let Some(byte) = bytes.get_mut(place(*at, &EXAMPLE)) {
+                *byte ^= 1 << bit;
+            }
+        }
+        Change::Cut(at) => bytes.truncate(place(*at, &bytes)),
+        Change::Insert(at, new) => {
+            let at = place(*at, &bytes);
+            bytes.splice(at..at, new.iter().copied());
+        }
+        Change::Copy(from, to, count) => {
+            let from = place(*from, &bytes);
+            let piece = bytes[from..(from + count).min(bytes.len())].to_vec();
+            put(place(*to, &bytes), &piece, &mut bytes);
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..Default::default() })]
+
+    /// Signed, so that the hash does not hide what comes after it; and unsigned.
+    #[test]
+    fn a_mutated_file_is_refused_in_a_line_or_whole(
+        changes in prop::collection::vec(change(), 1..4),
+        is_signed in prop::bool::weighted(0.8),
+    ) {
+        let mut bytes = changes.iter().fold(EXAMPLE.clone(), changed);
+        if is_signed {
+            sign(&mut bytes);
+        }
+        match read(&bytes) {
+            Ok(scene) => prop_assert_eq!(scene.check(), Ok(())),
+            Err(fault) => prop_assert!(!fault.is_empty() && !fault.contains('\n'), "{:?}", fault),
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..Default::default() })]
+
+    /// The description is decimal.
+    #[test]
+    fn every_number_comes_back_with_its_bits(bits in prop::array::uniform3(0..f32::INFINITY.to_bits()), name in ".*") {
+        let mut scene = text("../scenes/whitted.toml");
+        let numbers = bits.map(f32::from_bits).into();
+        scene.ambient = numbers;
+        scene.settings.transport.ao_distance = f32::INFINITY;
+        scene.lights = vec![Light::Point { position: -numbers, colour: numbers }];
+        scene.cameras[0].name = name;
+        prop_assert_eq!(read(&binary(&scene)), Ok(scene));
+    }
+}

@@ -1,0 +1,280 @@
+//! Whether a scene holds together and is in range, whoever made it.
+
+use glam::Vec3;
+use rayon::prelude::*;
+
+use super::range::Range;
+use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Primitives, Scene, Sphere, Unplaced};
+use crate::error::{Error, Result};
+
+impl Scene {
+    /// Refuses numbers that are out of range, or that name what there is not: kernels read through them without checking
+    /// them again. [`load`](super::load) makes no such scene; code may.
+    ///
+    /// # Errors
+    /// The first of them.
+    pub fn check(&self) -> Result<()> {
+        let of_materials = self.materials.iter().try_for_each(material);
+        of_materials.and_then(|()| self.surroundings()).map_err(Error::new)?;
+        geometry(self)
+    }
+
+    /// All but materials and geometry.
+    fn surroundings(&self) -> Unplaced<()> {
+        let scene = Owner("the scene".into());
+        scene.colour("ambient", self.ambient, Range::AMOUNT)?;
+        match self.background {
+            Background::Colour(colour) => scene.colour("background", colour, Range::AMOUNT)?,
+            Background::Gradient { horizon, zenith } => {
+                scene.colour("horizon", horizon, Range::AMOUNT)?;
+                scene.colour("zenith", zenith, Range::AMOUNT)?;
+            }
+        }
+        self.lights.iter().enumerate().try_for_each(|(number, of)| light(number, of))?;
+        self.cameras.iter().try_for_each(camera)?;
+        self.parts.iter().try_for_each(|of| part(of, self))
+    }
+}
+
+/// Whose numbers are checked.
+struct Owner(String);
+
+impl Owner {
+    fn number(&self, key: &str, number: f32, range: Range) -> Unplaced<()> {
+        if range.holds(number) {
+            return Ok(());
+        }
+        Err(format!("{} has the {key} {number}; it must be {}", self.0, range.says()))
+    }
+
+    fn colour(&self, key: &str, triple: Vec3, range: Range) -> Unplaced<()> {
+        let odd = triple.to_array().into_iter().find(|&number| !range.holds(number));
+        odd.map_or(Ok(()), |number| self.number(key, number, range))
+    }
+
+    fn place(&self, key: &str, place: Vec3) -> Unplaced<()> {
+        self.colour(key, place, Range::ANY)
+    }
+
+    fn refuse(&self, fault: &str) -> Unplaced<()> {
+        Err(format!("{} {fault}", self.0))
+    }
+}
+
+fn material(material: &Material) -> Unplaced<()> {
+    let owner = Owner(format!("the material {:?}", material.name));
+    let shares = [
+        ("ambient", material.ambient),
+        ("diffuse", material.diffuse),
+        ("specular", material.specular),
+        ("reflection", material.reflection),
+        ("transmission", material.transmission),
+    ];
+    shares.into_iter().try_for_each(|(key, share)| owner.colour(key, share, Range::SHARE))?;
+    owner.number("shininess", material.shininess, Range::AMOUNT)?;
+    owner.number("ior", material.ior, Range::IOR)?;
+    owner.colour("emission", material.emission, Range::AMOUNT)?;
+    let Some(checker) = material.checker else { return Ok(()) };
+    owner.colour("checker color", checker.colour, Range::SHARE)?;
+    owner.colour("checker ambient", checker.ambient, Range::SHARE)?;
+    owner.number("checker size", checker.size, Range::LENGTH)
+}
+
+fn light(number: usize, light: &Light) -> Unplaced<()> {
+    let owner = Owner(format!("light {number}"));
+    match *light {
+        Light::Point { position, colour } => {
+            owner.place("position", position)?;
+            owner.colour("color", colour, Range::AMOUNT)
+        }
+        Light::Directional { direction, colour } => {
+            owner.place("direction", direction)?;
+            owner.colour("color", colour, Range::AMOUNT)?;
+            if direction == Vec3::ZERO { owner.refuse("has no direction; say which way it shines") } else { Ok(()) }
+        }
+        Light::Spot { position, target, colour, outer, inner } => {
+            owner.place("position", position)?;
+            owner.place("target", target)?;
+            owner.colour("color", colour, Range::AMOUNT)?;
+            owner.number("angle", 2.0 * outer, Range::CONE)?;
+            if !(0.0..=outer).contains(&inner) {
+                return owner
+                    .refuse(&format!("has the inner angle {inner}; it must be between 0 and the outer one, {outer}"));
+            }
+            if target == position { owner.refuse("shines at its own position; move its target") } else { Ok(()) }
+        }
+    }
+}
+
+fn camera(camera: &Camera) -> Unplaced<()> {
+    let owner = Owner(format!("the camera {:?}", camera.name));
+    owner.place("eye", camera.eye)?;
+    owner.place("target", camera.target)?;
+    owner.place("up", camera.up)?;
+    owner.number("fov", camera.fov, Range::CONE)?;
+    if camera.eye == camera.target {
+        return owner.refuse("looks at its own eye; move its target");
+    }
+    if !camera.is_upright() { owner.refuse("has its up along its view; turn up aside") } else { Ok(()) }
+}
+
+fn part(part: &Part, scene: &Scene) -> Unplaced<()> {
+    let (range, most) = match &part.primitives {
+        Primitives::Triangles(range) => (range, scene.mesh.triangles.len()),
+        Primitives::Spheres(range) => (range, scene.spheres.len()),
+        Primitives::Disks(range) => (range, scene.disks.len()),
+    };
+    let owner = Owner(format!("the part {:?}", part.name));
+    part.bounds.iter().try_for_each(|&corner| owner.place("bounds", corner))?;
+    if range.start <= range.end && range.end <= most {
+        return Ok(());
+    }
+    let noun = part.primitives.noun();
+    owner.refuse(&format!("is made of the {noun}s {} to {}, but there are {most}", range.start, range.end))
+}
+
+fn geometry(scene: &Scene) -> Result<()> {
+    let materials = scene.materials.len();
+    mesh(&scene.mesh, materials)?;
+    let spheres = scene.spheres.par_iter().enumerate();
+    first(spheres.find_map_first(|(number, sphere)| {
+        let Sphere { center, radius, material } = *sphere;
+        let fault = round(center, radius, sphere.bounds(), material, materials)?;
+        Some(format!("sphere {number} has {fault}"))
+    }))?;
+    let disks = scene.disks.par_iter().enumerate();
+    first(disks.find_map_first(|(number, disk)| {
+        let Disk { center, normal, radius, material } = *disk;
+        let fault = upright(normal).or_else(|| round(center, radius, disk.bounds(), material, materials))?;
+        Some(format!("disk {number} has {fault}"))
+    }))
+}
+
+fn first(fault: Option<String>) -> Result<()> {
+    fault.map_or(Ok(()), |fault| Err(Error::new(fault)))
+}
+
+/// What is wrong with a sphere or a disk.
+fn round(center: Vec3, radius: f32, bounds: [Vec3; 2], material: u32, materials: usize) -> Option<String> {
+    if !center.is_finite() {
+        return Some(format!("the center {center}, which is not finite: move it"));
+    }
+    if !(radius.is_finite() && radius > 0.0) {
+        return Some(format!("the radius {radius}: make it finite and greater than 0"));
+    }
+    if !bounds.iter().all(|corner| corner.is_finite()) {
+        return Some(format!("the radius {radius}, which leaves the range of single precision: make it smaller"));
+    }
+    let is_there = (material as usize) < materials;
+    (!is_there).then(|| format!("material {material}, but there are {materials}"))
+}
+
+/// What is wrong with a normal.
+fn upright(normal: Vec3) -> Option<String> {
+    /// How far the length may be from 1, for normals that code calculates in single precision.
+    const OFF: f64 = 1e-3;
+    let length = normal.as_dvec3().length();
+    let is_unit = (length - 1.0).abs() <= OFF;
+    (!is_unit).then(|| format!("a normal of length {length}: make it 1"))
+}
+
+fn mesh(mesh: &Mesh, materials: usize) -> Result<()> {
+    let (triangles, vertices) = (mesh.triangles.len(), mesh.positions.len());
+    if mesh.materials.len() != triangles {
+        let own = mesh.materials.len();
+        return Err(Error::new(format!(
+            "the mesh has {triangles} triangles and {own} materials of them: give each one"
+        )));
+    }
+    if !mesh.normals.is_empty() && mesh.normals.len() != vertices {
+        let own = mesh.normals.len();
+        return Err(Error::new(format!("the mesh has {vertices} vertices and {own} normals: give each one, or none")));
+    }
+    let odd = mesh.positions.par_iter().position_first(|position| !position.is_finite());
+    first(
+        odd.map(|vertex| format!("vertex {vertex} lies at {}, which is not finite: move it", mesh.positions[vertex])),
+    )?;
+    let normals = mesh.normals.par_iter().enumerate();
+    first(normals.find_map_first(|(vertex, &normal)| {
+        let fault = upright(normal).filter(|_| normal != Vec3::ZERO)?;
+        Some(format!("vertex {vertex} has {fault}"))
+    }))?;
+    let corners = mesh.triangles.par_iter().zip(&mesh.materials).enumerate();
+    let fault = corners.find_map_first(|(triangle, (corners, &material))| {
+        if let Some(vertex) = corners.iter().find(|&&vertex| vertex as usize >= vertices) {
+            return Some(format!("triangle {triangle} has vertex {vertex}, but there are {vertices}"));
+        }
+        let is_there = (material as usize) < materials;
+        (!is_there).then(|| format!("triangle {triangle} has material {material}, but there are {materials}"))
+    });
+    first(fault)
+}
+
+#[cfg(test)]
+mod tests {
+    use eyerays_bvh::Quality;
+
+    use super::*;
+    use crate::device_scene::DeviceScene;
+    use crate::scene::Settings;
+
+    fn whitted() -> Scene {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
+        crate::scene::load(path.as_ref()).unwrap().0
+    }
+
+    fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
+        let packed = DeviceScene::new(scene, settings, Quality::Fast);
+        packed.err().map(|error| error.message())
+    }
+
+    /// What code makes is refused as what files hold is; kernels would read beyond their buffers.
+    #[test]
+    fn a_mesh_that_names_what_there_is_not_is_refused() {
+        let whole = whitted();
+        assert_eq!(refusal(&whole, whole.settings), None);
+        let spoilt = |spoil: fn(&mut Scene)| {
+            let mut scene = whole.clone();
+            spoil(&mut scene);
+            refusal(&scene, scene.settings).expect("accepted")
+        };
+        assert!(spoilt(|s| s.mesh.materials[1] = 1000).starts_with("triangle 1 has material 1000"));
+        assert!(spoilt(|s| s.mesh.triangles[0][1] = u32::MAX).starts_with("triangle 0 has vertex 4294967295"));
+        assert!(spoilt(|s| s.mesh.materials.truncate(1)).contains("materials of them"));
+        assert!(spoilt(|s| s.mesh.normals.push(Vec3::X)).contains("normals"));
+        assert!(spoilt(|s| s.materials.clear()).starts_with("triangle 0 has material"));
+    }
+
+    #[test]
+    fn spheres_and_disks_that_are_none_are_refused_by_their_number() {
+        let mut whole = whitted();
+        let sphere = Sphere { center: Vec3::ZERO, radius: 1.0, material: 0 };
+        whole.spheres = vec![sphere; 2];
+        // Off by no more than single precision makes it.
+        let disk = Disk { center: Vec3::ONE, normal: Vec3::new(0.6, 0.800_1, 0.0), radius: 2.0, material: 1 };
+        whole.disks = vec![disk; 3];
+        assert_eq!(Scene::check(&whole), Ok(()));
+        let spoilt = |spoil: fn(&mut Scene)| {
+            let mut scene = whole.clone();
+            spoil(&mut scene);
+            Scene::check(&scene).expect_err("accepted").message()
+        };
+        assert_eq!(spoilt(|s| s.spheres[1].material = 9), "sphere 1 has material 9, but there are 3");
+        assert_eq!(spoilt(|s| s.disks[2].material = 9), "disk 2 has material 9, but there are 3");
+        for radius in [0.0, -1.0, f32::NAN, f32::INFINITY] {
+            let mut scene = whole.clone();
+            scene.spheres[0].radius = radius;
+            let fault = Scene::check(&scene).expect_err("accepted").message();
+            assert_eq!(fault, format!("sphere 0 has the radius {radius}: make it finite and greater than 0"));
+        }
+        assert!(spoilt(|s| (s.spheres[0].center.x, s.spheres[0].radius) = (3e38, 1e38)).contains("leaves the range"));
+        assert!(spoilt(|s| s.spheres[1].center.y = f32::NAN).starts_with("sphere 1 has the center [0, NaN, 0]"));
+        assert!(spoilt(|s| s.disks[0].radius = -1.0).starts_with("disk 0 has the radius -1"));
+        for normal in [Vec3::ZERO, Vec3::splat(0.5), Vec3::NAN, Vec3::INFINITY, Vec3::Y * 1.01] {
+            let mut scene = whole.clone();
+            scene.disks[1].normal = normal;
+            let fault = Scene::check(&scene).expect_err("accepted").message();
+            assert!(fault.starts_with("disk 1 has a normal of length "), "{fault}");
+        }
+    }
+}

@@ -141,6 +141,8 @@ pub enum Error {
 pub enum Content {
     /// A part of the scene, by its name: `triangles`.
     Scene(String),
+    /// All of the scene.
+    WholeScene,
     /// What a block of pixels needs.
     Block,
     /// So many rays.
@@ -246,6 +248,9 @@ impl Error {
             Error::TooLarge { device, what, bytes, limit } => match what {
                 Content::Scene(name) => {
                     format!("the scene's {name} take {bytes} bytes, but \"{device}\" has buffers of at most {limit}")
+                }
+                Content::WholeScene => {
+                    format!("the scene takes {bytes} bytes, but \"{device}\" has {limit} bytes of memory")
                 }
                 Content::Block => {
                     format!("a block of pixels needs buffers of {bytes} bytes, but \"{device}\" has at most {limit}")

@@ -40,7 +40,7 @@ pub mod image;
 pub mod integrator;
 pub mod line;
 pub mod math;
-mod memory;
+pub mod memory;
 pub mod method;
 pub mod plan;
 pub mod quality;

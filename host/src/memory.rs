@@ -44,6 +44,12 @@ impl Room {
     }
 }
 
+/// The most memory that this process held at once, in bytes, where the system tells it.
+pub fn peak() -> Option<u64> {
+    let status = fs::read_to_string("/proc/self/status").ok()?;
+    Some(field(&status, "VmHWM:")? * 1024)
+}
+
 /// Bytes in a unit that gives a few digits.
 fn size(bytes: u64) -> String {
     match bytes {

@@ -27,6 +27,13 @@ pub struct Bvh8 {
 }
 
 impl Bvh8 {
+    /// What it holds.
+    pub fn bytes(&self) -> usize {
+        let Bvh8 { nodes, triangles, spheres, mixed } = self;
+        let leaves = size_of_val(&triangles[..]) + size_of_val(&spheres[..]) + size_of_val(&mixed[..]);
+        size_of_val(&nodes[..]) + leaves
+    }
+
     /// Converts a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
     /// unless triangles are split.
     pub fn of(pairs: &[CentredPair], primitives: &[Primitive], bounds: &[Record]) -> Self {

@@ -181,6 +181,18 @@ impl DeviceScene {
         &self.statistics
     }
 
+    /// What it holds of each kind, in bytes, with what a CPU makes of it.
+    pub fn bytes(&self) -> [(&'static str, usize); 6] {
+        [
+            ("node pairs", size_of_val(&self.nodes[..])),
+            ("wide nodes", size_of_val(&self.wide[..])),
+            ("primitives", size_of_val(&self.primitives[..])),
+            ("own boxes", size_of_val(&self.bounds[..])),
+            ("normals", size_of_val(&self.normals[..])),
+            ("nodes and leaves of a CPU", self.bvh8().bytes()),
+        ]
+    }
+
     /// What building the hierarchy took.
     pub fn build_time(&self) -> Duration {
         self.build_time

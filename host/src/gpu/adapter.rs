@@ -28,6 +28,8 @@ pub struct AdapterReport {
     pub max_buffer: u64,
     /// The largest part of a buffer that a kernel sees, in bytes.
     pub max_binding: u64,
+    /// Its own memory in bytes, where Vulkan tells it.
+    pub memory: Option<u64>,
     /// Can it time kernels?
     pub timestamps: bool,
 }
@@ -46,6 +48,7 @@ impl AdapterReport {
             subgroup: (info.subgroup_min_size, info.subgroup_max_size),
             max_buffer: limits.max_buffer_size,
             max_binding: limits.max_storage_buffer_binding_size,
+            memory: memory(adapter),
             timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
             backend: match info.backend {
                 wgpu::Backend::Dx12 => "Direct3D 12".to_owned(),
@@ -59,6 +62,26 @@ impl AdapterReport {
     pub fn is_software(&self) -> bool {
         self.kind == SOFTWARE
     }
+}
+
+/// The largest heap of a device's own memory.
+#[cfg(not(target_vendor = "apple"))]
+fn memory(adapter: &wgpu::Adapter) -> Option<u64> {
+    /// `VK_MEMORY_HEAP_DEVICE_LOCAL_BIT`
+    const OWN: u32 = 1;
+    // SAFETY: the device is asked a question that changes nothing, while the adapter keeps its handle.
+    let answer = unsafe {
+        let adapter = adapter.as_hal::<wgpu::hal::api::Vulkan>()?;
+        let instance = adapter.shared_instance().raw_instance();
+        instance.get_physical_device_memory_properties(adapter.raw_physical_device())
+    };
+    let heaps = answer.memory_heaps_as_slice().iter();
+    heaps.filter(|heap| heap.flags.as_raw() & OWN != 0).map(|heap| heap.size).max()
+}
+
+#[cfg(target_vendor = "apple")]
+fn memory(_: &wgpu::Adapter) -> Option<u64> {
+    None
 }
 
 const SOFTWARE: &str = "software";

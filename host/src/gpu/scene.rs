@@ -3,6 +3,7 @@
 use eyerays_shader::data::Effects;
 use eyerays_shader::resources::{RESOURCES, binding};
 
+use super::adapter::AdapterReport;
 use super::device::Gpu;
 use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
@@ -54,11 +55,14 @@ impl SceneBuffers {
     /// out.
     ///
     /// # Errors
-    /// If a part is larger than a buffer, or what the GPU reports.
+    /// If a part is larger than a buffer or all of it than the GPU's memory, before anything is uploaded; or what the GPU
+    /// reports.
     pub fn new(gpu: &Gpu, packed: &DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
         let records = SceneRecords::new(packed, layout, hierarchies);
-        let used = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty());
-        used.map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?)))
+        let used: Vec<_> = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect();
+        check(&gpu.report, &used)?;
+        used.into_iter()
+            .map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?)))
             .collect::<Result<_>>()
             .map(SceneBuffers)
     }
@@ -82,17 +86,23 @@ impl From<&Plan> for Hierarchies {
     }
 }
 
+/// Refuses what no buffer or not all of the memory can hold.
+fn check(gpu: &AdapterReport, buffers: &[(u32, &[u8])]) -> Result<()> {
+    let within = |what, bytes, limit| {
+        if bytes <= limit { Ok(()) } else { Err(Error::TooLarge { device: gpu.name.clone(), what, bytes, limit }) }
+    };
+    let mut sum = 0;
+    for &(binding, bytes) in buffers {
+        let (name, bytes) = (RESOURCES[binding as usize].name, bytes.len() as u64);
+        within(Content::Scene(name.to_owned()), bytes, gpu.max_binding.min(gpu.max_buffer))?;
+        sum += bytes;
+    }
+    within(Content::WholeScene, sum, gpu.memory.unwrap_or(u64::MAX))
+}
+
 /// A read-only buffer.
 fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
-    let (limit, name) = (gpu.report.max_binding.min(gpu.report.max_buffer), RESOURCES[binding as usize].name);
-    if bytes.len() as u64 > limit {
-        return Err(Error::TooLarge {
-            device: gpu.report.name.clone(),
-            what: Content::Scene(name.to_owned()),
-            bytes: bytes.len() as u64,
-            limit,
-        });
-    }
+    let name = RESOURCES[binding as usize].name;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
         label: Some(name),
         size: bytes.len() as u64,
@@ -110,4 +120,36 @@ fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
         .copy_from_slice(bytes);
     buffer.unmap();
     Ok(buffer)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_scene_over_a_buffer_or_over_the_memory_is_refused_with_both_numbers() {
+        let report = AdapterReport {
+            index: 0,
+            name: "small".into(),
+            backend: "Vulkan".into(),
+            kind: "discrete",
+            driver: String::new(),
+            passthrough: true,
+            exact: true,
+            subgroup: (32, 32),
+            max_buffer: 500,
+            max_binding: 100,
+            memory: Some(150),
+            timestamps: true,
+        };
+        let buffers = |lengths: [usize; 2]| {
+            let bytes = &[0; 200];
+            check(&report, &[(binding::NODES, &bytes[..lengths[0]]), (binding::PRIMITIVES, &bytes[..lengths[1]])])
+        };
+        let refused = |lengths| buffers(lengths).expect_err("accepted").message();
+        assert_eq!(buffers([100, 50]), Ok(()));
+        let over = "the scene's nodes take 101 bytes, but \"small\" has buffers of at most 100";
+        assert_eq!(refused([101, 0]), over);
+        assert_eq!(refused([100, 51]), "the scene takes 151 bytes, but \"small\" has 150 bytes of memory");
+    }
 }

@@ -91,6 +91,25 @@ pub struct Scene {
     pub settings: Settings,
 }
 
+impl Scene {
+    /// How many triangles, spheres and disks there are.
+    pub fn primitives(&self) -> usize {
+        self.mesh.triangles.len() + self.spheres.len() + self.disks.len()
+    }
+
+    /// Bytes of its geometry.
+    pub fn bytes(&self) -> usize {
+        let Mesh { positions, normals, triangles, materials } = &self.mesh;
+        let mesh = [
+            size_of_val(&positions[..]),
+            size_of_val(&normals[..]),
+            size_of_val(&triangles[..]),
+            size_of_val(&materials[..]),
+        ];
+        mesh.iter().sum::<usize>() + size_of_val(&self.spheres[..]) + size_of_val(&self.disks[..])
+    }
+}
+
 /// What one `[[mesh]]` of a scene file adds to the scene, or the bare mesh file.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Part {

@@ -42,9 +42,12 @@ impl Convert {
         let write = || output::write_atomically(path, |out| Ok(scene::write(&scene, out)?));
         progress::stage("writing", quiet, write)?;
         if !quiet {
-            let primitives = scene.mesh.triangles.len() + scene.spheres.len() + scene.disks.len();
             let bytes = std::fs::metadata(path).map_or(0, |file| file.len());
-            console::say(format_args!("{}: {}, {bytes} bytes", path.display(), plural(primitives, "primitive")));
+            console::say(format_args!(
+                "{}: {}, {bytes} bytes",
+                path.display(),
+                plural(scene.primitives(), "primitive")
+            ));
         }
         Ok(ExitCode::SUCCESS)
     }

@@ -11,6 +11,7 @@ use eyerays_bvh::Statistics;
 use serde_json::{Value, json};
 
 use super::choice::choice;
+use super::footprint::Footprint;
 use super::options::Read;
 use super::outline::Outline;
 use super::{console, progress};
@@ -72,16 +73,18 @@ impl Info {
             rows.push(row.json());
             // The kernels are the same for all, and cutting them takes time.
             if Some(bvh) == qualities.last() {
-                cost = Some(Cost::of(&packed, true, Traversal::default()));
+                let paid = Cost::of(&packed, true, Traversal::default());
+                cost = Some((paid, Footprint::of(&scene, &packed)));
             }
         }
-        let cost = cost.expect("one quality at least");
+        let (cost, footprint) = cost.expect("one quality at least");
         if !self.json {
-            return console::print(&paid(&cost));
+            return console::print(&format!("{footprint}{}", paid(&cost)));
         }
         let mut json = outline.json();
         json["scene"] = path.display().to_string().into();
         json["hierarchies"] = rows.into();
+        json["host"] = footprint.json();
         json["gpu"] = json!({
             "kernels": cost.kernels,
             "scene_bytes": cost.scene.iter().copied().collect::<BTreeMap<_, _>>(),
@@ -146,13 +149,14 @@ fn describe(a: &AdapterReport) -> String {
     let precisions = if a.exact { "exact and fast" } else { "fast" };
     format!(
         "{} \"{}\" ({}, {})\n  driver             {}\n  precisions         {precisions}\n  SPIR-V passthrough {}\n  \
-         subgroup           {lanes} lanes\n  largest buffer     {} bytes, {} in a kernel\n  timestamps         {}\n",
+         subgroup           {lanes} lanes\n  memory             {}\n  largest buffer     {} bytes, {} in a kernel\n  timestamps         {}\n",
         a.index,
         a.name,
         a.kind,
         a.backend,
         a.driver,
         yes(a.passthrough),
+        a.memory.map_or("unknown".into(), |bytes| format!("{bytes} bytes")),
         a.max_buffer,
         a.max_binding,
         yes(a.timestamps)

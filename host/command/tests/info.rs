@@ -36,7 +36,7 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let table = place.succeed(&["info", &path]);
     let json = place.succeed(&["info", &path, "--json"]).json();
     let rows = table.text().lines().skip_while(|line| !line.starts_with("BVH")).skip(1);
-    let rows = rows.take_while(|line| !line.starts_with("kernel of a GPU"));
+    let rows = rows.take_while(|line| !line.starts_with("memory of the host"));
     let rows: Vec<Vec<&str>> = rows.map(|line| line.split_whitespace().collect()).collect();
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
@@ -59,6 +59,12 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let one = place.succeed(&["info", &path, "--bvh", "medium", "--json"]).json()["hierarchies"].take();
     assert_eq!(one.as_array().map(Vec::len), Some(1));
     assert_eq!(one[0]["bvh"], "medium");
+    // What it takes of the host.
+    let bytes = &json["host"]["bytes"];
+    assert_eq!(bytes["primitives"], json["hierarchies"][2]["primitive_bytes"]);
+    assert_eq!(bytes["the scene as read"], scene.bytes());
+    let held = format!("primitives {:>39}", bytes["primitives"].as_u64().unwrap());
+    assert!(table.text().lines().any(|line| line.starts_with(&held)), "{}", table.text());
     // What a GPU would run and hold for it.
     let last = table.text().lines().skip_while(|line| !line.starts_with("kernel of a GPU")).collect::<Vec<_>>();
     let kernels = json["gpu"]["kernels"].as_array().unwrap();

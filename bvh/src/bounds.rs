@@ -65,6 +65,11 @@ impl Bounds {
         (self.min.cmple(other.min) & self.max.cmpge(other.max)).all()
     }
 
+    /// Is it a box, and inside another one?
+    pub fn is_part_of(self, whole: Self) -> bool {
+        self.min.cmple(self.max).all() && whole.contains(self)
+    }
+
     /// Twice the centre, which spares a rounding.
     pub fn centre(self) -> Vec3A {
         self.min + self.max

@@ -72,6 +72,26 @@ pub enum BuildError {
         /// Primitives there are.
         primitives: usize,
     },
+    /// There are not as many own boxes as slots.
+    #[error("there are {order} slots and {bounds} boxes of them: rebuild the hierarchy")]
+    Slots {
+        /// Slots.
+        order: usize,
+        /// Boxes.
+        bounds: usize,
+    },
+    /// A slot has no primitive, or a box that is none of its primitive's.
+    #[error("slot {slot} has another box than its primitive: rebuild the hierarchy")]
+    BoxElsewhere {
+        /// The slot.
+        slot: u32,
+    },
+    /// A box reaches farther than what is below it.
+    #[error("pair {pair} has a box larger than what is below it: rebuild the hierarchy")]
+    BoxTooLarge {
+        /// The pair.
+        pair: u32,
+    },
     /// Two leaves share a slot, or two slots a primitive.
     #[error("primitive {primitive} sits in two places: rebuild the hierarchy")]
     PrimitiveTwice {

@@ -14,6 +14,7 @@ mod build;
 mod cluster;
 mod depth;
 mod error;
+mod kept;
 mod layout;
 mod median;
 mod morton;

@@ -65,7 +65,7 @@ pub fn split(primitives: &[Primitive], budget: f32) -> Result<References, BuildE
 }
 
 /// Neither areas nor clipping can handle NaN.
-fn check_coordinates(primitives: &[Primitive]) -> Result<(), BuildError> {
+pub(crate) fn check_coordinates(primitives: &[Primitive]) -> Result<(), BuildError> {
     let normalised = |p: &Primitive| {
         if p.is_triangle() {
             let coordinates = p.vertices().map(|v| v.to_array());

@@ -1,0 +1,87 @@
+//! Whether a hierarchy that was kept is still one of its primitives.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use eyerays_shader::data::{NodePair, NodeRef, Primitive};
+use rayon::prelude::*;
+
+use crate::{
+    BuildError, Bvh,
+    bounds::Bounds,
+    build::check_count,
+    reference::check_coordinates,
+    validate::{children, is_empty, validate},
+    wide::validate_wide,
+};
+
+impl Bvh {
+    /// Checks a hierarchy that [`build`](crate::build()) did not make just now: whether it keeps all that `build` promises,
+    /// and whether its own boxes are those of the primitives, or parts that reach as far together.
+    ///
+    /// # Errors
+    ///
+    /// A rule that is broken.
+    pub fn check(&self, primitives: &[Primitive]) -> Result<(), BuildError> {
+        check_count(primitives.len())?;
+        check_count(self.order.len())?;
+        check_coordinates(primitives)?;
+        if self.order.len() != self.bounds.len() {
+            return Err(BuildError::Slots { order: self.order.len(), bounds: self.bounds.len() });
+        }
+        self.check_own(primitives)?;
+        let proofs = rayon::join(|| validate(&self.nodes, &self.bounds), || validate_wide(&self.wide, &self.bounds));
+        proofs.0.and(proofs.1)?;
+        let loose = self.nodes.par_iter().position_first(|pair| !self.is_tight(pair));
+        loose.map_or(Ok(()), |pair| Err(BuildError::BoxTooLarge { pair: pair as u32 }))
+    }
+
+    /// Checks that every primitive has its box in a slot, or parts of it in several.
+    fn check_own(&self, primitives: &[Primitive]) -> Result<(), BuildError> {
+        let met: Vec<AtomicBool> = primitives.iter().map(|_| AtomicBool::new(false)).collect();
+        let has_met = |primitive: u32| &met[primitive as usize];
+        let part = |slot| {
+            let primitive = self.order[slot as usize];
+            let whole = primitives.get(primitive as usize).map(Bounds::of);
+            let Some(whole) = whole.filter(|&whole| self.own(slot).is_part_of(whole)) else {
+                return Some(Err(BuildError::BoxElsewhere { slot }));
+            };
+            if whole != self.own(slot) {
+                return Some(Ok((primitive, slot)));
+            }
+            has_met(primitive).store(true, Ordering::Relaxed);
+            None
+        };
+        let slots = (0..self.order.len() as u32).into_par_iter();
+        let mut parts: Vec<(u32, u32)> = slots.filter_map(part).collect::<Result<_, _>>()?;
+        parts.par_sort_unstable();
+        parts.par_chunk_by(|a, b| a.0 == b.0).for_each(|parts| {
+            let all = Bounds::around(parts.iter().map(|&(_, slot)| self.own(slot)));
+            let primitive = parts[0].0;
+            if all == Bounds::of(&primitives[primitive as usize]) {
+                has_met(primitive).store(true, Ordering::Relaxed);
+            }
+        });
+        match met.into_iter().position(|met| !met.into_inner()) {
+            Some(primitive) => Err(BuildError::PrimitiveLost { primitive: primitive as u32 }),
+            None => Ok(()),
+        }
+    }
+
+    fn own(&self, slot: u32) -> Bounds {
+        Bounds::read(&self.bounds[slot as usize])
+    }
+
+    /// Are both boxes of a validated pair no larger than what is below them?
+    fn is_tight(&self, pair: &NodePair) -> bool {
+        children(pair).into_iter().all(|(bounds, below)| is_empty(bounds, below) || bounds == self.around(below))
+    }
+
+    fn around(&self, below: NodeRef) -> Bounds {
+        let first = below.index();
+        if below.is_leaf() {
+            return Bounds::around((first..first + below.count()).map(|slot| self.own(slot)));
+        }
+        let [(left, _), (right, _)] = children(&self.nodes[first as usize]);
+        left.union(right)
+    }
+}

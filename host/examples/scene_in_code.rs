@@ -81,5 +81,6 @@ fn scene() -> Scene {
         background: Background::Colour(vec3(0.2, 0.3, 0.5)),
         ambient: Vec3::ONE,
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
+        hierarchy: None,
     }
 }

@@ -17,6 +17,7 @@ pub fn empty() -> Scene {
         background: Background::Colour(Vec3::ZERO),
         ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
+        hierarchy: None,
     }
 }
 

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{Bvh8, Quality, Statistics};
+use eyerays_bvh::{BuildError, Bvh, Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
     Normals, Primitive, Specialisation, pack,
@@ -60,7 +60,7 @@ pub struct DeviceScene {
 }
 
 impl DeviceScene {
-    /// Normalises, builds the hierarchy and packs.
+    /// Normalises, builds the hierarchy or takes the one that the scene brings along, and packs.
     ///
     /// # Errors
     /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
@@ -71,14 +71,10 @@ impl DeviceScene {
         let emissive = scene.materials.iter().find(|m| m.emission != Vec3::ZERO).map(|m| m.name.clone());
         check::emission(emissive.as_deref(), settings.transport.integrator)?;
         let effects = records::effects(scene);
-        // The cells of a checkerboard are counted from the world's origin.
-        let normalisation = Normalisation::of(scene.extremes(), !effects.has(Effects::CHECKER));
-        let primitives = records::primitives(scene, &normalisation);
+        let (normalisation, primitives) = normalised(scene);
         let start = Instant::now();
-        let refused = |e: eyerays_bvh::BuildError| Error::new(e.to_string());
-        let references = eyerays_bvh::split(&primitives, SPLIT_BUDGET).map_err(refused)?;
-        let is_split = references.list.len() > primitives.len();
-        let bvh = eyerays_bvh::build(&references, quality).map_err(refused)?;
+        let bvh = kept_or_built(scene, &primitives, quality)?;
+        let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
         let statistics = Statistics::of(&bvh, &primitives);
@@ -286,6 +282,35 @@ impl DeviceScene {
             ..Frame::default()
         }
     }
+}
+
+/// The hierarchy that kernels find a scene's primitives by: the one that the scene brings along if it has this quality,
+/// checked, or a new one.
+///
+/// # Errors
+/// As [`DeviceScene::new`].
+pub fn hierarchy(scene: &Scene, quality: Quality) -> Result<Bvh> {
+    scene.check()?;
+    kept_or_built(scene, &normalised(scene).1, quality)
+}
+
+fn normalised(scene: &Scene) -> (Normalisation, Vec<Primitive>) {
+    // The cells of a checkerboard are counted from the world's origin.
+    let moves = !records::effects(scene).has(Effects::CHECKER);
+    let normalisation = Normalisation::of(scene.extremes(), moves);
+    let primitives = records::primitives(scene, &normalisation);
+    (normalisation, primitives)
+}
+
+fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> Result<Bvh> {
+    if let Some(kept) = scene.hierarchy.as_ref().filter(|kept| kept.quality().quality() == quality) {
+        let bvh = kept.read();
+        let fault = |e: BuildError| format!("the hierarchy that the scene brings along is not its own: {e}");
+        return bvh.check(primitives).map(|()| bvh).map_err(|e| Error::new(fault(e)));
+    }
+    let refused = |e: BuildError| Error::new(e.to_string());
+    let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
+    eyerays_bvh::build(&references, quality).map_err(refused)
 }
 
 fn lights(lights: &[Light], normalisation: &Normalisation) -> Result<Vec<LightRecord>> {

@@ -148,7 +148,7 @@ mod tests {
         };
         let refused = |lengths| buffers(lengths).expect_err("accepted").message();
         assert_eq!(buffers([100, 50]), Ok(()));
-        let over = "the scene's nodes take 101 bytes, but \"small\" has buffers of at most 100";
+        let over = "the scene's hierarchy take 101 bytes, but \"small\" has buffers of at most 100";
         assert_eq!(refused([101, 0]), over);
         assert_eq!(refused([100, 51]), "the scene takes 151 bytes, but \"small\" has 150 bytes of memory");
     }

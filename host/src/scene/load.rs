@@ -68,6 +68,7 @@ fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         background: frame::background(),
         ambient: Vec3::splat(0.2),
         settings: Settings::default(),
+        hierarchy: None,
     };
     Ok((framed(path, scene)?, obj.warnings))
 }
@@ -139,6 +140,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         background: background.unwrap_or(Background::Colour(Vec3::ZERO)),
         ambient: ambient.unwrap_or(Vec3::ZERO),
         settings,
+        hierarchy: None,
     };
     Ok((framed(path, scene)?, warnings))
 }

@@ -40,7 +40,7 @@ mod xyzr;
 #[cfg(test)]
 mod tests;
 
-pub use binary::{ENDING, write};
+pub use binary::{ENDING, Hierarchy, write};
 pub use frame::default_camera;
 pub use load::{load, read_table};
 pub use primitive::{Disk, Primitives, Sphere};
@@ -89,6 +89,9 @@ pub struct Scene {
     pub ambient: Vec3,
     /// What the scene file asks of a rendering; the command line has the last word.
     pub settings: Settings,
+    /// What a binary scene brings along to be built no more. It is of this geometry alone: who changes that sets this to
+    /// `None`, or the scene is refused.
+    pub hierarchy: Option<Hierarchy>,
 }
 
 impl Scene {

@@ -3,12 +3,15 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use crate::quality;
 use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Part, Scene, Settings, Sphere, Unplaced};
 
 /// The fields of a [`Scene`] but for its geometry and the files that it came from.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
+    /// The quality of the hierarchy, if there is one.
+    pub hierarchy: Option<quality::Bvh>,
     ambient: Vec3,
     background: Background,
     settings: Settings,
@@ -19,9 +22,10 @@ pub struct Description {
 }
 
 impl Description {
-    /// That of a scene.
-    pub fn of(scene: &Scene) -> Self {
+    /// That of a scene with a hierarchy of this quality.
+    pub fn of(scene: &Scene, hierarchy: Option<quality::Bvh>) -> Self {
         Description {
+            hierarchy,
             ambient: scene.ambient,
             background: scene.background,
             settings: scene.settings,
@@ -52,15 +56,16 @@ impl Description {
         toml::to_string(self).map_err(|error| error.to_string())
     }
 
-    /// The scene of this geometry.
+    /// The scene of this geometry, without a hierarchy.
     pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>) -> Scene {
-        let Description { ambient, background, settings, parts, materials, lights, cameras } = self;
+        let Description { hierarchy: _, ambient, background, settings, parts, materials, lights, cameras } = self;
         Scene {
             mesh,
             spheres,
             disks,
             parts,
             files: Vec::new(),
+            hierarchy: None,
             materials,
             lights,
             cameras,

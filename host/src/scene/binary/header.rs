@@ -1,6 +1,9 @@
 //! What a binary scene begins with, and where its sections lie.
 
+use std::ops::Range;
+
 use bytemuck::{Pod, Zeroable};
+use eyerays_shader::data::{Bounds, CwbvhNode, NodePair};
 use glam::Vec3;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -16,7 +19,7 @@ pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.
 const BLOCK: usize = 1 << 20;
 /// Sections of a file.
-pub const SECTIONS: usize = 7;
+pub const SECTIONS: usize = 11;
 
 /// The first bytes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -43,20 +46,29 @@ pub struct Counts {
     pub triangles: u64,
     pub spheres: u64,
     pub disks: u64,
+    /// Of the hierarchy; all zero without one.
+    pub pairs: u64,
+    pub wide: u64,
+    /// Each has a primitive and a box.
+    pub slots: u64,
 }
 
 impl Counts {
     /// The bytes of every section; none where they are more than can be counted.
     fn lengths(&self) -> Option<[usize; SECTIONS]> {
-        let corners = size_of::<[u32; 3]>();
+        let number = size_of::<u32>();
         let sections = [
             (self.description, 1),
             (self.positions, size_of::<Vec3>()),
             (self.normals, size_of::<Vec3>()),
-            (self.triangles, corners),
-            (self.triangles, size_of::<u32>()),
+            (self.triangles, 3 * number),
+            (self.triangles, number),
             (self.spheres, size_of::<Sphere>()),
             (self.disks, size_of::<Disk>()),
+            (self.pairs, size_of::<NodePair>()),
+            (self.wide, size_of::<CwbvhNode>()),
+            (self.slots, number),
+            (self.slots, size_of::<Bounds>()),
         ];
         let mut lengths = [0; SECTIONS];
         for (length, (count, size)) in lengths.iter_mut().zip(sections) {
@@ -66,17 +78,20 @@ impl Counts {
     }
 }
 
+/// Where the sections of a file lie.
+pub type Sections = [Range<usize>; SECTIONS];
+
 impl Header {
     /// The header of these sections.
     pub fn of(counts: Counts, sections: &[&[u8]; SECTIONS]) -> Self {
         Header { magic: MAGIC, version: VERSION, reserved: 0, hash: hash(&counts, sections), counts }
     }
 
-    /// Splits a file into its header and its sections.
+    /// The header of a file, and where its sections lie, all of them inside.
     ///
     /// # Errors
     /// It is not of this form, of another version, or not as long as its header says.
-    pub fn split(file: &[u8]) -> Unplaced<(Header, [&[u8]; SECTIONS])> {
+    pub fn read(file: &[u8]) -> Unplaced<(Header, Sections)> {
         let Some(header) = file.get(..size_of::<Header>()).filter(|start| start.starts_with(&MAGIC)) else {
             return Err("this is no binary scene; write one with eyerays convert".into());
         };
@@ -85,7 +100,7 @@ impl Header {
             let version = header.version;
             return Err(format!("version {version} of the binary form, and {VERSION} is what is read; {AGAIN}"));
         }
-        let sections = header.counts.lengths().and_then(|lengths| sections(file, lengths));
+        let sections = header.counts.lengths().and_then(|lengths| sections(lengths, file.len()));
         sections.map(|sections| (header, sections)).ok_or_else(|| {
             format!("its {} bytes are not what its header tells, as if it were cut off; {AGAIN}", file.len())
         })
@@ -107,23 +122,23 @@ impl Header {
 const AGAIN: &str = "write it again with eyerays convert";
 
 /// The sections of a file, if they are all of it.
-fn sections(file: &[u8], lengths: [usize; SECTIONS]) -> Option<[&[u8]; SECTIONS]> {
-    let mut sections = [&file[..0]; SECTIONS];
+fn sections(lengths: [usize; SECTIONS], file: usize) -> Option<Sections> {
+    let mut sections = [const { 0..0 }; SECTIONS];
     let mut end = size_of::<Header>();
     for (section, length) in sections.iter_mut().zip(lengths) {
         let start = end.checked_next_multiple_of(ALIGNMENT)?;
         end = start.checked_add(length)?;
-        *section = file.get(start..end)?;
+        *section = start..end;
     }
-    (end == file.len()).then_some(sections)
+    (end == file).then_some(sections)
 }
 
 /// The hash of the counts and of every section's hash, which is that of its blocks' hashes: threads share them.
 fn hash(counts: &Counts, sections: &[&[u8]; SECTIONS]) -> [u8; 32] {
-    let of_block = |block: &[u8]| -> [u8; 32] { Sha256::digest(block).into() };
-    let of_section =
-        |section: &&[u8]| Sha256::digest(section.par_chunks(BLOCK).map(of_block).collect::<Vec<_>>().as_flattened());
     let mut all = Sha256::new_with_prefix(bytemuck::bytes_of(counts));
-    sections.iter().for_each(|section| all.update(of_section(section)));
+    for section in sections {
+        let blocks = section.par_chunks(BLOCK).map(|block| -> [u8; 32] { Sha256::digest(block).into() });
+        all.update(Sha256::digest(blocks.collect::<Vec<_>>().as_flattened()));
+    }
     all.finalize().into()
 }

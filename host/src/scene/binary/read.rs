@@ -1,12 +1,15 @@
 //! Reading binary scenes.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use bytemuck::Pod;
 use memmap2::Mmap;
 use rayon::prelude::*;
 
-use super::{description::Description, header::Header};
+use super::description::Description;
+use super::header::Header;
+use super::hierarchy::{Bytes, Hierarchy};
 use crate::error::{Error, Result};
 use crate::scene::{Mesh, Scene, Unplaced, budget::Budget, file};
 
@@ -17,29 +20,34 @@ use crate::scene::{Mesh, Scene, Unplaced, budget::Budget, file};
 pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
     let scene = || {
         let file = file::open(path, u64::MAX)?;
-        // SAFETY: the mapping is read-only and ends with this function. Another process that changed the file meanwhile
-        // would change what is read, and all of that is copied before it is checked.
+        // SAFETY: the mapping is read-only. Another process that changes the file meanwhile changes what is read, and what
+        // is read is copied before it is checked.
         let bytes = unsafe { Mmap::map(&file) }.map_err(|error| file::explain(&error))?;
-        parse(&bytes, budget)
+        parse(Arc::new(bytes), budget)
     };
     scene().map_err(|fault: String| Error::file(path, fault))
 }
 
 /// The scene in these bytes.
-pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
-    let (header, sections) = Header::split(bytes)?;
-    header.check(&sections)?;
+pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
+    let (header, sections) = Header::read((*bytes).as_ref())?;
+    let all = sections.clone().map(|section| &(*bytes).as_ref()[section]);
+    header.check(&all)?;
     let counts = header.counts;
     budget.check(counts.triangles as usize, counts.positions as usize)?;
     budget.check_round(counts.spheres as usize + counts.disks as usize)?;
-    let [description, positions, normals, triangles, materials, spheres, disks] = sections;
+    let [description, positions, normals, triangles, materials, spheres, disks, ..] = all;
     let mesh = Mesh {
         positions: list(positions),
         normals: list(normals),
         triangles: list(triangles),
         materials: list(materials),
     };
-    let scene = Description::parse(description)?.scene(mesh, list(spheres), list(disks));
+    let description = Description::parse(description)?;
+    let [.., pairs, wide, order, bounds] = sections;
+    let kept =
+        description.hierarchy.map(|quality| Hierarchy::new(quality, bytes.clone(), [pairs, wide, order, bounds]));
+    let scene = Scene { hierarchy: kept, ..description.scene(mesh, list(spheres), list(disks)) };
     if scene.cameras.is_empty() {
         return Err("it has no camera".into());
     }
@@ -48,6 +56,6 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
 }
 
 /// A section's records.
-fn list<T: Pod + Send>(bytes: &[u8]) -> Vec<T> {
+pub fn list<T: Pod + Send>(bytes: &[u8]) -> Vec<T> {
     bytes.par_chunks_exact(size_of::<T>()).map(bytemuck::pod_read_unaligned).collect()
 }

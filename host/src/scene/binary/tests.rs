@@ -1,5 +1,5 @@
 use std::path::Path;
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use bytemuck::bytes_of;
 use proptest::prelude::*;
@@ -7,7 +7,10 @@ use proptest::prelude::*;
 use super::header::Header;
 use super::read::parse;
 use super::write;
+use crate::device_scene::{DeviceScene, hierarchy};
+use crate::error::Result;
 use crate::memory::Room;
+use crate::quality::Bvh;
 use crate::scene::{Light, Scene, Unplaced, budget::Budget, load};
 
 /// A scene of a text form, and no files, as binary ones have none.
@@ -18,24 +21,34 @@ fn text(path: &str) -> Scene {
 
 fn binary(scene: &Scene) -> Vec<u8> {
     let mut bytes = Vec::new();
-    write(scene, &mut bytes).expect("a scene in range");
+    write(scene, None, &mut bytes).expect("a scene in range");
     bytes
 }
 
 fn read(bytes: &[u8]) -> Unplaced<Scene> {
-    parse(bytes, Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
+    parse(Arc::new(bytes.to_vec()), Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
 }
 
 /// Gives a file the hash of what it holds, if it is whole.
 fn sign(bytes: &mut [u8]) {
-    if let Ok((header, sections)) = Header::split(bytes) {
-        let header = Header::of(header.counts, &sections);
+    if let Ok((header, sections)) = Header::read(bytes) {
+        let header = Header::of(header.counts, &sections.map(|section| &bytes[section]));
         bytes[..size_of::<Header>()].copy_from_slice(bytes_of(&header));
     }
 }
 
-/// All that a scene file can say, and primitives of every kind.
-static EXAMPLE: LazyLock<Vec<u8>> = LazyLock::new(|| binary(&text("src/scene/example.toml")));
+/// All that a scene file can say, primitives of every kind, and their hierarchy.
+static EXAMPLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let scene = text("src/scene/example.toml");
+    let bvh = hierarchy(&scene, Bvh::Fast.quality()).expect("a hierarchy");
+    let mut bytes = Vec::new();
+    write(&scene, Some((Bvh::Fast, &bvh)), &mut bytes).expect("a scene in range");
+    bytes
+});
+
+fn packed(scene: &Scene) -> Result<DeviceScene> {
+    DeviceScene::new(scene, scene.settings, Bvh::Fast.quality())
+}
 
 #[test]
 fn every_scene_is_the_same_in_either_form() {
@@ -45,6 +58,19 @@ fn every_scene_is_the_same_in_either_form() {
         let scene = text(&name);
         assert_eq!(read(&binary(&scene)), Ok(scene), "{name}");
     }
+}
+
+#[test]
+fn a_hierarchy_is_taken_as_it_was_built_unless_it_is_that_of_another_geometry() {
+    let mut scene = read(&EXAMPLE).expect("a scene");
+    let [kept, built] = [packed(&scene), packed(&text("src/scene/example.toml"))].map(|packed| packed.unwrap());
+    assert!(kept.nodes() == built.nodes() && kept.wide() == built.wide() && kept.bounds() == built.bounds());
+    assert!(kept.primitives() == built.primitives());
+    scene.mesh.positions.iter_mut().for_each(|position| position.y = -position.y);
+    let refused = packed(&scene).err().expect("accepted").message();
+    assert!(refused.starts_with("the hierarchy that the scene brings along is not its own: "), "{refused}");
+    scene.hierarchy = None;
+    assert!(packed(&scene).is_ok());
 }
 
 #[test]
@@ -66,7 +92,8 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
 
 #[test]
 fn a_file_for_which_there_is_no_memory_is_refused_before_any_is_taken() {
-    let fault = parse(&EXAMPLE, Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
+    let fault =
+        parse(Arc::new(EXAMPLE.clone()), Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
     assert!(fault.ends_with("this test leaves 0 MB; use fewer"), "{fault}");
 }
 
@@ -74,11 +101,11 @@ fn a_file_for_which_there_is_no_memory_is_refused_before_any_is_taken() {
 fn a_scene_out_of_range_is_not_written_nor_read_under_a_right_hash() {
     let mut scene = text("src/scene/example.toml");
     scene.cameras[0].target = scene.cameras[0].eye;
-    let refused = write(&scene, &mut Vec::new()).expect_err("written").message();
+    let refused = write(&scene, None, &mut Vec::new()).expect_err("written").message();
     assert_eq!(refused, "the camera \"front\" looks at its own eye; move its target");
-    let mut bytes = EXAMPLE.clone();
-    let last = bytes.len() - 4;
-    bytes[last..].copy_from_slice(&u32::MAX.to_le_bytes());
+    let mut bytes = binary(&text("src/scene/example.toml"));
+    let (_, [.., disks, _, _, _, _]) = Header::read(&bytes).unwrap();
+    bytes[disks.end - 4..disks.end].copy_from_slice(&u32::MAX.to_le_bytes());
     sign(&mut bytes);
     let refused = read(&bytes).expect_err("accepted");
     assert!(refused.contains("has material 4294967295, but there are"), "{refused}");
@@ -153,7 +180,12 @@ proptest! {
             sign(&mut bytes);
         }
         match read(&bytes) {
-            Ok(scene) => prop_assert_eq!(scene.check(), Ok(())),
+            // What there is of a hierarchy is checked with the primitives.
+            Ok(scene) => {
+                prop_assert_eq!(scene.check(), Ok(()));
+                let fault = packed(&scene).err().map(|error| error.message());
+                prop_assert!(fault.is_none_or(|fault| !fault.is_empty() && !fault.contains('\n')));
+            }
             Err(fault) => prop_assert!(!fault.is_empty() && !fault.contains('\n'), "{:?}", fault),
         }
     }

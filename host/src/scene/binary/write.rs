@@ -2,20 +2,26 @@
 
 use std::io::Write;
 
+use eyerays_bvh::Bvh;
+
 use super::description::Description;
 use super::header::{ALIGNMENT, Counts, Header};
 use crate::error::{Error, Result};
+use crate::quality;
 use crate::scene::Scene;
 
 /// Writes the binary form of a scene, from which [`load`](crate::scene::load) makes the same scene, but for
-/// [`Scene::files`], which it stands for itself.
+/// [`Scene::files`], which it stands for itself, and with this hierarchy of it
+/// ([`hierarchy`](crate::device_scene::hierarchy)) instead of [`Scene::hierarchy`].
 ///
 /// # Errors
 /// What [`Scene::check`] refuses, and what keeps `out` from being written.
-pub fn write(scene: &Scene, out: &mut dyn Write) -> Result<()> {
+pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
-    let description = Description::of(scene).text().map_err(Error::new)?;
+    let description = Description::of(scene, hierarchy.map(|(quality, _)| quality)).text().map_err(Error::new)?;
     let mesh = &scene.mesh;
+    let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
+    let bvh = hierarchy.map_or(&none, |(_, bvh)| bvh);
     let counts = Counts {
         description: description.len() as u64,
         positions: mesh.positions.len() as u64,
@@ -23,6 +29,9 @@ pub fn write(scene: &Scene, out: &mut dyn Write) -> Result<()> {
         triangles: mesh.triangles.len() as u64,
         spheres: scene.spheres.len() as u64,
         disks: scene.disks.len() as u64,
+        pairs: bvh.nodes.len() as u64,
+        wide: bvh.wide.len() as u64,
+        slots: bvh.order.len() as u64,
     };
     let sections = [
         description.as_bytes(),
@@ -32,6 +41,10 @@ pub fn write(scene: &Scene, out: &mut dyn Write) -> Result<()> {
         bytemuck::cast_slice(&mesh.materials),
         bytemuck::cast_slice(&scene.spheres),
         bytemuck::cast_slice(&scene.disks),
+        bytemuck::cast_slice(&bvh.nodes),
+        bytemuck::cast_slice(&bvh.wide),
+        bytemuck::cast_slice(&bvh.order),
+        bytemuck::cast_slice(&bvh.bounds),
     ];
     let mut end = 0;
     let header = Header::of(counts, &sections);

@@ -30,6 +30,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         background: Background::Colour(Vec3::ZERO),
         ambient: Vec3::ZERO,
         settings: Settings::default(),
+        hierarchy: None,
     }
 }
 

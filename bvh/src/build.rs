@@ -1,6 +1,7 @@
 //! From references to a hierarchy.
 
 use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, MAX_LEAF, NodePair, NodeRef};
+use rayon::prelude::*;
 
 use crate::{
     BuildError, MAX_DEPTH, Quality, Reference, References,
@@ -31,8 +32,8 @@ impl Bvh {
     /// # Panics
     ///
     /// If there are fewer items than primitives.
-    pub fn gather<T: Copy>(&self, items: &[T]) -> Vec<T> {
-        self.order.iter().map(|&i| items[i as usize]).collect()
+    pub fn gather<T: Copy + Send + Sync>(&self, items: &[T]) -> Vec<T> {
+        self.order.par_iter().map(|&i| items[i as usize]).collect()
     }
 }
 
@@ -51,7 +52,7 @@ pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildErro
     let list = &references.list;
     check_count(list.len())?;
     check_boxes(list)?;
-    let bounds: Vec<Bounds> = list.iter().map(|r| Bounds::read(&r.bounds)).collect();
+    let bounds: Vec<Bounds> = list.par_iter().map(|r| Bounds::read(&r.bounds)).collect();
     let (mut nodes, mut order) = match bounds[..] {
         [only] => (vec![layout::single(only)], vec![0]),
         _ => {
@@ -67,8 +68,8 @@ pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildErro
     let bvh = Bvh {
         nodes,
         wide: wide.nodes,
-        order: order.iter().map(|slot| at(slot).primitive).collect(),
-        bounds: order.iter().map(|slot| at(slot).bounds).collect(),
+        order: order.par_iter().map(|slot| at(slot).primitive).collect(),
+        bounds: order.par_iter().map(|slot| at(slot).bounds).collect(),
     };
     let proofs = rayon::join(|| validate(&bvh.nodes, &bvh.bounds), || validate_wide(&bvh.wide, &bvh.bounds));
     proofs.0.and(proofs.1)?;
@@ -105,7 +106,7 @@ fn check_boxes(references: &[Reference]) -> Result<(), BuildError> {
         let Bounds { min, max } = Bounds::read(&reference.bounds);
         (0..3).all(|i| -MOST <= min[i] && min[i] <= max[i] && max[i] <= MOST)
     };
-    match references.iter().position(|r| !normalised(r)) {
+    match references.par_iter().position_first(|r| !normalised(r)) {
         Some(reference) => Err(BuildError::Reference { reference: reference as u32 }),
         None => Ok(()),
     }

@@ -1,6 +1,7 @@
 //! What a hierarchy is built over.
 
 use eyerays_shader::data::{Bounds as Record, Primitive};
+use rayon::prelude::*;
 
 use crate::{
     BuildError,
@@ -74,7 +75,7 @@ pub(crate) fn check_coordinates(primitives: &[Primitive]) -> Result<(), BuildErr
         let Bounds { min, max } = Bounds::of(p);
         p.radius() > 0.0 && (0..3).all(|i| -MOST <= min[i] && max[i] <= MOST)
     };
-    match primitives.iter().find(|p| !normalised(p)) {
+    match primitives.par_iter().find_first(|p| !normalised(p)) {
         Some(p) => Err(BuildError::Coordinate { primitive: p.number() }),
         None => Ok(()),
     }

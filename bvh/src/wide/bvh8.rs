@@ -3,6 +3,7 @@
 
 use eyerays_shader::bvh8::{Bvh8Node, Bvh8Ref, Bvh8View, LeafKind, MOST, Mixed4, Sphere4, Triangle4};
 use eyerays_shader::data::{Bounds as Record, CentredPair, NodeRef, Primitive};
+use rayon::prelude::*;
 
 use super::{
     binary::{Binary, Node},
@@ -38,8 +39,8 @@ impl Bvh8 {
     /// unless triangles are split.
     pub fn of(pairs: &[CentredPair], primitives: &[Primitive], bounds: &[Record]) -> Self {
         let bounds: Vec<Bounds> = match bounds {
-            [] => primitives.iter().map(Bounds::of).collect(),
-            split => split.iter().map(Bounds::read).collect(),
+            [] => primitives.par_iter().map(Bounds::of).collect(),
+            split => split.par_iter().map(Bounds::read).collect(),
         };
         let leaves = Leaves { most: MOST as u32, fixed: TRIANGLE4, triangle: 0.0 };
         let (tree, order) = binary(pairs, &bounds, leaves.most);
@@ -99,14 +100,14 @@ fn binary(pairs: &[CentredPair], bounds: &[Bounds], most: u32) -> (Binary, Vec<u
         let slots = order.get(first..first + reference.count() as usize).unwrap_or_default();
         (Bounds::around(slots.iter().map(|&slot| bounds[slot as usize])), reference)
     };
-    let boxes: Vec<_> = references.iter().map(|pair| pair.map(boxed)).collect();
+    let boxes: Vec<_> = references.par_iter().map(|pair| pair.map(boxed)).collect();
     let tree = Binary::of(boxes.into_iter(), &mut order, bounds, most);
     (tree, order)
 }
 
 /// The references of every pair, with slots counted in depth-first order, and the slot at each of these places.
 fn depth_first(pairs: &[CentredPair], slots: usize) -> (Vec<[NodeRef; 2]>, Vec<u32>) {
-    let mut references: Vec<[NodeRef; 2]> = pairs.iter().map(|p| [p.left(), p.right()]).collect();
+    let mut references: Vec<[NodeRef; 2]> = pairs.par_iter().map(|p| [p.left(), p.right()]).collect();
     let mut order = Vec::with_capacity(slots);
     if slots == 1 {
         return (references, vec![0]);

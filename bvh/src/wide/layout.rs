@@ -118,15 +118,15 @@ impl Wide {
         for (slot, &old) in (0..).zip(&self.slots) {
             new[old as usize] = slot;
         }
-        *order = self.slots.iter().map(|&old| order[old as usize]).collect();
+        *order = self.slots.par_iter().map(|&old| order[old as usize]).collect();
         let moved = |reference: u32| match NodeRef(reference) {
             leaf if leaf.is_leaf() => NodeRef::leaf(new[leaf.index() as usize], leaf.count()).0,
             inner => inner.0,
         };
-        for pair in pairs {
+        pairs.par_iter_mut().for_each(|pair| {
             pair.left_min.w = moved(pair.left_min.w);
             pair.right_min.w = moved(pair.right_min.w);
-        }
+        });
     }
 }
 

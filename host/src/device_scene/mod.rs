@@ -24,6 +24,7 @@ pub use words::{NodeWords, PrimitiveWords};
 
 use glam::Vec3;
 use lighting::Lamps;
+use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::method::Traversal;
@@ -77,8 +78,7 @@ impl DeviceScene {
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
-        let statistics = Statistics::of(&bvh, &primitives);
-        let primitives = bvh.gather(&primitives);
+        let (statistics, primitives) = rayon::join(|| Statistics::of(&bvh, &primitives), || bvh.gather(&primitives));
         let lights = lights(&scene.lights, &normalisation)?;
         let lamps = Lamps::new(&scene.materials, &primitives);
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
@@ -86,7 +86,7 @@ impl DeviceScene {
             statistics,
             primitives,
             normals: if effects.has(Effects::SMOOTH) { bvh.gather(&records::normals(scene)) } else { Vec::new() },
-            nodes: bvh.nodes.iter().map(CentredPair::from).collect(),
+            nodes: bvh.nodes.par_iter().map(CentredPair::from).collect(),
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(material).collect(),

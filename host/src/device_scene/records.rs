@@ -3,6 +3,7 @@
 use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Primitive, pack};
 use eyerays_shader::real::SMALL;
 use glam::{UVec4, Vec3};
+use rayon::prelude::*;
 
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
@@ -64,19 +65,22 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
-    records.extend(mesh.triangles.iter().zip(&mesh.materials).zip(0..).map(|((corners, &material), number)| {
-        let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-        Primitive::triangle(vertices, number, material, flags(material))
-    }));
-    let numbers = records.len() as u32..;
-    records.extend(scene.spheres.iter().zip(numbers).map(|(sphere, number)| {
+    records.par_extend(mesh.triangles.par_iter().zip(&mesh.materials).enumerate().map(
+        |(number, (corners, &material))| {
+            let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
+            Primitive::triangle(vertices, number as u32, material, flags(material))
+        },
+    ));
+    let first = records.len();
+    records.par_extend(scene.spheres.par_iter().enumerate().map(|(number, sphere)| {
         let (centre, material) = (normalisation.place(sphere.center), sphere.material);
-        Primitive::sphere(centre, length(sphere.radius), number, material, flags(material))
+        Primitive::sphere(centre, length(sphere.radius), (first + number) as u32, material, flags(material))
     }));
-    let numbers = records.len() as u32..;
-    records.extend(scene.disks.iter().zip(numbers).map(|(disk, number)| {
+    let first = records.len();
+    records.par_extend(scene.disks.par_iter().enumerate().map(|(number, disk)| {
         let (centre, material) = (normalisation.place(disk.center), disk.material);
-        Primitive::disk(centre, unit(disk.normal), length(disk.radius), number, material, flags(material))
+        let (normal, number) = (unit(disk.normal), (first + number) as u32);
+        Primitive::disk(centre, normal, length(disk.radius), number, material, flags(material))
     }));
     records
 }
@@ -85,8 +89,8 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
 pub(super) fn normals(scene: &Scene) -> Vec<Normals> {
     let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
     let none = Normals { a: UVec4::ZERO, b: UVec4::ZERO, c: UVec4::ZERO };
-    let of_triangles = scene.mesh.triangles.iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) });
-    of_triangles.chain(std::iter::repeat_n(none, scene.spheres.len() + scene.disks.len())).collect()
+    let of_triangles = scene.mesh.triangles.par_iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) });
+    of_triangles.chain(rayon::iter::repeat_n(none, scene.spheres.len() + scene.disks.len())).collect()
 }
 
 /// A material's record.

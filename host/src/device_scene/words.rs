@@ -5,6 +5,7 @@ use std::collections::HashMap;
 
 use eyerays_shader::data::{CompactPair, Primitive};
 use glam::UVec4;
+use rayon::prelude::*;
 
 use super::DeviceScene;
 use crate::method::Layout;
@@ -30,7 +31,7 @@ impl<'a> NodeWords<'a> {
     pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
         NodeWords(match layout {
             Layout::Compact => {
-                let pairs: Vec<CompactPair> = packed.nodes.iter().map(CompactPair::from).collect();
+                let pairs: Vec<CompactPair> = packed.nodes.par_iter().map(CompactPair::from).collect();
                 Cow::Owned(bytemuck::cast_slice(&pairs).to_vec())
             }
             Layout::Gathered | Layout::Indexed => Cow::Borrowed(bytemuck::cast_slice(&packed.nodes)),

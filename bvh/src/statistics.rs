@@ -49,44 +49,55 @@ impl Statistics {
 
     /// The figures of `bvh`, which was built over `primitives`.
     pub fn of(bvh: &Bvh, primitives: &[Primitive]) -> Self {
-        let mut statistics = Statistics {
+        let (pairs, wide) = rayon::join(|| Figures::of_pairs(bvh), || Figures::of_wide(bvh));
+        Statistics {
             primitives: primitives.len(),
             references: bvh.order.len(),
-            nodes: bvh.nodes.len(),
-            leaves: 0,
-            depth: 0,
-            sah_cost: 0.0,
+            nodes: bvh.nodes.len() + pairs.leaves,
+            leaves: pairs.leaves,
+            depth: pairs.depth,
+            sah_cost: pairs.sah_cost,
             node_bytes: size_of_val(&bvh.nodes[..]),
             wide_nodes: bvh.wide.len(),
-            wide_depth: 0,
-            wide_sah_cost: 0.0,
+            wide_depth: wide.depth,
+            wide_sah_cost: wide.sah_cost,
             wide_bytes: size_of_val(&bvh.wide[..]),
             primitive_bytes: size_of::<Primitive>() * bvh.order.len(),
-        };
+        }
+    }
+}
+
+/// What a walk through either hierarchy finds.
+struct Figures {
+    leaves: usize,
+    depth: u32,
+    sah_cost: f64,
+}
+
+impl Figures {
+    fn of_pairs(bvh: &Bvh) -> Self {
+        let mut figures = Figures { leaves: 0, depth: 0, sah_cost: Statistics::TRAVERSAL };
         let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
         let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
-        statistics.sah_cost = Self::TRAVERSAL;
         let mut open = vec![(0u32, 1u32)];
         while let Some((pair, depth)) = open.pop() {
-            statistics.depth = statistics.depth.max(depth);
+            figures.depth = figures.depth.max(depth);
             for (bounds, reference) in real_children(&bvh.nodes[pair as usize]) {
                 if reference.is_leaf() {
                     let tests = f64::from(reference.count());
-                    statistics.sah_cost += share(bounds) * tests * Self::INTERSECTION;
-                    statistics.leaves += 1;
+                    figures.sah_cost += share(bounds) * tests * Statistics::INTERSECTION;
+                    figures.leaves += 1;
                 } else {
-                    statistics.sah_cost += share(bounds) * Self::TRAVERSAL;
+                    figures.sah_cost += share(bounds) * Statistics::TRAVERSAL;
                     open.push((reference.index(), depth + 1));
                 }
             }
         }
-        statistics.nodes += statistics.leaves;
-        statistics.wide(bvh);
-        statistics
+        figures
     }
 
-    /// Fills in the figures of the wide nodes.
-    fn wide(&mut self, bvh: &Bvh) {
+    fn of_wide(bvh: &Bvh) -> Self {
+        let mut figures = Figures { leaves: 0, depth: 0, sah_cost: 0.0 };
         let mut open = vec![(0u32, 1u32, None)];
         let mut root = 0.0;
         while let Some((node, depth, area)) = open.pop() {
@@ -98,18 +109,20 @@ impl Statistics {
                 root = f64::from(all.half_area());
                 root
             });
-            self.wide_depth = self.wide_depth.max(depth);
-            self.wide_sah_cost += Self::TRAVERSAL * area / root;
+            figures.depth = figures.depth.max(depth);
+            figures.sah_cost += Statistics::TRAVERSAL * area / root;
             let mut next = record.first_child;
             for (child, planes) in real() {
                 if let Child::Leaf { count } = child {
-                    self.wide_sah_cost += Self::INTERSECTION * f64::from(count) * half_area(planes) / root;
+                    figures.leaves += 1;
+                    figures.sah_cost += Statistics::INTERSECTION * f64::from(count) * half_area(planes) / root;
                 } else {
                     open.push((next, depth + 1, Some(half_area(planes))));
                     next += 1;
                 }
             }
         }
+        figures
     }
 }
 

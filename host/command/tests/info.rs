@@ -63,7 +63,7 @@ fn info_tells_the_hierarchies_of_a_scene() {
     let bytes = &json["host"]["bytes"];
     assert_eq!(bytes["primitives"], json["hierarchies"][2]["primitive_bytes"]);
     assert_eq!(bytes["the scene as read"], scene.bytes());
-    let held = format!("primitives {:>39}", bytes["primitives"].as_u64().unwrap());
+    let held = format!("primitives {:>40}", bytes["primitives"].as_u64().unwrap());
     assert!(table.text().lines().any(|line| line.starts_with(&held)), "{}", table.text());
     // What a GPU would run and hold for it.
     let last = table.text().lines().skip_while(|line| !line.starts_with("kernel of a GPU")).collect::<Vec<_>>();

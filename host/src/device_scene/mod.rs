@@ -78,15 +78,20 @@ impl DeviceScene {
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
-        let (statistics, primitives) = rayon::join(|| Statistics::of(&bvh, &primitives), || bvh.gather(&primitives));
+        let packed = || {
+            let normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
+            let nodes = bvh.nodes.par_iter().map(CentredPair::from).collect();
+            (bvh.gather(&primitives), normals, nodes)
+        };
+        let (statistics, (primitives, normals, nodes)) = rayon::join(|| Statistics::of(&bvh, &primitives), packed);
         let lights = lights(&scene.lights, &normalisation)?;
         let lamps = Lamps::new(&scene.materials, &primitives);
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
         Ok(DeviceScene {
             statistics,
             primitives,
-            normals: if effects.has(Effects::SMOOTH) { bvh.gather(&records::normals(scene)) } else { Vec::new() },
-            nodes: bvh.nodes.par_iter().map(CentredPair::from).collect(),
+            normals,
+            nodes,
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(material).collect(),

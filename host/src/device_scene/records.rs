@@ -85,12 +85,15 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
     records
 }
 
-/// Its vertex normals by primitive; what is no triangle has none.
-pub(super) fn normals(scene: &Scene) -> Vec<Normals> {
+/// Its vertex normals in the order of slots, each with a primitive; what is no triangle has none.
+pub(super) fn normals(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
     let none = Normals { a: UVec4::ZERO, b: UVec4::ZERO, c: UVec4::ZERO };
-    let of_triangles = scene.mesh.triangles.par_iter().map(|&[a, b, c]| Normals { a: at(a), b: at(b), c: at(c) });
-    of_triangles.chain(rayon::iter::repeat_n(none, scene.spheres.len() + scene.disks.len())).collect()
+    let of = |&primitive: &u32| match scene.mesh.triangles.get(primitive as usize) {
+        Some(&[a, b, c]) => Normals { a: at(a), b: at(b), c: at(c) },
+        None => none,
+    };
+    order.par_iter().map(of).collect()
 }
 
 /// A material's record.

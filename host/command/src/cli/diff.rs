@@ -16,6 +16,7 @@ use eyerays::compare::{Comparison, compare, heat_map};
 use eyerays::film::Film;
 use eyerays::image::{self, Encoding};
 use eyerays::render::{Backend, DeviceWish, Precision, Rendering};
+use eyerays::scene;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -85,7 +86,7 @@ impl Diff {
 
     fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
         for file in [&self.first, second] {
-            if has_extension(file, &["toml", "obj"]) {
+            if has_extension(file, &["toml", "obj", scene::ENDING]) {
                 return Err(Error::file(
                     file,
                     "a scene is compared alone, from GPU and CPU; render two to compare them",

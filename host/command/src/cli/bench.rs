@@ -244,7 +244,7 @@ impl Bench {
     fn subjects(&self, outputs: &[Destination], quiet: bool) -> Result<Vec<Subject>> {
         let mut subjects: Vec<Subject> = Vec::new();
         for path in &self.scenes {
-            let Read { scene, .. } = Read::scene(path, outputs, quiet)?;
+            let scene = Read::scene(path, outputs, quiet)?.unbuilt();
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
             subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }

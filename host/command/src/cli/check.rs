@@ -24,7 +24,8 @@ impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
         let named = |e: eyerays::error::Error| e.of(&self.scene);
-        let pack = || DeviceScene::new(&scene, scene.settings, Quality::Fast);
+        let quality = scene.hierarchy.as_ref().map_or(Quality::Fast, |kept| kept.quality().quality());
+        let pack = || DeviceScene::new(&scene, scene.settings, quality);
         let packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
             View::new(&packed, camera).map_err(named)?;

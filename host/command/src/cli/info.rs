@@ -56,7 +56,7 @@ impl Info {
 
     /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
-        let Read { scene, .. } = Read::scene(path, &[], quiet)?;
+        let scene = Read::scene(path, &[], quiet)?.unbuilt();
         let outline = Outline::of(&scene);
         let (mut rows, mut cost) = (Vec::new(), None);
         let qualities = self.bvh.as_ref().map_or(Bvh::VARIANTS, std::slice::from_ref);

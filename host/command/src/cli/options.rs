@@ -165,6 +165,11 @@ impl<'a> Read<'a> {
         output::check_apart(outputs, &scene.files)?;
         Ok(Read { path, scene, time })
     }
+
+    /// The scene without a hierarchy that it may bring along, for those who measure what building takes.
+    pub fn unbuilt(self) -> Scene {
+        Scene { hierarchy: None, ..self.scene }
+    }
 }
 
 /// A scene, packed, and what that took.

@@ -239,7 +239,7 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let Read { scene, .. } = Read::scene(&self.scene, &self.destinations(), quiet)?;
+        let scene = Read::scene(&self.scene, &self.destinations(), quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);

@@ -109,7 +109,7 @@ fn distributed_rays_and_paths_without_bounces() {
         scene.ambient = Vec3::ZERO;
         for material in &mut scene.materials {
             (material.reflection, material.specular) = (Vec3::ZERO, Vec3::ZERO);
-            (material.transmission, material.ior) = (Vec3::ZERO, 0.0);
+            material.transmission = Vec3::ZERO;
         }
         let settings = Settings { bounces: 0, spp: 64, ..settings(&scene) };
         let of = |integrator| estimate(&scene, with(integrator, settings));

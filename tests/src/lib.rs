@@ -129,11 +129,24 @@ pub fn traversals() -> Vec<Traversal> {
     all
 }
 
-/// Renders on the CPU by the default method, with a thread a core.
+/// Renders on the CPU in exact precision by the default method, with a thread a core. Compiled here once: every test that
+/// names the arithmetic itself compiles all kernels again.
 ///
 /// # Panics
 /// If there is no memory for the film.
-pub fn on_cpu<R: Scalar<Record: Send + Sync>>(posed: &Posed) -> (Film, Rays) {
+pub fn on_cpu(posed: &Posed) -> (Film, Rays) {
+    rendered::<f32>(posed)
+}
+
+/// The same in double precision, with a thread a core.
+///
+/// # Panics
+/// As [`on_cpu`].
+pub fn in_double_precision(posed: &Posed) -> (Film, Rays) {
+    rendered::<f64>(posed)
+}
+
+fn rendered<R: Scalar<Record: Send + Sync>>(posed: &Posed) -> (Film, Rays) {
     cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
 }
 

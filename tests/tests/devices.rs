@@ -19,7 +19,7 @@ fn exact() -> Option<Gpu> {
 }
 
 fn assert_same_by(gpu: &Gpu, packed: &Posed, traversals: &[Traversal], what: &str) {
-    let (film, rays) = on_cpu::<f32>(packed);
+    let (film, rays) = on_cpu(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     for &traversal in traversals {
         let what = format!("{what}, {traversal:?}");
@@ -184,7 +184,7 @@ fn ten_thousand_bounces() {
     scene.cameras[0].fov = 70.0;
     let settings = Settings { size: (9, 5), bounces: BOUNCES, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
-    let (film, rays) = on_cpu::<f32>(&packed);
+    let (film, rays) = on_cpu(&packed);
     assert_eq!(rays.secondary, rays.primary * u64::from(BOUNCES));
     assert!(film.pixels.iter().flatten().all(|channel| (channel - 1.0).abs() < 1e-3), "{:?}", film.pixels);
     if let Some(gpu) = exact() {
@@ -226,12 +226,12 @@ fn every_sampler() {
     let Some(gpu) = exact() else { return };
     let scene = shipped("whitted");
     let camera = &scene.cameras[0];
-    let (regular, _) = on_cpu::<f32>(&pack(&scene, camera, settings(&scene, (37, 23), 3)));
+    let (regular, _) = on_cpu(&pack(&scene, camera, settings(&scene, (37, 23), 3)));
     for &sampler in Sampler::VARIANTS {
         for samples in [1, 3] {
             let packed = pack(&scene, camera, Settings { sampler, ..settings(&scene, (37, 23), samples) });
             assert_same(&gpu, &packed, &format!("{sampler:?} x {samples}"));
-            let is_regular = on_cpu::<f32>(&packed).0.bits_equal(&regular);
+            let is_regular = on_cpu(&packed).0.bits_equal(&regular);
             assert_eq!(is_regular, sampler == Sampler::Regular && samples == 3, "{sampler:?} x {samples}");
         }
     }
@@ -244,7 +244,7 @@ fn samples_in_parts() {
     let scene = still_life();
     let settings = Settings { samples: 3, sampler: Sampler::Sobol, bounces: 4, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
-    let (film, rays) = on_cpu::<f32>(&packed);
+    let (film, rays) = on_cpu(&packed);
     let all = u64::from(integrator::needs(&packed).paths) * 3 * 16 * 61 * 45;
     for (max_binding, parts) in
         [(u64::MAX, &[9][..]), (u64::MAX, &[1, 2, 6]), (3 * all, &[9]), (2 * all, &[4, 5]), (all / 2, &[2, 7])]
@@ -279,7 +279,7 @@ fn views_of_one_upload() {
         let view = View::of(&packed, &scene.cameras[camera], size, samples).unwrap();
         let rendering = renderer.render(&view, &|_| ()).unwrap();
         let want = pack(&scene, &scene.cameras[camera], settings(&scene, size, samples));
-        let (film, rays) = on_cpu::<f32>(&want);
+        let (film, rays) = on_cpu(&want);
         assert_same_bits(&rendering.film, &film, &format!("camera {camera}, {size:?}"));
         assert_eq!(rendering.rays, rays);
     }
@@ -290,7 +290,7 @@ fn views_of_one_upload() {
     renderer.set_lights(&scene.lights).unwrap();
     let dimmed = pack(&scene, &scene.cameras[0], settings(&scene, (40, 30), 1));
     let rendering = renderer.render(&dimmed.view, &|_| ()).unwrap();
-    assert_same_bits(&rendering.film, &on_cpu::<f32>(&dimmed).0, "dimmed");
+    assert_same_bits(&rendering.film, &on_cpu(&dimmed).0, "dimmed");
 }
 
 /// Cameras far outside the scene, whose rays first come close to it.
@@ -306,7 +306,7 @@ fn cameras_from_afar() {
         camera.fov = 2.0 * (4.0 / distance).atan().to_degrees();
         let packed = pack(&scene, &scene.cameras[0], scene.settings);
         assert_same(&gpu, &packed, &format!("{distance} away"));
-        let (film, rays) = on_cpu::<f32>(&packed);
+        let (film, rays) = on_cpu(&packed);
         assert!(rays.shadow > u64::from(61 * 45u32) / 2, "{distance} away, the scene fills the picture");
         assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()));
     }

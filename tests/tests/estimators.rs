@@ -26,7 +26,7 @@ fn estimate(scene: &Scene, settings: Settings) -> Vec<(f64, f64)> {
     let all: Vec<Vec<f64>> = (0..SEEDS)
         .map(|seed| {
             let transport = Transport { seed, ..settings.transport };
-            let (film, rays) = on_cpu::<f32>(&pack(scene, &scene.cameras[0], Settings { transport, ..settings }));
+            let (film, rays) = on_cpu(&pack(scene, &scene.cameras[0], Settings { transport, ..settings }));
             assert_eq!(rays.non_finite, 0);
             blocks(&film)
         })
@@ -140,7 +140,7 @@ fn distributed_trees_are_whitteds() {
             let mut film = |integrator, light: f32| {
                 let direction = Vec3::new(-0.4, -1.0, 0.3);
                 scene.lights = vec![Light::Directional { direction, colour: Vec3::splat(0.5 * light) }];
-                on_cpu::<f32>(&pack(&scene, &scene.cameras[camera], with(integrator, settings))).0
+                on_cpu(&pack(&scene, &scene.cameras[camera], with(integrator, settings))).0
             };
             let (tree, want) = (film(Integrator::Distributed, std::f32::consts::PI), film(Integrator::Whitted, 1.0));
             let off = |(got, want): (&[f32; 3], &[f32; 3])| got.iter().zip(want).any(|(a, b)| (a - b).abs() > 2e-5);

@@ -35,7 +35,7 @@ fn at(eye: Vec3, target: Vec3) -> Camera {
 }
 
 fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Film {
-    let (film, rays) = on_cpu::<f32>(&pack(scene, camera, settings));
+    let (film, rays) = on_cpu(&pack(scene, camera, settings));
     assert_eq!(rays.non_finite, 0);
     film
 }

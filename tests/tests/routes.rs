@@ -9,7 +9,7 @@ use eyerays_tests::{Posed, SHIPPED, differences, gpu, on_cpu, pack, settings, sh
 /// At least 99.9 % of the pixels lie within 1e-4 of exact. (Measured with lavapipe at this size, over every scene
 /// and method: all do, and all but one of 19,200 within 1e-5.)
 fn assert_near(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
-    let (exact, _) = on_cpu::<f32>(packed);
+    let (exact, _) = on_cpu(packed);
     let mut renderer = Renderer::new(gpu, packed, false, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
     let fast = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert_eq!(fast.rays.non_finite, 0, "{what}");

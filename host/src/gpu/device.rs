@@ -89,6 +89,12 @@ impl Gpu {
     /// # Errors
     /// What was asked for votes, and there is nobody to vote with.
     pub fn resolved(&self, traversal: Traversal, coherence: Coherence) -> Result<Traversal> {
+        // Lavapipe ends an invocation's loops after 65,535 rounds, which a persistent subgroup comes to in a large launch.
+        let scheduling = match traversal.scheduling {
+            Scheduling::Auto if self.report.is_software() => Scheduling::Grid,
+            chosen => chosen,
+        };
+        let traversal = Traversal { scheduling, ..traversal };
         let resolved = traversal.resolved(Processor::Gpu, coherence);
         if !resolved.votes() || self.device.features().contains(wgpu::Features::SUBGROUP) {
             return Ok(resolved);

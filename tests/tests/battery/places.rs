@@ -16,7 +16,7 @@ use eyerays_shader::real::Scalar;
 use eyerays_tests::machine::Machine;
 use eyerays_tests::model::{add, empty, glowing, lamp, matt, sun};
 use eyerays_tests::surface::Surface;
-use eyerays_tests::{count, differences, on_cpu, pack, shipped};
+use eyerays_tests::{count, differences, in_double_precision, pack, shipped};
 use glam::{DVec3, Vec3};
 
 use crate::against::is_crowded;
@@ -99,7 +99,7 @@ fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
         packed = pack(&scene, &scene.cameras[0], scene.settings);
     }
     let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &packed.view, Order::Tiled), 0).unwrap();
-    let truth = on_cpu::<f64>(&packed).0;
+    let truth = in_double_precision(&packed).0;
     for machine in Machine::all() {
         if machine.is_software() && is_crowded(&packed) {
             println!("battery: places, {what}, {machine}: left out, since software ends loops early");

@@ -12,7 +12,7 @@ use glam::Vec3;
 
 /// On the CPU without a value that is not finite, and on a GPU the same bits.
 fn films(packed: &Posed, what: &str) -> Vec<Vec3> {
-    let (film, rays) = on_cpu::<f32>(packed);
+    let (film, rays) = on_cpu(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()), "{what}");
     if let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) {

@@ -1,15 +1,13 @@
 //! Embree 3.13 in its robust mode.
 
 use embree3::{
-    BufferData, BufferUsage, BuildQuality, Device, Format, Geometry, GeometryBuilder, GeometryKind, Hit16,
+    BufferData, BufferUsage, BuildQuality, Config, Device, Format, Geometry, GeometryBuilder, GeometryKind, Hit16,
     IntersectContext, Ray, Ray16, RayHit, RayHit16, Scene, SceneFlags, ValidMask, ValidMaskN,
 };
-use eyerays::device_scene::DeviceScene;
 use eyerays::stream::{Question, Stream};
 use eyerays_shader::data::Primitive;
 
 use crate::contest::{Answers, RayTracer, tasks};
-use crate::primitives;
 
 const PACKET: usize = 16;
 
@@ -19,13 +17,12 @@ pub struct Embree {
 }
 
 impl Embree {
-    /// Triangles, spheres and disks, each kind as Embree's own, in the order of their numbers.
-    pub fn new(packed: &DeviceScene, quality: BuildQuality) -> Result<Embree, embree3::Error> {
-        let device = Device::new()?;
+    /// Triangles, spheres and disks, each kind as Embree's own, built by so many threads.
+    pub fn of(primitives: &[Primitive], quality: BuildQuality, threads: usize) -> Result<Embree, embree3::Error> {
+        let device = Device::with_config(Config { threads: threads as u32, ..Config::default() })?;
         let mut scene = device.create_scene()?;
         scene.set_flags(SceneFlags::ROBUST);
         scene.set_build_quality(quality);
-        let primitives = primitives(packed);
         let of = |is_kind: fn(&Primitive) -> bool| -> Vec<Primitive> {
             primitives.iter().copied().filter(is_kind).collect()
         };
@@ -34,6 +31,8 @@ impl Embree {
         if !corners.is_empty() {
             let indices: Vec<[u32; 3]> = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
             let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
+            // A scene of low quality takes each mesh's own.
+            mesh.set_build_quality(quality);
             fill(&mut mesh, BufferUsage::VERTEX, Format::FLOAT3, &corners)?;
             fill(&mut mesh, BufferUsage::INDEX, Format::UINT3, &indices)?;
             scene.attach_geometry(&mesh.commit());

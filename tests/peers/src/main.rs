@@ -1,6 +1,7 @@
 //! Rays a second of Eyerays, Embree and obvhs: the same rays in the same run, one contestant after the other
-//! in every repeat. Prints Markdown.
+//! in every repeat. With `--builds`, the times that building takes. Prints Markdown.
 
+mod builds;
 mod contest;
 mod embree;
 mod hierarchies;
@@ -51,10 +52,24 @@ struct Options {
     /// Kinds of rays whose names contain this
     #[arg(long, default_value = "")]
     kind: String,
+    /// Times building at every quality instead
+    #[arg(long)]
+    builds: bool,
 }
+
+/// Qualities by their names, and what is closest to each among Embree's.
+const QUALITIES: [(&str, Quality, BuildQuality); 3] = [
+    ("fast", Quality::Fast, BuildQuality::LOW),
+    ("medium", Quality::Medium, BuildQuality::MEDIUM),
+    ("high", Quality::High, BuildQuality::HIGH),
+];
 
 fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::parse();
+    if options.builds {
+        builds::heading();
+        return options.scenes.iter().try_for_each(|path| builds::builds(&options, path));
+    }
     println!(
         "| scene | rays | contestant | Mrays/s, median of views | least | greatest | x Embree | x obvhs CWBVH | hits | other than {} |",
         REFERENCE
@@ -89,16 +104,14 @@ fn primitives(packed: &DeviceScene) -> Vec<Primitive> {
 fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene::load(path)?;
     let settings = Settings { size: (options.size, options.size), samples: 1, ..scene.settings };
-    let (quality, embree_quality) = match options.quality.as_str() {
-        "fast" => (Quality::Fast, BuildQuality::LOW),
-        "medium" => (Quality::Medium, BuildQuality::MEDIUM),
-        _ => (Quality::High, BuildQuality::HIGH),
-    };
+    let found = QUALITIES.iter().find(|(name, ..)| *name == options.quality);
+    let &(_, quality, embree_quality) = found.ok_or("--quality is fast, medium or high")?;
     let packed = DeviceScene::new(&scene, settings, quality)?;
     let ao_length =
         options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
-    let embree = embree::Embree::new(&packed, embree_quality).map_err(|e| format!("Embree: {e:?}"))?;
+    let embree = embree::Embree::of(&primitives(&packed), embree_quality, options.threads)
+        .map_err(|e| format!("Embree: {e:?}"))?;
     // obvhs has no other primitives.
     let triangles = packed
         .primitives()

@@ -23,6 +23,12 @@ impl Embree {
         let mut scene = device.create_scene()?;
         scene.set_flags(SceneFlags::ROBUST);
         scene.set_build_quality(quality);
+        let geometry = |kind| {
+            let mut geometry = Geometry::new(&device, kind);
+            // A scene of low quality takes each geometry's own.
+            geometry.set_build_quality(quality);
+            geometry
+        };
         let of = |is_kind: fn(&Primitive) -> bool| -> Vec<Primitive> {
             primitives.iter().copied().filter(is_kind).collect()
         };
@@ -30,9 +36,7 @@ impl Embree {
             of(Primitive::is_triangle).iter().flat_map(Primitive::vertices).map(|p| p.to_array()).collect();
         if !corners.is_empty() {
             let indices: Vec<[u32; 3]> = (0..corners.len() as u32 / 3).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
-            let mut mesh = Geometry::new(&device, GeometryKind::TRIANGLE);
-            // A scene of low quality takes each mesh's own.
-            mesh.set_build_quality(quality);
+            let mut mesh = geometry(GeometryKind::TRIANGLE);
             fill(&mut mesh, BufferUsage::VERTEX, Format::FLOAT3, &corners)?;
             fill(&mut mesh, BufferUsage::INDEX, Format::UINT3, &indices)?;
             scene.attach_geometry(&mesh.commit());
@@ -40,7 +44,7 @@ impl Embree {
         let round = |p: &Primitive| p.centre().extend(p.radius()).to_array();
         let spheres: Vec<[f32; 4]> = of(Primitive::is_sphere).iter().map(round).collect();
         if !spheres.is_empty() {
-            let mut points = Geometry::new(&device, GeometryKind::SPHERE_POINT);
+            let mut points = geometry(GeometryKind::SPHERE_POINT);
             fill(&mut points, BufferUsage::VERTEX, Format::FLOAT4, &spheres)?;
             scene.attach_geometry(&points.commit());
         }
@@ -48,7 +52,7 @@ impl Embree {
         if !disks.is_empty() {
             let (places, normals): (Vec<[f32; 4]>, Vec<[f32; 3]>) =
                 disks.iter().map(|d| (round(d), d.normal().to_array())).unzip();
-            let mut points = Geometry::new(&device, GeometryKind::ORIENTED_DISC_POINT);
+            let mut points = geometry(GeometryKind::ORIENTED_DISC_POINT);
             fill(&mut points, BufferUsage::VERTEX, Format::FLOAT4, &places)?;
             fill(&mut points, BufferUsage::NORMAL, Format::FLOAT3, &normals)?;
             scene.attach_geometry(&points.commit());

@@ -34,7 +34,7 @@ Pictures and tables go to files and standard output, summaries and messages to s
 Exit codes: 0 done, 1 pictures or answers that differ, 2 something wrong with what was given,
 128 and the signal's number where one ended it.";
 
-/// A Whitted ray tracer: one Rust source on GPU and CPU, with the same bits.
+/// A ray tracer, after Whitted and by paths: one Rust source on GPU and CPU, with the same bits.
 #[derive(Parser)]
 #[command(name = "eyerays", version, max_term_width = 100, after_help = CODES)]
 struct Cli {

@@ -1,26 +1,25 @@
 //! From references to a hierarchy.
 
-use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, MAX_LEAF, NodePair, NodeRef};
+use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, NodePair, NodeRef};
 use rayon::prelude::*;
 
 use crate::{
-    BuildError, MAX_DEPTH, Quality, Reference, References,
+    BuildError, MAX_DEPTH, Quality, References,
     bounds::Bounds,
-    layout, search,
-    spatial::Tree,
-    topology::Topology,
+    depth, layout, search,
     validate::{self, validate},
-    wide::{validate_wide, wide},
+    wide::{Wide, validate_wide, wide},
 };
 
-/// A validated hierarchy, as pairs and as wide nodes. Both have the same primitives at the same slots.
+/// A validated hierarchy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bvh {
     /// The node pairs, the root's first, then in depth-first order.
     pub nodes: Vec<NodePair>,
-    /// The wide nodes, the root first.
+    /// The wide nodes, the root first: none before [`Bvh::widen`].
     pub wide: Vec<CwbvhNode>,
-    /// The primitive at each slot of a leaf, as an index into the primitives of the references.
+    /// The primitive at each slot of a leaf, as an index into the primitives of the references. Slots lie from left to right,
+    /// or as wide nodes have them.
     pub order: Vec<u32>,
     /// The own box at each slot: that of the primitive, or of the part that the slot stands for.
     pub bounds: Vec<Record>,
@@ -35,57 +34,56 @@ impl Bvh {
     pub fn gather<T: Copy + Send + Sync>(&self, items: &[T]) -> Vec<T> {
         self.order.par_iter().map(|&i| items[i as usize]).collect()
     }
+
+    /// Makes wide nodes of the pairs, if there are none yet. Both have the same primitives at the same slots, whose order
+    /// changes.
+    ///
+    /// # Errors
+    ///
+    /// A defect that the validation of wide nodes found.
+    pub fn widen(&mut self) -> Result<(), BuildError> {
+        if !self.wide.is_empty() {
+            return Ok(());
+        }
+        let own: Vec<Bounds> = self.bounds.par_iter().map(Bounds::read).collect();
+        let Wide { nodes, slots } = wide(&self.nodes, &own);
+        Wide::renumber(&slots, &mut self.nodes);
+        self.order = slots.par_iter().map(|&slot| self.order[slot as usize]).collect();
+        self.bounds = slots.par_iter().map(|&slot| self.bounds[slot as usize]).collect();
+        self.wide = nodes;
+        validate_wide(&self.wide, &self.bounds).and_then(|()| validate(&self.nodes, &self.bounds))
+    }
 }
 
 /// Builds the hierarchy of references to primitives in the normalised scene.
 ///
 /// The same references give the same hierarchy, whatever the number of rayon's threads. Every box of
-/// a pair contains exactly what is below it, no leaf has more than [`MAX_LEAF`] references, and no path
-/// has more than [`MAX_DEPTH`] pairs; [`validate_wide`] tells what wide nodes promise.
+/// a pair contains exactly what is below it, no leaf has more than [`MAX_LEAF`](eyerays_shader::data::MAX_LEAF) references, and
+/// no path has more than [`MAX_DEPTH`] pairs; [`validate_wide`] tells what wide nodes promise.
 ///
 /// # Errors
 ///
-/// [`BuildError::NoPrimitives`], [`BuildError::TooManyPrimitives`], and [`BuildError::Reference`] if a
-/// box is empty, or not in [-1, 1] except for its padding. Any other error is a defect of the builder that
-/// its validation found.
+/// [`BuildError::TooManyPrimitives`], or a defect of the builder that its validation found.
 pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
-    let list = &references.list;
-    check_count(list.len())?;
-    check_boxes(list)?;
-    let bounds: Vec<Bounds> = list.par_iter().map(|r| Bounds::read(&r.bounds)).collect();
-    let (mut nodes, mut order) = match bounds[..] {
-        [only] => (vec![layout::single(only)], vec![0]),
-        _ => {
-            let mut topology = topology(&bounds, references.tree.as_ref(), quality);
-            topology.limit_depth(MAX_DEPTH);
-            (layout::pairs(&mut topology, &bounds), topology.order)
-        }
+    let References { list, pairs } = references;
+    let count = check_count(list.len())?;
+    let own = |reference: u32| Bounds::read(&list[reference as usize].bounds);
+    let (nodes, order) = if count == 1 {
+        (vec![layout::single(own(0))], vec![0])
+    } else {
+        let (tree, mut order) = match quality.reinsertion() {
+            0.0 => (pairs.clone(), (0..count).into_par_iter().collect()),
+            share => search::improve(pairs, own, share),
+        };
+        let tree = depth::limit(tree, &mut order, own, MAX_DEPTH);
+        (layout::pairs(&tree, |slot| own(order[slot as usize])), order)
     };
     validate::order(&order, list.len())?;
-    let wide = wide(&nodes, &mut order, &bounds);
-    wide.renumber(&mut nodes, &mut order);
     let at = |&slot: &u32| list[slot as usize];
-    let bvh = Bvh {
-        nodes,
-        wide: wide.nodes,
-        order: order.par_iter().map(|slot| at(slot).primitive).collect(),
-        bounds: order.par_iter().map(|slot| at(slot).bounds).collect(),
-    };
-    let proofs = rayon::join(|| validate(&bvh.nodes, &bvh.bounds), || validate_wide(&bvh.wide, &bvh.bounds));
-    proofs.0.and(proofs.1)?;
-    Ok(bvh)
-}
-
-/// The tree before its depth is limited.
-fn topology(bounds: &[Bounds], tree: Option<&Tree>, quality: Quality) -> Topology {
-    let count = bounds.len() as u32;
-    if count <= MAX_LEAF {
-        return Topology::run(count);
-    }
-    match tree {
-        Some(tree) => search::improve(tree, bounds, quality),
-        None => search::search(bounds, quality),
-    }
+    let bounds: Vec<Record> = order.par_iter().map(|slot| at(slot).bounds).collect();
+    validate(&nodes, &bounds)?;
+    let order = order.par_iter().map(|slot| at(slot).primitive).collect();
+    Ok(Bvh { nodes, wide: Vec::new(), order, bounds })
 }
 
 /// The number of references, if a node reference can index so many.
@@ -99,18 +97,6 @@ pub(crate) fn check_count(count: usize) -> Result<u32, BuildError> {
 
 /// The greatest coordinate of an own box.
 pub(crate) const MOST: f32 = 1.0 + BOX_PADDING;
-
-/// obvhs can handle neither NaN nor areas that overflow.
-fn check_boxes(references: &[Reference]) -> Result<(), BuildError> {
-    let normalised = |reference: &Reference| {
-        let Bounds { min, max } = Bounds::read(&reference.bounds);
-        (0..3).all(|i| -MOST <= min[i] && min[i] <= max[i] && max[i] <= MOST)
-    };
-    match references.par_iter().position_first(|r| !normalised(r)) {
-        Some(reference) => Err(BuildError::Reference { reference: reference as u32 }),
-        None => Ok(()),
-    }
-}
 
 #[cfg(test)]
 mod tests {

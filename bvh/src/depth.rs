@@ -1,10 +1,11 @@
 //! Limiting the depth.
 
-use eyerays_shader::data::{NodeRef, STACK};
+use eyerays_shader::data::{MAX_LEAF, NodeRef, STACK};
 
 use crate::{
+    bounds::Bounds,
     median,
-    topology::{Kind, Topology},
+    tree::{Children, Fold, filled, fold, height},
 };
 
 /// The most node pairs on a path from the root.
@@ -16,109 +17,145 @@ pub const MAX_DEPTH: u32 = STACK as u32 - 1;
 // The root itself can always be split at medians.
 const _: () = assert!((NodeRef::MAX_INDEX).ilog2() < MAX_DEPTH);
 
-impl Topology {
-    /// Turns subtrees into runs until no path is longer than `most` pairs, once runs are split at
-    /// medians. Nodes near the root and shallow subtrees stay as they are.
-    ///
-    /// `most` must be enough for median splits of the whole tree.
-    pub(crate) fn limit_depth(&mut self, most: u32) {
-        let heights = self.heights();
-        // Each open node fits at its level if split at medians; as it is, it may be too deep.
-        let mut open = vec![(0u32, 0u32)];
-        while let Some((number, level)) = open.pop() {
-            let node = &mut self.nodes[number as usize];
-            let Kind::Inner(left, right) = node.kind else {
-                continue;
-            };
-            if level + heights[number as usize] <= most {
-                continue;
+/// A tree without paths longer than `most` pairs: subtrees that are too deep are built anew by splits at medians. Nodes near
+/// the root and shallow subtrees stay as they are. `order` is what is at each slot, by its number, and sorted within such
+/// subtrees; `own` tells the box of a number.
+///
+/// `most` must be enough for median splits of the whole tree.
+pub(crate) fn limit(
+    tree: Vec<Children>,
+    order: &mut [u32],
+    own: impl Fn(u32) -> Bounds + Copy,
+    most: u32,
+) -> Vec<Children> {
+    if height(&tree) <= most {
+        return tree;
+    }
+    let nothing = Below { height: 0, first: 0, count: 0 };
+    let mut below = filled(nothing, tree.len());
+    fold(&tree, &mut below, &Measure);
+    let mut limited: Vec<Children> = Vec::with_capacity(tree.len());
+    let mut open: Vec<(_, u32, Option<(usize, usize)>)> = vec![(Subtree::Node(NodeRef::ROOT), 0, None)];
+    while let Some((subtree, level, parent)) = open.pop() {
+        let (reference, children) = match subtree.children(&tree, &below, level, most) {
+            Ok(children) => (NodeRef::inner(limited.len() as u32), Some(children)),
+            Err((first, count)) if count <= MAX_LEAF => (NodeRef::leaf(first, count), None),
+            Err((first, count)) => {
+                let slots = first as usize..(first + count) as usize;
+                let half = median::split(&mut order[slots], |&number| own(number), |&number| number) as u32;
+                let halves = [Subtree::Run(first, half), Subtree::Run(first + half, count - half)];
+                (NodeRef::inner(limited.len() as u32), Some(halves))
             }
-            let fits = |child: u32| {
-                let count = self.nodes[child as usize].count;
-                level + 1 + median::height(count) <= most
-            };
-            if fits(left) && fits(right) {
-                open.extend([(left, level + 1), (right, level + 1)]);
-            } else {
-                self.nodes[number as usize].kind = Kind::Run;
-            }
+        };
+        if let Some((pair, side)) = parent {
+            limited[pair][side] = reference;
+        }
+        if let Some([left, right]) = children {
+            let pair = limited.len();
+            limited.push([NodeRef::ROOT; 2]);
+            open.extend([(right, level + 1, Some((pair, 1))), (left, level + 1, Some((pair, 0)))]);
         }
     }
+    limited
+}
 
-    /// Levels of pairs below each node.
-    fn heights(&self) -> Vec<u32> {
-        let mut heights = vec![0u32; self.nodes.len()];
-        for (i, node) in self.nodes.iter().enumerate().rev() {
-            heights[i] = match node.kind {
-                Kind::Run => median::height(node.count),
-                Kind::Inner(left, right) => 1 + heights[left as usize].max(heights[right as usize]),
-            };
+/// A subtree that is still to be laid out.
+#[derive(Clone, Copy)]
+enum Subtree {
+    /// That of a node, which fits if it is split at medians; as it is, it may be too deep.
+    Node(NodeRef),
+    /// Slots from a first one on, and their number.
+    Run(u32, u32),
+}
+
+impl Subtree {
+    /// The children, or the slots of a leaf or of what is to be split at medians.
+    fn children(self, tree: &[Children], below: &[Below], level: u32, most: u32) -> Result<[Subtree; 2], (u32, u32)> {
+        let pair = match self {
+            Subtree::Run(first, count) => return Err((first, count)),
+            Subtree::Node(leaf) if leaf.is_leaf() => return Err((leaf.index(), leaf.count())),
+            Subtree::Node(inner) => inner.index() as usize,
+        };
+        let fits = |child: NodeRef| {
+            let count = if child.is_leaf() { child.count() } else { below[child.index() as usize].count };
+            level + 1 + median::height(count) <= most
+        };
+        let Below { height, first, count } = below[pair];
+        if level + height <= most || tree[pair].into_iter().all(fits) {
+            Ok(tree[pair].map(Subtree::Node))
+        } else {
+            Err((first, count))
         }
-        heights
+    }
+}
+
+/// What is below a pair.
+#[derive(Clone, Copy)]
+struct Below {
+    /// Pairs on the longest path, itself among them.
+    height: u32,
+    first: u32,
+    count: u32,
+}
+
+struct Measure;
+
+impl Fold<Children> for Measure {
+    type Known = Below;
+    type Note = Below;
+
+    fn leaf(&self, leaf: NodeRef) -> Below {
+        Below { height: 0, first: leaf.index(), count: leaf.count() }
+    }
+
+    fn pair(&self, _: usize, _: &Children, [left, right]: [Below; 2], note: &mut Below) -> Below {
+        let height = 1 + left.height.max(right.height);
+        *note = Below { height, first: left.first, count: left.count + right.count };
+        *note
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::topology::Node;
 
-    /// Each inner node has a leaf of one primitive on the left and the rest on the right.
-    fn chain(primitives: u32) -> Topology {
-        let mut topology = Topology::run(primitives);
-        topology.nodes.clear();
-        for first in 0..primitives {
-            let number = topology.nodes.len() as u32;
-            let inner = first + 1 < primitives;
-            let count = primitives - first;
-            if inner {
-                let kind = Kind::Inner(number + 1, number + 2);
-                topology.nodes.push(Node { kind, first, count });
-            }
-            let kind = Kind::Run;
-            let count = 1;
-            topology.nodes.push(Node { kind, first, count });
-        }
-        topology
+    /// Each pair has a leaf of one slot on the left and the rest on the right.
+    fn chain(slots: u32) -> Vec<Children> {
+        let rest = |pair| if pair + 2 < slots { NodeRef::inner(pair + 1) } else { NodeRef::leaf(pair + 1, 1) };
+        (0..slots - 1).map(|pair| [NodeRef::leaf(pair, 1), rest(pair)]).collect()
     }
 
-    /// The nodes that are still part of the tree.
-    fn reached(topology: &Topology) -> usize {
-        let mut open = vec![0];
-        let mut count = 0;
-        while let Some(number) = open.pop() {
-            count += 1;
-            if let Kind::Inner(left, right) = topology.nodes[number as usize].kind {
-                open.extend([left, right]);
-            }
-        }
-        count
+    /// A chain limited to paths of so many pairs.
+    fn limited(slots: u32, most: u32) -> Vec<Children> {
+        let mut order: Vec<u32> = (0..slots).collect();
+        let own = |number: u32| Bounds::new([number as f32; 3], [number as f32 + 1.0; 3]);
+        let tree = limit(chain(slots), &mut order, own, most);
+        order.sort();
+        assert_eq!(order, (0..slots).collect::<Vec<_>>());
+        tree
     }
 
     #[test]
     fn a_chain_is_cut_where_the_rest_just_fits() {
-        let mut topology = chain(1000);
-        assert_eq!(topology.heights()[0], 999);
-        topology.limit_depth(20);
-        assert_eq!(topology.heights()[0], 20);
-        // 989 primitives need 8 levels, so 12 levels of the chain stay.
-        assert_eq!(reached(&topology), 2 * 12 + 1);
+        assert_eq!(height(&chain(1000)), 999);
+        let tree = limited(1000, 20);
+        assert_eq!(height(&tree), 20);
+        // 988 slots need 8 levels, so 12 levels of the chain stay.
+        let stays = tree.iter().zip(chain(1000)).take_while(|(now, before)| **now == *before).count();
+        assert_eq!(stays, 12);
     }
 
     #[test]
     fn a_tree_that_fits_stays() {
-        let mut topology = chain(21);
-        topology.limit_depth(20);
-        assert_eq!(reached(&topology), 41);
-        topology.limit_depth(19);
-        assert!(reached(&topology) < 41);
+        assert_eq!(limited(21, 20), chain(21));
+        assert_ne!(limited(21, 19), chain(21));
     }
 
     #[test]
-    fn the_whole_tree_becomes_a_run_where_nothing_else_fits() {
-        let mut topology = chain(1000);
-        topology.limit_depth(median::height(1000));
-        assert_eq!(topology.heights()[0], 8);
-        assert_eq!(reached(&topology), 1);
+    fn the_whole_tree_is_built_anew_where_nothing_else_fits() {
+        let most = median::height(1000);
+        let tree = limited(1000, most);
+        assert_eq!(height(&tree), most);
+        assert!(tree[0].into_iter().all(|child| !child.is_leaf()));
     }
 }

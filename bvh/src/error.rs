@@ -5,7 +5,7 @@ use eyerays_shader::data::{MAX_LEAF, NodeRef};
 use crate::{MAX_DEPTH, MAX_WIDE_DEPTH};
 
 /// Why [`split`](crate::split()), [`build`](crate::build()), [`validate`](crate::validate()) or
-/// [`validate_wide`](crate::validate_wide()) refuses. The first four are faults of the input; the
+/// [`validate_wide`](crate::validate_wide()) refuses. The first three are faults of the input; the
 /// others mean that a hierarchy must not be traversed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum BuildError {
@@ -29,12 +29,6 @@ pub enum BuildError {
         /// The primitive's number in the scene.
         primitive: u32,
     },
-    /// A reference's box is empty or does not lie in the normalised scene.
-    #[error("reference {reference} has a box that does not lie in [-1, 1]: split the normalised scene's primitives")]
-    Reference {
-        /// The reference's place among those given.
-        reference: u32,
-    },
     /// A reference leads past the end of the node pairs.
     #[error("pair {pair} refers to pair {child} of {pairs}: rebuild the hierarchy")]
     PairOutOfRange {
@@ -45,11 +39,13 @@ pub enum BuildError {
         /// Pairs there are.
         pairs: usize,
     },
-    /// A pair has two parents, or is its own ancestor.
-    #[error("pair {pair} is reached twice, so this is no tree: rebuild the hierarchy")]
-    PairReachedTwice {
-        /// The pair.
+    /// A pair does not follow its parent or what is below its sibling.
+    #[error("pair {pair} refers to pair {child}, which is out of depth-first order: rebuild the hierarchy")]
+    PairOutOfOrder {
+        /// The pair that holds the reference.
         pair: u32,
+        /// The pair referred to.
+        child: u32,
     },
     /// A pair is part of no path from the root.
     #[error("pair {pair} is never reached from the root: rebuild the hierarchy")]
@@ -72,6 +68,9 @@ pub enum BuildError {
         /// Primitives there are.
         primitives: usize,
     },
+    /// A hierarchy that was kept has leaves whose slots are not from left to right.
+    #[error("the leaves' slots are not from left to right: rebuild the hierarchy")]
+    SlotOrder,
     /// There are not as many own boxes as slots.
     #[error("there are {order} slots and {bounds} boxes of them: rebuild the hierarchy")]
     Slots {

@@ -10,13 +10,13 @@ use crate::{
     bounds::Bounds,
     build::check_count,
     reference::check_coordinates,
+    tree::{Fold, fold},
     validate::{children, is_empty, validate},
-    wide::validate_wide,
 };
 
 impl Bvh {
-    /// Checks a hierarchy that [`build`](crate::build()) did not make just now: whether it keeps all that `build` promises,
-    /// and whether its own boxes are those of the primitives, or parts that reach as far together.
+    /// Checks a hierarchy that [`build`](crate::build()) did not make just now, without wide nodes: whether it keeps all that
+    /// `build` promises, and whether its own boxes are those of the primitives, or parts that reach as far together.
     ///
     /// # Errors
     ///
@@ -29,15 +29,17 @@ impl Bvh {
             return Err(BuildError::Slots { order: self.order.len(), bounds: self.bounds.len() });
         }
         self.check_own(primitives)?;
-        let proofs = rayon::join(|| validate(&self.nodes, &self.bounds), || validate_wide(&self.wide, &self.bounds));
-        proofs.0.and(proofs.1)?;
+        validate(&self.nodes, &self.bounds)?;
+        if self.order.len() > 1 && fold(&self.nodes, &mut vec![(); self.nodes.len()], &Runs).is_none() {
+            return Err(BuildError::SlotOrder);
+        }
         let loose = self.nodes.par_iter().position_first(|pair| !self.is_tight(pair));
         loose.map_or(Ok(()), |pair| Err(BuildError::BoxTooLarge { pair: pair as u32 }))
     }
 
     /// Checks that every primitive has its box in a slot, or parts of it in several.
     fn check_own(&self, primitives: &[Primitive]) -> Result<(), BuildError> {
-        let met: Vec<AtomicBool> = primitives.iter().map(|_| AtomicBool::new(false)).collect();
+        let met: Vec<AtomicBool> = primitives.par_iter().map(|_| AtomicBool::new(false)).collect();
         let has_met = |primitive: u32| &met[primitive as usize];
         let part = |slot| {
             let primitive = self.order[slot as usize];
@@ -61,7 +63,7 @@ impl Bvh {
                 has_met(primitive).store(true, Ordering::Relaxed);
             }
         });
-        match met.into_iter().position(|met| !met.into_inner()) {
+        match met.par_iter().position_first(|met| !met.load(Ordering::Relaxed)) {
             Some(primitive) => Err(BuildError::PrimitiveLost { primitive: primitive as u32 }),
             None => Ok(()),
         }
@@ -83,5 +85,22 @@ impl Bvh {
         }
         let [(left, _), (right, _)] = children(&self.nodes[first as usize]);
         left.union(right)
+    }
+}
+
+/// The slots below a pair, if they lie in a row from left to right: where they start and end.
+struct Runs;
+
+impl Fold<NodePair> for Runs {
+    type Known = Option<[u32; 2]>;
+    type Note = ();
+
+    fn leaf(&self, leaf: NodeRef) -> Self::Known {
+        Some([leaf.index(), leaf.index() + leaf.count()])
+    }
+
+    fn pair(&self, _: usize, _: &NodePair, [left, right]: [Self::Known; 2], (): &mut ()) -> Self::Known {
+        let ([start, middle], [next, end]) = (left?, right?);
+        (middle == next).then_some([start, end])
     }
 }

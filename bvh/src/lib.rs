@@ -1,30 +1,28 @@
 //! Bounding volume hierarchies for Eyerays.
 //!
-//! [`split`] turns triangles into references, once a scene; [`build`] turns references into the node
-//! pairs that most traversal methods walk and the wide nodes that one walks, over one order of slots.
-//! The tree that splits triangles is where builds begin; obvhs improves it, and clusters references that were not split.
-//! This crate keeps away from it input that it cannot handle, bounds the depth, computes every box itself and validates
-//! the result, because the kernels index without checks and cull without tolerance.
+//! [`split`] turns primitives into references from left to right in a tree, once a scene; [`build`] makes node pairs of it,
+//! which most traversal methods walk, once obvhs has improved it as far as wanted. [`Bvh::widen`] adds the nodes of eight
+//! children that one method on a GPU walks, [`Bvh8`] has those that a CPU walks.
+//! This crate bounds the depth, computes every box itself and validates the result, because the kernels index without checks
+//! and cull without tolerance.
 //!
-//! The stages run one way, a file each: bounds, reference, spatial, search (with cluster, morton and reinsertion), topology,
-//! depth, layout (with median), wide, validate.
+//! The stages run one way, a file each: bounds, reference, spatial, search (with reinsertion), depth (with median), layout,
+//! wide, validate. All of them share one form of a tree, and how threads go through it: tree.
 
 mod bounds;
 mod build;
-mod cluster;
 mod depth;
 mod error;
 mod kept;
 mod layout;
 mod median;
-mod morton;
 mod quality;
 mod reference;
 mod reinsertion;
 mod search;
 mod spatial;
 mod statistics;
-mod topology;
+mod tree;
 mod validate;
 mod wide;
 

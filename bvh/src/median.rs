@@ -11,27 +11,29 @@ pub(crate) fn height(primitives: u32) -> u32 {
     leaves.next_power_of_two().ilog2()
 }
 
-/// Orders primitive numbers so that the first half lies on one side of the median along the longest
-/// axis, and returns the half's length. `bounds` are those of all primitives.
+/// Orders items so that the first half lies on one side of the median along the longest axis, and returns the half's
+/// length. `own` tells an item's box, `number` its number.
 ///
-/// Where all centres coincide, extents tell primitives apart; where these are equal too, numbers do.
-pub(crate) fn split(primitives: &mut [u32], bounds: &[Bounds]) -> usize {
-    let middle = primitives.len() / 2;
-    let all = primitives.iter().map(|&t| bounds[t as usize]);
-    let centres = Bounds::around(all.clone().map(|b| Bounds::point(b.centre())));
+/// Where all centres coincide, extents tell items apart; where these are equal too, numbers do.
+pub(crate) fn split<T>(items: &mut [T], own: impl Fn(&T) -> Bounds, number: impl Fn(&T) -> u32) -> usize {
+    let middle = items.len() / 2;
+    let centres = Bounds::around(items.iter().map(|item| Bounds::point(own(item).centre())));
     let axis = longest(centres.extent());
     if centres.extent()[axis] > 0.0 {
-        halve(primitives, middle, |t| bounds[t as usize].centre()[axis]);
+        halve(items, |item| (own(item).centre()[axis], number(item)));
     } else {
-        let axis = longest(Bounds::around(all).extent());
-        halve(primitives, middle, |t| bounds[t as usize].extent()[axis]);
+        let axis = longest(Bounds::around(items.iter().map(&own)).extent());
+        halve(items, |item| (own(item).extent()[axis], number(item)));
     }
     middle
 }
 
-/// Moves the `middle` primitives of least key to the front.
-fn halve(primitives: &mut [u32], middle: usize, key: impl Fn(u32) -> f32) {
-    primitives.select_nth_unstable_by(middle, |&a, &b| key(a).total_cmp(&key(b)).then(a.cmp(&b)));
+/// Moves the half of least keys to the front.
+fn halve<T>(items: &mut [T], key: impl Fn(&T) -> (f32, u32)) {
+    items.select_nth_unstable_by(items.len() / 2, |a, b| {
+        let (a, b) = (key(a), key(b));
+        a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+    });
 }
 
 /// The axis of the greatest extent; the first of equals.
@@ -48,6 +50,10 @@ mod tests {
         Bounds::new(centre.map(|c| c - half), centre.map(|c| c + half))
     }
 
+    fn halves(numbers: &mut [u32], boxes: &[Bounds]) -> usize {
+        split(numbers, |&number| boxes[number as usize], |&number| number)
+    }
+
     #[test]
     fn height_is_that_of_repeated_halving() {
         fn halved(n: u32) -> u32 {
@@ -62,7 +68,7 @@ mod tests {
     fn halves_along_the_longest_axis() {
         let boxes: Vec<Bounds> = [4.0, 1.0, 3.0, 2.0, 0.0].map(|y| cube([-y / 8.0, y, 0.5], 0.1)).into();
         let mut primitives = vec![0, 1, 2, 3, 4];
-        assert_eq!(split(&mut primitives, &boxes), 2);
+        assert_eq!(halves(&mut primitives, &boxes), 2);
         primitives[..2].sort();
         primitives[2..].sort();
         assert_eq!(primitives, [1, 4, 0, 2, 3]);
@@ -72,12 +78,12 @@ mod tests {
     fn concentric_boxes_are_halved_by_size_and_equal_ones_by_number() {
         let boxes: Vec<Bounds> = [0.3, 0.1, 0.4, 0.2].map(|half| cube([0.0; 3], half)).into();
         let mut primitives = vec![0, 1, 2, 3];
-        assert_eq!(split(&mut primitives, &boxes), 2);
+        assert_eq!(halves(&mut primitives, &boxes), 2);
         primitives[..2].sort();
         assert_eq!(primitives[..2], [1, 3]);
 
         let mut primitives = vec![3, 1, 0, 2];
-        assert_eq!(split(&mut primitives, &[cube([0.5; 3], 0.1); 4]), 2);
+        assert_eq!(halves(&mut primitives, &[cube([0.5; 3], 0.1); 4]), 2);
         primitives[..2].sort();
         assert_eq!(primitives[..2], [0, 1]);
     }

@@ -1,13 +1,15 @@
 //! What a hierarchy is built over.
 
 use eyerays_shader::data::{Bounds as Record, Primitive};
+use glam::UVec4;
 use rayon::prelude::*;
 
 use crate::{
     BuildError,
     bounds::Bounds,
     build::{MOST, check_count},
-    spatial::{self, Tree},
+    spatial,
+    tree::Children,
 };
 
 /// A primitive, or a part of one.
@@ -24,20 +26,26 @@ pub struct Reference {
     pub bounds: Record,
 }
 
-/// References to all primitives of a scene. They are made once, so that every quality of hierarchy is
-/// built over the same, and no builder can change what a ray meets.
-#[derive(Clone, Debug, PartialEq)]
-pub struct References {
-    /// The references; those of one primitive may be anywhere.
-    pub list: Vec<Reference>,
-    /// The tree whose planes split them, if any did. Builds start from it.
-    pub(crate) tree: Option<Tree>,
+impl Reference {
+    /// What fills room.
+    pub(crate) const NONE: Reference =
+        Reference { primitive: 0, bounds: Record { least: UVec4::ZERO, greatest: UVec4::ZERO } };
 }
 
-impl From<Vec<Reference>> for References {
-    /// References that were made elsewhere.
-    fn from(list: Vec<Reference>) -> Self {
-        References { list, tree: None }
+/// References to all primitives of a scene, from left to right in the tree whose planes split them: they are made once,
+/// so that every quality of hierarchy is built over the same, and no builder can change what a ray meets. Builds start from
+/// the tree.
+#[derive(Clone, Debug, PartialEq)]
+pub struct References {
+    pub(crate) list: Vec<Reference>,
+    /// None where there is one reference.
+    pub(crate) pairs: Vec<Children>,
+}
+
+impl References {
+    /// All of them; those of one primitive may be anywhere.
+    pub fn list(&self) -> &[Reference] {
+        &self.list
     }
 }
 
@@ -57,12 +65,7 @@ pub fn split(primitives: &[Primitive], budget: f32) -> Result<References, BuildE
     check_coordinates(primitives)?;
     // NaN is converted to 0.
     let room = (f64::from(budget) * f64::from(count)) as usize;
-    if room > 0 {
-        return Ok(spatial::references(primitives, room));
-    }
-    let whole = |(primitive, number)| Reference { primitive: number, bounds: Bounds::of(primitive).write() };
-    let list: Vec<Reference> = primitives.iter().zip(0..).map(whole).collect();
-    Ok(list.into())
+    Ok(spatial::references(primitives, room))
 }
 
 /// Neither areas nor clipping can handle NaN.

@@ -4,6 +4,7 @@
 //! its radix sort leaves equal ones in an order that depends on the number of threads.
 
 use obvhs::bvh2::{Bvh2, node::Bvh2Node, reinsertion::ReinsertionOptimizer};
+use rayon::prelude::*;
 
 /// The most comparisons that the first pass may make; they take seconds. Trying every node of a
 /// million scattered triangles takes 8e8; where all triangles overlap, the work would be quadratic
@@ -30,9 +31,11 @@ impl Reinsertion {
         }
         let first = self.first(tree);
         let mut optimizer = ReinsertionOptimizer::default();
+        let mut candidates: Vec<u32> = (1..tree.nodes.len() as u32).into_par_iter().collect();
         for divisor in (1..32).step_by(2) {
             let count = (first / divisor as f32) as usize;
-            let candidates = largest(tree, count.max(1));
+            // Nodes that grow large on the way are few.
+            candidates = largest(tree, &candidates, count.max(1));
             optimizer.run_with_candidates(tree, &candidates, 1);
         }
     }
@@ -46,24 +49,40 @@ impl Reinsertion {
 /// About how many nodes a candidate is compared with: those that a random ray would meet.
 fn visits(tree: &Bvh2) -> f32 {
     let area = |node: &Bvh2Node| f64::from(node.aabb().half_area());
-    let sum: f64 = tree.nodes.iter().map(area).sum();
-    (sum / area(&tree.nodes[0])) as f32
+    let sums: Vec<f64> = tree.nodes.par_chunks(CHUNK).map(|nodes| nodes.iter().map(area).sum()).collect();
+    (sums.iter().sum::<f64>() / area(&tree.nodes[0])) as f32
 }
 
-/// The `count` largest of the nodes near the root; of equal nodes, the ones of least number.
-fn largest(tree: &Bvh2, count: usize) -> Vec<u32> {
-    // obvhs numbers pairs from the root on, so the first nodes hold nearly all large ones.
-    let near = tree.nodes.iter().take(2 * (count + 1)).zip(0u32..).skip(1);
+/// Nodes that a thread takes at a time.
+const CHUNK: usize = 1 << 14;
+/// Bits of a positive number that tell its exponent and the first three of its fraction.
+const CLASS: u32 = 8 + 3;
+
+/// The `count` largest of these nodes; of equal ones, those of least number. The largest comes first.
+fn largest(tree: &Bvh2, nodes: &[u32], count: usize) -> Vec<u32> {
     // The bits of positive numbers are ordered as the numbers are.
-    let mut keys: Vec<u64> =
-        near.map(|(node, id)| u64::from(node.aabb().half_area().to_bits()) << 32 | u64::from(!id)).collect();
-    let count = count.min(keys.len());
-    if count < keys.len() {
-        keys.select_nth_unstable_by(count, |a, b| b.cmp(a));
-    }
+    let area = |node: u32| tree.nodes[node as usize].aabb().half_area().to_bits();
+    let class = |area: u32| (area >> (31 - CLASS)) as usize;
+    let counted = |nodes: &[u32]| {
+        let mut classes = vec![0u32; 1 << CLASS];
+        nodes.iter().for_each(|&node| classes[class(area(node))] += 1);
+        classes
+    };
+    let classes = nodes.par_chunks(CHUNK).map(counted).reduce_with(|mut all, some| {
+        all.iter_mut().zip(some).for_each(|(all, some)| *all += some);
+        all
+    });
+    let mut reached = 0;
+    let enough = |&(_, in_class): &(usize, u32)| {
+        reached += in_class as usize;
+        reached >= count
+    };
+    let least = classes.unwrap_or_default().into_iter().enumerate().rev().find(enough).map_or(0, |(class, _)| class);
+    let key = |&node: &u32| u64::from(area(node)) << 32 | u64::from(!node);
+    let mut keys: Vec<u64> = nodes.par_iter().map(key).filter(|key| class((key >> 32) as u32) >= least).collect();
+    keys.par_sort_unstable_by(|a, b| b.cmp(a));
     keys.truncate(count);
-    keys.sort_unstable_by(|a, b| b.cmp(a));
-    keys.into_iter().map(|key| !(key as u32)).collect()
+    keys.into_par_iter().map(|key| !(key as u32)).collect()
 }
 
 #[cfg(test)]
@@ -94,8 +113,9 @@ mod tests {
         for (id, edge) in [9.0, 2.0, 3.0, 2.0, 3.0, 1.0, 7.0].into_iter().enumerate() {
             tree.nodes[id].set_aabb(cube(edge));
         }
-        assert_eq!(largest(&tree, 3), [6, 2, 4]);
-        assert_eq!(largest(&tree, 2), [2, 4], "only nodes near the root are tried");
-        assert_eq!(largest(&tree, 100).len(), 10);
+        let largest = |nodes: &[u32], count| largest(&tree, nodes, count);
+        assert_eq!(largest(&[1, 2, 3, 4, 5, 6], 3), [6, 2, 4]);
+        assert_eq!(largest(&[1, 2, 3, 4, 5], 2), [2, 4], "only those asked for are tried");
+        assert_eq!(largest(&[3, 1, 5], 100), [1, 3, 5]);
     }
 }

@@ -1,85 +1,66 @@
-//! The search for a topology, by obvhs.
+//! The search for a better tree, by obvhs.
 
+use eyerays_shader::data::NodeRef;
 use obvhs::{
     aabb::Aabb,
-    bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH, leaf_collapser::collapse, node::Bvh2Node},
-    ploc::PlocBuilder,
+    bvh2::{Bvh2, DEFAULT_MAX_STACK_DEPTH, node::Bvh2Node},
 };
 
 use crate::{
-    Quality,
     bounds::Bounds,
-    cluster::Clusters,
     reinsertion::Reinsertion,
-    spatial::{Kind, Tree},
-    topology::Topology,
+    tree::{Branch, Children, Fold, Grown, Piece, fold},
 };
 
-/// A tree over primitives, given by their boxes: clustering, reinsertion, and leaves of several primitives where that is
-/// cheaper. The depth has no bound.
-pub(crate) fn search(bounds: &[Bounds], quality: Quality) -> Topology {
-    let (clusters, parameters) = (Clusters::of(bounds), quality.parameters());
-    let around = |group| Bounds::around(clusters.members(group).iter().map(|&t| bounds[t as usize]));
-    let boxes: Vec<Aabb> = (0..clusters.len() as u32).map(|group| aabb(&around(group))).collect();
-    let mut tree = PlocBuilder::with_capacity(boxes.len()).build(
-        parameters.ploc_search_distance,
-        &boxes,
-        (0..boxes.len() as u32).collect(),
-        parameters.sort_precision,
-        parameters.search_depth_threshold,
-    );
-    let share = parameters.reinsertion_batch_ratio;
-    reinsert(&mut tree, share);
-    collapse(&mut tree, parameters.max_prims_per_leaf, parameters.collapse_traversal_cost);
-    reinsert(&mut tree, share * parameters.post_collapse_reinsertion_batch_ratio_multiplier);
-    Topology::of(tree.nodes.len(), kind(&tree), |number, order| {
-        let leaf = &tree.nodes[number as usize];
-        for primitive in leaf.first_index..leaf.first_index + leaf.prim_count {
-            order.extend(clusters.members(tree.primitive_indices[primitive as usize]));
-        }
-    })
-}
+/// Down to this level, threads share what is below a pair.
+const LEVELS: u32 = 12;
 
-/// The tree that split primitives, or a better one of its leaves.
-pub(crate) fn improve(start: &Tree, bounds: &[Bounds], quality: Quality) -> Topology {
-    let share = quality.reinsertion();
-    if share == 0.0 {
-        let kind = |number| start.nodes[number as usize];
-        return Topology::of(start.nodes.len(), kind, |leaf, order| order.extend(start.members(leaf)));
-    }
-    let mut tree = Bvh2::zeroed(start.nodes.len().div_ceil(2));
-    let mut around = vec![Bounds::EMPTY; start.nodes.len()];
-    for (i, kind) in start.nodes.iter().enumerate().rev() {
-        around[i] = match *kind {
-            Kind::Leaf(leaf) => Bounds::around(start.members(leaf).map(|member| bounds[member as usize])),
-            Kind::Inner(left, right) => around[left as usize].union(around[right as usize]),
-        };
-        tree.nodes[i] = match *kind {
-            Kind::Leaf(leaf) => Bvh2Node::new(aabb(&around[i]), 1, leaf),
-            Kind::Inner(left, _) => Bvh2Node::new(aabb(&around[i]), 0, left),
-        };
-    }
-    reinsert(&mut tree, share);
-    let leaf = |number: u32| tree.nodes[number as usize].first_index;
-    Topology::of(tree.nodes.len(), kind(&tree), |number, order| order.extend(start.members(leaf(number))))
-}
-
-/// Moves nodes where that costs less; the first pass tries `share` of them.
-fn reinsert(tree: &mut Bvh2, share: f32) {
+/// A tree of the same leaves that costs less, and its slots from left to right. A first pass tries to move `share` of the
+/// nodes. The depth has no bound.
+pub(crate) fn improve(pairs: &[Children], own: impl Fn(u32) -> Bounds + Sync, share: f32) -> (Vec<Children>, Vec<u32>) {
+    let mut tree = Bvh2::zeroed(pairs.len() + 1);
+    let (root, below) = tree.nodes.split_first_mut().expect("a root");
+    let around = fold(pairs, below.as_chunks_mut::<2>().0, &Boxes(own));
+    *root = node(around, NodeRef::ROOT);
     // Up to this depth, obvhs searches with a stack that forgets candidates when it is full; the
     // one it takes for deeper trees panics then.
     tree.max_depth = DEFAULT_MAX_STACK_DEPTH;
-    Reinsertion::new(share).run(tree);
+    Reinsertion::new(share).run(&mut tree);
+    branch(&tree, 0, 0).flat(0)
 }
 
-/// What each node of a tree is: an inner one, or a leaf by its own number.
-fn kind(tree: &Bvh2) -> impl Fn(u32) -> Kind {
-    |number| match &tree.nodes[number as usize] {
-        leaf if leaf.is_leaf() => Kind::Leaf(number),
-        inner => Kind::Inner(inner.first_index, inner.first_index + 1),
+/// Both nodes of each pair. Those of pair `p` are nodes `2 p + 1` and `2 p + 2`.
+struct Boxes<F>(F);
+
+impl<F: Fn(u32) -> Bounds + Sync> Fold<Children> for Boxes<F> {
+    type Known = Bounds;
+    type Note = [Bvh2Node; 2];
+
+    fn leaf(&self, leaf: NodeRef) -> Bounds {
+        Bounds::around((leaf.index()..leaf.index() + leaf.count()).map(&self.0))
+    }
+
+    fn pair(&self, _: usize, pair: &Children, [left, right]: [Bounds; 2], nodes: &mut [Bvh2Node; 2]) -> Bounds {
+        *nodes = [node(left, pair[0]), node(right, pair[1])];
+        left.union(right)
     }
 }
 
-fn aabb(bounds: &Bounds) -> Aabb {
-    Aabb::new(bounds.min, bounds.max)
+fn node(bounds: Bounds, reference: NodeRef) -> Bvh2Node {
+    let first = if reference.is_leaf() { reference.index() } else { 2 * reference.index() + 1 };
+    Bvh2Node::new(Aabb::new(bounds.min, bounds.max), reference.count(), first)
+}
+
+/// What is below a node, with the slots of its leaves.
+fn branch(tree: &Bvh2, number: u32, level: u32) -> Branch<u32> {
+    let node = &tree.nodes[number as usize];
+    if node.is_leaf() || level == LEVELS {
+        return Branch::Piece(Piece::grow(number, |number, piece| {
+            let Bvh2Node { first_index: first, prim_count: count, .. } = tree.nodes[number as usize];
+            if count > 0 { Grown::Leaf(piece.leaf(first..first + count)) } else { Grown::Pair(first, first + 1) }
+        }));
+    }
+    let below = |child| branch(tree, child, level + 1);
+    let (left, right) = rayon::join(|| below(node.first_index), || below(node.first_index + 1));
+    Branch::Inner(Box::new([left, right]))
 }

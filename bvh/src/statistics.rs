@@ -5,6 +5,7 @@ use eyerays_shader::data::{NodePair, NodeRef, Primitive};
 use crate::{
     Bvh,
     bounds::Bounds,
+    tree::{Fold, fold},
     validate::{children, is_empty},
     wide::{Child, Record},
 };
@@ -28,7 +29,7 @@ pub struct Statistics {
     pub sah_cost: f64,
     /// Bytes of the node pairs.
     pub node_bytes: usize,
-    /// Wide nodes.
+    /// Wide nodes, none before [`Bvh::widen`].
     pub wide_nodes: usize,
     /// The most wide nodes on a path from the root.
     pub wide_depth: u32,
@@ -76,30 +77,18 @@ struct Figures {
 
 impl Figures {
     fn of_pairs(bvh: &Bvh) -> Self {
-        let mut figures = Figures { leaves: 0, depth: 0, sah_cost: Statistics::TRAVERSAL };
         let root = Bounds::around(real_children(&bvh.nodes[0]).map(|(bounds, _)| bounds));
-        let share = |bounds: Bounds| f64::from(bounds.half_area()) / f64::from(root.half_area());
-        let mut open = vec![(0u32, 1u32)];
-        while let Some((pair, depth)) = open.pop() {
-            figures.depth = figures.depth.max(depth);
-            for (bounds, reference) in real_children(&bvh.nodes[pair as usize]) {
-                if reference.is_leaf() {
-                    let tests = f64::from(reference.count());
-                    figures.sah_cost += share(bounds) * tests * Statistics::INTERSECTION;
-                    figures.leaves += 1;
-                } else {
-                    figures.sah_cost += share(bounds) * Statistics::TRAVERSAL;
-                    open.push((reference.index(), depth + 1));
-                }
-            }
-        }
-        figures
+        let figures = fold(&bvh.nodes, &mut vec![(); bvh.nodes.len()], &Sums { whole: f64::from(root.half_area()) });
+        Figures { sah_cost: Statistics::TRAVERSAL + figures.sah_cost, ..figures }
     }
 
     fn of_wide(bvh: &Bvh) -> Self {
         let mut figures = Figures { leaves: 0, depth: 0, sah_cost: 0.0 };
         let mut open = vec![(0u32, 1u32, None)];
         let mut root = 0.0;
+        if bvh.wide.is_empty() {
+            return figures;
+        }
         while let Some((node, depth, area)) = open.pop() {
             let record = Record::decode(&bvh.wide[node as usize]).expect("a validated node");
             let half_area = |planes| f64::from(record.grid.bounds(planes).half_area());
@@ -123,6 +112,33 @@ impl Figures {
             }
         }
         figures
+    }
+}
+
+/// The figures of what is below a pair, whose own costs are its parent's to add.
+struct Sums {
+    /// Half the root's area.
+    whole: f64,
+}
+
+impl Fold<NodePair> for Sums {
+    type Known = Figures;
+    type Note = ();
+
+    fn leaf(&self, _: NodeRef) -> Figures {
+        Figures { leaves: 1, depth: 0, sah_cost: 0.0 }
+    }
+
+    fn pair(&self, _: usize, pair: &NodePair, below: [Figures; 2], (): &mut ()) -> Figures {
+        let mut sum = Figures { leaves: 0, depth: 0, sah_cost: 0.0 };
+        for ((bounds, child), below) in real_children(pair).zip(below) {
+            let share = f64::from(bounds.half_area()) / self.whole;
+            let tests = f64::from(child.count()) * Statistics::INTERSECTION;
+            sum.sah_cost += below.sah_cost + share * if child.is_leaf() { tests } else { Statistics::TRAVERSAL };
+            sum.leaves += below.leaves;
+            sum.depth = sum.depth.max(1 + below.depth);
+        }
+        sum
     }
 }
 

@@ -32,7 +32,7 @@ fn cycle() {
         let last = nodes.len() - 1;
         nodes[last].left_min.w = NodeRef::ROOT.0;
     });
-    assert_eq!(error, BuildError::PairReachedTwice { pair: 0 });
+    assert!(matches!(error, BuildError::PairOutOfOrder { child: 0, .. }), "{error}");
 }
 
 #[test]
@@ -41,7 +41,7 @@ fn pair_with_two_parents() {
         let pair = nodes[0];
         nodes[0] = NodePair { right_min: pair.left_min, right_max: pair.left_max, ..pair };
     });
-    assert_eq!(error, BuildError::PairReachedTwice { pair: 1 });
+    assert_eq!(error, BuildError::PairOutOfOrder { pair: 0, child: 1 });
 }
 
 #[test]
@@ -100,7 +100,13 @@ fn triangle_in_two_leaves() {
         nodes[pair].right_min = nodes[pair].left_min;
         nodes[pair].right_max = nodes[pair].left_max;
     });
-    assert!(matches!(error, BuildError::PrimitiveTwice { .. }));
+    assert!(matches!(error, BuildError::PrimitiveLost { .. }), "what the right leaf had: {error}");
+    let mut bvh = build(&whole(&duplicates(12)), Quality::Medium).unwrap();
+    let pair = bvh.nodes.iter().position(|n| n.left().is_leaf() && n.right().is_leaf()).unwrap();
+    bvh.nodes[pair].left_min.w += 1;
+    let twice = bvh.nodes[pair].right().index();
+    let error = validate(&bvh.nodes, &bvh.bounds).unwrap_err();
+    assert_eq!(error, BuildError::PrimitiveTwice { primitive: twice });
 }
 
 /// Moves one face of one box inwards by the least step there is.
@@ -160,15 +166,18 @@ fn too_deep_by_one() {
 
 #[test]
 fn empty_sibling_belongs_to_one_triangle_only() {
-    let references = whole(&scattered(2, 31));
-    let bounds = [references.list[0].bounds, references.list[1].bounds];
-    let one = build(&references.list[..1].to_vec().into(), Quality::Medium).unwrap().nodes;
-    assert_eq!(validate(&one, &bounds[..1]), Ok(()));
-    let error = BuildError::PrimitiveTwice { primitive: 0 };
-    assert_eq!(validate(&one, &bounds), Err(error.clone()));
+    let both = scattered(2, 31);
+    let one = build(&whole(&both[..1]), Quality::Medium).unwrap();
+    let bounds = [one.bounds[0], one.bounds[0]];
+    assert_eq!(validate(&one.nodes, &bounds[..1]), Ok(()));
+    // With a second slot, it is a leaf that lies elsewhere.
+    assert_eq!(validate(&one.nodes, &bounds), Err(BuildError::BoxTooSmall { pair: 0 }));
 
-    let mut moved = one.clone();
+    let mut moved = one.nodes.clone();
     moved[0].right_max.x = 1.0f32.to_bits();
-    assert_eq!(validate(&moved, &bounds[..1]), Err(error));
-    assert_eq!(validate(&one, &[]), Err(BuildError::NoPrimitives));
+    assert_eq!(validate(&moved, &bounds[..1]), Err(BuildError::BoxTooSmall { pair: 0 }));
+    let mut doubled = one.nodes.clone();
+    (doubled[0].right_min, doubled[0].right_max) = (doubled[0].left_min, doubled[0].left_max);
+    assert_eq!(validate(&doubled, &bounds[..1]), Err(BuildError::PrimitiveTwice { primitive: 0 }));
+    assert_eq!(validate(&one.nodes, &[]), Err(BuildError::NoPrimitives));
 }

@@ -1,16 +1,15 @@
-//! Meshes on which bottom-up builders lose boxes, levels or hours.
+//! Meshes on which builders lose boxes, levels or hours.
 
 mod common;
 
 use std::time::{Duration, Instant};
 
 use common::*;
-use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, Reference, Statistics, build, split};
-use eyerays_shader::data::{Bounds, NodePair, Primitive, pack};
+use eyerays_bvh::{BuildError, MAX_DEPTH, Quality, Statistics, build, split};
+use eyerays_shader::data::{NodePair, Primitive};
 use glam::{Vec3, vec3};
 
-/// Many times what these builds take on a busy machine. Where clusters are not kept away from obvhs,
-/// the largest of them take minutes.
+/// Many times what these builds take on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(10);
 
 /// Builds at every quality within [`PATIENCE`] and returns the greatest depth.
@@ -26,9 +25,6 @@ fn depth(triangles: &[Primitive]) -> u32 {
 
 #[test]
 fn no_triangles() {
-    for quality in QUALITIES {
-        assert_eq!(build(&Vec::new().into(), quality), Err(BuildError::NoPrimitives));
-    }
     assert_eq!(split(&[], 0.0), Err(BuildError::NoPrimitives));
 }
 
@@ -43,14 +39,14 @@ fn few_triangles() {
 #[test]
 fn one_triangle_has_an_empty_sibling() {
     let bvh = build(&whole(&scattered(1, 3)), Quality::Medium).unwrap();
-    assert_eq!((bvh.nodes.len(), bvh.wide.len()), (1, 1));
+    assert_eq!(bvh.nodes.len(), 1);
     assert_eq!(bvh.nodes[0].right(), NodePair::EMPTY.2);
 }
 
 #[test]
 fn a_leaf_full_is_still_a_pair() {
     for count in 2..=5 {
-        let bvh = build(&whole(&scattered(count, 5)), Quality::Medium).unwrap();
+        let bvh = build(&whole(&duplicates(count)), Quality::Medium).unwrap();
         assert_eq!(bvh.nodes.len(), 1);
         assert_eq!(bvh.nodes[0].left().count() + bvh.nodes[0].right().count(), count);
     }
@@ -76,14 +72,14 @@ fn fan_of_spokes() {
 }
 
 #[test]
-fn nested_triangles() {
-    assert_eq!(depth(&nested(100_000)), 15);
-    assert_eq!(depth(&concentric(100_000)), 15);
+fn nested_triangles_reach_the_depth_limit_and_keep_to_it() {
+    assert_eq!(depth(&nested(100_000)), MAX_DEPTH);
+    assert_eq!(depth(&concentric(100_000)), MAX_DEPTH);
 }
 
 #[test]
 fn collinear_triangles() {
-    assert_eq!(depth(&collinear(100_000)), 15);
+    assert!(depth(&collinear(100_000)) < 20);
 }
 
 #[test]
@@ -93,9 +89,9 @@ fn grid_of_ties() {
 
 #[test]
 fn shrinking_triangles_reach_the_depth_limit_and_keep_to_it() {
-    assert_eq!(depth(&shrinking(100, 2)), MAX_DEPTH);
-    depth(&shrinking(140, 7));
-    depth(&shrinking(120, 300));
+    depth(&shrinking(100, 2));
+    assert_eq!(depth(&shrinking(140, 7)), MAX_DEPTH);
+    assert_eq!(depth(&shrinking(120, 300)), MAX_DEPTH);
 }
 
 #[test]
@@ -135,21 +131,5 @@ fn coordinates_outside_the_scene_are_refused_by_primitive() {
         let error = split(&triangles, 0.0).unwrap_err();
         assert_eq!(error, BuildError::Coordinate { primitive: 4711 });
         assert!(error.to_string().contains("primitive 4711"));
-    }
-}
-
-#[test]
-fn references_outside_the_scene_are_refused_by_their_place() {
-    let good = whole(&scattered(50, 9));
-    let bounds = |least: f32, greatest: f32| Bounds {
-        least: pack(vec3(0.0, least, 0.0), 0),
-        greatest: pack(vec3(0.5, greatest, 0.5), 0),
-    };
-    for bad in [(f32::NAN, 0.5), (0.5, f32::NAN), (0.5, 0.25), (-1.5, 0.0), (0.0, f32::INFINITY), (0.0, 1.001)] {
-        let mut references = good.clone();
-        references.list[17] = Reference { bounds: bounds(bad.0, bad.1), ..references.list[17] };
-        let error = build(&references, Quality::Medium).unwrap_err();
-        assert_eq!(error, BuildError::Reference { reference: 17 });
-        assert!(error.to_string().contains("reference 17"));
     }
 }

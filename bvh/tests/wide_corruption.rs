@@ -9,7 +9,8 @@ use glam::{UVec4, Vec3};
 
 /// A valid tree, and the own boxes of its slots.
 fn valid() -> (Vec<CwbvhNode>, Vec<Bounds>) {
-    let bvh = build(&whole(&mixed()), Quality::Medium).unwrap();
+    let mut bvh = build(&whole(&mixed()), Quality::Medium).unwrap();
+    bvh.widen().unwrap();
     assert_eq!(validate_wide(&bvh.wide, &bvh.bounds), Ok(()));
     assert!(bvh.wide.len() > 10);
     (bvh.wide, bvh.bounds)

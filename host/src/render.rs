@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use eyerays_bvh::Quality;
 use eyerays_shader::real::{Fast, Scalar};
 
 use crate::choice::choices;
@@ -10,8 +11,9 @@ use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{AdapterRequest, Gpu, Renderer, warm};
-use crate::method::{Processor, Traversal};
+use crate::method::{Method, Processor, Traversal};
 use crate::rays::Rays;
+use crate::scene::{Scene, Settings};
 use crate::time_limit;
 use crate::view::View;
 pub use crate::why::Why;
@@ -59,6 +61,18 @@ pub struct Choice {
     pub no_passthrough: bool,
     /// CPU threads; 0 is one a core.
     pub threads: usize,
+}
+
+impl Choice {
+    /// Packs a scene for what is traced, by as many threads.
+    ///
+    /// # Errors
+    /// As [`DeviceScene::new`].
+    pub fn pack(&self, scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
+        let is_wide = self.traversal.method == Method::Wide && self.device != DeviceWish::Cpu;
+        let pack = if is_wide { DeviceScene::with_wide_nodes } else { DeviceScene::new };
+        cpu::pool(self.threads)?.install(|| pack(scene, settings, quality))
+    }
 }
 
 /// The device of a rendering.

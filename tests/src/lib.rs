@@ -63,7 +63,7 @@ pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Posed {
 /// # Panics
 /// As [`pack`].
 pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Posed {
-    let packed = DeviceScene::new(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
+    let packed = DeviceScene::with_wide_nodes(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
     let view = View::new(&packed, camera).unwrap_or_else(|e| panic!("{e}"));
     Posed { packed, view }
 }

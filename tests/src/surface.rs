@@ -93,7 +93,7 @@ impl Surface {
     /// If no device could hold it.
     pub fn pack(&self) -> DeviceScene {
         let scene = self.scene();
-        DeviceScene::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// The scene packed, with a place in world units that it reaches to: a triangle without extent, the last, which no ray
@@ -104,7 +104,7 @@ impl Surface {
     pub fn pack_up_to(&self, end: Vec3) -> DeviceScene {
         let mut scene = self.scene();
         add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
-        DeviceScene::new(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 

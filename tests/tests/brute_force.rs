@@ -27,7 +27,7 @@ fn generated(kind: Kind, folder: &Path) -> scene::Scene {
 }
 
 fn pack(scene: &scene::Scene, quality: Quality) -> DeviceScene {
-    DeviceScene::new(scene, scene.settings, quality).unwrap()
+    DeviceScene::with_wide_nodes(scene, scene.settings, quality).unwrap()
 }
 
 /// A number in [0, 1) that depends on its place alone.

@@ -13,23 +13,21 @@ mod grow;
 mod many;
 mod part;
 mod through;
-mod tree;
-
-pub(crate) use tree::{Kind, Tree};
 
 use eyerays_shader::data::Primitive;
 use rayon::prelude::*;
 
-use crate::References;
+use crate::{Reference, References, tree::filled};
 use part::Part;
 
 /// Splits triangles in the normalised scene into at most `room` references more than there are
 /// triangles.
 pub(crate) fn references(triangles: &[Primitive], room: usize) -> References {
-    let mut parts = vec![Part::NONE; triangles.len() + room];
+    let mut parts = filled(Part::NONE, triangles.len() + room);
     let whole = |(number, (part, triangle)): (usize, (&mut Part, _))| *part = Part::whole(number as u32, triangle);
     parts.par_iter_mut().zip(triangles).enumerate().for_each(whole);
     let grown = grow::grow(triangles, &mut parts, triangles.len());
     drop(parts);
-    References { list: grown.references(), tree: Some(grown.flat()) }
+    let (pairs, list) = grown.flat(Reference::NONE);
+    References { list, pairs }
 }

@@ -2,18 +2,21 @@
 
 use eyerays_shader::data::NodeRef;
 
-use crate::bounds::Bounds;
+use crate::{
+    bounds::Bounds,
+    tree::{Branch, Children, Fold, Pair, Piece, filled, fold, regrow},
+};
 
 /// What a node is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Left and right child, by their numbers.
     Inner(u32, u32),
-    /// Triangles, at most as many as the wide nodes' leaves hold.
+    /// Primitives, at most as many as the wide nodes' leaves hold.
     Leaf,
 }
 
-/// A node and the slots below it, which are contiguous.
+/// A node and the places below it, which are in a row.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Node {
     pub bounds: Bounds,
@@ -24,78 +27,82 @@ pub(crate) struct Node {
     pub kind: Kind,
 }
 
-/// A tree whose children come after their parents. Node 0 is the root.
+impl Node {
+    /// A placeholder.
+    const NONE: Node = Node { bounds: Bounds::EMPTY, first: 0, count: 0, height: 0, kind: Kind::Leaf };
+}
+
+/// A tree whose children come after their parents. Node 0 is the root; the children of pair `p` are nodes `2 p + 1` and
+/// `2 p + 2`.
 pub(crate) struct Binary {
+    /// None if the root is a leaf.
+    pub pairs: Vec<Children>,
     pub nodes: Vec<Node>,
+    /// The slot at each place, from left to right.
+    pub order: Vec<u32>,
 }
 
 impl Binary {
-    /// The tree of `pairs`, whose slots are in depth-first order. A leaf of more triangles than `most`
-    /// becomes an inner node of two, for which `order` is sorted within the leaf.
-    pub fn of(
-        pairs: impl ExactSizeIterator<Item = [(Bounds, NodeRef); 2]>,
-        order: &mut [u32],
-        bounds: &[Bounds],
-        most: u32,
-    ) -> Self {
-        if let [only] = order[..] {
-            return Binary { nodes: vec![leaf(bounds[only as usize], 0, 1)] };
-        }
-        let mut nodes = vec![inner(Bounds::EMPTY, 0)];
-        nodes.reserve(2 * pairs.len());
-        for pair in pairs {
-            nodes.extend(pair.map(|(bounds, reference)| node(bounds, reference)));
-        }
-        let mut tree = Binary { nodes };
-        for i in 0..tree.nodes.len() {
-            if tree.nodes[i].kind == Kind::Leaf && tree.nodes[i].count > most {
-                tree.part(i, order, bounds, most);
-            }
-        }
-        tree.sum();
-        tree
-    }
-
-    /// Splits a leaf where that costs least.
-    fn part(&mut self, number: usize, order: &mut [u32], bounds: &[Bounds], most: u32) {
-        let Node { first, count, .. } = self.nodes[number];
-        let slots = &mut order[first as usize..(first + count) as usize];
-        let half = best_part(slots, bounds, most);
-        self.nodes[number].kind = Kind::Inner(self.nodes.len() as u32, self.nodes.len() as u32 + 1);
-        let (left, right) = slots.split_at(half as usize);
-        for (slots, first) in [(left, first), (right, first + half)] {
-            let around = Bounds::around(slots.iter().map(|&t| bounds[t as usize]));
-            self.nodes.push(leaf(around, first, slots.len() as u32));
-        }
-    }
-
-    /// Fills in the totals of inner nodes.
-    fn sum(&mut self) {
-        for i in (0..self.nodes.len()).rev() {
-            if let Kind::Inner(left, right) = self.nodes[i].kind {
-                let [left, right] = [left, right].map(|child| self.nodes[child as usize]);
-                let node = &mut self.nodes[i];
-                node.bounds = left.bounds.union(right.bounds);
-                node.first = left.first;
-                node.count = left.count + right.count;
-                node.height = 1 + left.height.max(right.height);
-            }
-        }
+    /// The tree of `pairs` over slots with these own boxes. A leaf of more than `most` becomes a pair of two.
+    pub fn of<P: Pair>(pairs: &[P], bounds: &[Bounds], most: u32) -> Self {
+        let parted: Branch<u32> = match bounds.len() {
+            // Its sibling is empty.
+            1 => Branch::Piece(Piece { pairs: Vec::new(), items: vec![0] }),
+            _ => regrow(pairs, &|leaf: NodeRef, piece: &mut Piece<u32>| part(leaf, piece, bounds, most)),
+        };
+        let (pairs, order) = parted.flat(0);
+        let mut nodes = filled(Node::NONE, 1 + 2 * pairs.len());
+        let totals = Totals { order: &order, bounds };
+        let (root, below) = nodes.split_first_mut().expect("a root");
+        *root = match order[..] {
+            [_] => totals.leaf(NodeRef::leaf(0, 1)),
+            _ => fold(&pairs, below.as_chunks_mut::<2>().0, &totals),
+        };
+        Binary { pairs, nodes, order }
     }
 }
 
-/// A pair's child. The children of pair `p` are nodes `2 p + 1` and `2 p + 2`.
-fn node(bounds: Bounds, reference: NodeRef) -> Node {
-    let index = reference.index();
-    if reference.is_leaf() { leaf(bounds, index, reference.count()) } else { inner(bounds, index) }
+/// Adds a leaf, in two parts if it has more than `most`.
+fn part(leaf: NodeRef, piece: &mut Piece<u32>, bounds: &[Bounds], most: u32) -> NodeRef {
+    let slots = leaf.index()..leaf.index() + leaf.count();
+    if leaf.count() <= most {
+        return piece.leaf(slots);
+    }
+    let mut slots: Vec<u32> = slots.collect();
+    let half = best_part(&mut slots, bounds, most) as usize;
+    let halves = [&slots[..half], &slots[half..]].map(|half| piece.leaf(half.iter().copied()));
+    piece.pairs.push(halves);
+    NodeRef::inner(piece.pairs.len() as u32 - 1)
 }
 
-fn leaf(bounds: Bounds, first: u32, count: u32) -> Node {
-    Node { bounds, first, count, height: 0, kind: Kind::Leaf }
+/// Notes both nodes of a pair.
+struct Totals<'a> {
+    order: &'a [u32],
+    bounds: &'a [Bounds],
 }
 
-fn inner(bounds: Bounds, pair: u32) -> Node {
-    Node { bounds, first: 0, count: 0, height: 0, kind: Kind::Inner(2 * pair + 1, 2 * pair + 2) }
+impl Fold<Children> for Totals<'_> {
+    type Known = Node;
+    type Note = [Node; 2];
+
+    fn leaf(&self, leaf: NodeRef) -> Node {
+        let (first, count) = (leaf.index(), leaf.count());
+        let slots = &self.order[first as usize..(first + count) as usize];
+        let around = Bounds::around(slots.iter().map(|&slot| self.bounds[slot as usize]));
+        Node { bounds: around, first, count, height: 0, kind: Kind::Leaf }
+    }
+
+    fn pair(&self, number: usize, _: &Children, [left, right]: [Node; 2], nodes: &mut [Node; 2]) -> Node {
+        *nodes = [left, right];
+        let child = 2 * number as u32 + 1;
+        Node {
+            bounds: left.bounds.union(right.bounds),
+            first: left.first,
+            count: left.count + right.count,
+            height: 1 + left.height.max(right.height),
+            kind: Kind::Inner(child, child + 1),
+        }
+    }
 }
 
 /// Sorts a leaf of four or five triangles into two parts of at most `most` and of least

@@ -3,10 +3,11 @@
 //! Ylitie, Karras and Laine 2017, section 3.1: the cost of showing a subtree as at most `i` children of
 //! one wide node follows from that of its children's subtrees, from the leaves up.
 
-use eyerays_shader::data::CwbvhNode;
+use eyerays_shader::data::{CwbvhNode, NodeRef};
 
 use super::binary::{Binary, Kind, Node};
 use super::layout::MAX_WIDE_DEPTH;
+use crate::tree::{Children, Fold, filled, fold};
 
 /// Cost of a step through a wide node, which tests eight boxes.
 pub(crate) const NODE: f32 = 1.0;
@@ -64,16 +65,12 @@ type Costs = [f32; ARITY - 1];
 impl Plan {
     /// The best choices.
     pub fn of(tree: &Binary, leaves: Leaves) -> Self {
-        let mut costs: Vec<Costs> = vec![[0.0; ARITY - 1]; tree.nodes.len()];
-        let mut choices = vec![Choices([Choices::LEAF; ARITY]); tree.nodes.len()];
-        for (i, node) in tree.nodes.iter().enumerate().rev() {
-            let (cost, choice) = match node.kind {
-                Kind::Leaf => ([leaves.cost(node); ARITY - 1], Choices([Choices::LEAF; ARITY])),
-                Kind::Inner(left, right) => {
-                    best(node, leaves.cost(node), &costs[left as usize], &costs[right as usize])
-                }
-            };
-            (costs[i], choices[i]) = (cost, choice);
+        let mut choices = filled(Choices([Choices::LEAF; ARITY]), tree.nodes.len());
+        let costing = Costing { tree, leaves };
+        let (root, below) = choices.split_first_mut().expect("a root");
+        if !tree.pairs.is_empty() {
+            let children = fold(&tree.pairs, below.as_chunks_mut::<2>().0, &costing);
+            *root = costing.node(0, &children).1;
         }
         Plan { choices }
     }
@@ -109,6 +106,41 @@ impl Plan {
             }
             _ => children.push((number, choices[0] == Choices::LEAF)),
         }
+    }
+}
+
+/// Finds costs and choices, from the leaves up.
+struct Costing<'a> {
+    tree: &'a Binary,
+    leaves: Leaves,
+}
+
+impl Costing<'_> {
+    /// The costs and choices of a node, given its children's costs, if it has any.
+    fn node(&self, number: usize, children: &Option<[Costs; 2]>) -> (Costs, Choices) {
+        let node = &self.tree.nodes[number];
+        let leaf = self.leaves.cost(node);
+        match children {
+            None => ([leaf; ARITY - 1], Choices([Choices::LEAF; ARITY])),
+            Some([left, right]) => best(node, leaf, left, right),
+        }
+    }
+}
+
+impl Fold<Children> for Costing<'_> {
+    /// The costs of both children of a pair.
+    type Known = Option<[Costs; 2]>;
+    /// The choices of both.
+    type Note = [Choices; 2];
+
+    fn leaf(&self, _: NodeRef) -> Self::Known {
+        None
+    }
+
+    fn pair(&self, number: usize, _: &Children, below: [Self::Known; 2], note: &mut [Choices; 2]) -> Self::Known {
+        let [left, right] = [0, 1].map(|side| self.node(2 * number + 1 + side, &below[side]));
+        *note = [left.1, right.1];
+        Some([left.0, right.0])
     }
 }
 
@@ -159,33 +191,22 @@ fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices)
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bounds::Bounds;
+    use crate::{
+        bounds::Bounds,
+        tree::{Grown, Piece},
+    };
 
     /// A tree over boxes, as nested lists of two would give it.
     fn tree(leaves: &[Bounds], halve: impl Fn(usize) -> usize + Copy) -> Binary {
-        fn add(
-            nodes: &mut Vec<Node>,
-            number: usize,
-            leaves: &[Bounds],
-            first: u32,
-            halve: impl Fn(usize) -> usize + Copy,
-        ) {
-            let count = leaves.len() as u32;
-            let bounds = Bounds::around(leaves.iter().copied());
-            nodes[number] = Node { bounds, first, count, height: 0, kind: Kind::Leaf };
-            if count > 1 {
-                let (half, left) = (halve(leaves.len()), nodes.len());
-                nodes.extend([nodes[number]; 2]);
-                add(nodes, left, &leaves[..half], first, halve);
-                add(nodes, left + 1, &leaves[half..], first + half as u32, halve);
-                let height = 1 + nodes[left].height.max(nodes[left + 1].height);
-                nodes[number].kind = Kind::Inner(left as u32, left as u32 + 1);
-                nodes[number].height = height;
+        let all = (0, leaves.len() as u32);
+        let piece = Piece::grow(all, |(first, count): (u32, u32), piece| {
+            if count == 1 {
+                return Grown::Leaf(piece.leaf([first]));
             }
-        }
-        let mut nodes = vec![Node { bounds: leaves[0], first: 0, count: 0, height: 0, kind: Kind::Leaf }];
-        add(&mut nodes, 0, leaves, 0, halve);
-        Binary { nodes }
+            let half = halve(count as usize) as u32;
+            Grown::Pair((first, half), (first + half, count - half))
+        });
+        Binary::of(&piece.pairs, leaves, CwbvhNode::MAX_LEAF)
     }
 
     fn cubes(count: u32, step: f32) -> Vec<Bounds> {

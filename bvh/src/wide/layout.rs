@@ -10,7 +10,7 @@ use super::{
     octant,
     record::{Child, Record},
 };
-use crate::{MAX_DEPTH, bounds::Bounds, validate::children};
+use crate::{MAX_DEPTH, bounds::Bounds};
 
 /// The most wide nodes on a path from the root.
 ///
@@ -24,25 +24,25 @@ const _: () = assert!((MAX_DEPTH + 1).div_ceil(LEVELS) <= MAX_WIDE_DEPTH);
 /// The wide nodes, and the new order of slots.
 pub(crate) struct Wide {
     pub nodes: Vec<CwbvhNode>,
-    /// At each new slot, the slot in depth-first order.
-    slots: Vec<u32>,
+    /// At each new slot, the slot of before.
+    pub slots: Vec<u32>,
 }
 
 /// Makes wide nodes of node pairs, whose slots are in depth-first order: a parent before its children,
-/// the inner children of a node in a row, and what is below one of them before the next. `order` is
-/// sorted within large leaves of the pairs; [`Wide::renumber`] does the rest.
-pub(crate) fn wide(pairs: &[NodePair], order: &mut [u32], bounds: &[Bounds]) -> Wide {
-    let tree = Binary::of(pairs.iter().map(children), order, bounds, Leaves::WIDE.most);
+/// the inner children of a node in a row, and what is below one of them before the next. `bounds` are the slots' own boxes.
+pub(crate) fn wide(pairs: &[NodePair], bounds: &[Bounds]) -> Wide {
+    let tree = Binary::of(pairs, bounds, Leaves::WIDE.most);
     let levels = levels(&tree, &Plan::of(&tree, Leaves::WIDE));
     let count = levels.iter().map(Vec::len).sum();
-    let mut wide = Wide { nodes: vec![nothing(); count], slots: Vec::with_capacity(order.len()) };
+    let mut wide = Wide { nodes: vec![nothing(); count], slots: Vec::with_capacity(bounds.len()) };
     let (mut open, mut next) = (vec![(0, 0, 0)], 1);
     while let Some((level, place, number)) = open.pop() {
         let made: &Made = &levels[level][place as usize];
         let mut record = made.record;
         (record.first_child, record.first_triangle) = (next, wide.slots.len() as u32);
         wide.nodes[number as usize] = record.encode();
-        wide.slots.extend(made.leaves().flat_map(|leaf| run(&tree.nodes[leaf as usize])));
+        let places = made.leaves().flat_map(|leaf| run(&tree.nodes[leaf as usize]));
+        wide.slots.extend(places.map(|place| tree.order[place as usize]));
         let inner = made.inner().count() as u32;
         open.extend((0..inner).rev().map(|i| (level + 1, made.first + i, next + i)));
         next += inner;
@@ -111,16 +111,18 @@ impl Made {
 }
 
 impl Wide {
-    /// Brings `order`, and the leaves of `pairs`, from the slots of depth-first order to those of the
-    /// wide nodes.
-    pub fn renumber(&self, pairs: &mut [NodePair], order: &mut Vec<u32>) {
-        let mut new = vec![0; order.len()];
-        for (slot, &old) in (0..).zip(&self.slots) {
+    /// Brings the leaves of `pairs` from the slots of before to those of wide nodes, at each of which one of before is named. Within a leaf, they are in a row.
+    pub fn renumber(slots: &[u32], pairs: &mut [NodePair]) {
+        let mut new = vec![0; slots.len()];
+        for (slot, &old) in (0..).zip(slots) {
             new[old as usize] = slot;
         }
-        *order = self.slots.par_iter().map(|&old| order[old as usize]).collect();
         let moved = |reference: u32| match NodeRef(reference) {
-            leaf if leaf.is_leaf() => NodeRef::leaf(new[leaf.index() as usize], leaf.count()).0,
+            leaf if leaf.is_leaf() => {
+                let slots = leaf.index()..leaf.index() + leaf.count();
+                let first = slots.map(|slot| new[slot as usize]).min().expect("a leaf has slots");
+                NodeRef::leaf(first, leaf.count()).0
+            }
             inner => inner.0,
         };
         pairs.par_iter_mut().for_each(|pair| {

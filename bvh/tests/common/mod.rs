@@ -111,27 +111,37 @@ pub fn build_and_check_all(references: &References) {
     }
 }
 
-/// Builds, and checks every promise of the result.
+/// Builds, and checks every promise of the result, before it has wide nodes and with them.
 pub fn build_and_check(references: &References, quality: Quality) -> Bvh {
     let bvh = build(references, quality).expect("valid references");
     let key = |triangle: u32, b: Bounds| (triangle, b.least.to_array(), b.greatest.to_array());
     let mut slots: Vec<_> = bvh.order.iter().zip(&bvh.bounds).map(|(&t, &b)| key(t, b)).collect();
     slots.sort();
-    let mut expected: Vec<_> = references.list.iter().map(|r| key(r.primitive, r.bounds)).collect();
+    let count = references.list().len();
+    let mut expected: Vec<_> = references.list().iter().map(|r| key(r.primitive, r.bounds)).collect();
     expected.sort();
     assert_eq!(slots, expected, "slots lost or doubled a reference");
 
-    let mut walk = Walk { nodes: &bvh.nodes, bounds: &bvh.bounds, pairs: 0, met: vec![false; references.list.len()] };
+    check_pairs(&bvh);
+    bvh8::check(&bvh);
+    let mut widened = bvh.clone();
+    widened.widen().expect("a valid hierarchy");
+    check_pairs(&widened);
+    let mut walk = WideWalk { nodes: &widened.wide, bounds: &widened.bounds, next: 0, met: 1 };
+    walk.node(0, 1);
+    assert_eq!(walk.met as usize, widened.wide.len(), "wide nodes");
+    assert_eq!(walk.next as usize, count, "slots of wide nodes");
+    let mut again: Vec<_> = widened.order.iter().zip(&widened.bounds).map(|(&t, &b)| key(t, b)).collect();
+    again.sort();
+    assert_eq!(again, expected, "slots lost or doubled a reference");
+    widened
+}
+
+fn check_pairs(bvh: &Bvh) {
+    let mut walk = Walk { nodes: &bvh.nodes, bounds: &bvh.bounds, pairs: 0, met: vec![false; bvh.bounds.len()] };
     walk.pair(0, 1);
     assert_eq!(walk.pairs as usize, bvh.nodes.len(), "pairs");
     assert!(walk.met.iter().all(|met| *met), "slots");
-
-    let mut walk = WideWalk { nodes: &bvh.wide, bounds: &bvh.bounds, next: 0, met: 1 };
-    walk.node(0, 1);
-    assert_eq!(walk.met as usize, bvh.wide.len(), "wide nodes");
-    assert_eq!(walk.next as usize, references.list.len(), "slots of wide nodes");
-    bvh8::check(&bvh);
-    bvh
 }
 
 /// A walk in depth-first order, which is the order that pairs must have.

@@ -27,7 +27,7 @@ use lighting::Lamps;
 use rayon::prelude::*;
 
 use crate::error::{Error, Result};
-use crate::method::Traversal;
+use crate::method::{Method, Traversal};
 use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
 
 /// References added by splitting triangles, as a share of the triangles.
@@ -61,12 +61,26 @@ pub struct DeviceScene {
 }
 
 impl DeviceScene {
-    /// Normalises, builds the hierarchy or takes the one that the scene brings along, and packs.
+    /// Normalises, builds the hierarchy or takes the one that the scene brings along, and packs. All methods follow rays through
+    /// it but [`Method::Wide`](crate::method::Method::Wide) on a GPU.
     ///
     /// # Errors
     /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
     /// or no ray meet: too many triangles, a light too far away for the scene's numbers.
     pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
+        Self::pack(scene, settings, quality, false)
+    }
+
+    /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
+    /// [`Method::Wide`](crate::method::Method::Wide).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_wide_nodes(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
+        Self::pack(scene, settings, quality, true)
+    }
+
+    fn pack(scene: &Scene, settings: Settings, quality: Quality, is_wide: bool) -> Result<DeviceScene> {
         scene.check()?;
         check::settings(&settings)?;
         let emissive = scene.materials.iter().find(|m| m.emission != Vec3::ZERO).map(|m| m.name.clone());
@@ -74,7 +88,10 @@ impl DeviceScene {
         let effects = records::effects(scene);
         let (normalisation, primitives) = normalised(scene);
         let start = Instant::now();
-        let bvh = kept_or_built(scene, &primitives, quality)?;
+        let mut bvh = kept_or_built(scene, &primitives, quality)?;
+        if is_wide {
+            bvh.widen().map_err(refused)?;
+        }
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
@@ -113,9 +130,22 @@ impl DeviceScene {
         &self.nodes
     }
 
-    /// The same hierarchy with nodes of eight children.
+    /// The same hierarchy with nodes of eight children, none unless it was packed [`with_wide_nodes`](Self::with_wide_nodes).
     pub fn wide(&self) -> &[CwbvhNode] {
         &self.wide
+    }
+
+    /// Refuses a method of a GPU that walks what was not packed.
+    ///
+    /// # Errors
+    /// There are no wide nodes.
+    pub(crate) fn check_walks(&self, method: Method) -> Result<()> {
+        if method == Method::Wide && self.wide.is_empty() {
+            return Err(Error::new(
+                "wide walks nodes that the scene was packed without: pack it by DeviceScene::with_wide_nodes",
+            ));
+        }
+        Ok(())
     }
 
     /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
@@ -313,9 +343,12 @@ fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> R
         let fault = |e: BuildError| format!("the hierarchy that the scene brings along is not its own: {e}");
         return bvh.check(primitives).map(|()| bvh).map_err(|e| Error::new(fault(e)));
     }
-    let refused = |e: BuildError| Error::new(e.to_string());
     let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
     eyerays_bvh::build(&references, quality).map_err(refused)
+}
+
+fn refused(error: BuildError) -> Error {
+    Error::new(error.to_string())
 }
 
 fn lights(lights: &[Light], normalisation: &Normalisation) -> Result<Vec<LightRecord>> {

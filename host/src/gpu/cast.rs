@@ -51,12 +51,13 @@ pub struct Cast {
 }
 
 impl<'a> Caster<'a> {
-    /// Uploads a scene with both hierarchies and its triangles in a layout.
+    /// Uploads a scene with all hierarchies that it has and its triangles in a layout.
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
     pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, layout: Layout) -> Result<Self> {
-        let scene = SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: true })?;
+        let scene =
+            SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: !packed.wide().is_empty() })?;
         Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
     }
 

@@ -7,7 +7,7 @@ use super::adapter::AdapterReport;
 use super::device::Gpu;
 use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
-use crate::method::Layout;
+use crate::method::{Layout, Method};
 use crate::plan::Plan;
 
 /// The records of a scene as kernels read them, before they are uploaded.
@@ -58,6 +58,9 @@ impl SceneBuffers {
     /// If a part is larger than a buffer or all of it than the GPU's memory, before anything is uploaded; or what the GPU
     /// reports.
     pub fn new(gpu: &Gpu, packed: &DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
+        if hierarchies.wide {
+            packed.check_walks(Method::Wide)?;
+        }
         let records = SceneRecords::new(packed, layout, hierarchies);
         let used: Vec<_> = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect();
         check(&gpu.report, &used)?;

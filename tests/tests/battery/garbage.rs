@@ -64,7 +64,7 @@ struct Drawn {
 fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
     let mut drawn = Drawn::default();
     for scene in scenes {
-        match DeviceScene::new(&scene, scene.settings, Quality::Medium) {
+        match DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
                 let Ok(view) = View::new(&packed, &scene.cameras[0]) else { continue };
                 let (film, rays) = machine.render(&Posed { packed, view });

@@ -38,7 +38,7 @@ fn depth(levels: u32, ratio: f32) -> u32 {
     let scene = chain(levels, ratio).scene();
     let what = format!("hierarchy, chain of {levels} by {ratio}");
     let built = [Quality::Fast, Quality::Medium, Quality::High].map(|quality| {
-        let packed = DeviceScene::new(&scene, scene.settings, quality).unwrap();
+        let packed = DeviceScene::with_wide_nodes(&scene, scene.settings, quality).unwrap();
         assert!(packed.build_time() < PATIENCE, "{what}, {quality:?}: {:?}", packed.build_time());
         packed
     });

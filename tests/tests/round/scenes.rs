@@ -83,7 +83,7 @@ impl Kind {
     /// The same packed.
     pub fn pack(self, quality: Quality) -> DeviceScene {
         let scene = self.scene();
-        DeviceScene::new(&scene, scene.settings, quality).unwrap_or_else(|e| panic!("{self:?}: {e}"))
+        DeviceScene::with_wide_nodes(&scene, scene.settings, quality).unwrap_or_else(|e| panic!("{self:?}: {e}"))
     }
 }
 

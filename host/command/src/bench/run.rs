@@ -37,7 +37,7 @@ pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<R
 
 fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
     let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-    let packed = DeviceScene::new(&subject.scene, settings, plan.quality)?;
+    let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, plan.quality)?;
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn another_answer_in_exact_precision_is_a_fault_that_names_the_ray() {
         let (plan, subject, mut report) = (plan(), subject(), Report::default());
-        let packed = DeviceScene::new(&subject.scene, subject.scene.settings, plan.quality).unwrap();
+        let packed = DeviceScene::with_wide_nodes(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
         let view = View::new(&packed, &subject.cameras[0]).unwrap();
         let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();

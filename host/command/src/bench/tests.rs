@@ -26,7 +26,7 @@ fn scene() -> Scene {
 pub(super) fn cornell(size: (u32, u32)) -> (DeviceScene, View) {
     let scene = scene();
     let settings = Settings { size, samples: 1, ..scene.settings };
-    let packed = DeviceScene::new(&scene, settings, Quality::Medium).unwrap();
+    let packed = DeviceScene::with_wide_nodes(&scene, settings, Quality::Medium).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
 }

@@ -15,7 +15,6 @@ use crate::error::{Error, Result, within};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::choice::Named;
-use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
@@ -186,15 +185,14 @@ impl View {
         self.size.is_some()
     }
 
-    /// Packs a scene for these options with `threads` threads (0: one a core).
-    pub fn pack(&self, read: Read<'_>, effort: &Effort, threads: usize, quiet: bool) -> Result<Loaded> {
+    /// Packs a scene for these options and what traces it.
+    pub fn pack(&self, read: Read<'_>, effort: &Effort, choice: &Choice, quiet: bool) -> Result<Loaded> {
         let Read { path, scene, time: read_time } = read;
         let settings = self.settings(&scene, effort)?;
         let ignored = settings.transport.integrator.ignored(&scene);
         super::warn(ignored.as_slice(), quiet);
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;
-        let threads = cpu::pool(threads)?;
-        let pack = || threads.install(|| DeviceScene::new(&scene, settings, effort.quality()));
+        let pack = || choice.pack(&scene, settings, effort.quality());
         let start = Instant::now();
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         let view = eyerays::view::View::new(&packed, &camera).map_err(|e| e.of(path))?;

@@ -84,7 +84,7 @@ impl Render {
         if self.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
-        let loaded = self.view.pack(read, &effort, choice.threads, quiet)?;
+        let loaded = self.view.pack(read, &effort, &choice, quiet)?;
         let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let chosen = ManuallyDrop::new(chosen);

@@ -116,7 +116,7 @@ impl<'a> Judge<'a> {
         let best = plan.axes.reference(subject.settings);
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
         let once = Settings { samples: 1, spp: 0, ..best };
-        let mut packed = DeviceScene::new(&subject.scene, once, bvh.quality())?;
+        let mut packed = DeviceScene::with_wide_nodes(&subject.scene, once, bvh.quality())?;
         let primary = Primary::new(&packed, &View::new(&packed, &subject.camera)?, threads)?;
         let references = References::new(plan, subject, (&mut packed, &device), begins)?;
         let (hits, notes) = (Vec::new(), Vec::new());
@@ -177,7 +177,7 @@ impl<'a> Judge<'a> {
         let Subject { scene, .. } = self.subject;
         let settings = setting.settings(self.subject.settings);
         if self.bvh != setting.bvh {
-            self.packed = DeviceScene::new(scene, settings, setting.bvh.quality())?;
+            self.packed = DeviceScene::with_wide_nodes(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
         Ok(self.packed.set(settings)?)

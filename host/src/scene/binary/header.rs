@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
-use eyerays_shader::data::{Bounds, CwbvhNode, NodePair};
+use eyerays_shader::data::{Bounds, NodePair};
 use glam::Vec3;
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
@@ -13,13 +13,13 @@ use crate::scene::{Disk, Sphere, Unplaced};
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.
 const BLOCK: usize = 1 << 20;
 /// Sections of a file.
-pub const SECTIONS: usize = 11;
+pub const SECTIONS: usize = 10;
 
 /// The first bytes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -48,7 +48,6 @@ pub struct Counts {
     pub disks: u64,
     /// Of the hierarchy; all zero without one.
     pub pairs: u64,
-    pub wide: u64,
     /// Each has a primitive and a box.
     pub slots: u64,
 }
@@ -66,7 +65,6 @@ impl Counts {
             (self.spheres, size_of::<Sphere>()),
             (self.disks, size_of::<Disk>()),
             (self.pairs, size_of::<NodePair>()),
-            (self.wide, size_of::<CwbvhNode>()),
             (self.slots, number),
             (self.slots, size_of::<Bounds>()),
         ];

@@ -15,13 +15,13 @@ pub type Bytes = Arc<dyn AsRef<[u8]> + Send + Sync>;
 pub struct Hierarchy {
     quality: quality::Bvh,
     file: Bytes,
-    /// Pairs, wide nodes, order and own boxes.
-    sections: [Range<usize>; 4],
+    /// Pairs, order and own boxes.
+    sections: [Range<usize>; 3],
 }
 
 impl Hierarchy {
     /// That of these sections of a file, which lie inside.
-    pub fn new(quality: quality::Bvh, file: Bytes, sections: [Range<usize>; 4]) -> Self {
+    pub fn new(quality: quality::Bvh, file: Bytes, sections: [Range<usize>; 3]) -> Self {
         Hierarchy { quality, file, sections }
     }
 
@@ -32,11 +32,11 @@ impl Hierarchy {
 
     /// A copy that nothing outside can change. It is not checked yet: see [`eyerays_bvh::Bvh::check`].
     pub fn read(&self) -> eyerays_bvh::Bvh {
-        let [nodes, wide, order, bounds] = self.slices();
-        eyerays_bvh::Bvh { nodes: list(nodes), wide: list(wide), order: list(order), bounds: list(bounds) }
+        let [nodes, order, bounds] = self.slices();
+        eyerays_bvh::Bvh { nodes: list(nodes), wide: Vec::new(), order: list(order), bounds: list(bounds) }
     }
 
-    fn slices(&self) -> [&[u8]; 4] {
+    fn slices(&self) -> [&[u8]; 3] {
         self.sections.clone().map(|section| &(*self.file).as_ref()[section])
     }
 }

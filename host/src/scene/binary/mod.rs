@@ -2,7 +2,7 @@
 //!
 //! A file is a [`Header`], then sections that each begin at a multiple of 64 bytes: the description (TOML: all of a
 //! [`Scene`](super::Scene) but its geometry), positions, normals, triangles, their materials, spheres and disks, as
-//! [`Scene`](super::Scene) has them, and pairs, wide nodes, order and own boxes of a hierarchy, as
+//! [`Scene`](super::Scene) has them, and pairs, order and own boxes of a hierarchy, as
 //! [`Bvh`](eyerays_bvh::Bvh) has them; little-endian, zeros between. A file is mapped, its hash and every number in it are
 //! checked, and nothing is parsed but the description.
 

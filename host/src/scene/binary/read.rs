@@ -44,9 +44,8 @@ pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
         materials: list(materials),
     };
     let description = Description::parse(description)?;
-    let [.., pairs, wide, order, bounds] = sections;
-    let kept =
-        description.hierarchy.map(|quality| Hierarchy::new(quality, bytes.clone(), [pairs, wide, order, bounds]));
+    let [.., pairs, order, bounds] = sections;
+    let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, bytes.clone(), [pairs, order, bounds]));
     let scene = Scene { hierarchy: kept, ..description.scene(mesh, list(spheres), list(disks)) };
     if scene.cameras.is_empty() {
         return Err("it has no camera".into());

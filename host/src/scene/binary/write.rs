@@ -30,7 +30,6 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
         spheres: scene.spheres.len() as u64,
         disks: scene.disks.len() as u64,
         pairs: bvh.nodes.len() as u64,
-        wide: bvh.wide.len() as u64,
         slots: bvh.order.len() as u64,
     };
     let sections = [
@@ -42,7 +41,6 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
         bytemuck::cast_slice(&scene.spheres),
         bytemuck::cast_slice(&scene.disks),
         bytemuck::cast_slice(&bvh.nodes),
-        bytemuck::cast_slice(&bvh.wide),
         bytemuck::cast_slice(&bvh.order),
         bytemuck::cast_slice(&bvh.bounds),
     ];

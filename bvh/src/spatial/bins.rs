@@ -94,10 +94,12 @@ pub(super) struct Bins {
     /// A bit for each bin with something in it.
     occupied: u32,
     bins: [Bin; BINS],
+    /// Room for the sums from the right, which takes longer to empty than to fill.
+    right: [(usize, Bin); BINS],
 }
 
 impl Bins {
-    pub const EMPTY: Bins = Bins { occupied: 0, bins: [Bin::EMPTY; BINS] };
+    pub const EMPTY: Bins = Bins { occupied: 0, bins: [Bin::EMPTY; BINS], right: [(0, Bin::EMPTY); BINS] };
 
     /// Empties all bins.
     pub fn clear(&mut self) {
@@ -135,11 +137,11 @@ impl Bins {
     }
 
     /// The cheapest plane between bins along an axis.
-    pub fn cheapest(&self, axis: usize) -> Option<Split> {
+    pub fn cheapest(&mut self, axis: usize) -> Option<Split> {
         if self.occupied & self.occupied.wrapping_sub(1) == 0 {
             return None;
         }
-        let mut right = [(0, Bin::EMPTY); BINS];
+        let Bins { right, .. } = self;
         let (mut rest, mut count, mut sum) = (self.occupied, BINS, Bin::EMPTY);
         while rest != 0 {
             let bin = rest.ilog2() as usize;

@@ -28,19 +28,14 @@ pub(super) struct Collapse<'a> {
 impl Collapse<'_> {
     /// All nodes and leaves.
     pub fn run(&self) -> Bvh8 {
-        let (mut top, mut parts) = ([0; 4], Vec::new());
-        self.walk((0, 0), PART, &mut |wide| {
-            self.count(&mut top, wide);
-            let roots = wide.children.iter().filter(|child| child.is == Is::Part);
-            parts.extend(roots.map(|root| (root.node, wide.level + 1)));
+        let top = self.walk((0, 0), PART);
+        let roots = top.children.iter().filter_map(|child| match child.is {
+            Is::Part { level } => Some((child.node, level)),
+            _ => None,
         });
-        let counted = |&root: &(u32, u32)| {
-            let mut counts = [0; 4];
-            self.walk(root, 0, &mut |wide| self.count(&mut counts, wide));
-            counts
-        };
-        let counts: Vec<Counts> = parts.par_iter().map(counted).collect();
-        let [nodes, triangles, spheres, mixed] = counts.iter().fold(top, |all, counts| sum(all, *counts));
+        let roots: Vec<(u32, u32)> = roots.collect();
+        let parts: Vec<Walk> = roots.into_par_iter().map(|root| self.walk(root, 0)).collect();
+        let [nodes, triangles, spheres, mixed] = parts.iter().fold(top.counts, |all, part| sum(all, part.counts));
         let mut bvh8 = Bvh8 {
             nodes: filled(Bvh8Node::EMPTY, nodes),
             triangles: filled(Triangle4::EMPTY, triangles),
@@ -48,40 +43,40 @@ impl Collapse<'_> {
             mixed: filled(Mixed4::of([].into_iter()), mixed),
         };
         let mut room = Room::all(&mut bvh8);
-        let mut first = room.take(top);
-        let rooms: Vec<Room<'_>> = counts.into_iter().map(|counts| room.take(counts)).collect();
-        let mut roots = rooms.iter().map(|room| room.next[0]);
-        self.walk((0, 0), PART, &mut |wide| first.put(self, wide, &mut roots));
-        parts.par_iter().zip(rooms).for_each(|(&root, mut room)| {
-            self.walk(root, 0, &mut |wide| room.put(self, wide, &mut std::iter::empty()));
-        });
+        let mut first = room.take(top.counts);
+        let rooms: Vec<Room<'_>> = parts.iter().map(|part| room.take(part.counts)).collect();
+        first.put(self, &top, &mut rooms.iter().map(|room| room.next[0]));
+        parts.into_par_iter().zip(rooms).for_each(|(part, mut room)| room.put(self, &part, &mut std::iter::empty()));
         bvh8
     }
 
-    /// Visits wide nodes from a binary one on, which has so many wide ones above it, but none below inner children of at most
+    /// The wide nodes from a binary one on, which has so many wide ones above it, but none below inner children of at most
     /// `few` slots: these are parts.
-    fn walk(&self, root: (u32, u32), few: u32, visit: &mut dyn FnMut(&Wide)) {
-        let (mut open, mut list, mut nodes) = (vec![(0, root)], Vec::new(), 1);
+    fn walk(&self, root: (u32, u32), few: u32) -> Walk {
+        let mut walk = Walk { nodes: Vec::new(), children: Vec::new(), counts: [1, 0, 0, 0] };
+        let (mut open, mut list) = (vec![(0, root)], Vec::new());
         while let Some((number, (node, level))) = open.pop() {
             self.plan.children_at(&self.tree, node, level, &mut list);
             let area = |child: &(u32, bool)| self.node(child.0).bounds.half_area();
             list.sort_by(|a, b| area(b).total_cmp(&area(a)));
             let first = open.len();
-            let child = |&(node, is_leaf): &(u32, bool)| {
-                if is_leaf {
-                    return Child { node, is: Is::Leaf };
-                }
-                if self.node(node).count <= few {
-                    return Child { node, is: Is::Part };
-                }
-                nodes += 1;
-                open.push((nodes - 1, (node, level + 1)));
-                Child { node, is: Is::Inner(nodes - 1) }
-            };
-            let children = list.iter().map(child).collect();
+            for &(node, is_leaf) in &list {
+                let is = if is_leaf {
+                    walk.counts[place(self.leaf(node).1)] += 1;
+                    Is::Leaf
+                } else if self.node(node).count <= few {
+                    Is::Part { level: level + 1 }
+                } else {
+                    open.push((walk.counts[0], (node, level + 1)));
+                    walk.counts[0] += 1;
+                    Is::Inner(walk.counts[0] - 1)
+                };
+                walk.children.push(Child { node, is });
+            }
             open[first..].reverse();
-            visit(&Wide { number, level, children });
+            walk.nodes.push((number, walk.children.len()));
         }
+        walk
     }
 
     fn node(&self, number: u32) -> &Node {
@@ -102,13 +97,6 @@ impl Collapse<'_> {
         };
         (slots, kind)
     }
-
-    fn count(&self, counts: &mut Counts, wide: &Wide) {
-        counts[0] += 1;
-        for leaf in wide.children.iter().filter(|child| child.is == Is::Leaf) {
-            counts[place(self.leaf(leaf.node).1)] += 1;
-        }
-    }
 }
 
 /// Where leaves of a kind are counted.
@@ -124,12 +112,12 @@ fn sum(a: Counts, b: Counts) -> Counts {
     std::array::from_fn(|i| a[i] + b[i])
 }
 
-/// A wide node that a walk meets.
-struct Wide {
-    /// Its number in the walk.
-    number: usize,
-    level: u32,
+/// Wide nodes, in the order in which they are met.
+struct Walk {
+    /// Each one's number, and where its children end. The inner children of a node are numbered in a row.
+    nodes: Vec<(usize, usize)>,
     children: Vec<Child>,
+    counts: Counts,
 }
 
 /// A child, by its binary node.
@@ -138,13 +126,12 @@ struct Child {
     is: Is,
 }
 
-#[derive(Clone, Copy, PartialEq)]
 enum Is {
     Leaf,
     /// The wide node of this number in the walk.
     Inner(usize),
-    /// The root of a part.
-    Part,
+    /// The root of another walk, so many wide nodes below that of all.
+    Part { level: u32 },
 }
 
 /// Room for nodes and leaves.
@@ -179,15 +166,19 @@ impl<'r> Room<'r> {
         }
     }
 
-    /// Puts a node here, and its leaves. `roots` are the numbers of parts' first nodes.
-    fn put(&mut self, collapse: &Collapse<'_>, wide: &Wide, roots: &mut dyn Iterator<Item = usize>) {
-        for (i, child) in wide.children.iter().enumerate() {
-            let reference = match child.is {
-                Is::Leaf => self.put_leaf(collapse, child.node),
-                Is::Inner(number) => Bvh8Ref::inner((self.next[0] + number) as u32),
-                Is::Part => Bvh8Ref::inner(roots.next().expect("as counted") as u32),
-            };
-            set(&mut self.nodes[wide.number], i, collapse.node(child.node).bounds, reference);
+    /// Puts nodes here, and their leaves. `roots` are the numbers of parts' first nodes.
+    fn put(&mut self, collapse: &Collapse<'_>, walk: &Walk, roots: &mut dyn Iterator<Item = usize>) {
+        let mut start = 0;
+        for &(number, end) in &walk.nodes {
+            for (i, child) in walk.children[start..end].iter().enumerate() {
+                let reference = match child.is {
+                    Is::Leaf => self.put_leaf(collapse, child.node),
+                    Is::Inner(number) => Bvh8Ref::inner((self.next[0] + number) as u32),
+                    Is::Part { .. } => Bvh8Ref::inner(roots.next().expect("as counted") as u32),
+                };
+                set(&mut self.nodes[number], i, collapse.node(child.node).bounds, reference);
+            }
+            start = end;
         }
     }
 

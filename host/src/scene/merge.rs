@@ -94,6 +94,11 @@ impl Merge {
     }
 
     fn append(&mut self, mesh: Mesh) {
+        if self.mesh.positions.is_empty() {
+            self.mesh = mesh;
+            return;
+        }
+        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
         let first = self.mesh.positions.len() as u32;
         let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
         self.mesh.triangles.extend(mesh.triangles.into_iter().map(shift));
@@ -105,6 +110,8 @@ impl Merge {
 
     fn reserve(&mut self, more: &Geometry) -> Result<(), TryReserveError> {
         match more {
+            // It is taken as it is.
+            Geometry::Mesh(_) if self.mesh.positions.is_empty() => Ok(()),
             Geometry::Mesh(mesh) => {
                 self.mesh.materials.try_reserve(mesh.materials.len())?;
                 self.mesh.triangles.try_reserve(mesh.triangles.len())?;

@@ -26,35 +26,36 @@ pub(super) struct Windows<'p, R> {
     path: &'p Path,
     reader: R,
     size: usize,
-    text: Vec<u8>,
-    /// How much of the text was given away.
-    taken: usize,
+    /// The beginning of the next window, which is that of a line.
+    rest: Vec<u8>,
 }
 
 impl<'p, R: Read> Windows<'p, R> {
     /// The windows of what `reader` gives; errors name the file `path`.
     pub fn new(path: &'p Path, reader: R, size: usize) -> Self {
-        Windows { path, reader, size, text: Vec::new(), taken: 0 }
+        Windows { path, reader, size, rest: Vec::new() }
     }
 
     /// The next window, if there is one.
     ///
     /// # Errors
     /// The file cannot be read.
-    pub fn advance(&mut self) -> Result<Option<&[u8]>> {
-        self.text.drain(..self.taken);
-        self.taken = 0;
-        while self.taken == 0 {
-            let read = self.reader.by_ref().take(self.size as u64).read_to_end(&mut self.text);
+    pub fn advance(&mut self) -> Result<Option<Vec<u8>>> {
+        let mut text = std::mem::take(&mut self.rest);
+        text.reserve(self.size);
+        loop {
+            let read = self.reader.by_ref().take(self.size as u64).read_to_end(&mut text);
             let read = read.map_err(|error| Error::file(self.path, file::explain(&error)))?;
             // A line that is too long is told where lines are read.
-            if read < self.size || self.text.len() > MOST_LINE + self.size {
-                self.taken = self.text.len();
+            if read < self.size || text.len() > MOST_LINE + self.size {
                 break;
             }
-            self.taken = last_end(&self.text).unwrap_or(0);
+            if let Some(end) = last_end(&text) {
+                self.rest = text.split_off(end);
+                break;
+            }
         }
-        Ok((self.taken > 0).then_some(&self.text[..self.taken]))
+        Ok((!text.is_empty()).then_some(text))
     }
 }
 

@@ -46,15 +46,18 @@ pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
 }
 
 /// The mesh of a text.
-pub(super) fn parse(path: &Path, reader: impl Read, budget: Budget) -> Result<Obj> {
+pub(super) fn parse(path: &Path, reader: impl Read + Send, budget: Budget) -> Result<Obj> {
     parse_by(Sizes::USUAL, path, reader, budget)
 }
 
-fn parse_by(sizes: Sizes, path: &Path, reader: impl Read, budget: Budget) -> Result<Obj> {
+fn parse_by(sizes: Sizes, path: &Path, reader: impl Read + Send, budget: Budget) -> Result<Obj> {
     let mut found = Found::new(path, budget);
     let mut windows = Windows::new(path, reader, sizes.window);
-    while let Some(window) = windows.advance()? {
-        found.read(blocks::of(window, sizes.block))?;
+    let mut next = windows.advance();
+    while let Some(window) = next? {
+        let read;
+        (next, read) = rayon::join(|| windows.advance(), || found.read(blocks::of(&window, sizes.block)));
+        read?;
     }
     found.finish()
 }

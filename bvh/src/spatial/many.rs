@@ -135,8 +135,8 @@ mod tests {
         let (mut some, mut one) = ([Bins::EMPTY], [Bins::EMPTY]);
         sort_into(&mut some, &parts, put);
         put(&mut one, &parts);
-        let found = |bins: &[Bins; 1]| bins[0].cheapest(0).map(|split| (split.cost, split.bin, split.children));
-        assert_eq!(found(&some), found(&one));
+        let found = |bins: &mut [Bins; 1]| bins[0].cheapest(0).map(|split| (split.cost, split.bin, split.children));
+        assert_eq!(found(&mut some), found(&mut one));
     }
 
     #[test]

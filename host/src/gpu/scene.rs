@@ -103,25 +103,25 @@ fn check(gpu: &AdapterReport, buffers: &[(u32, &[u8])]) -> Result<()> {
     within(Content::WholeScene, sum, gpu.memory.unwrap_or(u64::MAX))
 }
 
+/// Bytes that are on their way to a GPU at a time: the host has a copy of them until they are there.
+const PORTION: usize = 64 << 20;
+
 /// A read-only buffer.
 fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
-    let name = RESOURCES[binding as usize].name;
     let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor {
-        label: Some(name),
+        label: Some(RESOURCES[binding as usize].name),
         size: bytes.len() as u64,
         usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
-        mapped_at_creation: true,
+        mapped_at_creation: false,
     });
     gpu.check()?;
-    let mapped = buffer.get_mapped_range_mut(..);
-    mapped
-        .map_err(|e| Error::DeviceFailed {
-            device: gpu.report.name.clone(),
-            message: format!("the {name} can't be uploaded: {e}"),
-        })?
-        .slice(..bytes.len())
-        .copy_from_slice(bytes);
-    buffer.unmap();
+    for (number, portion) in bytes.chunks(PORTION).enumerate() {
+        gpu.queue.write_buffer(&buffer, (number * PORTION) as u64, portion);
+        if bytes.len() > PORTION {
+            gpu.queue.submit([]);
+            gpu.wait()?;
+        }
+    }
     Ok(buffer)
 }
 

@@ -52,7 +52,7 @@ fn node(bounds: Bounds, reference: NodeRef) -> Bvh2Node {
 }
 
 /// What is below a node, with the slots of its leaves.
-fn branch(tree: &Bvh2, number: u32, level: u32) -> Branch<u32> {
+fn branch(tree: &Bvh2, number: u32, level: u32) -> Branch<Vec<u32>> {
     let node = &tree.nodes[number as usize];
     if node.is_leaf() || level == LEVELS {
         return Branch::Piece(Piece::grow(number, |number, piece| {

@@ -121,22 +121,46 @@ pub(crate) fn height<P: Pair>(pairs: &[P]) -> u32 {
 }
 
 /// A tree as it grows, whose leaves hold items.
-pub(crate) enum Branch<T> {
+pub(crate) enum Branch<I> {
     /// Left and right.
-    Inner(Box<[Branch<T>; 2]>),
+    Inner(Box<[Branch<I>; 2]>),
     /// What one thread has grown.
-    Piece(Piece<T>),
+    Piece(Piece<I>),
 }
 
 /// A small tree.
-pub(crate) struct Piece<T> {
+pub(crate) struct Piece<I> {
     /// In depth-first order, numbered from 0; none if it is a leaf of all items.
     pub pairs: Vec<Children>,
     /// Those of its leaves, from left to right.
-    pub items: Vec<T>,
+    pub items: I,
 }
 
-impl<T> Piece<T> {
+/// Items, wherever they are.
+pub(crate) trait Items: Sync {
+    /// What they become.
+    type Item: Copy + Send + Sync;
+
+    /// How many there are.
+    fn count(&self) -> usize;
+
+    /// Writes them to as many places.
+    fn write(&self, to: &mut [Self::Item]);
+}
+
+impl<T: Copy + Send + Sync> Items for Vec<T> {
+    type Item = T;
+
+    fn count(&self) -> usize {
+        self.len()
+    }
+
+    fn write(&self, to: &mut [T]) {
+        to.copy_from_slice(self);
+    }
+}
+
+impl<T> Piece<Vec<T>> {
     /// Adds a leaf of these items. Returns what refers to it.
     pub fn leaf(&mut self, items: impl IntoIterator<Item = T>) -> NodeRef {
         let first = self.items.len();
@@ -145,7 +169,7 @@ impl<T> Piece<T> {
     }
 
     /// Grows a tree in an empty piece: `next` tells what refers to a node, and its children if it is a pair.
-    pub fn grow<N>(root: N, mut next: impl FnMut(N, &mut Piece<T>) -> Grown<N>) -> Self {
+    pub fn grow<N>(root: N, mut next: impl FnMut(N, &mut Self) -> Grown<N>) -> Self {
         let mut piece = Piece { pairs: Vec::new(), items: Vec::new() };
         let mut open = vec![(root, None)];
         while let Some((node, parent)) = open.pop() {
@@ -177,17 +201,17 @@ pub(crate) enum Grown<N> {
 /// A tree of the same pairs, whose leaves `regrown` adds to the piece that they are in, as a leaf or a pair of leaves of its own.
 pub(crate) fn regrow<P: Pair, T: Send>(
     pairs: &[P],
-    leaf: &(impl Fn(NodeRef, &mut Piece<T>) -> NodeRef + Sync),
-) -> Branch<T> {
+    leaf: &(impl Fn(NodeRef, &mut Piece<Vec<T>>) -> NodeRef + Sync),
+) -> Branch<Vec<T>> {
     regrow_subtree(0, pairs, leaf, 0)
 }
 
 fn regrow_subtree<P: Pair, T: Send>(
     first: usize,
     pairs: &[P],
-    leaf: &(impl Fn(NodeRef, &mut Piece<T>) -> NodeRef + Sync),
+    leaf: &(impl Fn(NodeRef, &mut Piece<Vec<T>>) -> NodeRef + Sync),
     level: u32,
-) -> Branch<T> {
+) -> Branch<Vec<T>> {
     if pairs.len() <= CHUNK || level == NESTED {
         return Branch::Piece(Piece::grow(NodeRef::inner(first as u32), |node, piece| {
             if node.is_leaf() {
@@ -211,26 +235,26 @@ fn regrow_subtree<P: Pair, T: Send>(
     Branch::Inner(Box::new([left, right]))
 }
 
-impl<T: Copy + Send + Sync> Branch<T> {
+impl<I: Items> Branch<I> {
     /// All pairs, and all items from left to right.
-    pub fn flat(self, nothing: T) -> (Vec<Children>, Vec<T>) {
+    pub fn flat(self, nothing: I::Item) -> (Vec<Children>, Vec<I::Item>) {
         let mut pieces = Pieces { places: Vec::new(), above: Vec::new(), pairs: 0, items: 0 };
         pieces.add(&self);
         let mut pairs: Vec<Children> = filled([NodeRef::ROOT; 2], pieces.pairs as usize);
-        let mut items: Vec<T> = filled(nothing, pieces.items as usize);
+        let mut items = filled(nothing, pieces.items as usize);
         for &(number, children) in &pieces.above {
             pairs[number as usize] = children;
         }
         let (mut rest, mut more, mut at) = (&mut pairs[..], &mut items[..], 0);
-        let cut = |place: &Place<'_, T>| {
+        let cut = |place: &Place<'_, I>| {
             rest.split_off_mut(..(place.pair - at) as usize).expect("as counted");
             at = place.pair + place.piece.pairs.len() as u32;
             let own = rest.split_off_mut(..place.piece.pairs.len()).expect("as counted");
-            (own, more.split_off_mut(..place.piece.items.len()).expect("as counted"))
+            (own, more.split_off_mut(..place.piece.items.count()).expect("as counted"))
         };
         let slices: Vec<_> = pieces.places.iter().map(cut).collect();
         pieces.places.par_iter().zip(slices).for_each(|(place, (pairs, items))| {
-            items.copy_from_slice(&place.piece.items);
+            place.piece.items.write(items);
             for (to, children) in pairs.iter_mut().zip(&place.piece.pairs) {
                 *to = children.map(|child| moved(child, place.pair, place.item));
             }
@@ -254,8 +278,8 @@ fn moved(child: NodeRef, pair: u32, item: u32) -> NodeRef {
 }
 
 /// Where everything of a branch comes.
-struct Pieces<'b, T> {
-    places: Vec<Place<'b, T>>,
+struct Pieces<'b, I> {
+    places: Vec<Place<'b, I>>,
     /// Pairs above pieces, with their numbers.
     above: Vec<(u32, Children)>,
     /// How many there are so far.
@@ -264,15 +288,15 @@ struct Pieces<'b, T> {
 }
 
 /// The numbers of a piece's first pair and item.
-struct Place<'b, T> {
-    piece: &'b Piece<T>,
+struct Place<'b, I> {
+    piece: &'b Piece<I>,
     pair: u32,
     item: u32,
 }
 
-impl<'b, T> Pieces<'b, T> {
+impl<'b, I: Items> Pieces<'b, I> {
     /// Adds a branch, and returns what refers to it.
-    fn add(&mut self, branch: &'b Branch<T>) -> NodeRef {
+    fn add(&mut self, branch: &'b Branch<I>) -> NodeRef {
         let (pair, item) = (self.pairs, self.items);
         match branch {
             Branch::Inner(children) => {
@@ -285,7 +309,7 @@ impl<'b, T> Pieces<'b, T> {
             }
             Branch::Piece(piece) => {
                 self.pairs += piece.pairs.len() as u32;
-                self.items += piece.items.len() as u32;
+                self.items += piece.items.count() as u32;
                 self.places.push(Place { piece, pair, item });
                 if piece.pairs.is_empty() { NodeRef::leaf(item, self.items - item) } else { NodeRef::inner(pair) }
             }
@@ -298,7 +322,7 @@ mod tests {
     use super::*;
 
     /// A tree of so many leaves of one item each, halved, with as many pairs for one thread as `few` leaves have.
-    fn halved(first: u32, count: u32, few: u32) -> Branch<u32> {
+    fn halved(first: u32, count: u32, few: u32) -> Branch<Vec<u32>> {
         if count > few {
             let half = count / 2;
             return Branch::Inner(Box::new([halved(first, half, few), halved(first + half, count - half, few)]));
@@ -350,7 +374,7 @@ mod tests {
         assert_eq!(fold(&pairs, &mut notes, &Slots), (0, count));
         sweep(0, &pairs, &mut swept, &Slots);
         assert_eq!(notes, swept);
-        let same = |leaf: NodeRef, piece: &mut Piece<u32>| piece.leaf(leaf.index()..leaf.index() + leaf.count());
+        let same = |leaf: NodeRef, piece: &mut Piece<Vec<u32>>| piece.leaf(leaf.index()..leaf.index() + leaf.count());
         assert_eq!(regrow(&pairs, &same).flat(0), (pairs, (0..count).collect()));
     }
 

@@ -12,7 +12,7 @@ use crate::{
     Reference,
     bounds::Bounds,
     median,
-    tree::{Branch, Piece},
+    tree::{Branch, Items, Piece},
 };
 
 /// Planes through triangles are tried where the children of the best plane between them overlap by more
@@ -24,11 +24,33 @@ const LEVELS: u32 = 56;
 /// From this many parts on, two threads grow a node's children.
 const MANY: usize = 2048;
 
-/// Grows a tree over the first `count` of these parts; splits may take the room behind them.
-pub(super) fn grow(triangles: &[Primitive], parts: &mut [Part], count: usize) -> Branch<Reference> {
+/// Grows a tree over the first `count` of these parts; splits may take the room behind them. The parts of its leaves, and their
+/// own boxes, stay where the parts were.
+pub(super) fn grow<'p>(triangles: &[Primitive], parts: &'p mut [Part], count: usize) -> Branch<Left<'p>> {
     let scene = area(around(&parts[..count]));
     let grower = Grower { triangles, least_overlap: OVERLAP * scene };
     grower.branch(Node { parts, count, level: 0 })
+}
+
+/// The parts of a piece's leaves, from left to right with nothing between them, each with its own box instead of its extent.
+pub(super) struct Left<'p> {
+    parts: &'p [Part],
+    count: usize,
+}
+
+impl Items for Left<'_> {
+    type Item = Reference;
+
+    fn count(&self) -> usize {
+        self.count
+    }
+
+    fn write(&self, to: &mut [Reference]) {
+        let left = self.parts.iter().filter(|part| !part.is_none());
+        for (to, part) in to.iter_mut().zip(left) {
+            *to = Reference { primitive: part.triangle(), bounds: part.bounds().write() };
+        }
+    }
 }
 
 /// A node that is still to be split: at least one part, and behind them room for more.
@@ -81,24 +103,28 @@ struct Grower<'a> {
 
 impl Grower<'_> {
     /// The tree below a node.
-    fn branch(&self, node: Node<'_>) -> Branch<Reference> {
+    fn branch<'p>(&self, node: Node<'p>) -> Branch<Left<'p>> {
         if node.count < MANY {
-            let mut piece = Piece { pairs: Vec::with_capacity(node.count), items: Vec::with_capacity(node.count) };
-            self.fill(node, &mut piece, &mut Workspace::new());
-            return Branch::Piece(piece);
+            let Node { parts, count, level } = node;
+            let mut piece = Piece { pairs: Vec::with_capacity(count), items: 0 };
+            self.fill(Node { parts: &mut *parts, count, level }, &mut piece, &mut Workspace::new());
+            piece.pairs.shrink_to_fit();
+            return Branch::Piece(Piece { pairs: piece.pairs, items: Left { parts, count: piece.items } });
         }
         let [left, right] = self.children(node, &mut Workspace::new());
         let (left, right) = rayon::join(|| self.branch(left), || self.branch(right));
         Branch::Inner(Box::new([left, right]))
     }
 
-    /// Grows what is below a node of a piece, and puts leaves together where one costs no more than a pair of them.
-    fn fill(&self, node: Node<'_>, piece: &mut Piece<Reference>, space: &mut Workspace) -> Grown {
+    /// Grows what is below a node of a piece, which counts its parts so far, and puts leaves together where one costs no more
+    /// than a pair of them.
+    fn fill(&self, node: Node<'_>, piece: &mut Piece<usize>, space: &mut Workspace) -> Grown {
         if node.count == 1 {
-            let reference = self.reference(&node.parts[0]);
-            piece.items.push(reference);
-            let child = NodeRef::leaf(piece.items.len() as u32 - 1, 1);
-            return Grown { child, bounds: Bounds::read(&reference.bounds) };
+            let [part, room @ ..] = node.parts else { unreachable!("a node has its parts") };
+            *part = part.own(&self.triangles[part.triangle() as usize]);
+            room.fill(Part::NONE);
+            piece.items += 1;
+            return Grown { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds() };
         }
         let (number, is_root) = (piece.pairs.len(), node.level == 0);
         piece.pairs.push([NodeRef::ROOT; 2]);
@@ -109,11 +135,6 @@ impl Grower<'_> {
         }
         piece.pairs[number] = [left.child, right.child];
         Grown { child: NodeRef::inner(number as u32), bounds: left.bounds.union(right.bounds) }
-    }
-
-    fn reference(&self, part: &Part) -> Reference {
-        let own = part.own_box(&self.triangles[part.triangle() as usize]);
-        Reference { primitive: part.triangle(), bounds: own.write() }
     }
 
     /// Splits a node in two, neither of which is empty.

@@ -27,7 +27,6 @@ pub(crate) fn references(triangles: &[Primitive], room: usize) -> References {
     let whole = |(number, (part, triangle)): (usize, (&mut Part, _))| *part = Part::whole(number as u32, triangle);
     parts.par_iter_mut().zip(triangles).enumerate().for_each(whole);
     let grown = grow::grow(triangles, &mut parts, triangles.len());
-    drop(parts);
     let (pairs, list) = grown.flat(Reference::NONE);
     References { list, pairs }
 }

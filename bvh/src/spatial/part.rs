@@ -61,10 +61,15 @@ impl Part {
         Edges::of(triangle, axis).sides(self.bounds(), plane).map(|side| side.map(|b| Part::new(self.triangle(), b)))
     }
 
-    /// The box with padding, inside the triangle's own.
-    pub fn own_box(&self, triangle: &Primitive) -> Bounds {
+    /// The part with its own box: its extent with padding, inside the triangle's own.
+    pub fn own(self, triangle: &Primitive) -> Part {
         let (Bounds { min, max }, padding) = (self.bounds(), Vec3A::splat(BOX_PADDING));
-        Bounds::new(min - padding, max + padding).intersection(Bounds::of(triangle))
+        Part::new(self.triangle(), Bounds::new(min - padding, max + padding).intersection(Bounds::of(triangle)))
+    }
+
+    /// Is it room?
+    pub fn is_none(&self) -> bool {
+        self.least.w.to_bits() & NORMAL == 0
     }
 }
 
@@ -173,6 +178,6 @@ mod tests {
     #[test]
     fn a_whole_triangle_has_its_own_box() {
         let triangle = Primitive::triangle([Vec3::ZERO, vec3(0.3, 0.1, -0.7), Vec3::Y], 0, 0, 0);
-        assert_eq!(Part::whole(0, &triangle).own_box(&triangle), Bounds::of(&triangle));
+        assert_eq!(Part::whole(0, &triangle).own(&triangle).bounds(), Bounds::of(&triangle));
     }
 }

@@ -45,10 +45,10 @@ pub(crate) struct Binary {
 impl Binary {
     /// The tree of `pairs` over slots with these own boxes. A leaf of more than `most` becomes a pair of two.
     pub fn of<P: Pair>(pairs: &[P], bounds: &[Bounds], most: u32) -> Self {
-        let parted: Branch<u32> = match bounds.len() {
+        let parted: Branch<Vec<u32>> = match bounds.len() {
             // Its sibling is empty.
             1 => Branch::Piece(Piece { pairs: Vec::new(), items: vec![0] }),
-            _ => regrow(pairs, &|leaf: NodeRef, piece: &mut Piece<u32>| part(leaf, piece, bounds, most)),
+            _ => regrow(pairs, &|leaf: NodeRef, piece: &mut Piece<Vec<u32>>| part(leaf, piece, bounds, most)),
         };
         let (pairs, order) = parted.flat(0);
         let mut nodes = filled(Node::NONE, 1 + 2 * pairs.len());
@@ -63,7 +63,7 @@ impl Binary {
 }
 
 /// Adds a leaf, in two parts if it has more than `most`.
-fn part(leaf: NodeRef, piece: &mut Piece<u32>, bounds: &[Bounds], most: u32) -> NodeRef {
+fn part(leaf: NodeRef, piece: &mut Piece<Vec<u32>>, bounds: &[Bounds], most: u32) -> NodeRef {
     let slots = leaf.index()..leaf.index() + leaf.count();
     if leaf.count() <= most {
         return piece.leaf(slots);

@@ -131,7 +131,9 @@ enum Is {
     /// The wide node of this number in the walk.
     Inner(usize),
     /// The root of another walk, so many wide nodes below that of all.
-    Part { level: u32 },
+    Part {
+        level: u32,
+    },
 }
 
 /// Room for nodes and leaves.

@@ -26,15 +26,6 @@ pub struct Bvh {
 }
 
 impl Bvh {
-    /// Brings the primitives, or one item a primitive, into the order of slots.
-    ///
-    /// # Panics
-    ///
-    /// If there are fewer items than primitives.
-    pub fn gather<T: Copy + Send + Sync>(&self, items: &[T]) -> Vec<T> {
-        self.order.par_iter().map(|&i| items[i as usize]).collect()
-    }
-
     /// Makes wide nodes of the pairs, if there are none yet. Both have the same primitives at the same slots, whose order
     /// changes.
     ///

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{BuildError, Bvh, Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    Normals, Primitive, Specialisation, pack,
+    NodePair, Normals, Primitive, Specialisation, pack,
 };
 
 mod check;
@@ -95,12 +95,11 @@ impl DeviceScene {
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let material = |m| records::material(m, scene.ambient, normalisation.scale);
-        let packed = || {
-            let normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
-            let nodes = bvh.nodes.par_iter().map(CentredPair::from).collect();
-            (bvh.gather(&primitives), normals, nodes)
-        };
-        let (statistics, (primitives, normals, nodes)) = rayon::join(|| Statistics::of(&bvh, &primitives), packed);
+        let statistics = Statistics::of(&bvh, &primitives);
+        // One thing after the other, so that no more lies in memory than must.
+        let nodes = centred(bvh.nodes);
+        let primitives = gathered(primitives, &bvh.order);
+        let normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation)?;
         let lamps = Lamps::new(&scene.materials, &primitives);
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
@@ -345,6 +344,17 @@ fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> R
     }
     let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
     eyerays_bvh::build(&references, quality).map_err(refused)
+}
+
+/// The pairs as kernels test them, in the same memory.
+fn centred(mut pairs: Vec<NodePair>) -> Vec<CentredPair> {
+    pairs.par_iter_mut().for_each(|pair| *pair = bytemuck::cast(CentredPair::from(&*pair)));
+    bytemuck::cast_vec(pairs)
+}
+
+/// The primitives in the order of slots.
+fn gathered(primitives: Vec<Primitive>, order: &[u32]) -> Vec<Primitive> {
+    order.par_iter().map(|&primitive| primitives[primitive as usize]).collect()
 }
 
 fn refused(error: BuildError) -> Error {

@@ -10,17 +10,18 @@ mod face;
 mod library;
 mod vertices;
 
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
+use memmap2::Mmap;
 use rayon::prelude::*;
 
 use self::block::{Before, Block, Event, Notes};
-use self::blocks::{Sizes, Windows};
+use self::blocks::Sizes;
 use self::library::Libraries;
 use self::vertices::Corners;
 use super::budget::Budget;
+use super::lines::MOST_LINE;
 use super::material::Fields;
 use super::{Mesh, file};
 use crate::error::{Error, Result};
@@ -41,23 +42,28 @@ pub struct Obj {
 /// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget
 /// has room for.
 pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
-    let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, file.take(file::MOST_MESH), budget)
+    let map = || {
+        let file = file::open(path, file::MOST_MESH)?;
+        // SAFETY: the mapping is read-only. Another process that changes the file meanwhile changes what is read, and what
+        // is read is copied before it is looked at, but for where lines end.
+        unsafe { Mmap::map(&file) }.map_err(|error| file::explain(&error))
+    };
+    let text = map().map_err(|fault: String| Error::file(path, fault))?;
+    parse(path, &text, budget)
 }
 
 /// The mesh of a text.
-pub(super) fn parse(path: &Path, reader: impl Read + Send, budget: Budget) -> Result<Obj> {
-    parse_by(Sizes::USUAL, path, reader, budget)
+pub(super) fn parse(path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
+    parse_by(Sizes::USUAL, path, text, budget)
 }
 
-fn parse_by(sizes: Sizes, path: &Path, reader: impl Read + Send, budget: Budget) -> Result<Obj> {
+fn parse_by(sizes: Sizes, path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
     let mut found = Found::new(path, budget);
-    let mut windows = Windows::new(path, reader, sizes.window);
-    let mut next = windows.advance();
-    while let Some(window) = next? {
-        let read;
-        (next, read) = rayon::join(|| windows.advance(), || found.read(blocks::of(&window, sizes.block)));
-        read?;
+    for window in blocks::of(text, sizes.window) {
+        // A block is longer only if it is one line, which is refused for it.
+        let copy = |block: &[u8]| block[..block.len().min(sizes.block + MOST_LINE + 1)].to_vec();
+        let blocks: Vec<Vec<u8>> = blocks::of(window, sizes.block).into_par_iter().map(copy).collect();
+        found.read(blocks.iter().map(Vec::as_slice).collect())?;
     }
     found.finish()
 }

@@ -1,6 +1,5 @@
 //! Wavefront meshes and their materials.
 
-use std::io::BufReader;
 use std::path::Path;
 
 use glam::Vec3;
@@ -9,7 +8,7 @@ use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::{Mesh, Scene, mtl, obj};
 
 fn mesh(text: &str) -> Mesh {
-    obj::parse(Path::new("a.obj"), BufReader::new(text.as_bytes()), budget(1 << 20)).unwrap().mesh
+    obj::parse(Path::new("a.obj"), text.as_bytes(), budget(1 << 20)).unwrap().mesh
 }
 
 fn with_material(mtl: &str) -> (Scene, Vec<String>) {

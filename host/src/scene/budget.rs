@@ -14,9 +14,9 @@ pub struct Budget {
 }
 
 /// What a triangle takes of memory from its file to the picture, in bytes. The most that a process held at once,
-/// on a CPU, a triangle: 654 to 687 for halls and forests of 1 and 4 million, 721 for a hall with `--bvh high`,
-/// 646 to 664 for tessellated spheres of 1.3 and 3.9 million with either quality; a sphere, 636 to 671 of 1 and 4 million.
-const PRIMITIVE: u64 = 720;
+/// on a CPU, a triangle: 397 to 406 for a hall and a forest of 1 million, 405 and 436 with `--bvh high`, 352 for a hall of 4
+/// million, 338 for one of 20 million and 16 threads; a sphere, 416 of 1 million.
+const PRIMITIVE: u64 = 480;
 /// What a vertex takes, used or not: its numbers while it is read, in a list that doubles as it grows.
 const VERTEX: u64 = 36;
 

@@ -59,11 +59,17 @@ pub(super) fn parse(path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
 
 fn parse_by(sizes: Sizes, path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
     let mut found = Found::new(path, budget);
+    // Memory that was used before is there sooner than new one.
+    let mut copies: Vec<Vec<u8>> = Vec::new();
     for window in blocks::of(text, sizes.window) {
-        // A block is longer only if it is one line, which is refused for it.
-        let copy = |block: &[u8]| block[..block.len().min(sizes.block + MOST_LINE + 1)].to_vec();
-        let blocks: Vec<Vec<u8>> = blocks::of(window, sizes.block).into_par_iter().map(copy).collect();
-        found.read(blocks.iter().map(Vec::as_slice).collect())?;
+        let blocks = blocks::of(window, sizes.block);
+        copies.resize_with(copies.len().max(blocks.len()), Vec::new);
+        copies.par_iter_mut().zip(&blocks).for_each(|(copy, block)| {
+            copy.clear();
+            // A block is longer only if it is one line, which is refused for it.
+            copy.extend_from_slice(&block[..block.len().min(sizes.block + MOST_LINE + 1)]);
+        });
+        found.read(copies[..blocks.len()].iter().map(Vec::as_slice).collect())?;
     }
     found.finish()
 }

@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 
 use glam::Vec3;
+use rayon::prelude::*;
 
 use super::super::Mesh;
 use super::face::Corner;
@@ -28,12 +29,14 @@ impl Corners {
     /// Adds triangles.
     pub fn extend(&mut self, triangles: &[[Corner; 3]]) {
         let before = self.positions.len();
-        self.positions.extend(triangles.iter().map(|triangle| triangle.map(|corner| corner.position)));
-        if self.normals.is_none() && triangles.as_flattened().iter().any(|corner| corner.normal > 0) {
+        self.positions.par_extend(triangles.par_iter().map(|triangle| triangle.map(|corner| corner.position)));
+        if self.normals.is_none()
+            && triangles.par_iter().any(|triangle| triangle.iter().any(|corner| corner.normal > 0))
+        {
             self.normals = Some(vec![[0; 3]; before]);
         }
         if let Some(normals) = &mut self.normals {
-            normals.extend(triangles.iter().map(|triangle| triangle.map(|corner| corner.normal)));
+            normals.par_extend(triangles.par_iter().map(|triangle| triangle.map(|corner| corner.normal)));
         }
     }
 

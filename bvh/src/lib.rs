@@ -7,9 +7,10 @@
 //! and cull without tolerance.
 //!
 //! The stages run one way, a file each: bounds, reference, spatial, search (with reinsertion), depth (with median), layout,
-//! wide, validate. All of them share one form of a tree, and how threads go through it: tree.
+//! wide, validate. They share one form of a tree and how threads go through it (tree), and how threads grow one (branch).
 
 mod bounds;
+mod branch;
 mod build;
 mod depth;
 mod error;

@@ -8,8 +8,9 @@ use obvhs::{
 
 use crate::{
     bounds::Bounds,
+    branch::{Branch, Grown, Piece},
     reinsertion::Reinsertion,
-    tree::{Branch, Children, Fold, Grown, Piece, fold},
+    tree::{Children, Fold, fold},
 };
 
 /// Down to this level, threads share what is below a pair.

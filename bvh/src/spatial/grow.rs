@@ -11,8 +11,8 @@ use super::{
 use crate::{
     Reference,
     bounds::Bounds,
+    branch::{Branch, Items, Piece},
     median,
-    tree::{Branch, Items, Piece},
 };
 
 /// Planes through triangles are tried where the children of the best plane between them overlap by more
@@ -118,23 +118,23 @@ impl Grower<'_> {
 
     /// Grows what is below a node of a piece, which counts its parts so far, and puts leaves together where one costs no more
     /// than a pair of them.
-    fn fill(&self, node: Node<'_>, piece: &mut Piece<usize>, space: &mut Workspace) -> Grown {
+    fn fill(&self, node: Node<'_>, piece: &mut Piece<usize>, space: &mut Workspace) -> Subtree {
         if node.count == 1 {
             let [part, room @ ..] = node.parts else { unreachable!("a node has its parts") };
             *part = part.own(&self.triangles[part.triangle() as usize]);
             room.fill(Part::NONE);
             piece.items += 1;
-            return Grown { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds() };
+            return Subtree { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds() };
         }
         let (number, is_root) = (piece.pairs.len(), node.level == 0);
         piece.pairs.push([NodeRef::ROOT; 2]);
         let [left, right] = self.children(node, space).map(|child| self.fill(child, piece, space));
-        if let Some(leaf) = Grown::leaf(&left, &right).filter(|_| !is_root) {
+        if let Some(leaf) = Subtree::leaf(&left, &right).filter(|_| !is_root) {
             piece.pairs.pop();
             return leaf;
         }
         piece.pairs[number] = [left.child, right.child];
-        Grown { child: NodeRef::inner(number as u32), bounds: left.bounds.union(right.bounds) }
+        Subtree { child: NodeRef::inner(number as u32), bounds: left.bounds.union(right.bounds) }
     }
 
     /// Splits a node in two, neither of which is empty.
@@ -246,21 +246,21 @@ impl Grower<'_> {
 }
 
 /// What was grown, as a piece refers to it.
-struct Grown {
+struct Subtree {
     child: NodeRef,
     bounds: Bounds,
 }
 
-impl Grown {
+impl Subtree {
     /// A leaf of all in two, if these are leaves and it costs no more: a pair costs a ray as much as a triangle, as
     /// [`Statistics`](crate::Statistics) counts. With a pair as three, Sibenik's diffuse rays visit 4 % fewer pairs and two
     /// thirds more triangles.
-    fn leaf(left: &Grown, right: &Grown) -> Option<Self> {
+    fn leaf(left: &Subtree, right: &Subtree) -> Option<Self> {
         let (bounds, all) = (left.bounds.union(right.bounds), left.child.count() + right.child.count());
-        let cost = |leaf: &Grown| leaf.bounds.half_area() * leaf.child.count() as f32;
+        let cost = |leaf: &Subtree| leaf.bounds.half_area() * leaf.child.count() as f32;
         let are_leaves = left.child.is_leaf() && right.child.is_leaf() && all <= MAX_LEAF;
         let pays = are_leaves && bounds.half_area() * (all as f32 - 1.0) <= cost(left) + cost(right);
-        pays.then(|| Grown { child: NodeRef::leaf(left.child.index(), all), bounds })
+        pays.then(|| Subtree { child: NodeRef::leaf(left.child.index(), all), bounds })
     }
 }
 
@@ -311,24 +311,24 @@ fn around(parts: &[Part]) -> Bounds {
 mod tests {
     use super::*;
 
-    fn leaf(first: u32, x: f32) -> Grown {
-        Grown { child: NodeRef::leaf(first, 1), bounds: Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]) }
+    fn leaf(first: u32, x: f32) -> Subtree {
+        Subtree { child: NodeRef::leaf(first, 1), bounds: Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]) }
     }
 
     #[test]
     fn boxes_in_one_place_share_a_leaf_as_long_as_it_has_room() {
         let mut all = leaf(3, 0.0);
         for count in 2..=MAX_LEAF {
-            all = Grown::leaf(&all, &leaf(2 + count, 0.0)).unwrap();
+            all = Subtree::leaf(&all, &leaf(2 + count, 0.0)).unwrap();
             assert_eq!(all.child, NodeRef::leaf(3, count));
         }
-        assert!(Grown::leaf(&all, &leaf(8, 0.0)).is_none());
+        assert!(Subtree::leaf(&all, &leaf(8, 0.0)).is_none());
     }
 
     #[test]
     fn boxes_apart_keep_their_leaves() {
-        assert!(Grown::leaf(&leaf(0, 0.0), &leaf(1, 4.0)).is_none());
-        let both = Grown::leaf(&leaf(0, 8.0), &leaf(1, 8.1)).unwrap();
+        assert!(Subtree::leaf(&leaf(0, 0.0), &leaf(1, 4.0)).is_none());
+        let both = Subtree::leaf(&leaf(0, 8.0), &leaf(1, 8.1)).unwrap();
         assert_eq!(both.bounds, Bounds::new([8.0, 0.0, 0.0], [9.1, 1.0, 1.0]));
     }
 }

@@ -4,7 +4,8 @@ use eyerays_shader::data::NodeRef;
 
 use crate::{
     bounds::Bounds,
-    tree::{Branch, Children, Fold, Pair, Piece, filled, fold, regrow},
+    branch::{Branch, Piece, regrow},
+    tree::{Children, Fold, Pair, filled, fold},
 };
 
 /// What a node is.

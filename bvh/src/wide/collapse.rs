@@ -193,7 +193,7 @@ mod tests {
     use super::*;
     use crate::{
         bounds::Bounds,
-        tree::{Grown, Piece},
+        branch::{Grown, Piece},
     };
 
     /// A tree over boxes, as nested lists of two would give it.

@@ -9,13 +9,13 @@ use program::{Place, SCENE, TRIANGLE, has_gpu};
 
 #[test]
 fn missing_files_folders_and_unknown_kinds() {
-    let place = Place::new(&[("mesh.ply", "ply\n"), ("scene", SCENE)]);
+    let place = Place::new(&[("mesh.stl", "solid\n"), ("scene", SCENE)]);
     fs::create_dir(place.path("folder.toml")).unwrap();
     place.refuse_scene("missing.toml", &["no such file"]);
     place.refuse_scene("missing.obj", &["no such file"]);
     place.refuse_scene("missing/scene.toml", &["no such file"]);
     place.refuse_scene("folder.toml", &["folder"]);
-    place.refuse_scene("mesh.ply", &["unknown kind", ".toml", ".obj"]);
+    place.refuse_scene("mesh.stl", &["unknown kind", ".toml", ".obj"]);
     place.refuse_scene("scene", &["unknown kind"]);
 }
 

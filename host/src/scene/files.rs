@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::budget::Budget;
 use super::obj::{self, Obj};
+use super::ply::{self, Ply};
 use super::table::Table;
 use super::{Sphere, file, xyzr};
 use crate::error::Result;
@@ -15,6 +16,7 @@ pub struct Files<'p> {
     /// What is left for the geometry that is not placed yet.
     pub budget: Budget,
     meshes: HashMap<PathBuf, Obj>,
+    plain: HashMap<PathBuf, Ply>,
     spheres: HashMap<PathBuf, Vec<Sphere>>,
     /// What was ignored in them.
     pub warnings: Vec<String>,
@@ -25,8 +27,8 @@ pub struct Files<'p> {
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names, all within the budget.
     pub fn new(folder: &'p Path, budget: Budget) -> Self {
-        let (meshes, spheres) = (HashMap::new(), HashMap::new());
-        Files { folder, budget, meshes, spheres, warnings: Vec::new(), paths: Vec::new() }
+        let (meshes, plain, spheres) = (HashMap::new(), HashMap::new(), HashMap::new());
+        Files { folder, budget, meshes, plain, spheres, warnings: Vec::new(), paths: Vec::new() }
     }
 
     /// Where the file of a table's key `file` lies.
@@ -54,6 +56,20 @@ impl<'p> Files<'p> {
             self.meshes.insert(path.to_owned(), obj);
         }
         Ok(&self.meshes[path])
+    }
+
+    /// A mesh without materials.
+    ///
+    /// # Errors
+    /// Those of [`ply::load`].
+    pub fn plain(&mut self, path: &Path) -> Result<&Ply> {
+        if !self.plain.contains_key(path) {
+            let mut ply = ply::load(path, self.budget)?;
+            self.warnings.append(&mut ply.warnings);
+            self.paths.push(path.to_owned());
+            self.plain.insert(path.to_owned(), ply);
+        }
+        Ok(&self.plain[path])
     }
 
     /// Spheres.

@@ -1,6 +1,6 @@
 //! From a path to a scene.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::Vec3;
 
@@ -13,22 +13,23 @@ use super::frame;
 use super::geometry::Geometry;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
-use super::obj;
+use super::obj::{self, Obj};
 use super::part::{self, Placed};
+use super::ply::{self, Ply};
 use super::range::Range;
 use super::source::Source;
 use super::table::Table;
-use super::{Background, Scene, Settings};
+use super::{Background, Mesh, Scene, Settings};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
-/// Loads a TOML scene, a bare Wavefront mesh or a binary scene ([`write`](super::write)), and says in warnings what of it
+/// Loads a TOML scene, a bare Wavefront or PLY mesh, or a binary scene ([`write`](super::write)), and says in warnings what of it
 /// is not drawn.
 ///
 /// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky.
 ///
 /// # Errors
-/// A path that is no readable `.toml`, `.obj` or `.eyerays` file, or anything in it that makes no sense: each is one line
+/// A path that is no readable `.toml`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
     load_within(path, Budget::new(Room::now()))
@@ -43,16 +44,28 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
         load_toml(path, budget)
     } else if is(path, "obj") {
         load_obj(path, budget)
+    } else if is(path, "ply") {
+        load_ply(path, budget)
     } else {
-        let fault = "unknown kind of scene; name a .toml or .eyerays scene or an .obj mesh";
+        let fault = "unknown kind of scene; name a .toml or .eyerays scene or an .obj or .ply mesh";
         Err(Error::file(path, fault))
     }
 }
 
 fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let obj = obj::load(path, budget)?;
+    let Obj { mesh, materials, warnings, libraries } = obj::load(path, budget)?;
+    Ok((bare(path, mesh, materials, libraries)?, warnings))
+}
+
+fn load_ply(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+    let Ply { mesh, warnings } = ply::load(path, budget)?;
+    Ok((bare(path, mesh, part::plain(), Vec::new())?, warnings))
+}
+
+/// The scene of a mesh that comes without one.
+fn bare(path: &Path, mesh: Mesh, materials: Vec<(String, Fields)>, files: Vec<PathBuf>) -> Result<Scene> {
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let placed = Placed { name, geometry: Geometry::Mesh(obj.mesh), materials: obj.materials, material: None };
+    let placed = Placed { name, geometry: Geometry::Mesh(mesh), materials, material: None };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
     let Merged { mesh, spheres, disks, parts, materials } = merge.finish();
@@ -61,7 +74,7 @@ fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         spheres,
         disks,
         parts,
-        files: obj.libraries,
+        files,
         materials,
         lights: frame::lights(),
         cameras: Vec::new(),
@@ -70,7 +83,7 @@ fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         settings: Settings::default(),
         hierarchy: None,
     };
-    Ok((framed(path, scene)?, obj.warnings))
+    framed(path, scene)
 }
 
 /// Gives a scene without a camera one that sees all of it.

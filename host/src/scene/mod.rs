@@ -24,6 +24,7 @@ mod named;
 mod normal;
 mod obj;
 mod part;
+mod ply;
 mod polygon;
 mod primitive;
 mod range;

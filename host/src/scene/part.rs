@@ -82,17 +82,20 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
         return Ok((name, geometry, plain()));
     }
-    if !is(&path, "obj") {
-        let fault = format!("{name:?} is no .obj and no .xyzr; name a Wavefront mesh or a list of spheres");
+    let (mesh, materials) = if is(&path, "obj") {
+        let obj = files.mesh(&path)?;
+        (&obj.mesh, obj.materials.clone())
+    } else if is(&path, "ply") {
+        (&files.plain(&path)?.mesh, plain())
+    } else {
+        let fault = format!("{name:?} is no .obj, .ply or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
-    }
-    let obj = files.mesh(&path)?;
-    let (triangles, vertices) = (obj.mesh.triangles.len(), obj.mesh.positions.len());
-    budget.check(triangles, vertices).map_err(|fault| table.fault(fault))?;
-    Ok((name, Geometry::Mesh(obj.mesh.clone()), obj.materials.clone()))
+    };
+    budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
+    Ok((name, Geometry::Mesh(mesh.clone()), materials))
 }
 
 /// The materials of what names none.
-fn plain() -> Vec<(String, Fields)> {
+pub fn plain() -> Vec<(String, Fields)> {
     vec![(DEFAULT.into(), Fields::default())]
 }

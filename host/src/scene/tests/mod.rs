@@ -3,6 +3,7 @@
 mod hostile;
 mod mesh;
 mod obj;
+mod ply;
 mod round;
 mod shipped;
 mod toml;

@@ -62,7 +62,7 @@ fn what_is_no_mesh_is_refused() {
         ("empty.obj", b""),
         ("points.obj", b"v 0 0 0\n"),
         ("line.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nl 1 2 3\n"),
-        ("mesh.ply", b"ply\n"),
+        ("mesh.stl", b"ply\n"),
         ("empty.toml", b""),
     ]);
     std::fs::create_dir(folder.path("folder.obj")).unwrap();
@@ -70,7 +70,7 @@ fn what_is_no_mesh_is_refused() {
         ("empty.obj", "empty"),
         ("points.obj", "no face"),
         ("line.obj", "no face"),
-        ("mesh.ply", "unknown kind"),
+        ("mesh.stl", "unknown kind"),
         ("empty.toml", "empty"),
         ("folder.obj", "folder"),
         ("missing.obj", "no such file"),

@@ -144,11 +144,11 @@ fn spheres_and_disks_that_make_no_sense_are_refused_where_they_stand() {
         ("file = \"heap.xyzr\"\nradius = 1", 3, "unknown key \"radius\" in a file of spheres"),
         ("file = \"heap.xyzr\"\ntranslate = [1e8, 0, 0]", 1, "the sphere number 2 is too small"),
         ("file = \"none.xyzr\"", 2, "no such file"),
-        ("file = \"heap.ply\"", 2, "is no .obj and no .xyzr"),
+        ("file = \"heap.stl\"", 2, "is no .obj, .ply or .xyzr"),
     ] {
         let text = format!("[[mesh]]\n{keys}\n");
         let files: [(&str, &[u8]); 3] =
-            [("scene.toml", text.as_bytes()), ("heap.xyzr", b"0 0 0 9\n0 0 0 1\n"), ("heap.ply", b"ply\n")];
+            [("scene.toml", text.as_bytes()), ("heap.xyzr", b"0 0 0 9\n0 0 0 1\n"), ("heap.stl", b"solid\n")];
         assert_refused(&Folder::new(&files).refuse("scene.toml"), "scene.toml", Some(line), why);
     }
 }

@@ -1,0 +1,338 @@
+//! Meshes in the Polygon File Format, as text or binary numbers of either order.
+
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+
+use glam::{DVec3, Vec3};
+use ply_rs_bw::parser::{ParseError, Parser, Reader};
+use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult};
+
+use super::budget::Budget;
+use super::lines::MOST_LINE;
+use super::normal::unit;
+use super::polygon::{Cut, cut};
+use super::{Mesh, Unplaced, file};
+use crate::error::{Error, Result};
+
+/// A mesh, all of material 0, and what of its file is not drawn.
+#[derive(Debug)]
+pub struct Ply {
+    pub mesh: Mesh,
+    pub warnings: Vec<String>,
+}
+
+/// Reads a mesh file: the elements `vertex`, `face` and `tristrips`.
+///
+/// # Errors
+/// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget has room
+/// for.
+pub fn load(path: &Path, budget: Budget) -> Result<Ply> {
+    let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
+    parse(path, file.take(file::MOST_MESH), budget)
+}
+
+/// The mesh in these bytes.
+pub(super) fn parse(path: &Path, source: impl Read, budget: Budget) -> Result<Ply> {
+    let mut reader = Reader::new(Bounded { inner: BufReader::new(source), since: 0 });
+    let mut found = Found::new(budget);
+    found.read(&mut reader).map_err(|fault| fault.of(path))?;
+    let warnings = found.warnings.iter().map(|warning| Error::file(path, warning.as_str()).to_string()).collect();
+    let mesh = found.mesh().map_err(|fault| Error::file(path, fault))?;
+    Ok(Ply { mesh, warnings })
+}
+
+/// What a file holds.
+struct Found {
+    budget: Budget,
+    vertices: Vec<Vertex>,
+    has_normals: bool,
+    triangles: Vec<[u32; 3]>,
+    /// Faces that no triangles fill.
+    crossing: usize,
+    warnings: Vec<String>,
+}
+
+impl Found {
+    fn new(budget: Budget) -> Self {
+        let (vertices, triangles, warnings) = (Vec::new(), Vec::new(), Vec::new());
+        Found { budget, vertices, has_normals: false, triangles, crossing: 0, warnings }
+    }
+
+    fn read(&mut self, reader: &mut Reader<impl BufRead>) -> Checked<()> {
+        let header = Parser::<Vertex>::new().read_header(reader)?;
+        let count = |name: &str| header.elements.get(name).map_or(0, |element| element.count);
+        // What a header claims is refused before there is room for it.
+        self.budget.check(count("face"), count("vertex"))?;
+        for (name, element) in &header.elements {
+            match name.as_str() {
+                "vertex" => self.read_vertices(reader, element, &header)?,
+                "face" => {
+                    for (number, list) in lists(reader, element, &header)?.into_iter().enumerate() {
+                        self.add_face(number, &list.0)?;
+                    }
+                }
+                "tristrips" => {
+                    for (number, list) in lists(reader, element, &header)?.into_iter().enumerate() {
+                        self.add_strips(number, &list.0)?;
+                    }
+                }
+                other => {
+                    Parser::<Ignored>::new().read_payload_for_element(reader, element, &header)?;
+                    self.warnings.push(format!("the element {other:?} is ignored: only polygons are read"));
+                }
+            }
+        }
+        if self.crossing > 0 {
+            let count = self.crossing;
+            let why = "left out: the outline crosses itself; split it into simple polygons";
+            self.warnings.push(format!("{count} faces {why}"));
+        }
+        Ok(())
+    }
+
+    fn read_vertices(
+        &mut self,
+        reader: &mut Reader<impl BufRead>,
+        element: &ElementDef,
+        header: &Header,
+    ) -> Checked<()> {
+        let has = |names: [&str; 3]| names.iter().all(|&name| element.properties.contains_key(name));
+        if !has(["x", "y", "z"]) {
+            return Err("its vertices have no x, y and z; is it a mesh?".into());
+        }
+        self.has_normals = has(["nx", "ny", "nz"]);
+        if has(["red", "green", "blue"]) {
+            self.warnings.push("the vertices' colours are ignored; give the mesh a material".into());
+        }
+        self.vertices = Parser::new().read_payload_for_element(reader, element, header)?;
+        Ok(())
+    }
+
+    fn add_face(&mut self, number: usize, corners: &[i64]) -> Unplaced<()> {
+        let what = || format!("face {number}");
+        if corners.len() < 3 {
+            return Err(format!("{} has {} corners, and a face has at least 3; remove it", what(), corners.len()));
+        }
+        let corners = corners.iter().map(|&corner| self.vertex(corner, what)).collect::<Unplaced<Vec<u32>>>()?;
+        let place = |&corner: &u32| DVec3::from(self.vertices[corner as usize].position.map(f64::from));
+        match cut(&corners.iter().map(place).collect::<Vec<_>>()) {
+            Cut::Fan => self.triangles.extend(corners[1..].windows(2).map(|edge| [corners[0], edge[0], edge[1]])),
+            Cut::Triangles(all) => self.triangles.extend(all.iter().map(|t| t.map(|corner| corners[corner as usize]))),
+            Cut::Impossible => self.crossing += 1,
+        }
+        self.budget.check(self.triangles.len(), self.vertices.len())
+    }
+
+    /// Strips, each of which ends where a number is -1: every corner makes a triangle with the two before, whose sides alternate.
+    fn add_strips(&mut self, number: usize, corners: &[i64]) -> Unplaced<()> {
+        let what = || format!("strip {number}");
+        for strip in corners.split(|&corner| corner == -1) {
+            let strip = strip.iter().map(|&corner| self.vertex(corner, what)).collect::<Unplaced<Vec<u32>>>()?;
+            for (place, corners) in strip.windows(3).enumerate() {
+                let [a, b, c] = [corners[0], corners[1], corners[2]];
+                // Strips turn by corners that come twice.
+                if a != b && b != c && c != a {
+                    self.triangles.push(if place % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                }
+            }
+            self.budget.check(self.triangles.len(), self.vertices.len())?;
+        }
+        Ok(())
+    }
+
+    /// The vertex of this number.
+    fn vertex(&self, number: i64, what: impl Fn() -> String) -> Unplaced<u32> {
+        let count = self.vertices.len();
+        let found = u32::try_from(number).ok().filter(|&number| (number as usize) < count);
+        found.ok_or_else(|| {
+            format!("{} names vertex {number}, but {count} precede it, counted from 0; correct it", what())
+        })
+    }
+
+    /// The mesh, with the vertices that triangles use.
+    fn mesh(self) -> Unplaced<Mesh> {
+        const UNUSED: u32 = u32::MAX;
+        let Found { vertices, has_normals, mut triangles, .. } = self;
+        if triangles.is_empty() {
+            return Err("there is no face in it that can be drawn; is it a mesh?".into());
+        }
+        let mut numbers = vec![UNUSED; vertices.len()];
+        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        for corner in triangles.as_flattened_mut() {
+            let number = &mut numbers[*corner as usize];
+            if *number == UNUSED {
+                *number = positions.len() as u32;
+                let Vertex { position, normal } = vertices[*corner as usize];
+                if !position.iter().all(|number| number.is_finite()) {
+                    return Err(format!(
+                        "vertex {corner}, counted from 0, is at {position:?}, which is nowhere; correct it"
+                    ));
+                }
+                positions.push(Vec3::from(position));
+                if has_normals {
+                    normals.push(unit(DVec3::from(normal.map(f64::from))));
+                }
+            }
+            *corner = *number;
+        }
+        if normals.iter().all(|&normal| normal == Vec3::ZERO) {
+            normals.clear();
+        }
+        Ok(Mesh { materials: vec![0; triangles.len()], positions, normals, triangles })
+    }
+}
+
+/// The lists of corners of an element.
+fn lists(reader: &mut Reader<impl BufRead>, element: &ElementDef, header: &Header) -> Checked<Vec<Corners>> {
+    if !element.properties.keys().any(|name| Corners::is(name)) {
+        return Err(format!("the element {:?} has no list vertex_indices; is it a mesh?", element.name).into());
+    }
+    Ok(Parser::new().read_payload_for_element(reader, element, header)?)
+}
+
+/// What is wrong with a file, and on which line if the parser knows.
+struct Fault {
+    line: Option<usize>,
+    text: String,
+}
+
+impl From<String> for Fault {
+    fn from(text: String) -> Self {
+        Fault { line: None, text }
+    }
+}
+
+impl From<&str> for Fault {
+    fn from(text: &str) -> Self {
+        text.to_owned().into()
+    }
+}
+
+impl From<ParseError> for Fault {
+    fn from(error: ParseError) -> Self {
+        let line = error.line();
+        // It names the line itself, and has lines of its own.
+        let text = error.to_string();
+        let text = line.and_then(|line| text.strip_prefix(&format!("Line {line}: "))).unwrap_or(&text);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let text = words.join(" ");
+        let remedy = "was it written to the end, and by a program that knows the format?";
+        Fault { line, text: format!("{}; {remedy}", text.trim_end_matches('.')) }
+    }
+}
+
+impl Fault {
+    fn of(self, path: &Path) -> Error {
+        match self.line {
+            Some(line) => Error::line(path, line, self.text),
+            None => Error::file(path, self.text),
+        }
+    }
+}
+
+type Checked<T> = std::result::Result<T, Fault>;
+
+/// Text of which no line is too long: a line is read whole.
+struct Bounded<R> {
+    inner: R,
+    /// Bytes since the last end of a line.
+    since: usize,
+}
+
+impl<R: BufRead> Read for Bounded<R> {
+    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
+        // Binary numbers have no lines.
+        self.since = 0;
+        self.inner.read(to)
+    }
+}
+
+impl<R: BufRead> BufRead for Bounded<R> {
+    fn fill_buf(&mut self) -> io::Result<&[u8]> {
+        if self.since > MOST_LINE {
+            return Err(io::Error::other(format!("a line has more than {MOST_LINE} bytes")));
+        }
+        self.inner.fill_buf()
+    }
+
+    fn consume(&mut self, amount: usize) {
+        // What was filled last and is now taken ends where a line does, or is all there was.
+        let text = self.inner.fill_buf().unwrap_or_default();
+        self.since = if text[..amount.min(text.len())].ends_with(b"\n") { 0 } else { self.since + amount };
+        self.inner.consume(amount);
+    }
+}
+
+#[derive(Default, Clone, Copy)]
+struct Vertex {
+    position: [f32; 3],
+    normal: [f32; 3],
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Vertex::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let to = match name {
+            "x" => &mut self.position[0],
+            "y" => &mut self.position[1],
+            "z" => &mut self.position[2],
+            "nx" => &mut self.normal[0],
+            "ny" => &mut self.normal[1],
+            "nz" => &mut self.normal[2],
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match value.to_f32_lossy() {
+            Some(number) => *to = number,
+            None => return PropertyAccessResult::UnsupportedType,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+/// The corners of a face, or of strips.
+#[derive(Default)]
+struct Corners(Vec<i64>);
+
+impl Corners {
+    /// Is this the list's name? Both are in use.
+    fn is(name: &str) -> bool {
+        matches!(name, "vertex_indices" | "vertex_index")
+    }
+}
+
+impl PropertyAccess for Corners {
+    fn new() -> Self {
+        Corners::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !Corners::is(name) {
+            return PropertyAccessResult::Ignored;
+        }
+        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+            list.into_iter().map(Into::into).collect()
+        }
+        self.0 = match value {
+            Property::ListChar(list) => wide(list),
+            Property::ListUChar(list) => wide(list),
+            Property::ListShort(list) => wide(list),
+            Property::ListUShort(list) => wide(list),
+            Property::ListInt(list) => wide(list),
+            Property::ListUInt(list) => wide(list),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// What is read to get past it.
+struct Ignored;
+
+impl PropertyAccess for Ignored {
+    fn new() -> Self {
+        Ignored
+    }
+}

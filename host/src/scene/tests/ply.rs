@@ -1,0 +1,153 @@
+//! Meshes in the Polygon File Format: the same in all three encodings, and refused in a line.
+
+use std::path::Path;
+
+use glam::Vec3;
+use proptest::prelude::*;
+use proptest::test_runner::RngSeed;
+
+use super::{Folder, assert_refused, budget};
+use crate::scene::ply;
+
+/// A pyramid of a square and four triangles, with a vertex that nothing uses.
+const PLACES: [[f32; 3]; 6] =
+    [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 0.0, 2.0], [0.0, 0.0, 2.0], [9.0, 9.0, 9.0], [1.0, 1.5, 1.0]];
+const FACES: [&[i32]; 5] = [&[0, 1, 2, 3], &[0, 5, 1], &[1, 5, 2], &[2, 5, 3], &[3, 5, 0]];
+
+fn header(format: &str) -> String {
+    format!(
+        "ply\nformat {format} 1.0\ncomment made by hand\nelement vertex 6\nproperty float x\nproperty float y\n\
+         property float z\nproperty uchar quality\nelement face 5\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+}
+
+fn as_text() -> Vec<u8> {
+    let vertex = |[x, y, z]: &[f32; 3]| format!("{x} {y} {z} 7\n");
+    let face = |corners: &&[i32]| {
+        let corners: Vec<String> = corners.iter().map(i32::to_string).collect();
+        format!("{} {}\n", corners.len(), corners.join(" "))
+    };
+    let lines: Vec<String> = PLACES.iter().map(vertex).chain(FACES.iter().map(face)).collect();
+    (header("ascii") + &lines.concat()).into_bytes()
+}
+
+fn as_numbers(format: &str, number: fn(f32) -> [u8; 4], corner: fn(i32) -> [u8; 4]) -> Vec<u8> {
+    let mut bytes = header(format).into_bytes();
+    for place in PLACES {
+        bytes.extend(place.map(number).as_flattened());
+        bytes.push(7);
+    }
+    for face in FACES {
+        bytes.push(face.len() as u8);
+        face.iter().for_each(|&number| bytes.extend(corner(number)));
+    }
+    bytes
+}
+
+fn little() -> Vec<u8> {
+    as_numbers("binary_little_endian", f32::to_le_bytes, i32::to_le_bytes)
+}
+
+fn read(bytes: &[u8]) -> ply::Ply {
+    ply::parse(Path::new("a.ply"), bytes, budget(1 << 20)).unwrap()
+}
+
+#[test]
+fn all_encodings_hold_the_same_mesh_of_the_vertices_in_use() {
+    let mesh = read(&as_text()).mesh;
+    let corners = |triangle: &[u32; 3]| triangle.map(|vertex| mesh.positions[vertex as usize]);
+    let place = |number: usize| Vec3::from(PLACES[number]);
+    assert_eq!(mesh.positions.len(), 5);
+    assert_eq!(corners(&mesh.triangles[0]), [0, 1, 2].map(place));
+    assert_eq!(corners(&mesh.triangles[1]), [0, 2, 3].map(place));
+    assert_eq!(corners(&mesh.triangles[5]), [3, 5, 0].map(place));
+    assert!(mesh.normals.is_empty() && mesh.materials == [0; 6]);
+    assert_eq!(read(&little()).mesh, mesh);
+    assert_eq!(read(&as_numbers("binary_big_endian", f32::to_be_bytes, i32::to_be_bytes)).mesh, mesh);
+}
+
+#[test]
+fn strips_turn_and_end_and_normals_have_unit_length() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\nproperty double z\n\
+                property float nx\nproperty float ny\nproperty float nz\nelement tristrips 1\n\
+                property list int int vertex_indices\nelement edge 1\nproperty int vertex1\nend_header\n\
+                0 0 0 0 0 2\n1 0 0 0 0 2\n0 1 0 0 0 2\n1 1 0 0 0 2\n8 0 1 2 3 -1 3 2 1\n0\n";
+    let ply = read(text.as_bytes());
+    assert_eq!(ply.mesh.triangles, [[0, 1, 2], [2, 1, 3], [3, 2, 1]]);
+    assert_eq!(ply.mesh.normals, [Vec3::Z; 4]);
+    assert_eq!(ply.warnings, ["a.ply: the element \"edge\" is ignored: only polygons are read"]);
+}
+
+#[test]
+fn it_is_a_scene_and_a_mesh_of_a_scene() {
+    let toml = b"[[mesh]]\nfile = \"a.ply\"\nmaterial = \"red\"\n[[material]]\nname = \"red\"\ndiffuse = [1, 0, 0]\n";
+    let folder = Folder::new(&[("a.ply", &little()), ("scene.toml", toml)]);
+    let (bare, _) = folder.load("a.ply").unwrap();
+    assert_eq!((bare.mesh.triangles.len(), bare.cameras.len(), bare.lights.len()), (6, 1, 2));
+    let (scene, _) = folder.load("scene.toml").unwrap();
+    assert_eq!((scene.mesh.triangles.len(), scene.materials[0].diffuse), (6, Vec3::X));
+    assert_eq!(scene.files, [folder.path("a.ply")]);
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_in_a_line() {
+    let spoiled = |from: &str, to: &str| String::from_utf8(as_text()).unwrap().replace(from, to).into_bytes();
+    let mut nowhere = little();
+    let height = header("binary_little_endian").len() + 5 * 13 + 4;
+    nowhere[height..height + 4].copy_from_slice(&f32::NAN.to_le_bytes());
+    for (bytes, why) in [
+        (b"ply\n".to_vec(), "was it written to the end"),
+        (b"solid thing\n".to_vec(), "was it written to the end"),
+        (spoiled("4 0 1 2 3", "4 0 1 2 9"), "face 0 names vertex 9, but 6 precede it"),
+        (spoiled("4 0 1 2 3", "4 0 1 2 -3"), "face 0 names vertex -3"),
+        (spoiled("3 0 5 1", "2 0 5"), "face 1 has 2 corners"),
+        (nowhere, "vertex 5, counted from 0, is at [1.0, NaN, 1.0]"),
+        (spoiled("1 1.5 1 7", "1 1.5 x 7"), "Couldn't read element line"),
+        (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
+        (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "was it written to the end"),
+        (spoiled("float z", "float w"), "have no x, y and z"),
+        (spoiled("vertex_indices", "corners"), "has no list vertex_indices"),
+        (spoiled("float x", "int8 x"), ""),
+        (little()[..little().len() - 3].to_vec(), "was it written to the end"),
+    ] {
+        match ply::parse(Path::new("a.ply"), &bytes[..], budget(1 << 20)) {
+            Ok(ply) => assert!(why.is_empty(), "{ply:?}"),
+            Err(error) => {
+                assert!(!error.to_string().contains('\n'), "{error}");
+                assert!(error.message().contains(why), "{error}, wanted: {why}");
+            }
+        }
+    }
+    let none = [header("ascii").replace("face 5", "face 0").into_bytes(), b"0 0 0 1\n".repeat(6)].concat();
+    let error = ply::parse(Path::new("a.ply"), &none[..], budget(1 << 20)).unwrap_err();
+    assert_refused(&error, "a.ply", None, "there is no face in it");
+}
+
+#[test]
+fn a_line_without_an_end_is_refused_before_all_of_it_is_read() {
+    let text = [header("ascii").into_bytes(), b"1 ".repeat(8 << 20)].concat();
+    let error = ply::parse(Path::new("a.ply"), &text[..], budget(1 << 30)).unwrap_err();
+    assert!(error.message().contains("a line has more than 4194304 bytes"), "{error}");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, rng_seed: RngSeed::Fixed(1), ..ProptestConfig::default() })]
+
+    #[test]
+    fn a_mutated_file_is_refused_in_a_line_or_whole(
+        is_text in any::<bool>(), changes in prop::collection::vec((any::<u16>(), any::<u8>()), 1..6), cut in any::<u16>(),
+    ) {
+        let mut bytes = if is_text { as_text() } else { little() };
+        let length = bytes.len();
+        changes.iter().for_each(|&(at, byte)| bytes[usize::from(at) % length] = byte);
+        bytes.truncate(length - usize::from(cut) % (2 * length) % length);
+        match ply::parse(Path::new("a.ply"), &bytes[..], budget(1 << 20)) {
+            Ok(ply) => {
+                let count = ply.mesh.positions.len();
+                prop_assert!(ply.mesh.triangles.as_flattened().iter().all(|&vertex| (vertex as usize) < count));
+                prop_assert!(ply.mesh.positions.iter().all(|position| position.is_finite()));
+            }
+            Err(error) => prop_assert!(!error.to_string().contains('\n'), "{}", error),
+        }
+    }
+}

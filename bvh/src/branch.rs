@@ -200,7 +200,7 @@ impl<'b, I: Items> Pieces<'b, I> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::tree::height;
+    use crate::tree::{height, slots};
 
     /// A tree of so many leaves of one item each, halved, with as many pairs for one thread as `few` leaves have.
     pub fn halved(first: u32, count: u32, few: u32) -> Branch<Vec<u32>> {
@@ -233,7 +233,7 @@ pub(crate) mod tests {
     fn many_threads_regrow_the_same_tree() {
         let count = 5 * CHUNK as u32;
         let (pairs, items) = halved(0, count, 64).flat(0);
-        let same = |leaf: NodeRef, piece: &mut Piece<Vec<u32>>| piece.leaf(leaf.index()..leaf.index() + leaf.count());
+        let same = |leaf: NodeRef, piece: &mut Piece<Vec<u32>>| piece.leaf(slots(leaf));
         assert_eq!(regrow(&pairs, &same).flat(0), (pairs, items));
     }
 }

@@ -4,6 +4,7 @@ use eyerays_shader::data::{MAX_LEAF, NodeRef, STACK};
 
 use crate::{
     bounds::Bounds,
+    branch::{Grown, Piece},
     median,
     tree::{Children, Fold, filled, fold, height},
 };
@@ -34,29 +35,20 @@ pub(crate) fn limit(
     let nothing = Below { height: 0, first: 0, count: 0 };
     let mut below = filled(nothing, tree.len());
     fold(&tree, &mut below, &Measure);
-    let mut limited: Vec<Children> = Vec::with_capacity(tree.len());
-    let mut open: Vec<(_, u32, Option<(usize, usize)>)> = vec![(Subtree::Node(NodeRef::ROOT), 0, None)];
-    while let Some((subtree, level, parent)) = open.pop() {
-        let (reference, children) = match subtree.children(&tree, &below, level, most) {
-            Ok(children) => (NodeRef::inner(limited.len() as u32), Some(children)),
-            Err((first, count)) if count <= MAX_LEAF => (NodeRef::leaf(first, count), None),
+    // Leaves come from left to right, so each keeps its slots.
+    let limited = Piece::grow((Subtree::Node(NodeRef::ROOT), 0), |(subtree, level), piece| {
+        let [left, right] = match subtree.children(&tree, &below, level, most) {
+            Ok(children) => children,
+            Err((first, count)) if count <= MAX_LEAF => return Grown::Leaf(piece.leaf(first..first + count)),
             Err((first, count)) => {
                 let slots = first as usize..(first + count) as usize;
                 let half = median::split(&mut order[slots], |&number| own(number), |&number| number) as u32;
-                let halves = [Subtree::Run(first, half), Subtree::Run(first + half, count - half)];
-                (NodeRef::inner(limited.len() as u32), Some(halves))
+                [Subtree::Run(first, half), Subtree::Run(first + half, count - half)]
             }
         };
-        if let Some((pair, side)) = parent {
-            limited[pair][side] = reference;
-        }
-        if let Some([left, right]) = children {
-            let pair = limited.len();
-            limited.push([NodeRef::ROOT; 2]);
-            open.extend([(right, level + 1, Some((pair, 1))), (left, level + 1, Some((pair, 0)))]);
-        }
-    }
-    limited
+        Grown::Pair((left, level + 1), (right, level + 1))
+    });
+    limited.pairs
 }
 
 /// A subtree that is still to be laid out.

@@ -10,7 +10,7 @@ use crate::{
     bounds::Bounds,
     build::check_count,
     reference::check_coordinates,
-    tree::{Fold, fold},
+    tree::{Fold, fold, slots},
     validate::{children, is_empty, validate},
 };
 
@@ -79,11 +79,10 @@ impl Bvh {
     }
 
     fn around(&self, below: NodeRef) -> Bounds {
-        let first = below.index();
         if below.is_leaf() {
-            return Bounds::around((first..first + below.count()).map(|slot| self.own(slot)));
+            return Bounds::around(slots(below).map(|slot| self.own(slot)));
         }
-        let [(left, _), (right, _)] = children(&self.nodes[first as usize]);
+        let [(left, _), (right, _)] = children(&self.nodes[below.index() as usize]);
         left.union(right)
     }
 }
@@ -96,7 +95,7 @@ impl Fold<NodePair> for Runs {
     type Note = ();
 
     fn leaf(&self, leaf: NodeRef) -> Self::Known {
-        Some([leaf.index(), leaf.index() + leaf.count()])
+        Some([slots(leaf).start, slots(leaf).end])
     }
 
     fn pair(&self, _: usize, _: &NodePair, [left, right]: [Self::Known; 2], (): &mut ()) -> Self::Known {

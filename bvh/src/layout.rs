@@ -5,7 +5,7 @@ use eyerays_shader::data::{NodePair, NodeRef};
 
 use crate::{
     bounds::Bounds,
-    tree::{Children, Fold, filled, fold},
+    tree::{Children, Fold, filled, fold, slots},
 };
 
 /// The pairs of a tree with their boxes; `own` tells that of a slot.
@@ -27,7 +27,7 @@ impl<F: Fn(u32) -> Bounds + Sync> Fold<Children> for Boxes<F> {
     type Note = NodePair;
 
     fn leaf(&self, leaf: NodeRef) -> Bounds {
-        Bounds::around((leaf.index()..leaf.index() + leaf.count()).map(&self.0))
+        Bounds::around(slots(leaf).map(&self.0))
     }
 
     fn pair(&self, _: usize, pair: &Children, [left, right]: [Bounds; 2], note: &mut NodePair) -> Bounds {

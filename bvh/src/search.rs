@@ -10,7 +10,7 @@ use crate::{
     bounds::Bounds,
     branch::{Branch, Grown, Piece},
     reinsertion::Reinsertion,
-    tree::{Children, Fold, fold},
+    tree::{Children, Fold, fold, slots},
 };
 
 /// Down to this level, threads share what is below a pair.
@@ -38,7 +38,7 @@ impl<F: Fn(u32) -> Bounds + Sync> Fold<Children> for Boxes<F> {
     type Note = [Bvh2Node; 2];
 
     fn leaf(&self, leaf: NodeRef) -> Bounds {
-        Bounds::around((leaf.index()..leaf.index() + leaf.count()).map(&self.0))
+        Bounds::around(slots(leaf).map(&self.0))
     }
 
     fn pair(&self, _: usize, pair: &Children, [left, right]: [Bounds; 2], nodes: &mut [Bvh2Node; 2]) -> Bounds {

@@ -4,6 +4,8 @@
 //! subtree's pairs lie in a row, and where those of the right child start tells how many those of the left are: threads
 //! divide a tree wherever it is large, without another record of it.
 
+use std::ops::Range;
+
 use eyerays_shader::data::{CentredPair, NodePair, NodeRef};
 use rayon::prelude::*;
 
@@ -37,6 +39,11 @@ impl Pair for CentredPair {
     fn children(&self) -> Children {
         [self.left(), self.right()]
     }
+}
+
+/// The slots of a leaf.
+pub(crate) fn slots(leaf: NodeRef) -> Range<u32> {
+    leaf.index()..leaf.index() + leaf.count()
 }
 
 /// How many of the pairs below pair `first`, `count` with itself, are below its left child.

@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use eyerays_shader::data::{Bounds as Record, MAX_LEAF, NodePair, NodeRef, numbers};
 use rayon::prelude::*;
 
-use crate::{BuildError, MAX_DEPTH, bounds::Bounds};
+use crate::{BuildError, MAX_DEPTH, bounds::Bounds, tree};
 
 /// Subtrees of fewer pairs are left to one thread.
 const FEW: usize = 4096;
@@ -154,7 +154,7 @@ impl Proof<'_> {
     fn twice(&self) -> u32 {
         let mut once = Once::new(self.bounds.len());
         let leaves = self.nodes.iter().flat_map(|pair| [pair.left(), pair.right()]).filter(|child| child.is_leaf());
-        let mut slots = leaves.flat_map(|leaf| leaf.index()..leaf.index() + leaf.count());
+        let mut slots = leaves.flat_map(tree::slots);
         slots.find(|&slot| !once.meet(slot)).expect("leaves have more slots than there are")
     }
 }

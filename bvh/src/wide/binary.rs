@@ -5,7 +5,7 @@ use eyerays_shader::data::NodeRef;
 use crate::{
     bounds::Bounds,
     branch::{Branch, Piece, regrow},
-    tree::{Children, Fold, Pair, filled, fold},
+    tree::{Children, Fold, Pair, filled, fold, slots},
 };
 
 /// What a node is.
@@ -65,11 +65,10 @@ impl Binary {
 
 /// Adds a leaf, in two parts if it has more than `most`.
 fn part(leaf: NodeRef, piece: &mut Piece<Vec<u32>>, bounds: &[Bounds], most: u32) -> NodeRef {
-    let slots = leaf.index()..leaf.index() + leaf.count();
     if leaf.count() <= most {
-        return piece.leaf(slots);
+        return piece.leaf(slots(leaf));
     }
-    let mut slots: Vec<u32> = slots.collect();
+    let mut slots: Vec<u32> = slots(leaf).collect();
     let half = best_part(&mut slots, bounds, most) as usize;
     let halves = [&slots[..half], &slots[half..]].map(|half| piece.leaf(half.iter().copied()));
     piece.pairs.push(halves);

@@ -10,7 +10,7 @@ use super::{
     octant,
     record::{Child, Record},
 };
-use crate::{MAX_DEPTH, bounds::Bounds};
+use crate::{MAX_DEPTH, bounds::Bounds, tree};
 
 /// The most wide nodes on a path from the root.
 ///
@@ -119,8 +119,7 @@ impl Wide {
         }
         let moved = |reference: u32| match NodeRef(reference) {
             leaf if leaf.is_leaf() => {
-                let slots = leaf.index()..leaf.index() + leaf.count();
-                let first = slots.map(|slot| new[slot as usize]).min().expect("a leaf has slots");
+                let first = tree::slots(leaf).map(|slot| new[slot as usize]).min().expect("a leaf has slots");
                 NodeRef::leaf(first, leaf.count()).0
             }
             inner => inner.0,

@@ -167,6 +167,7 @@ impl<'a> Caster<'a> {
             Question::Occlusion => Stage::Shadow,
         };
         let traversal = self.gpu.resolved(traversal, Coherence::Scattered)?;
+        self.packed.check_walks(traversal.method)?;
         let spec = self.packed.specialisation(&traversal).with_launch(Launch::STREAM);
         let step = Step { stage, traversal: Some(traversal), spec };
         let kernel = compile(self.gpu, &[Recipe::new(step, self.gpu.target(exact))]).pop().map(Rc::new);

@@ -39,6 +39,7 @@ mod tests {
 
     use super::*;
     use crate::device_scene::DeviceScene;
+    use crate::method::Method;
     use crate::scene::Scene;
 
     fn whitted() -> Scene {
@@ -49,6 +50,17 @@ mod tests {
     fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
         let packed = DeviceScene::new(scene, settings, Quality::Fast);
         packed.err().map(|error| error.message())
+    }
+
+    #[test]
+    fn a_method_is_refused_whose_nodes_were_not_packed() {
+        let scene = whitted();
+        let packed = DeviceScene::new(&scene, scene.settings, Quality::Fast).unwrap();
+        let refused = packed.check_walks(Method::Wide).expect_err("accepted").message();
+        assert!(refused.ends_with("pack it by DeviceScene::with_wide_nodes"), "{refused}");
+        assert!(packed.check_walks(Method::IfIf).is_ok());
+        let packed = DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Fast).unwrap();
+        assert!(packed.check_walks(Method::Wide).is_ok());
     }
 
     #[test]

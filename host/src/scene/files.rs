@@ -7,7 +7,7 @@ use super::budget::Budget;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
 use super::table::Table;
-use super::{Sphere, file, xyzr};
+use super::{Sphere, file, part, xyzr};
 use crate::error::Result;
 
 /// Files already read, since a scene may place one many times, and what is left of the memory for others.
@@ -16,7 +16,6 @@ pub struct Files<'p> {
     /// What is left for the geometry that is not placed yet.
     pub budget: Budget,
     meshes: HashMap<PathBuf, Obj>,
-    plain: HashMap<PathBuf, Ply>,
     spheres: HashMap<PathBuf, Vec<Sphere>>,
     /// What was ignored in them.
     pub warnings: Vec<String>,
@@ -27,8 +26,8 @@ pub struct Files<'p> {
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names, all within the budget.
     pub fn new(folder: &'p Path, budget: Budget) -> Self {
-        let (meshes, plain, spheres) = (HashMap::new(), HashMap::new(), HashMap::new());
-        Files { folder, budget, meshes, plain, spheres, warnings: Vec::new(), paths: Vec::new() }
+        let (meshes, spheres) = (HashMap::new(), HashMap::new());
+        Files { folder, budget, meshes, spheres, warnings: Vec::new(), paths: Vec::new() }
     }
 
     /// Where the file of a table's key `file` lies.
@@ -46,30 +45,16 @@ impl<'p> Files<'p> {
     /// A mesh.
     ///
     /// # Errors
-    /// Those of [`obj::load`].
+    /// Those of [`read_mesh`].
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
-            let mut obj = obj::load(path, self.budget)?;
+            let mut obj = read_mesh(path, self.budget)?;
             self.warnings.append(&mut obj.warnings);
             self.paths.push(path.to_owned());
             self.paths.append(&mut obj.libraries);
             self.meshes.insert(path.to_owned(), obj);
         }
         Ok(&self.meshes[path])
-    }
-
-    /// A mesh without materials.
-    ///
-    /// # Errors
-    /// Those of [`ply::load`].
-    pub fn plain(&mut self, path: &Path) -> Result<&Ply> {
-        if !self.plain.contains_key(path) {
-            let mut ply = ply::load(path, self.budget)?;
-            self.warnings.append(&mut ply.warnings);
-            self.paths.push(path.to_owned());
-            self.plain.insert(path.to_owned(), ply);
-        }
-        Ok(&self.plain[path])
     }
 
     /// Spheres.
@@ -84,6 +69,18 @@ impl<'p> Files<'p> {
         }
         Ok(&self.spheres[path])
     }
+}
+
+/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default.
+///
+/// # Errors
+/// Those of [`obj::load`] and [`ply::load`].
+pub fn read_mesh(path: &Path, budget: Budget) -> Result<Obj> {
+    if !is(path, "ply") {
+        return obj::load(path, budget);
+    }
+    let Ply { mesh, warnings } = ply::load(path, budget)?;
+    Ok(Obj { mesh, materials: part::plain(), warnings, libraries: Vec::new() })
 }
 
 /// Does the path end like this, in capitals or not?

@@ -1,6 +1,6 @@
 //! From a path to a scene.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use glam::Vec3;
 
@@ -8,18 +8,17 @@ use super::binary;
 use super::budget::Budget;
 use super::document;
 use super::file;
-use super::files::{Files, is};
+use super::files::{Files, is, read_mesh};
 use super::frame;
 use super::geometry::Geometry;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
-use super::obj::{self, Obj};
+use super::obj::Obj;
 use super::part::{self, Placed};
-use super::ply::{self, Ply};
 use super::range::Range;
 use super::source::Source;
 use super::table::Table;
-use super::{Background, Mesh, Scene, Settings};
+use super::{Background, Scene, Settings};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
@@ -42,28 +41,16 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
         Ok((binary::load(path, budget)?, Vec::new()))
     } else if is(path, "toml") {
         load_toml(path, budget)
-    } else if is(path, "obj") {
-        load_obj(path, budget)
-    } else if is(path, "ply") {
-        load_ply(path, budget)
+    } else if is(path, "obj") || is(path, "ply") {
+        load_mesh(path, budget)
     } else {
         let fault = "unknown kind of scene; name a .toml or .eyerays scene or an .obj or .ply mesh";
         Err(Error::file(path, fault))
     }
 }
 
-fn load_obj(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Obj { mesh, materials, warnings, libraries } = obj::load(path, budget)?;
-    Ok((bare(path, mesh, materials, libraries)?, warnings))
-}
-
-fn load_ply(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Ply { mesh, warnings } = ply::load(path, budget)?;
-    Ok((bare(path, mesh, part::plain(), Vec::new())?, warnings))
-}
-
-/// The scene of a mesh that comes without one.
-fn bare(path: &Path, mesh: Mesh, materials: Vec<(String, Fields)>, files: Vec<PathBuf>) -> Result<Scene> {
+fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+    let Obj { mesh, materials, warnings, libraries } = read_mesh(path, budget)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let placed = Placed { name, geometry: Geometry::Mesh(mesh), materials, material: None };
     let mut merge = Merge::default();
@@ -74,7 +61,7 @@ fn bare(path: &Path, mesh: Mesh, materials: Vec<(String, Fields)>, files: Vec<Pa
         spheres,
         disks,
         parts,
-        files,
+        files: libraries,
         materials,
         lights: frame::lights(),
         cameras: Vec::new(),
@@ -83,7 +70,7 @@ fn bare(path: &Path, mesh: Mesh, materials: Vec<(String, Fields)>, files: Vec<Pa
         settings: Settings::default(),
         hierarchy: None,
     };
-    framed(path, scene)
+    Ok((framed(path, scene)?, warnings))
 }
 
 /// Gives a scene without a camera one that sees all of it.

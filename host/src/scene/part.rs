@@ -4,6 +4,7 @@ use super::files::{Files, is};
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
 use super::named::{self, Wish};
+use super::obj::Obj;
 use super::table::Table;
 use super::transform::Transform;
 use super::{Part, Primitives, normal};
@@ -82,17 +83,13 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
         return Ok((name, geometry, plain()));
     }
-    let (mesh, materials) = if is(&path, "obj") {
-        let obj = files.mesh(&path)?;
-        (&obj.mesh, obj.materials.clone())
-    } else if is(&path, "ply") {
-        (&files.plain(&path)?.mesh, plain())
-    } else {
+    if !is(&path, "obj") && !is(&path, "ply") {
         let fault = format!("{name:?} is no .obj, .ply or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
-    };
+    }
+    let Obj { mesh, materials, .. } = files.mesh(&path)?;
     budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
-    Ok((name, Geometry::Mesh(mesh.clone()), materials))
+    Ok((name, Geometry::Mesh(mesh.clone()), materials.clone()))
 }
 
 /// The materials of what names none.

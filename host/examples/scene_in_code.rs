@@ -45,14 +45,7 @@ fn scene() -> Scene {
         name: "floor".to_owned(),
         ambient: Vec3::splat(0.1),
         diffuse: vec3(0.8, 0.2, 0.2),
-        specular: Vec3::ZERO,
-        shininess: 1.0,
-        reflection: Vec3::ZERO,
-        transmission: Vec3::ZERO,
-        ior: 1.5,
-        checker: None,
-        emission: Vec3::ZERO,
-        two_sided: false,
+        ..Material::default()
     };
     let mirror = Material { name: "mirror".to_owned(), reflection: Vec3::splat(0.7), ..plain.clone() };
     let floor = [(-2.0, 0.0, 2.0), (2.0, 0.0, 2.0), (2.0, 0.0, -2.0), (-2.0, 0.0, -2.0)];

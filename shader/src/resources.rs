@@ -49,6 +49,7 @@ macro_rules! resources {
             17 segments SEGMENTS: Write UVec4, "shadow rays";
             18 emitters EMITTERS: Read Emitter, "emitters";
             19 emissions EMISSIONS: Read Emission, "emissions";
+            20 physicals PHYSICALS: Read Physical, "physical materials";
         }
     };
 }

@@ -35,6 +35,7 @@ pub fn black() -> Material {
         checker: None,
         emission: Vec3::ZERO,
         two_sided: false,
+        physical: None,
     }
 }
 

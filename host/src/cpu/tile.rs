@@ -220,11 +220,11 @@ impl<R: Scalar> Task<R> for Scatter<'_, '_, R> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
         let Records { paths, hits, shadows, segments, sums } = self.records;
-        let (lighting, shading) = (self.laid.lighting(), self.laid.shading());
+        let context = self.laid.scattering();
         for &slot in self.queue {
             let exchange =
                 Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
-            if integrator::scatter(&self.scene.base, &shading, &lighting, slot, exchange) {
+            if integrator::scatter(&self.scene.base, &context, slot, exchange) {
                 self.next.push(slot);
             }
         }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eyerays_bvh::{BuildError, Bvh, Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    NodePair, Normals, Primitive, Specialisation, pack,
+    NodePair, Normals, Physical as PhysicalRecord, Primitive, Specialisation, pack,
 };
 
 mod check;
@@ -45,6 +45,7 @@ pub struct DeviceScene {
     bounds: Vec<Bounds>,
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
+    physicals: Vec<PhysicalRecord>,
     lights: Vec<LightRecord>,
     lighting: Lighting,
     /// A material that emits, by its name.
@@ -100,6 +101,9 @@ impl DeviceScene {
         let nodes = centred(bvh.nodes);
         let primitives = gathered(primitives, &bvh.order);
         let normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
+        let physical = |m| records::physical(m, normalisation.scale);
+        let physicals =
+            if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation)?;
         let lamps = Lamps::new(&scene.materials, &primitives);
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
@@ -111,6 +115,7 @@ impl DeviceScene {
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(material).collect(),
+            physicals,
             lights,
             lighting,
             emissive,
@@ -170,6 +175,11 @@ impl DeviceScene {
     /// Materials.
     pub fn materials(&self) -> &[MaterialRecord] {
         &self.materials
+    }
+
+    /// Materials by microfacets; empty if there are none.
+    pub fn physicals(&self) -> &[PhysicalRecord] {
+        &self.physicals
     }
 
     /// Lights in file order.

@@ -1,6 +1,8 @@
 //! The records of a scene's parts.
 
-use eyerays_shader::data::{Effects, Light as LightRecord, Material as MaterialRecord, Normals, Primitive, pack};
+use eyerays_shader::data::{
+    Effects, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive, pack,
+};
 use eyerays_shader::real::SMALL;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -8,7 +10,7 @@ use rayon::prelude::*;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Background, Integrator, Light, Material, Scene, Settings};
+use crate::scene::{Background, Conductor, Integrator, Light, Material, Physical, Scene, Settings};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
@@ -18,8 +20,8 @@ pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
 /// The effects that a scene asks for, of those that it has, under some settings.
 pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
     let out = match settings.transport.integrator {
-        Integrator::Whitted | Integrator::Distributed if settings.bounces > 0 => 0,
-        Integrator::Whitted | Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION,
+        Integrator::Whitted | Integrator::Distributed if settings.bounces > 0 => MICROFACETS,
+        Integrator::Whitted | Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS,
         Integrator::Ao => !(GEOMETRY | Effects::TRANSPARENT),
         // What is behind glass is lit through it, by light that is bent there, or not at all.
         Integrator::Path => Effects::TRANSPARENT | Effects::SPECULAR,
@@ -27,6 +29,9 @@ pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
     let culled = if settings.culling { Effects::CULLING } else { 0 };
     Effects(effects.0 & !out | culled)
 }
+
+/// What microfacets do.
+const MICROFACETS: u32 = Effects::PHYSICAL | Effects::CONDUCTOR | Effects::THIN | Effects::ABSORBING;
 
 /// What is of the surfaces alone.
 const GEOMETRY: u32 = Effects::SMOOTH | Effects::SPHERE | Effects::DISK | Effects::GRADIENT;
@@ -50,11 +55,21 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::DISK, !scene.disks.is_empty());
     ask(Effects::EMISSIVE, used(&|m| m.emission != Vec3::ZERO));
     ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
+    let physical = |m: &dyn Fn(&Physical) -> bool| scene.materials.iter().filter_map(|m| m.physical.as_ref()).any(m);
+    ask(Effects::PHYSICAL, physical(&|_| true));
+    ask(Effects::CONDUCTOR, physical(&|p| p.conductor.is_some()));
+    ask(Effects::THIN, physical(&|p| p.is_transparent() && p.thin));
+    ask(Effects::ABSORBING, physical(&absorbs));
+    ask(Effects::REFRACTION, physical(&|p| p.is_transparent() && !p.thin));
     Effects(bits)
 }
 
 fn is_transparent(m: &Material) -> bool {
-    m.transmission != Vec3::ZERO
+    m.transmission != Vec3::ZERO || m.physical.is_some_and(|p| p.is_transparent())
+}
+
+fn absorbs(p: &Physical) -> bool {
+    p.is_transparent() && !p.thin && p.absorption.is_some()
 }
 
 /// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
@@ -113,6 +128,29 @@ pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecor
         transmission: colour(m.transmission, 0),
         checker,
         checker_ambient,
+    }
+}
+
+/// A physical material's record; that of another says that it is none.
+pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
+    let Some(p) = m.physical else { return bytemuck::Zeroable::zeroed() };
+    let flag = |flag: u32, holds: bool| if holds { flag } else { 0 };
+    let flags = PhysicalRecord::IS_PHYSICAL
+        | flag(PhysicalRecord::CONDUCTOR, p.conductor.is_some())
+        | flag(PhysicalRecord::THIN, p.thin);
+    let turns = f64::from(p.anisotropy_rotation).to_radians();
+    let turned = |number: f64| flushed_number(number as f32).to_bits();
+    let conductor = p.conductor.unwrap_or(Conductor { eta: Vec3::ZERO, k: Vec3::ZERO });
+    let absorption = p.absorption.filter(|_| absorbs(&p));
+    let lengths = absorption.map_or(0.0, |a| (1.0 / (f64::from(a.distance) * scale)).clamp(1e-9, 1e9) as f32);
+    PhysicalRecord {
+        base: colour(p.base, flags),
+        shape: colour(Vec3::new(p.roughness, p.metallic, p.anisotropy), p.ior.to_bits()),
+        dielectric: colour(p.reflectance(), flushed_number(p.specular_weight).to_bits()),
+        transmission: colour(p.transmission, lengths.to_bits()),
+        attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), 0),
+        eta: colour(conductor.eta, turned(math::cos(turns))),
+        k: colour(conductor.k, turned(math::sin(turns))),
     }
 }
 

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
+use eyerays_shader::integrator::ScatterContext;
 use eyerays_shader::light as shading;
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 
@@ -56,8 +57,13 @@ impl<'a> SceneView<'a> {
     }
 
     /// What an integrator chooses from that samples one light of all.
-    pub fn lighting(&self) -> shading::Lighting<'_> {
+    fn lighting(&self) -> shading::Lighting<'_> {
         shading::Lighting { emitters: &self.lighting.emitters, emissions: &self.lighting.emissions }
+    }
+
+    /// What scatters where integrators sample.
+    pub fn scattering(&self) -> ScatterContext<'_> {
+        ScatterContext { shading: self.shading(), physicals: self.packed.physicals(), lighting: self.lighting() }
     }
 
     /// Takes other lights.

@@ -26,12 +26,13 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 9] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 10] {
         let packed = self.packed;
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
         let (emitters, emissions): (&[_], &[_]) =
             if is_chosen { (&packed.lighting().emitters, &packed.lighting().emissions) } else { (&[], &[]) };
+        let physicals = if packed.effects().has(Effects::PHYSICAL) { packed.physicals() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
@@ -43,6 +44,7 @@ impl<'a> SceneRecords<'a> {
             (binding::LIGHTS, bytemuck::cast_slice(packed.lights())),
             (binding::EMITTERS, bytemuck::cast_slice(emitters)),
             (binding::EMISSIONS, bytemuck::cast_slice(emissions)),
+            (binding::PHYSICALS, bytemuck::cast_slice(physicals)),
         ]
     }
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::range::Range;
-use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Primitives, Scene, Sphere, Unplaced};
+use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Scene, Sphere, Unplaced};
 use crate::error::{Error, Result};
 
 impl Scene {
@@ -74,10 +74,32 @@ fn material(material: &Material) -> Unplaced<()> {
     owner.number("shininess", material.shininess, Range::AMOUNT)?;
     owner.number("ior", material.ior, Range::IOR)?;
     owner.colour("emission", material.emission, Range::AMOUNT)?;
+    material.physical.iter().try_for_each(|of| physical(&owner, of))?;
     let Some(checker) = material.checker else { return Ok(()) };
     owner.colour("checker color", checker.colour, Range::SHARE)?;
     owner.colour("checker ambient", checker.ambient, Range::SHARE)?;
     owner.number("checker size", checker.size, Range::LENGTH)
+}
+
+fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
+    let shares = [("base_color", of.base), ("specular_tint", of.specular_tint), ("transmission", of.transmission)];
+    shares.into_iter().try_for_each(|(key, share)| owner.colour(key, share, Range::SHARE))?;
+    let numbers = [
+        ("metallic", of.metallic),
+        ("roughness", of.roughness),
+        ("anisotropy", of.anisotropy),
+        ("specular_weight", of.specular_weight),
+    ];
+    numbers.into_iter().try_for_each(|(key, number)| owner.number(key, number, Range::SHARE))?;
+    owner.number("anisotropy_rotation", of.anisotropy_rotation, Range::ANY)?;
+    owner.number("ior", of.ior, Range::IOR)?;
+    if let Some(absorption) = of.absorption {
+        owner.colour("absorption color", absorption.colour, Range::SHARE)?;
+        owner.number("absorption distance", absorption.distance, Range::LENGTH)?;
+    }
+    let Some(conductor) = of.conductor else { return Ok(()) };
+    owner.colour("conductor eta", conductor.eta, Range::INDEX)?;
+    owner.colour("conductor k", conductor.k, Range::INDEX)
 }
 
 fn light(number: usize, light: &Light) -> Unplaced<()> {

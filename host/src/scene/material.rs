@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::range::Range;
 use super::table::Table;
-use super::{Checker, Material};
+use super::{Checker, Material, Physical, physical};
 use crate::error::Result;
 
 /// What a file says of a material; the rest is left to whoever else describes it.
@@ -20,6 +20,7 @@ pub struct Fields {
     pub checker: Option<Checker>,
     pub emission: Option<Vec3>,
     pub two_sided: Option<bool>,
+    pub physical: physical::Fields,
 }
 
 /// The name of the material of a surface that names none.
@@ -50,6 +51,7 @@ impl Fields {
             checker: table.table("checker")?.map(checker).transpose()?,
             emission: table.triple("emission", Range::AMOUNT)?,
             two_sided: table.flag("two_sided")?,
+            physical: physical::Fields::read(table)?,
         };
         Ok((name, fields))
     }
@@ -67,26 +69,74 @@ impl Fields {
             checker: self.checker.or(under.checker),
             emission: self.emission.or(under.emission),
             two_sided: self.two_sided.or(under.two_sided),
+            physical: self.physical.over(under.physical),
         }
     }
 
-    /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse.
+    /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse. Of one by microfacets the thesis'
+    /// model keeps what it can.
     pub fn finish(self, name: &str) -> Material {
-        let glass = self.transmission.is_some_and(|t| t != Vec3::ZERO);
-        let diffuse = self.diffuse.unwrap_or(if glass { Vec3::ZERO } else { GREY });
+        let ior = self.ior.unwrap_or(GLASS);
+        let physical = self.physical.finish(self.diffuse, self.transmission, ior);
+        let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
+        let diffuse = self.diffuse.unwrap_or(plain.diffuse);
         Material {
             name: name.to_owned(),
             ambient: self.ambient.unwrap_or(diffuse),
             diffuse,
-            specular: self.specular.unwrap_or(Vec3::ZERO),
-            shininess: self.shininess.unwrap_or(SHININESS),
-            reflection: self.reflection.unwrap_or(Vec3::ZERO),
-            transmission: self.transmission.unwrap_or(Vec3::ZERO),
-            ior: self.ior.unwrap_or(GLASS),
+            specular: self.specular.unwrap_or(plain.specular),
+            shininess: self.shininess.unwrap_or(plain.shininess),
+            reflection: self.reflection.unwrap_or(plain.reflection),
+            transmission: self.transmission.unwrap_or(plain.transmission),
+            ior,
             checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
             emission: self.emission.unwrap_or(Vec3::ZERO),
             two_sided: self.two_sided.unwrap_or(false),
+            physical,
         }
+    }
+
+    fn plain(&self) -> Material {
+        let is_glass = self.transmission.is_some_and(|t| t != Vec3::ZERO);
+        Material { diffuse: if is_glass { Vec3::ZERO } else { GREY }, ..Material::default() }
+    }
+}
+
+impl Default for Material {
+    /// Grey and matt, without a name.
+    fn default() -> Self {
+        Material {
+            name: String::new(),
+            ambient: GREY,
+            diffuse: GREY,
+            specular: Vec3::ZERO,
+            shininess: SHININESS,
+            reflection: Vec3::ZERO,
+            transmission: Vec3::ZERO,
+            ior: GLASS,
+            checker: None,
+            emission: Vec3::ZERO,
+            two_sided: false,
+            physical: None,
+        }
+    }
+}
+
+/// The thesis' model of a material by microfacets: metal mirrors the more the smoother it is, and the rest is matt.
+fn approximated(physical: &Physical) -> Material {
+    let Physical { base, metallic, roughness, transmission, ior, conductor, .. } = *physical;
+    let (base, metallic) = match conductor {
+        Some(conductor) => (conductor.reflectance(), 1.0),
+        None => (base, metallic),
+    };
+    let mirror = base * (metallic * (1.0 - roughness));
+    let opaque = base * (1.0 - metallic) * (Vec3::ONE - transmission);
+    Material {
+        diffuse: opaque + base * metallic - mirror,
+        specular: physical.reflectance() * (1.0 - roughness),
+        reflection: mirror,
+        ior,
+        ..Material::default()
     }
 }
 

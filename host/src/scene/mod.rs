@@ -24,6 +24,7 @@ mod named;
 mod normal;
 mod obj;
 mod part;
+mod physical;
 mod ply;
 mod polygon;
 mod primitive;
@@ -44,6 +45,7 @@ mod tests;
 pub use binary::{ENDING, Hierarchy, write};
 pub use frame::default_camera;
 pub use load::{load, read_table};
+pub use physical::{Absorption, Conductor, Physical};
 pub use primitive::{Disk, Primitives, Sphere};
 pub use range::Range;
 pub use sampler::Sampler;
@@ -171,6 +173,8 @@ pub struct Material {
     pub emission: Vec3,
     /// Does its back emit too?
     pub two_sided: bool,
+    /// How it scatters where integrators sample it; without this as the rest says.
+    pub physical: Option<Physical>,
 }
 
 /// A procedural checkerboard over the surface's two major axes.

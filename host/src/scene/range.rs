@@ -24,6 +24,9 @@ impl Range {
     /// An index of refraction.
     pub const IOR: Range = Range { holds: |x| (1.0..=4.0).contains(&x), says: "between 1 and 4" };
 
+    /// A part of a conductor's complex index of refraction.
+    pub const INDEX: Range = Range { holds: |x| (0.0..=100.0).contains(&x), says: "between 0 and 100" };
+
     /// Is the number in the range? NaN never is.
     pub fn holds(&self, number: f32) -> bool {
         (self.holds)(number)

@@ -56,6 +56,14 @@ bits! {
         DISK = 12;
         /// Some material emits light.
         EMISSIVE = 13;
+        /// Some material scatters by microfacets, and the integrator samples what they do.
+        PHYSICAL = 14;
+        /// Some such material is a conductor.
+        CONDUCTOR = 15;
+        /// Some such material is a thin wall that lets light pass.
+        THIN = 16;
+        /// Some such material absorbs light on its way inside.
+        ABSORBING = 17;
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::buffer::{read, write};
 use crate::data::*;
-use crate::integrator::{self, Exchange, Wave};
+use crate::integrator::{self, Exchange, ScatterContext, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::light::Lighting;
 use crate::real::Fast;

@@ -93,16 +93,17 @@ macro_rules! scatter {
         entry! {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions] {
+            [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions
+             physicals] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, primitives };
-                let shading = ShadingData { normals, materials };
-                let lighting = Lighting { emitters, emissions };
+                let (shading, lighting) = (ShadingData { normals, materials }, Lighting { emitters, emissions });
+                let context = ScatterContext { shading, physicals, lighting };
                 let exchange = Exchange { paths, hits, shadows, segments, sums };
-                let goes_on = integrator::scatter::<$R>(&launch, &shading, &lighting, slot, exchange);
+                let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
                 if spec.launch.has(Launch::GOES_ON) {
                     $enqueue(spec, goes_on, slot, next, counters);
                 }

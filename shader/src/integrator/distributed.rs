@@ -1,7 +1,7 @@
 //! Distributed ray tracing (Cook, Porter and Carpenter, 1984; thesis 3.4.1): Whitted's tree of reflected and refracted rays, where
 //! lights have extent and each vertex asks one of them.
 
-use super::sampled::{Scattered, Vertex, share};
+use super::sampled::{ScatterContext, Scattered, Vertex, share};
 use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};
@@ -10,18 +10,18 @@ use crate::light::{EmitterSample, LightSample, Lighting};
 use crate::material::{INVERSE_PI, Specular, Surface, eval_phong};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
-use crate::scene::{LaunchContext, ShadingData};
+use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
 
 /// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
 #[inline(always)]
 pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
-    shading: &ShadingData<'_>,
-    lighting: &Lighting<'_>,
+    context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
+    let ScatterContext { shading, lighting, .. } = context;
     let (primitive, interaction) = vertex.met(launch);
     let surface = vertex.surface(launch, shading, (&primitive, &interaction));
     let mut light = surface.ambient;

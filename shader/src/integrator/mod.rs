@@ -7,5 +7,5 @@ mod path;
 mod sampled;
 mod whitted;
 
-pub use sampled::{Exchange, scatter};
+pub use sampled::{Exchange, ScatterContext, scatter};
 pub use whitted::{Wave, shade};

@@ -1,50 +1,79 @@
 //! Path tracing (thesis 3.4.4; Kajiya, The Rendering Equation, 1986): at each vertex one sample of a light and one of the surface,
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
-use super::sampled::{Scattered, Vertex, share};
+use super::sampled::{ScatterContext, Scattered, Vertex, share};
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, Primitive, numbers};
+use crate::data::{Effects, Frame, Launch, Physical, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting};
-use crate::material::{INVERSE_PI, Lobes, Surface, cosine_direction};
-use crate::real::{FAINT, Real, SMALL, Scalar, V3};
+use crate::material::{Closure, Lobes, Scattering, closure, transmittance};
+use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
-use crate::scene::{LaunchContext, ShadingData};
+use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
-
-/// A surface where a path has hit it.
-struct At<R: Real> {
-    interaction: SurfaceInteraction<R>,
-    surface: Surface<R>,
-    lobes: Lobes<R>,
-    /// Where rays start on the viewer's side.
-    origin: V3<R>,
-}
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
 #[inline(always)]
 pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
-    shading: &ShadingData<'_>,
-    lighting: &Lighting<'_>,
+    context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
-    let (path, effects) = (vertex.path, launch.spec.effects);
+    let effects = launch.spec.effects;
+    let ScatterContext { shading, physicals, lighting } = context;
     let (primitive, interaction) = vertex.met(launch);
+    let vertex = &arrived(effects, physicals, vertex, (&primitive, &interaction));
+    let path = vertex.path;
     let light = share(launch, &path, emitted(launch, lighting, vertex, &primitive, &interaction));
     if path.bounces > launch.frame.bounces {
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
     let surface = vertex.surface(launch, shading, (&primitive, &interaction));
+    if effects.has(Effects::PHYSICAL) {
+        let material = read(physicals, primitive.material());
+        let closure = closure(effects, &material, &surface, &interaction, path.direction);
+        return scattered(launch, lighting, vertex, (&interaction, &closure), light);
+    }
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    let origin = interaction.offset_ray_origin(interaction.normal);
-    let at = At { interaction, surface, lobes, origin };
-    let decisions = vertex.draws.set(DECISIONS + path.bounces);
-    let shadow = sampled_light(launch, lighting, vertex, &at, decisions.x);
-    let next = go_on(vertex, &at, decisions.y);
+    scattered(launch, lighting, vertex, (&interaction, &lobes), light)
+}
+
+/// What of a path has come through the body whose inside it hits.
+#[inline(always)]
+fn arrived<R: Scalar>(
+    effects: Effects,
+    physicals: &[Physical],
+    vertex: &Vertex<R>,
+    (primitive, interaction): (&Primitive, &SurfaceInteraction<R>),
+) -> Vertex<R> {
+    if !effects.has(Effects::ABSORBING) || interaction.front {
+        return *vertex;
+    }
+    let material = read(physicals, primitive.material());
+    let left = transmittance(&material, vertex.distance);
+    let weight = vertex.path.weight.times(left).map(|c| c.flush(FAINT));
+    Vertex { path: PathState { weight, ..vertex.path }, ..*vertex }
+}
+
+/// The light of one light, and the next ray, by a surface's closure.
+#[inline(always)]
+fn scattered<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    at: (&SurfaceInteraction<R>, &impl Closure<R>),
+    light: V3<R>,
+) -> Scattered<R> {
+    let (interaction, closure) = at;
+    let bounces = vertex.path.bounces;
+    let decisions = vertex.draws.set(DECISIONS + bounces);
+    let shadow = sampled_light(launch, lighting, vertex, at, decisions.x);
+    let draws = (decisions.y, decisions.w);
+    let sample = closure.sample(interaction, draws, || vertex.draws.set(bounces + 1));
+    let next = vertex.on((interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
-    let goes_on = goes_on && (path.bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
+    let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
     Scattered::once(light, shadow, next, goes_on)
 }
 
@@ -100,28 +129,30 @@ fn sampled_light<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    at: &At<R>,
+    (interaction, closure): (&SurfaceInteraction<R>, &impl Closure<R>),
     choice: u32,
 ) -> ShadowRay<R> {
-    let (path, surface, zero) = (&vertex.path, &at.surface, R::splat(0.0));
-    let is_lit = launch.spec.effects.has(Effects::LIT | Effects::EMISSIVE) && launch.frame.emitters > 0;
-    if !is_lit || !at.lobes.is_diffuse() {
+    let (effects, zero) = (launch.spec.effects, R::splat(0.0));
+    let is_lit = effects.has(Effects::LIT | Effects::EMISSIVE) && launch.frame.emitters > 0;
+    if !is_lit || !closure.is_rough() {
         return ShadowRay::none();
     }
-    let places = vertex.draws.set(path.bounces);
-    let sample = EmitterSample::new(launch, lighting, at.origin, choice, (places.z, places.w));
-    let cosine = surface.normal.dot(sample.direction);
-    if !zero.lt(cosine) || !at.interaction.faces(sample.direction) {
+    let places = vertex.draws.set(vertex.path.bounces);
+    let origin = interaction.offset_ray_origin(interaction.normal);
+    let sample = EmitterSample::new(launch, lighting, origin, choice, (places.z, places.w));
+    let Scattering { value, density } = closure.eval(interaction, sample.direction);
+    if !zero.lt(value.greatest()) {
         return ShadowRay::none();
     }
-    let factor = (cosine * R::splat(INVERSE_PI)).flush(FAINT);
-    let mut light = (surface.diffuse * factor).times(sample.light).map(|c| c.flush(FAINT));
+    let mut light = value.times(sample.light).map(|c| c.flush(FAINT));
     if !sample.density.over.eq(zero) {
-        let own = at.lobes.diffuse_probability() * factor * sample.density.under;
+        let own = density * sample.density.under;
         let share = weight(launch.spec.launch, Launch::BY_LIGHT, own.flush(FAINT), sample.density.over);
         light = (light * share).map(|c| c.flush(FAINT));
     }
-    vertex.asks(launch, (&at.interaction, at.origin), &sample, light)
+    let passes = effects.has(Effects::PHYSICAL) && !interaction.faces(sample.direction);
+    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { origin };
+    vertex.asks(launch, (interaction, origin), &sample, light)
 }
 
 /// What a sample counts whose own density is in the proportion `own` to that of the other strategy: all of it where its strategy,
@@ -139,24 +170,6 @@ fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) -> R {
     let ratio = R::select(own_is_none, R::splat(MOST), ratio);
     let ratio = if launch.has(Launch::BALANCED) { ratio } else { (ratio * ratio).flush(FAINT) };
     (one + ratio).reciprocal()
-}
-
-/// The next ray, by one lobe of the surface.
-#[inline(always)]
-fn go_on<R: Scalar>(vertex: &Vertex<R>, at: &At<R>, decision: u32) -> PathState<R> {
-    let (surface, interaction) = (&at.surface, &at.interaction);
-    let lobe = at.lobes.chosen(decision);
-    if lobe.is_diffuse {
-        let draws = vertex.draws.set(vertex.path.bounces + 1);
-        let (direction, cosine) = cosine_direction(surface.normal, (draws.x, draws.y));
-        let probability = at.lobes.diffuse_probability();
-        // About an interpolated normal a direction may lie below the surface.
-        let factor = V3::select(interaction.faces(direction), surface.diffuse * probability.reciprocal(), V3::zero());
-        let density = probability * cosine * R::splat(INVERSE_PI);
-        return vertex.on((interaction, at.origin), direction, factor, density);
-    }
-    let origin = at.lobes.leave(interaction, lobe.direction);
-    vertex.on((interaction, origin), lobe.direction, lobe.factor, R::splat(0.0))
 }
 
 /// Russian roulette: a path of little weight ends, or goes on for those that ended. Does it go on?

@@ -3,7 +3,7 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Launch, Primitive};
+use crate::data::{Launch, Physical, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Lighting};
 use crate::material::Surface;
@@ -30,11 +30,25 @@ pub struct Exchange<'a, R: Scalar> {
     pub sums: &'a mut [R::Record],
 }
 
+/// What scatters in a scene, and what emits.
+#[derive(Clone, Copy)]
+pub struct ScatterContext<'a> {
+    /// What surfaces look like.
+    pub shading: ShadingData<'a>,
+    /// How they scatter by microfacets ([`Effects::PHYSICAL`](crate::data::Effects)), by material.
+    pub physicals: &'a [Physical],
+    /// What emits.
+    pub lighting: Lighting<'a>,
+}
+
 /// What is known where a slot's ray has hit something.
+#[derive(Clone, Copy)]
 pub(super) struct Vertex<R: Real> {
     pub path: PathState<R>,
     pub primitive_index: u32,
     pub coordinates: (R, R),
+    /// How far the path came.
+    pub distance: R,
     pub draws: Draws,
 }
 
@@ -139,8 +153,7 @@ impl Draws {
 #[inline(always)]
 pub fn scatter<R: Scalar>(
     launch: &LaunchContext<'_>,
-    shading: &ShadingData<'_>,
-    lighting: &Lighting<'_>,
+    context: &ScatterContext<'_>,
     slot: u32,
     exchange: Exchange<'_, R>,
 ) -> bool {
@@ -161,13 +174,13 @@ pub fn scatter<R: Scalar>(
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
         let draws = Draws { launch: launch.spec.launch, key, sample: camera::sample(launch.frame, slot) };
-        let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), draws };
+        let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), distance: hit.x, draws };
         if launch.spec.launch.has(Launch::OCCLUSION) {
-            occlusion::at(launch, shading, &vertex)
+            occlusion::at(launch, &context.shading, &vertex)
         } else if launch.spec.launch.has(Launch::TREE) {
-            distributed::at(launch, shading, lighting, &vertex)
+            distributed::at(launch, context, &vertex)
         } else {
-            path::at(launch, shading, lighting, &vertex)
+            path::at(launch, context, &vertex)
         }
     };
     let (sum, word) = added(sum, word, &scattered);

@@ -1,9 +1,11 @@
 //! Which part of a surface scatters a path: the diffuse one, a mirror, or what a lens reflects or lets pass.
 
-use super::{Specular, Surface};
+use super::closure::{Closure, ClosureSample, Scattering};
+use super::{INVERSE_PI, Specular, Surface, cosine_direction};
 use crate::data::Effects;
 use crate::geometry::SurfaceInteraction;
 use crate::real::{FAINT, Real, Scalar, V3};
+use glam::UVec4;
 
 /// Probabilities are whole steps of this size, so that decisions compare integers.
 const STEPS: i32 = 1 << 23;
@@ -17,23 +19,20 @@ pub struct Lobes<R: Real> {
     reflected: i32,
     /// Both over their probabilities.
     specular: Specular<R>,
-}
-
-/// What scatters.
-#[derive(Clone, Copy)]
-pub struct Lobe<R: Real> {
-    /// The direction of a mirror or a lens.
-    pub direction: V3<R>,
-    /// What it does to light, over its probability.
-    pub factor: V3<R>,
-    /// Is it the diffuse part? Then direction and factor are unused.
-    pub is_diffuse: bool,
+    /// The diffuse part's colour.
+    colour: V3<R>,
+    /// The shading normal.
+    normal: V3<R>,
+    /// Where rays start on the viewer's side.
+    origin: V3<R>,
 }
 
 impl<R: Scalar> Lobes<R> {
     /// Of a surface that is seen along `direction`.
     #[inline(always)]
     pub fn new(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Self {
+        let (colour, normal) = (surface.diffuse, surface.normal);
+        let origin = interaction.offset_ray_origin(interaction.normal);
         let zero = R::splat(0.0);
         let none = Specular {
             mirrored: direction,
@@ -43,7 +42,7 @@ impl<R: Scalar> Lobes<R> {
             passes: false,
             is_lens: false,
         };
-        let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none };
+        let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none, colour, normal, origin };
         if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
             return diffuse_only;
         }
@@ -63,37 +62,55 @@ impl<R: Scalar> Lobes<R> {
         let over = |steps: i32| R::splat(STEPS as f32).div(R::splat(steps as f32));
         let mirror = (specular.mirror * over(reflected)).map(|c| c.flush(FAINT));
         let lens = (specular.lens * over((rest - reflected).max(1))).map(|c| c.flush(FAINT));
-        Lobes { diffuse, reflected: diffuse + reflected, specular: Specular { mirror, lens, ..specular } }
-    }
-
-    /// May the diffuse part be chosen?
-    #[inline(always)]
-    pub fn is_diffuse(&self) -> bool {
-        self.diffuse > 0
+        let specular = Specular { mirror, lens, ..specular };
+        Lobes { diffuse, reflected: diffuse + reflected, specular, colour, normal, origin }
     }
 
     /// How likely the diffuse part is chosen.
     #[inline(always)]
-    pub fn diffuse_probability(&self) -> R {
+    fn diffuse_probability(&self) -> R {
         const STEP: f32 = 1.0 / STEPS as f32;
         R::splat(self.diffuse as f32) * R::splat(STEP)
     }
+}
 
-    /// The part that a draw means.
+impl<R: Scalar> Closure<R> for Lobes<R> {
     #[inline(always)]
-    pub fn chosen(&self, drawn: u32) -> Lobe<R> {
-        let step = (drawn >> 9) as i32;
-        let passes = step >= self.reflected;
-        Lobe {
-            direction: V3::select(passes, self.specular.refracted, self.specular.mirrored),
-            factor: V3::select(passes, self.specular.lens, self.specular.mirror),
-            is_diffuse: step < self.diffuse,
-        }
+    fn is_rough(&self) -> bool {
+        self.diffuse > 0
     }
 
-    /// Where a ray starts that a mirror or a lens scatters.
     #[inline(always)]
-    pub fn leave(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
-        self.specular.leave(interaction, direction)
+    fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
+        let cosine = self.normal.dot(direction);
+        if !R::splat(0.0).lt(cosine) || !interaction.faces(direction) {
+            return Scattering::none();
+        }
+        let factor = (cosine * R::splat(INVERSE_PI)).flush(FAINT);
+        Scattering { value: self.colour * factor, density: self.diffuse_probability() * factor }
+    }
+
+    #[inline(always)]
+    fn sample(
+        &self,
+        interaction: &SurfaceInteraction<R>,
+        (part, _): (u32, u32),
+        pair: impl FnOnce() -> UVec4,
+    ) -> ClosureSample<R> {
+        let step = (part >> 9) as i32;
+        if step < self.diffuse {
+            let pair = pair();
+            let (direction, cosine) = cosine_direction(self.normal, (pair.x, pair.y));
+            let probability = self.diffuse_probability();
+            // About an interpolated normal a direction may lie below the surface.
+            let factor = V3::select(interaction.faces(direction), self.colour * probability.reciprocal(), V3::zero());
+            let density = probability * cosine * R::splat(INVERSE_PI);
+            return ClosureSample { direction, factor, density, origin: self.origin };
+        }
+        let passes = step >= self.reflected;
+        let direction = V3::select(passes, self.specular.refracted, self.specular.mirrored);
+        let factor = V3::select(passes, self.specular.lens, self.specular.mirror);
+        let origin = self.specular.leave(interaction, direction);
+        ClosureSample { direction, factor, density: R::splat(0.0), origin }
     }
 }

@@ -1,15 +1,26 @@
 //! What a surface is made of at a place: its colours and its shading normal. How it answers light is a file a model.
 
+mod bsdf;
+mod closure;
+mod fresnel;
+mod ggx;
 mod lambert;
 mod lobes;
 mod optics;
 mod phong;
+mod physical;
+mod refraction;
 mod specular;
 
+pub use bsdf::{Bsdf, Layers, Way};
+pub use closure::{Closure, ClosureSample, Scattering};
+pub use fresnel::Reflectance;
+pub use ggx::Ggx;
 pub use lambert::{INVERSE_PI, cosine_direction};
-pub use lobes::{Lobe, Lobes};
+pub use lobes::Lobes;
 pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
+pub use physical::{closure, transmittance};
 pub use specular::Specular;
 
 use crate::buffer::read;

@@ -1,0 +1,189 @@
+//! Materials by microfacets, as glTF 2.0 and its extensions describe them.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::range::Range;
+use super::table::Table;
+use crate::error::Result;
+
+/// How a surface scatters light by microfacets (glTF 2.0, appendix B). Colours are linear RGB in [0, 1].
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Physical {
+    /// The colour of what is matt and of metal.
+    pub base: Vec3,
+    /// How much of it is metal, in [0, 1].
+    pub metallic: f32,
+    /// Perceived roughness in [0, 1]; its square is that of the facets. Below 1/32 the surface is a mirror or a lens.
+    pub roughness: f32,
+    /// How much smoother the facets lie along the grain, in [0, 1]: brushed metal (KHR_materials_anisotropy).
+    pub anisotropy: f32,
+    /// The angle from the tangent to the grain, counter-clockwise, in degrees.
+    pub anisotropy_rotation: f32,
+    /// How strongly what is no metal reflects, in [0, 1] (KHR_materials_specular).
+    pub specular_weight: f32,
+    /// The colour of that reflection at normal incidence.
+    pub specular_tint: Vec3,
+    /// The share of the base's light that passes instead of being scattered, of what is no metal.
+    pub transmission: Vec3,
+    /// Index of refraction of what is no metal, in [1, 4].
+    pub ior: f32,
+    /// Is what lets light pass a wall too thin to bend it, instead of a body?
+    pub thin: bool,
+    /// What a body takes of light on its way inside.
+    pub absorption: Option<Absorption>,
+    /// A metal by its complex index of refraction, in place of all but roughness and anisotropy.
+    pub conductor: Option<Conductor>,
+}
+
+/// What a body absorbs (KHR_materials_volume).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Absorption {
+    /// What is left of white light, linear RGB in [0, 1], ...
+    pub colour: Vec3,
+    /// ... after so many world units.
+    pub distance: f32,
+}
+
+/// A complex index of refraction `eta + i k`, for red, green and blue.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Conductor {
+    /// The refractive part, in [0, 100].
+    pub eta: Vec3,
+    /// The absorbing part, in [0, 100].
+    pub k: Vec3,
+}
+
+impl Default for Physical {
+    /// A rough white dielectric.
+    fn default() -> Self {
+        Physical {
+            base: Vec3::ONE,
+            metallic: 0.0,
+            roughness: 1.0,
+            anisotropy: 0.0,
+            anisotropy_rotation: 0.0,
+            specular_weight: 1.0,
+            specular_tint: Vec3::ONE,
+            transmission: Vec3::ZERO,
+            ior: 1.5,
+            thin: false,
+            absorption: None,
+            conductor: None,
+        }
+    }
+}
+
+impl Physical {
+    /// Does light pass?
+    pub fn is_transparent(&self) -> bool {
+        self.transmission != Vec3::ZERO && self.conductor.is_none()
+    }
+
+    /// What it reflects at normal incidence where it is no metal, linear RGB.
+    pub fn reflectance(&self) -> Vec3 {
+        let root = (self.ior - 1.0) / (self.ior + 1.0);
+        (self.specular_tint * (root * root)).min(Vec3::ONE) * self.specular_weight
+    }
+}
+
+impl Conductor {
+    /// What it reflects at normal incidence, linear RGB.
+    pub fn reflectance(&self) -> Vec3 {
+        let square = |v: Vec3| v * v;
+        let (eta, k) = (self.eta, square(self.k));
+        let over = square(eta + Vec3::ONE) + k;
+        (square(eta - Vec3::ONE) + k) / over
+    }
+}
+
+/// What a file says of a material by microfacets; the rest is left to whoever else describes it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Fields {
+    base: Option<Vec3>,
+    metallic: Option<f32>,
+    roughness: Option<f32>,
+    anisotropy: Option<f32>,
+    anisotropy_rotation: Option<f32>,
+    specular_weight: Option<f32>,
+    specular_tint: Option<Vec3>,
+    thin: Option<bool>,
+    absorption: Option<Absorption>,
+    conductor: Option<Conductor>,
+}
+
+impl Fields {
+    /// Takes the keys of a `[[material]]` table.
+    ///
+    /// # Errors
+    /// A number out of range, or an unknown key of a table within.
+    pub fn read(table: &mut Table) -> Result<Fields> {
+        Ok(Fields {
+            base: table.triple("base_color", Range::SHARE)?,
+            metallic: table.number("metallic", Range::SHARE)?,
+            roughness: table.number("roughness", Range::SHARE)?,
+            anisotropy: table.number("anisotropy", Range::SHARE)?,
+            anisotropy_rotation: table.number("anisotropy_rotation", Range::ANY)?,
+            specular_weight: table.number("specular_weight", Range::SHARE)?,
+            specular_tint: table.triple("specular_tint", Range::SHARE)?,
+            thin: table.flag("thin")?,
+            absorption: table.table("absorption")?.map(absorption).transpose()?,
+            conductor: table.table("conductor")?.map(conductor).transpose()?,
+        })
+    }
+
+    /// These fields, and `under` where they say nothing.
+    pub fn over(self, under: Fields) -> Fields {
+        Fields {
+            base: self.base.or(under.base),
+            metallic: self.metallic.or(under.metallic),
+            roughness: self.roughness.or(under.roughness),
+            anisotropy: self.anisotropy.or(under.anisotropy),
+            anisotropy_rotation: self.anisotropy_rotation.or(under.anisotropy_rotation),
+            specular_weight: self.specular_weight.or(under.specular_weight),
+            specular_tint: self.specular_tint.or(under.specular_tint),
+            thin: self.thin.or(under.thin),
+            absorption: self.absorption.or(under.absorption),
+            conductor: self.conductor.or(under.conductor),
+        }
+    }
+
+    /// The material, if any of the fields is said; `diffuse`, `transmission` and `ior` are those of the thesis' model.
+    pub fn finish(self, diffuse: Option<Vec3>, transmission: Option<Vec3>, ior: f32) -> Option<Physical> {
+        if self == Fields::default() {
+            return None;
+        }
+        let plain = Physical::default();
+        Some(Physical {
+            base: self.base.or(diffuse).unwrap_or(plain.base),
+            metallic: self.metallic.unwrap_or(plain.metallic),
+            roughness: self.roughness.unwrap_or(plain.roughness),
+            anisotropy: self.anisotropy.unwrap_or(plain.anisotropy),
+            anisotropy_rotation: self.anisotropy_rotation.unwrap_or(plain.anisotropy_rotation),
+            specular_weight: self.specular_weight.unwrap_or(plain.specular_weight),
+            specular_tint: self.specular_tint.unwrap_or(plain.specular_tint),
+            transmission: transmission.unwrap_or(plain.transmission),
+            ior,
+            thin: self.thin.unwrap_or(plain.thin),
+            absorption: self.absorption,
+            conductor: self.conductor,
+        })
+    }
+}
+
+fn absorption(mut table: Table) -> Result<Absorption> {
+    let colour = table.triple("color", Range::SHARE)?;
+    let distance = table.number("distance", Range::LENGTH)?;
+    let absorption =
+        Absorption { colour: table.need("color", colour)?, distance: table.need("distance", distance)? };
+    table.done()?;
+    Ok(absorption)
+}
+
+fn conductor(mut table: Table) -> Result<Conductor> {
+    let eta = table.triple("eta", Range::INDEX)?;
+    let k = table.triple("k", Range::INDEX)?;
+    let conductor = Conductor { eta: table.need("eta", eta)?, k: table.need("k", k)? };
+    table.done()?;
+    Ok(conductor)
+}

@@ -1,0 +1,53 @@
+//! What integrators ask of a surface, whatever it is made of.
+
+use crate::geometry::SurfaceInteraction;
+use crate::real::{Real, Scalar, V3};
+use glam::UVec4;
+
+/// How a surface scatters light that reaches it from some direction.
+#[derive(Clone, Copy)]
+pub struct Scattering<R: Real> {
+    /// What it sends to the viewer over the radiance from there, with the cosine, linear RGB.
+    pub value: V3<R>,
+    /// The density over solid angle with which [`Closure::sample`] finds that direction.
+    pub density: R,
+}
+
+/// A direction in which a path goes on.
+#[derive(Clone, Copy)]
+pub struct ClosureSample<R: Real> {
+    /// Of unit length.
+    pub direction: V3<R>,
+    /// What of its light counts: the value of its scattering over its density. Zero if none does.
+    pub factor: V3<R>,
+    /// The density over solid angle; 0 of a direction that could be no other.
+    pub density: R,
+    /// Where the ray starts.
+    pub origin: V3<R>,
+}
+
+/// A surface as it is seen along a path.
+pub trait Closure<R: Scalar> {
+    /// May it scatter light of any other direction than those of mirrors and lenses?
+    fn is_rough(&self) -> bool;
+
+    /// How it scatters light from a unit direction, towards the light; of mirrors and lenses nothing.
+    fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R>;
+
+    /// A direction in which the path goes on. The first of the draws chooses a part of the surface and the second what its facets
+    /// do; `pair` gives two more, if they are asked for, that choose the direction.
+    fn sample(
+        &self,
+        interaction: &SurfaceInteraction<R>,
+        draws: (u32, u32),
+        pair: impl FnOnce() -> UVec4,
+    ) -> ClosureSample<R>;
+}
+
+impl<R: Scalar> Scattering<R> {
+    /// Of a direction that counts for nothing.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Scattering { value: V3::zero(), density: R::splat(0.0) }
+    }
+}

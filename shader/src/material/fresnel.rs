@@ -1,0 +1,170 @@
+//! What an interface reflects of unpolarised light, by the cosine of the angle of incidence.
+
+use super::{fresnel, refract};
+use crate::real::{Real, SMALL, Scalar, V3};
+
+/// A facet's reflectance.
+#[derive(Clone, Copy)]
+pub struct Reflectance<R: Real> {
+    /// At normal incidence, linear RGB in [0, 1]; of a conductor the refractive part of its index.
+    pub normal: V3<R>,
+    /// At grazing angles; of a conductor the absorbing part.
+    pub grazing: V3<R>,
+    /// Is it a conductor?
+    pub is_conductor: bool,
+    /// A share of the exact reflectance of glass that is added.
+    pub glass: R,
+    /// The index of refraction on the near side of the glass over that on the far side.
+    pub eta: R,
+}
+
+impl<R: Scalar> Reflectance<R> {
+    /// Of light along the unit vector `-w` at a facet of unit normal `h`, whose cosine is given. Linear RGB.
+    #[inline(always)]
+    pub fn at(&self, has_conductors: bool, has_glass: bool, (w, h, cosine): (V3<R>, V3<R>, R)) -> V3<R> {
+        if has_conductors && self.is_conductor {
+            return conductors(cosine, self.normal, self.grazing);
+        }
+        let share = self.normal + (self.grazing - self.normal) * schlick(cosine);
+        if has_glass && R::splat(0.0).lt(self.glass) {
+            let exact = self.glass * glass(w, h, self.eta);
+            return share + V3::new(exact, exact, exact);
+        }
+        share
+    }
+}
+
+impl<R: Scalar> Reflectance<R> {
+    /// The greatest channel's mean over all directions of a hemisphere by their cosine, of what is no conductor. That of the glass'
+    /// share is Schlick's, too.
+    #[inline(always)]
+    pub fn mean(&self) -> R {
+        /// A fifth power's mean.
+        const MEAN: f32 = 1.0 / 21.0;
+        let one = R::splat(1.0);
+        let root = (one - self.eta).div(one + self.eta);
+        let normal = self.normal.greatest() + self.glass * (root * root).flush(SMALL);
+        let grazing = self.grazing.greatest() + self.glass;
+        normal + (grazing - normal) * R::splat(MEAN)
+    }
+}
+
+/// How far reflectance has come from that at normal incidence to that at grazing angles (Schlick, An Inexpensive BRDF Model for
+/// Physically-based Rendering, 1994).
+#[inline(always)]
+fn schlick<R: Scalar>(cosine: R) -> R {
+    /// The fifth power of anything larger is normal.
+    const LEAST: f32 = 1.0 / (1 << 20) as f32;
+    let x = (R::splat(1.0) - cosine).flush(LEAST);
+    let square = x * x;
+    square * square * x
+}
+
+/// Of glass, see [`fresnel`].
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn glass<R: Scalar>(w: V3<R>, h: V3<R>, eta: R) -> R {
+    fresnel(&refract(-w, h, eta), eta)
+}
+
+/// [`conductor`] by channel.
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn conductors<R: Scalar>(cosine: R, eta: V3<R>, k: V3<R>) -> V3<R> {
+    V3::new(conductor(cosine, eta.x, k.x), conductor(cosine, eta.y, k.y), conductor(cosine, eta.z, k.z))
+}
+
+/// Of a conductor with the complex index `eta + i k` in a vacuum, each at most 2^10 (Lagarde, Memo on Fresnel Equations, 2013).
+#[inline(always)]
+fn conductor<R: Scalar>(cosine: R, eta: R, k: R) -> R {
+    let (zero, one, half) = (R::splat(0.0), R::splat(1.0), R::splat(0.5));
+    let (eta, k) = (eta.flush(SMALL), k.flush(SMALL));
+    let square = (cosine * cosine).flush(SMALL);
+    let sine = (one - square).flush(SMALL);
+    let product = (eta * k).flush(SMALL);
+    let difference = (eta * eta - k * k - sine).flush(SMALL);
+    let sum = (difference * difference + (product + product) * (product + product)).sqrt();
+    let a = ((sum + difference) * half).max(zero).flush(SMALL).sqrt();
+    let (near, twice) = (sum + square, (a + a) * cosine);
+    let across = ratio(near, twice);
+    let (near, twice) = (sum * square + sine * sine, twice * sine);
+    (across + across * ratio(near, twice)) * half
+}
+
+/// The difference of two numbers over their sum; 1 where both are zero.
+#[inline(always)]
+fn ratio<R: Scalar>(a: R, b: R) -> R {
+    let sum = (a + b).flush(SMALL);
+    let none = sum.eq(R::splat(0.0));
+    R::select(none, R::splat(1.0), (a - b).flush(SMALL).div(R::select(none, R::splat(1.0), sum)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// The equations as they are derived, in complex numbers.
+    fn complex(cosine: f64, eta: f64, k: f64) -> f64 {
+        let times = |(a, b): (f64, f64), (c, d): (f64, f64)| (a * c - b * d, a * d + b * c);
+        let over = |(a, b): (f64, f64), (c, d): (f64, f64)| {
+            let square = c * c + d * d;
+            ((a * c + b * d) / square, (b * c - a * d) / square)
+        };
+        let root = |(a, b): (f64, f64)| {
+            let size = a.hypot(b);
+            (((size + a) / 2.0).sqrt(), ((size - a) / 2.0).max(0.0).sqrt().copysign(b))
+        };
+        let index = (eta, k);
+        let sine = over((1.0 - cosine * cosine, 0.0), times(index, index));
+        let inside = root((1.0 - sine.0, -sine.1));
+        let minus = |a: (f64, f64), b: (f64, f64)| (a.0 - b.0, a.1 - b.1);
+        let plus = |a: (f64, f64), b: (f64, f64)| (a.0 + b.0, a.1 + b.1);
+        let (near, far) = ((cosine, 0.0), times(index, inside));
+        let across = over(minus(near, far), plus(near, far));
+        let (near, far) = (times(index, near), inside);
+        let along = over(minus(near, far), plus(near, far));
+        (across.0.powi(2) + across.1.powi(2) + along.0.powi(2) + along.1.powi(2)) / 2.0
+    }
+
+    #[test]
+    fn conductors_reflect_as_complex_numbers_say() {
+        for (eta, k) in [(0.143, 3.983), (1.442, 1.603), (0.2, 3.91), (2.9, 3.1), (1.5, 0.0), (1.0, 0.5)] {
+            for i in 0..=100 {
+                let cosine = f64::from(i) / 100.0;
+                let (got, want) = (conductor(cosine, eta, k), complex(cosine, eta, k));
+                assert!((got - want).abs() < 1e-9, "{eta} + {k}i at {cosine}: {got}, not {want}");
+                let single = f64::from(conductor(cosine as f32, eta as f32, k as f32));
+                assert!((single - want).abs() < 1e-5, "{eta} + {k}i at {cosine}: {single}, not {want}");
+            }
+        }
+    }
+
+    /// Gold is yellow, and everything is white at grazing angles.
+    #[test]
+    fn reflectance_turns_white_where_light_grazes() {
+        let of = |normal, grazing, is_conductor| Reflectance::<f64> {
+            normal: V3::splat(normal),
+            grazing: V3::splat(grazing),
+            is_conductor,
+            glass: 0.0,
+            eta: 1.0,
+        };
+        let at = |r: &Reflectance<f64>, cosine: f64| {
+            let w = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+            r.at(true, true, (w, V3::splat(Vec3::Z), cosine))
+        };
+        let gold = of(Vec3::new(0.143, 0.375, 1.442), Vec3::new(3.983, 2.386, 1.603), true);
+        let seen = at(&gold, 1.0);
+        assert!(seen.x > 0.95 && seen.x > seen.y && seen.y > seen.z && seen.z < 0.5, "{seen:?}");
+        let plastic = of(Vec3::splat(0.04), Vec3::ONE, false);
+        assert!((at(&plastic, 1.0).x - 0.04).abs() < 1e-9);
+        for r in [gold, plastic] {
+            assert!(at(&r, 0.0).x > 0.999 && at(&r, 0.0).z > 0.999);
+        }
+        let glass = Reflectance { glass: 1.0, eta: 1.0 / 1.5, ..of(Vec3::ZERO, Vec3::ZERO, false) };
+        assert!((at(&glass, 1.0).y - 0.04).abs() < 1e-12);
+    }
+}

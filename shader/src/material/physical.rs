@@ -1,0 +1,154 @@
+//! From a physical material's record to its closure.
+
+use super::bsdf::{Bsdf, Layers, Way};
+use super::fresnel::Reflectance;
+use super::{Ggx, Surface};
+use crate::data::{Effects, Physical, numbers};
+use crate::geometry::{SurfaceInteraction, tangents};
+use crate::real::{Real, Scalar, V3};
+
+/// What a physical material says at a place, as textures may change it there.
+#[derive(Clone, Copy)]
+pub struct Parameters<R: Real> {
+    /// Linear RGB in [0, 1].
+    pub base: V3<R>,
+    /// In [0, 1].
+    pub roughness: R,
+    /// In [0, 1].
+    pub metalness: R,
+}
+
+impl<R: Scalar> Parameters<R> {
+    /// What the record says by itself.
+    #[inline(always)]
+    pub fn new(material: &Physical) -> Self {
+        let shape = V3::<R>::splat(numbers(material.shape));
+        Parameters { base: V3::splat(numbers(material.base)), roughness: shape.x, metalness: shape.y }
+    }
+}
+
+/// The closure of a surface that is seen along a unit direction.
+#[inline(always)]
+pub fn closure<R: Scalar>(
+    effects: Effects,
+    material: &Physical,
+    surface: &Surface<R>,
+    interaction: &SurfaceInteraction<R>,
+    direction: V3<R>,
+) -> Bsdf<R> {
+    let [x, y] = tangents(surface.normal);
+    let axes = [x, y, surface.normal];
+    let layers = if material.has(Physical::IS_PHYSICAL) {
+        physical(effects, material, &Parameters::new(material), interaction)
+    } else {
+        whitted(effects, surface, interaction)
+    };
+    Bsdf::new(effects, axes, direction, layers)
+}
+
+/// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.
+#[inline(always)]
+fn physical<R: Scalar>(
+    effects: Effects,
+    material: &Physical,
+    at: &Parameters<R>,
+    interaction: &SurfaceInteraction<R>,
+) -> Layers<R> {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let number = |bits| R::splat(f32::from_bits(bits));
+    let ggx = rough(at.roughness, number(material.shape.z));
+    let none = Layers {
+        diffuse: V3::zero(),
+        through: V3::zero(),
+        reflectance: Reflectance {
+            normal: V3::splat(numbers(material.eta)),
+            grazing: V3::splat(numbers(material.k)),
+            is_conductor: true,
+            glass: zero,
+            eta: one,
+        },
+        is_coated: true,
+        way: Way::OPAQUE,
+        ggx,
+    };
+    if effects.has(Effects::CONDUCTOR) && material.has(Physical::CONDUCTOR) {
+        return none;
+    }
+    let (metal, rest) = (at.metalness, one - at.metalness);
+    let transmission = V3::<R>::splat(numbers(material.transmission));
+    let (base, white) = (at.base * rest, V3::new(one, one, one));
+    let passes = zero.lt(transmission.greatest()) && zero.lt(rest);
+    let way = if !passes {
+        Way::OPAQUE
+    } else if material.has(Physical::THIN) {
+        Way::THIN
+    } else {
+        Way::BODY
+    };
+    let is_body = effects.has(Effects::REFRACTION) && way == Way::BODY;
+    let ior = number(material.shape.w);
+    let dielectric = if is_body { zero } else { rest };
+    let grazing = number(material.dielectric.w) * dielectric + metal;
+    Layers {
+        diffuse: base.times(white - transmission),
+        through: if passes { base.times(transmission) } else { V3::zero() },
+        reflectance: Reflectance {
+            normal: V3::splat(numbers(material.dielectric)) * dielectric + at.base * metal,
+            grazing: V3::new(grazing, grazing, grazing),
+            is_conductor: false,
+            glass: if is_body { number(material.dielectric.w) * rest } else { zero },
+            eta: if is_body { interaction.relative_ior(ior) } else { one },
+        },
+        way,
+        // Facets of glass that hardly bends light have directions that rounding loses.
+        ggx: if is_body && (ior - one).lt(R::splat(LEAST_BEND)) { smooth() } else { ggx },
+        ..none
+    }
+}
+
+/// The least that an index of refraction is above 1 where facets may be rough.
+const LEAST_BEND: f32 = 1.0 / 256.0;
+
+/// A surface of the thesis' model: Lambert, with a mirror or glass beside it.
+#[inline(always)]
+fn whitted<R: Scalar>(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>) -> Layers<R> {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let is_lens = effects.has(Effects::REFRACTION) && !surface.ior.eq(zero);
+    let mirror = if is_lens { V3::zero() } else { surface.reflection };
+    Layers {
+        diffuse: surface.diffuse,
+        through: if is_lens { surface.transmission } else { V3::zero() },
+        reflectance: Reflectance {
+            normal: mirror,
+            grazing: mirror,
+            is_conductor: false,
+            glass: if is_lens { one } else { zero },
+            eta: if is_lens { interaction.relative_ior(surface.ior) } else { one },
+        },
+        is_coated: false,
+        way: if is_lens { Way::BODY } else { Way::OPAQUE },
+        ggx: smooth(),
+    }
+}
+
+#[inline(always)]
+fn smooth<R: Scalar>() -> Ggx<R> {
+    Ggx { x: R::splat(0.0), y: R::splat(0.0) }
+}
+
+/// Facets by perceived roughness, whose square they have; along the grain less by the strength of anisotropy
+/// (KHR_materials_anisotropy).
+#[inline(always)]
+fn rough<R: Scalar>(roughness: R, strength: R) -> Ggx<R> {
+    let (least, one) = (R::splat(Ggx::<R>::LEAST), R::splat(1.0));
+    let alpha = (roughness * roughness).min(one);
+    let along = alpha + (one - alpha) * (strength * strength);
+    if along.lt(least) { smooth() } else { Ggx { x: along, y: alpha.max(least) } }
+}
+
+/// What is left of light that has gone a distance inside of a body, linear RGB.
+#[inline(always)]
+pub fn transmittance<R: Scalar>(material: &Physical, distance: R) -> V3<R> {
+    let lengths = distance * R::splat(f32::from_bits(material.transmission.w));
+    V3::<R>::splat(numbers(material.attenuation)).map(|colour| colour.pow(lengths))
+}

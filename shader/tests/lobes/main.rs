@@ -1,0 +1,7 @@
+//! What closures promise to integrators: densities are those of samples, scattering is reciprocal, and light is conserved.
+
+mod albedo;
+mod chi_square;
+mod integral;
+mod reciprocity;
+mod surface;

@@ -1,0 +1,95 @@
+//! Surfaces to test, in double precision: flat, facing up the third axis.
+
+use eyerays_shader::data::Effects;
+use eyerays_shader::geometry::SurfaceInteraction;
+use eyerays_shader::material::{Bsdf, Closure, ClosureSample, Ggx, Layers, Reflectance, Scattering, Way};
+use eyerays_shader::real::V3;
+use eyerays_shader::sampler::hash;
+use glam::{DVec3, UVec4, Vec3};
+
+pub type V = V3<f64>;
+
+pub const WHITE: V = V { x: 1.0, y: 1.0, z: 1.0 };
+pub const BLACK: V = V { x: 0.0, y: 0.0, z: 0.0 };
+
+/// Facets of some roughness that reflect everything.
+pub fn facets(x: f64, y: f64) -> Layers<f64> {
+    let reflectance = Reflectance { normal: WHITE, grazing: WHITE, is_conductor: false, glass: 0.0, eta: 1.0 };
+    let ggx = Ggx { x, y };
+    Layers { diffuse: BLACK, through: BLACK, reflectance, is_coated: true, way: Way::OPAQUE, ggx }
+}
+
+/// White plastic.
+pub fn plastic(x: f64, y: f64) -> Layers<f64> {
+    let normal = V { x: 0.04, y: 0.04, z: 0.04 };
+    let facets = facets(x, y);
+    Layers { diffuse: WHITE, reflectance: Reflectance { normal, ..facets.reflectance }, ..facets }
+}
+
+/// Gold.
+pub fn gold(x: f64, y: f64) -> Layers<f64> {
+    let (eta, k) = (V { x: 0.143, y: 0.375, z: 1.442 }, V { x: 3.983, y: 2.386, z: 1.603 });
+    let facets = facets(x, y);
+    let reflectance = Reflectance { normal: eta, grazing: k, is_conductor: true, ..facets.reflectance };
+    Layers { reflectance, ..facets }
+}
+
+/// Glass, seen from its side where the index is `eta` times that on the other.
+pub fn glass(x: f64, y: f64, eta: f64) -> Layers<f64> {
+    let facets = facets(x, y);
+    let reflectance = Reflectance { normal: BLACK, grazing: BLACK, glass: 1.0, eta, ..facets.reflectance };
+    Layers { through: WHITE, reflectance, way: Way::BODY, ..facets }
+}
+
+/// A pane that lets through what it does not reflect or scatter.
+pub fn pane(x: f64, y: f64) -> Layers<f64> {
+    let half = WHITE * 0.5;
+    Layers { through: half, diffuse: half, way: Way::THIN, ..plastic(x, y) }
+}
+
+/// A closure that is seen from some direction, which may be below.
+pub struct Seen {
+    closure: Bsdf<f64>,
+    interaction: SurfaceInteraction<f64>,
+}
+
+impl Seen {
+    /// From the unit direction `viewer`.
+    pub fn from(layers: Layers<f64>, viewer: DVec3) -> Self {
+        let up = if viewer.z < 0.0 { -1.0 } else { 1.0 };
+        let normal = V::new(0.0, 0.0, up);
+        let axes = [V::new(1.0, 0.0, 0.0), V::new(0.0, up, 0.0), normal];
+        let interaction = SurfaceInteraction {
+            position: V::splat(Vec3::ZERO),
+            error_offset: 1e-9,
+            normal,
+            front: up > 0.0,
+            coordinates: (0.0, 0.0),
+            number: 0,
+            is_curved: false,
+            radius: 0.0,
+        };
+        Seen { closure: Bsdf::new(Effects(u32::MAX), axes, -of(viewer), layers), interaction }
+    }
+
+    /// How it scatters light from a unit direction.
+    pub fn scattering(&self, light: DVec3) -> Scattering<f64> {
+        self.closure.eval(&self.interaction, of(light))
+    }
+
+    /// The sample of a number in a run.
+    pub fn sample(&self, run: u32, number: u32) -> ClosureSample<f64> {
+        let [a, b, c] = hash([run, number, 1]);
+        let [c, d, _] = hash([a, b, c]);
+        self.closure.sample(&self.interaction, (a, b), || UVec4::new(c, d, 0, 0))
+    }
+}
+
+fn of(v: DVec3) -> V {
+    V::new(v.x, v.y, v.z)
+}
+
+/// The direction at polar coordinates.
+pub fn direction(polar: f64, azimuth: f64) -> DVec3 {
+    DVec3::new(polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos())
+}

@@ -22,5 +22,6 @@ pub mod resources;
 pub mod sampler;
 pub mod scene;
 pub mod stage;
+pub mod texture;
 pub mod traverse;
 pub mod warp;

@@ -50,6 +50,14 @@ macro_rules! resources {
             18 emitters EMITTERS: Read Emitter, "emitters";
             19 emissions EMISSIONS: Read Emission, "emissions";
             20 physicals PHYSICALS: Read Physical, "physical materials";
+            21 maps MAPS: Read Maps, "texture maps";
+            22 textures TEXTURES: Read TextureMap, "table of textures";
+            23 texels TEXELS: Read u32, "textures";
+            24 coordinates COORDINATES: Read TexCoords, "texture coordinates";
+            25 colours COLOURS: Read Colours, "vertex colours";
+            26 tangents TANGENTS: Read Normals, "tangents";
+            27 opacities OPACITIES: Read Opacity, "opacities";
+            28 environment ENVIRONMENT: Read u32, "environment";
         }
     };
 }

@@ -4,8 +4,10 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Material, Normals, Primitive, Specialisation, numbers,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Maps, Material, Normals, Primitive, Specialisation, numbers,
 };
+use crate::texture::Textures;
+use crate::traverse::Cutout;
 use glam::{UVec4, Vec3};
 
 /// A launch, and the primitives of its scene.
@@ -52,6 +54,8 @@ pub struct TraceContext<'a> {
     pub bvh8: Bvh8View<'a>,
     /// Bounds in leaf order ([`Layout::SPLIT`]).
     pub bounds: &'a [Bounds],
+    /// Where primitives are not opaque.
+    pub cutout: Cutout<'a>,
 }
 
 impl TraceContext<'_> {
@@ -88,10 +92,17 @@ impl TraceContext<'_> {
 }
 
 /// What surfaces look like.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub struct ShadingData<'a> {
     /// Vertex normals in leaf order ([`Effects::SMOOTH`](crate::data::Effects)).
     pub normals: &'a [Normals],
     /// Materials.
     pub materials: &'a [Material],
+    /// Tangents in leaf order ([`Effects::TANGENTS`](crate::data::Effects)); the first vertex' integer is the bits of the sign of
+    /// the bitangent. Three zeros stand for a triangle without.
+    pub tangents: &'a [Normals],
+    /// Their maps, by material ([`Effects::TEXTURED`](crate::data::Effects)).
+    pub maps: &'a [Maps],
+    /// What they are covered with.
+    pub textures: Textures<'a>,
 }

@@ -20,6 +20,8 @@ pub struct Emitter {
 impl Emitter {
     /// The kind of a primitive that emits.
     pub const PRIMITIVE: u32 = 3;
+    /// The kind of light from far away.
+    pub const ENVIRONMENT: u32 = 4;
 }
 
 /// What a material emits.
@@ -29,7 +31,7 @@ pub struct Emission {
     /// Radiance, linear RGB; the integer is the bits of the probability density over the area of the normalised scene that a
     /// place on it is chosen as a light, 0 if it emits nothing.
     pub radiance: UVec4,
-    /// Not 0 if backs emit too, and three zeros.
+    /// Not 0 if backs emit too, the map that it is multiplied with as in [`Maps`](super::Maps), and two zeros.
     pub sides: UVec4,
 }
 

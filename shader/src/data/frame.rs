@@ -62,12 +62,12 @@ pub struct Frame {
     pub clamp: f32,
     /// How far ambient occlusion looks, in the normalised scene.
     pub reach: f32,
-    /// Unused, as the next two: uniform records are multiples of 16 bytes, and may hold no array of less.
-    pub padding_a: u32,
-    /// Unused.
-    pub padding_b: u32,
-    /// Unused.
-    pub padding_c: u32,
+    /// How much wider a sample of the camera becomes on a unit of its way.
+    pub spread: f32,
+    /// The probability that the environment is chosen of all lights.
+    pub environment: f32,
+    /// Unused: uniform records are multiples of 16 bytes.
+    pub padding: u32,
 }
 
 /// A pinhole camera for an image of some size: vectors in the normalised scene, whose last integers are unused.

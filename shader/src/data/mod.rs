@@ -14,6 +14,7 @@ mod physical;
 mod primitive;
 mod shading;
 mod specialisation;
+mod texture;
 
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
@@ -24,6 +25,7 @@ pub use physical::Physical;
 pub use primitive::{Bounds, Primitive};
 pub use shading::{Light, Material, Normals};
 pub use specialisation::{Effects, Launch, Layout, Order, Specialisation, Tuning};
+pub use texture::{Colours, Maps, Opacity, TexCoords, TextureMap};
 
 use glam::{UVec4, Vec3};
 

@@ -37,8 +37,10 @@ impl Primitive {
     pub const DISK: u32 = 2;
     /// The flag of a primitive that casts no shadow (thesis 3.2: opaque objects do).
     pub const TRANSPARENT: u32 = 4;
+    /// The flag of a primitive that is not opaque everywhere.
+    pub const CUTOUT: u32 = 8;
     /// How far the flags are shifted beside the material of an indexed vertex.
-    pub const FLAGS_SHIFT: u32 = 29;
+    pub const FLAGS_SHIFT: u32 = 28;
     /// The bits of the material there.
     pub const MATERIAL: u32 = (1 << Self::FLAGS_SHIFT) - 1;
 
@@ -118,6 +120,12 @@ impl Primitive {
     #[inline(always)]
     pub fn is_transparent(&self) -> bool {
         self.c.w & Self::TRANSPARENT != 0
+    }
+
+    /// Is it not opaque everywhere?
+    #[inline(always)]
+    pub fn is_cutout(&self) -> bool {
+        self.c.w & Self::CUTOUT != 0
     }
 
     /// The primitive's own box (least, greatest corner): its extent and [`BOX_PADDING`] around it.

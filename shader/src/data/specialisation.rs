@@ -64,6 +64,18 @@ bits! {
         THIN = 16;
         /// Some such material absorbs light on its way inside.
         ABSORBING = 17;
+        /// Some material has a texture.
+        TEXTURED = 18;
+        /// Some mesh has vertex colours.
+        COLOURED = 19;
+        /// Some primitives have tangents, and some material a use for them.
+        TANGENTS = 20;
+        /// Some material by microfacets is rougher along one axis than along the other.
+        ANISOTROPIC = 23;
+        /// Some material is not opaque everywhere.
+        CUTOUT = 21;
+        /// The background is a picture.
+        ENVIRONMENT = 22;
     }
 }
 
@@ -95,6 +107,10 @@ bits! {
         GOES_ON = 10;
         /// Paths branch at mirrors and glass, and go on from nowhere else.
         TREE = 11;
+        /// Of a texture the nearest texel counts; without this bit, the four around.
+        NEAREST = 12;
+        /// They are of the level whose texels are nearest in size to what a ray sees.
+        MIPMAPPED = 13;
     }
 }
 

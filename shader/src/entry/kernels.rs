@@ -8,9 +8,10 @@ use crate::light::Lighting;
 use crate::real::Fast;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
+use crate::texture::Textures;
 use crate::stage::{self, ShadowInputs};
 use crate::traverse::{
-    Closest, Cut, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative,
+    Closest, Cut, Cutout, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative,
     StackMax, WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, append, take};

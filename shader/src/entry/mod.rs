@@ -73,14 +73,17 @@ macro_rules! shade {
         entry! {
             /// Shades the slots of a wave.
             shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame primitives normals materials lights paths hits shadows sums queue next counters] {
+            [frame primitives normals materials lights paths hits shadows sums queue next counters
+             maps textures texels coordinates colours tangents environment] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, primitives };
-                let shading = ShadingData { normals, materials };
-                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, Wave { paths, hits, shadows, lights, sums });
+                let textures = Textures { textures, texels, coordinates, colours };
+                let shading = ShadingData { normals, materials, tangents, maps, textures };
+                let wave = Wave { paths, hits, shadows, lights, environment, sums };
+                let goes_on = integrator::shade::<$R>(&launch, &shading, slot, wave);
                 $enqueue(spec, goes_on, slot, next, counters);
             }
         }
@@ -94,13 +97,15 @@ macro_rules! scatter {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions
-             physicals] {
+             physicals maps textures texels coordinates colours tangents environment] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
                 let launch = LaunchContext { frame, spec, primitives };
-                let (shading, lighting) = (ShadingData { normals, materials }, Lighting { emitters, emissions });
+                let textures = Textures { textures, texels, coordinates, colours };
+                let shading = ShadingData { normals, materials, tangents, maps, textures };
+                let lighting = Lighting { emitters, emissions, textures, environment };
                 let context = ScatterContext { shading, physicals, lighting };
                 let exchange = Exchange { paths, hits, shadows, segments, sums };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
@@ -156,12 +161,15 @@ macro_rules! tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes primitives paths hits queue counters wide bounds] {
+            [frame nodes primitives paths hits queue counters wide bounds
+             opacities textures texels coordinates colours] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
+                let base = LaunchContext { frame, spec, primitives };
+                let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                let scene = TraceContext { base, nodes, wide, bounds, cutout };
                 write(hits, slot, stage::trace::<$R, $method, Primitives>(&scene, slot, paths));
             }
         }
@@ -169,12 +177,15 @@ macro_rules! tracing {
         entry! {
             /// Traces the shadow rays of a wave: one row of threads a light.
             shadow<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes primitives lights paths hits shadows queue counters wide bounds] {
+            [frame nodes primitives lights paths hits shadows queue counters wide bounds
+             opacities textures texels coordinates colours] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
+                let base = LaunchContext { frame, spec, primitives };
+                let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                let scene = TraceContext { base, nodes, wide, bounds, cutout };
                 let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
                 let answer = stage::shadow::<$R, $method, Primitives>(&scene, ShadowInputs { lights, paths, hits }, slot, light);
                 write(shadows, light * frame.slots + slot, answer);
@@ -189,8 +200,11 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes primitives paths hits queue counters wide bounds] {
-                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
+            [frame nodes primitives paths hits queue counters wide bounds
+             opacities textures texels coordinates colours] {
+                let base = LaunchContext { frame, spec, primitives };
+                let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                let scene = TraceContext { base, nodes, wide, bounds, cutout };
                 let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
                 stage::persistent::<$R, $method, Primitives, Closest, Subgroup>(
                     &scene,
@@ -210,8 +224,11 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the shadow rays of a wave, light after light.
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes primitives lights paths hits shadows queue counters wide bounds] {
-                let scene = TraceContext { base: LaunchContext { frame, spec, primitives }, nodes, wide, bounds };
+            [frame nodes primitives lights paths hits shadows queue counters wide bounds
+             opacities textures texels coordinates colours] {
+                let base = LaunchContext { frame, spec, primitives };
+                let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                let scene = TraceContext { base, nodes, wide, bounds, cutout };
                 let inputs = ShadowInputs { lights, paths: &*paths, hits: &*hits };
                 let (count, queue) = (slots(spec, frame, counters), &*queue);
                 // A launch without slots takes no number; the guard spares the division's panic.

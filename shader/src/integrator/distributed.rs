@@ -4,7 +4,7 @@
 use super::sampled::{ScatterContext, Scattered, Vertex, share};
 use super::whitted::counts;
 use crate::buffer::read;
-use crate::data::{Effects, numbers};
+use crate::data::{Effects, Maps, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, LightSample, Lighting};
 use crate::material::{INVERSE_PI, Specular, Surface, eval_phong};
@@ -22,13 +22,17 @@ pub(super) fn at<R: Scalar>(
 ) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
     let ScatterContext { shading, lighting, .. } = context;
-    let (primitive, interaction) = vertex.met(launch);
-    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
+    let seen = vertex.met(launch);
+    let (primitive, interaction) = (seen.primitive, seen.interaction);
+    let covering = seen.covering(launch, shading, Maps::BASE);
+    let surface = Surface::new(effects, shading, &seen, &covering);
     let mut light = surface.ambient;
     if effects.has(Effects::EMISSIVE) {
         let emission = read(lighting.emissions, primitive.material());
         if emission.shines(interaction.front) {
-            light = light + V3::splat(numbers(emission.radiance));
+            let radiance = V3::splat(numbers(emission.radiance));
+            let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };
+            light = light + radiance.map(|c| c.flush(FAINT));
         }
     }
     let light = share(launch, &path, light);
@@ -59,10 +63,11 @@ fn sampled_light<R: Scalar>(
     surface: &Surface<R>,
 ) -> ShadowRay<R> {
     let (path, effects) = (&vertex.path, launch.spec.effects);
-    if !effects.has(Effects::LIT | Effects::EMISSIVE) || launch.frame.emitters == 0 {
+    if !effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) || launch.frame.emitters == 0 {
         return ShadowRay::none();
     }
-    let (decisions, places) = (vertex.draws.set(DECISIONS + path.vertex), vertex.draws.set(path.vertex));
+    let number = path.counts().1;
+    let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
     let origin = interaction.offset_ray_origin(interaction.normal);
     let sample = EmitterSample::new(launch, lighting, origin, decisions.x, (places.z, places.w));
     if !interaction.faces(sample.direction) {

@@ -1,7 +1,8 @@
 //! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
 
 use super::sampled::{Scattered, Vertex};
-use crate::material::cosine_direction;
+use crate::data::Maps;
+use crate::material::{Surface, cosine_direction};
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{Segment, ShadowRay};
@@ -9,8 +10,9 @@ use crate::stage::{Segment, ShadowRay};
 /// Asks along one direction of the cosine's density.
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
-    let (primitive, interaction) = vertex.met(launch);
-    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
+    let seen = vertex.met(launch);
+    let (interaction, covering) = (&seen.interaction, seen.covering(launch, shading, Maps::BASE));
+    let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
     let mut shadow = ShadowRay::none();

@@ -3,14 +3,15 @@
 
 use super::sampled::{ScatterContext, Scattered, Vertex, share};
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, Physical, Primitive, numbers};
+use crate::data::{Effects, Frame, Launch, Maps, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting};
-use crate::material::{Closure, Lobes, Scattering, closure, transmittance};
+use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, transmittance};
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
+use crate::texture::{Cone, Covering};
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
 #[inline(always)]
@@ -21,21 +22,23 @@ pub(super) fn at<R: Scalar>(
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting } = context;
-    let (primitive, interaction) = vertex.met(launch);
-    let vertex = &arrived(effects, physicals, vertex, (&primitive, &interaction));
+    let seen = vertex.met(launch);
+    let vertex = &arrived(effects, physicals, vertex, &seen);
     let path = vertex.path;
-    let light = share(launch, &path, emitted(launch, lighting, vertex, &primitive, &interaction));
-    if path.bounces > launch.frame.bounces {
+    let is_last = path.bounces > launch.frame.bounces;
+    let covering = seen.covering(launch, shading, if is_last { Maps::EMISSION } else { Maps::BASE });
+    let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
+    if is_last {
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
-    let surface = vertex.surface(launch, shading, (&primitive, &interaction));
+    let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, primitive.material());
-        let closure = closure(effects, &material, &surface, &interaction, path.direction);
-        return scattered(launch, lighting, vertex, (&interaction, &closure), light);
+        let material = read(physicals, seen.primitive.material());
+        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
+        return scattered(launch, lighting, vertex, (&seen, &closure), light);
     }
-    let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    scattered(launch, lighting, vertex, (&interaction, &lobes), light)
+    let lobes = Lobes::new(effects, &surface, &seen.interaction, path.direction);
+    scattered(launch, lighting, vertex, (&seen, &lobes), light)
 }
 
 /// What of a path has come through the body whose inside it hits.
@@ -44,12 +47,12 @@ fn arrived<R: Scalar>(
     effects: Effects,
     physicals: &[Physical],
     vertex: &Vertex<R>,
-    (primitive, interaction): (&Primitive, &SurfaceInteraction<R>),
+    seen: &Seen<R>,
 ) -> Vertex<R> {
-    if !effects.has(Effects::ABSORBING) || interaction.front {
+    if !effects.has(Effects::ABSORBING) || seen.interaction.front {
         return *vertex;
     }
-    let material = read(physicals, primitive.material());
+    let material = read(physicals, seen.primitive.material());
     let left = transmittance(&material, vertex.distance);
     let weight = vertex.path.weight.times(left).map(|c| c.flush(FAINT));
     Vertex { path: PathState { weight, ..vertex.path }, ..*vertex }
@@ -61,16 +64,22 @@ fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    at: (&SurfaceInteraction<R>, &impl Closure<R>),
+    (seen, closure): (&Seen<R>, &impl Closure<R>),
     light: V3<R>,
 ) -> Scattered<R> {
-    let (interaction, closure) = at;
+    let interaction = &seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let shadow = sampled_light(launch, lighting, vertex, at, decisions.x);
+    let shadow = sampled_light(launch, lighting, vertex, (interaction, closure), decisions.x);
     let draws = (decisions.y, decisions.w);
     let sample = closure.sample(interaction, draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((interaction, sample.origin), sample.direction, sample.factor, sample.density);
+    let next = if launch.spec.launch.has(Launch::MIPMAPPED) {
+        let Cone { width, spread } = seen.cone.scattered(sample.density);
+        PathState { beside: (width, spread), ..next }
+    } else {
+        next
+    };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
@@ -104,8 +113,8 @@ fn emitted<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    primitive: &Primitive,
-    interaction: &SurfaceInteraction<R>,
+    Seen { primitive, interaction, .. }: &Seen<R>,
+    covering: &Covering<R>,
 ) -> V3<R> {
     let effects = launch.spec.effects;
     if !effects.has(Effects::EMISSIVE) {
@@ -116,6 +125,11 @@ fn emitted<R: Scalar>(
         return V3::zero();
     }
     let (radiance, own) = (V3::splat(numbers(emission.radiance)), vertex.path.density);
+    let radiance = if effects.has(Effects::TEXTURED) {
+        radiance.times(covering.emission).map(|c| c.flush(FAINT))
+    } else {
+        radiance
+    };
     if own.eq(R::splat(0.0)) {
         return radiance;
     }
@@ -133,7 +147,7 @@ fn sampled_light<R: Scalar>(
     choice: u32,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
-    let is_lit = effects.has(Effects::LIT | Effects::EMISSIVE) && launch.frame.emitters > 0;
+    let is_lit = effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) && launch.frame.emitters > 0;
     if !is_lit || !closure.is_rough() {
         return ShadowRay::none();
     }
@@ -158,7 +172,7 @@ fn sampled_light<R: Scalar>(
 /// What a sample counts whose own density is in the proportion `own` to that of the other strategy: all of it where its strategy,
 /// which `alone` names, is the only one, and nothing where the other is.
 #[inline(always)]
-fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) -> R {
+pub(super) fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) -> R {
     /// Beyond this proportion a sample counts for nothing.
     const MOST: f32 = (1u64 << 40) as f32;
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -209,8 +223,7 @@ mod tests {
             bounces: 0,
             density: 0.0,
             pixel: 0,
-            pending: 0,
-            vertex: 0,
+            beside: (0.0, 0.0),
         };
         may_find_light(&frame, &path)
     }

@@ -3,10 +3,10 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Launch, Physical, Primitive};
+use crate::data::{Effects, Launch, Physical};
 use crate::geometry::SurfaceInteraction;
-use crate::light::{EmitterSample, Lighting};
-use crate::material::Surface;
+use crate::light::{EmitterSample, Environment, Lighting};
+use crate::material::Seen;
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, Key};
@@ -14,6 +14,7 @@ use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
+use super::path::weight;
 use super::{distributed, occlusion, path};
 
 /// The records that the stages of a wave exchange.
@@ -53,25 +54,16 @@ pub(super) struct Vertex<R: Real> {
 }
 
 impl<R: Scalar> Vertex<R> {
-    /// The primitive that is hit, and the place on it.
+    /// What is hit.
     #[inline(always)]
-    pub fn met(&self, launch: &LaunchContext<'_>) -> (Primitive, SurfaceInteraction<R>) {
-        let primitive = launch.primitive(self.primitive_index);
-        let direction = self.path.direction;
-        (primitive, SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction))
+    pub fn met(&self, launch: &LaunchContext<'_>) -> Seen<R> {
+        let (index, direction) = (self.primitive_index, self.path.direction);
+        let primitive = launch.primitive(index);
+        let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction);
+        let cone = self.path.cone(launch).after(self.distance);
+        Seen { index, primitive, interaction, direction, cone }
     }
 
-    /// What is known of its surface.
-    #[inline(always)]
-    pub fn surface(
-        &self,
-        launch: &LaunchContext<'_>,
-        shading: &ShadingData<'_>,
-        (primitive, interaction): (&Primitive, &SurfaceInteraction<R>),
-    ) -> Surface<R> {
-        let direction = self.path.direction;
-        Surface::new(launch.spec.effects, shading, self.primitive_index, primitive, direction, interaction)
-    }
 
     /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.
     #[inline(always)]
@@ -169,7 +161,7 @@ pub fn scatter<R: Scalar>(
     let (hit, primitive_index) = R::load(read(hits, slot));
     // The ray of a slot outside the image hits nothing.
     let scattered = if primitive_index == Hit::<R>::NOTHING {
-        let seen = background(launch.spec.effects, launch.frame, path.direction);
+        let seen = surroundings(launch, &context.lighting, &path);
         Scattered::once(share(launch, &path, seen), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
@@ -189,6 +181,20 @@ pub fn scatter<R: Scalar>(
     follow(launch, slot, &path, scattered, paths)
 }
 
+/// What a path gets from beyond the scene, by the weight of the strategy that found it.
+#[inline(always)]
+fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
+    let (effects, frame) = (launch.spec.effects, launch.frame);
+    let seen = background(effects, frame, lighting.environment, path.direction, path.bounces == 0);
+    if !effects.has(Effects::ENVIRONMENT) || path.density.eq(R::splat(0.0)) {
+        return seen;
+    }
+    let environment = Environment::new(lighting.environment);
+    let other = environment.density(path.direction, R::splat(frame.environment));
+    let own = path.density * other.under;
+    (seen * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own)).map(|c| c.flush(FAINT))
+}
+
 /// Keeps where a slot goes on. Does it?
 #[inline(always)]
 fn follow<R: Scalar>(
@@ -202,7 +208,7 @@ fn follow<R: Scalar>(
         return branch(launch.frame.slots, slot, path, scattered, paths);
     }
     if scattered.goes_on {
-        PathState { pending: 0, vertex: 0, ..scattered.next }.store(launch.frame.slots, slot, 0, true, paths);
+        scattered.next.store(launch.frame.slots, slot, 0, true, paths);
     }
     scattered.goes_on
 }
@@ -216,7 +222,7 @@ fn branch<R: Scalar>(
     scattered: Scattered<R>,
     paths: &mut [R::Record],
 ) -> bool {
-    let (mut next, mut pending) = (scattered.next, path.pending);
+    let (mut next, (mut pending, vertex)) = (scattered.next, path.counts());
     if scattered.waits {
         pending += 1;
         scattered.other.store(slots, slot, pending, true, paths);
@@ -228,7 +234,7 @@ fn branch<R: Scalar>(
         next = PathState::load(slots, slot, pending, paths);
         pending -= 1;
     }
-    PathState { pending, vertex: path.vertex + 1, ..next }.store(slots, slot, 0, true, paths);
+    next.with_counts(pending, vertex + 1).store(slots, slot, 0, true, paths);
     true
 }
 

@@ -3,14 +3,15 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Launch, Light};
+use crate::data::{Effects, Launch, Light, Maps};
 use crate::geometry::SurfaceInteraction;
 use crate::light::LightSample;
-use crate::material::{Surface, eval_phong, fresnel, mirrored, refract};
+use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
+use crate::texture::Cone;
 
 /// The records that the stages of a wave exchange.
 pub struct Wave<'a, R: Scalar> {
@@ -22,6 +23,8 @@ pub struct Wave<'a, R: Scalar> {
     pub shadows: &'a [u32],
     /// Lights in file order.
     pub lights: &'a [Light],
+    /// Light from far away, see [`crate::light::Environment`].
+    pub environment: &'a [u32],
     /// Linear RGB by slot; the integer counts shadow rays and holds [`NON_FINITE`].
     pub sums: &'a mut [R::Record],
 }
@@ -35,7 +38,7 @@ struct Branches<R: Real> {
 /// Shades a slot's hit. Returns whether the slot has another ray to trace.
 #[inline(always)]
 pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, slot: u32, wave: Wave<'_, R>) -> bool {
-    let Wave { paths, hits, shadows, lights, sums } = wave;
+    let Wave { paths, hits, shadows, lights, environment, sums } = wave;
     // A queue holds no slot of a pixel outside.
     let is_first = !launch.spec.launch.has(Launch::SECONDARY);
     if is_first && !camera::pixel(launch.frame, launch.spec.order, slot).inside {
@@ -45,12 +48,15 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let path = Path::<R>::current(launch, slot, paths);
     let (hit, primitive_index) = R::load(read(hits, slot));
     if primitive_index == Hit::<R>::NOTHING {
-        add(launch, sums, slot, &path, background(effects, launch.frame, path.direction), 0);
+        add(launch, sums, slot, &path, background(effects, launch.frame, environment, path.direction, is_first), 0);
         return pop(launch, slot, &path, paths);
     }
     let primitive = launch.primitive(primitive_index);
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
-    let surface = Surface::new(effects, shading, primitive_index, &primitive, path.direction, &interaction);
+    let cone = Cone { width: R::splat(0.0), spread: R::splat(launch.frame.spread) }.after(hit.x);
+    let seen = Seen { index: primitive_index, primitive, interaction, direction: path.direction, cone };
+    let covering = seen.covering(launch, shading, Maps::BASE);
+    let surface = Surface::new(effects, shading, &seen, &covering);
     let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {

@@ -4,13 +4,14 @@
 //! inside by area. Densities that are compared by multiple importance sampling are over solid angle as seen from a ray's origin,
 //! and a function here gives them for a place whether it was sampled or hit, so that both know the same.
 
-use super::{LightSample, SHORT};
+use super::{Environment, LightSample, SHORT};
 use crate::buffer::read;
 use crate::data::{Effects, Emission, Emitter, Light, Primitive, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
 use crate::sampler::unit;
 use crate::scene::LaunchContext;
+use crate::texture::{Place, Textures};
 
 /// What emits in a scene.
 #[derive(Clone, Copy)]
@@ -19,6 +20,10 @@ pub struct Lighting<'a> {
     pub emitters: &'a [Emitter],
     /// What each material emits.
     pub emissions: &'a [Emission],
+    /// What it is covered with.
+    pub textures: Textures<'a>,
+    /// Light from far away ([`Effects::ENVIRONMENT`]), see [`Environment`].
+    pub environment: &'a [u32],
 }
 
 /// A sample of a light, as seen from a ray's origin.
@@ -88,6 +93,9 @@ impl<R: Scalar> EmitterSample<R> {
         let effects = launch.spec.effects;
         let emitter = chosen(lighting.emitters, launch.frame.emitters, choice);
         let probability = R::splat(f32::from_bits(emitter.choice.z));
+        if effects.has(Effects::ENVIRONMENT) && emitter.light.position.w == Emitter::ENVIRONMENT {
+            return Environment::new(lighting.environment).sample(place, probability);
+        }
         if !effects.has(Effects::EMISSIVE) || emitter.light.position.w != Emitter::PRIMITIVE {
             return Self::without_extent(effects, &emitter.light, origin, probability);
         }
@@ -96,7 +104,7 @@ impl<R: Scalar> EmitterSample<R> {
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             Self::of_sphere(&primitive, &emission, origin, place)
         } else {
-            Self::of_plane(effects, &primitive, &emission, origin, place)
+            Self::of_plane(launch, lighting, (&primitive, emitter.light.axis.w, &emission), origin, place)
         }
     }
 
@@ -124,12 +132,13 @@ impl<R: Scalar> EmitterSample<R> {
     /// A triangle or a disk.
     #[inline(always)]
     fn of_plane(
-        effects: Effects,
-        primitive: &Primitive,
-        emission: &Emission,
+        launch: &LaunchContext<'_>,
+        lighting: &Lighting<'_>,
+        (primitive, index, emission): (&Primitive, u32, &Emission),
         origin: V3<R>,
         place: (u32, u32),
     ) -> Self {
+        let effects = launch.spec.effects;
         let coordinates = if effects.has(Effects::DISK) && primitive.is_disk() {
             let (x, y) = on_circle::<R>(place.1);
             let reach = R::splat(unit(place.0)).sqrt();
@@ -138,7 +147,13 @@ impl<R: Scalar> EmitterSample<R> {
             in_triangle(R::splat(unit(place.0)), R::splat(unit(place.1)))
         };
         let at = SurfaceInteraction::new(effects, primitive, coordinates, V3::zero());
-        Self::of_place(emission, at.position, at.normal, origin)
+        let sample = Self::of_place(emission, at.position, at.normal, origin);
+        if !effects.has(Effects::TEXTURED) || emission.sides.y == 0 {
+            return sample;
+        }
+        let place = Place { index, weights: coordinates, count: launch.frame.vertices };
+        let texel = lighting.textures.at(launch.spec.launch, emission.sides.y, &place, R::splat(0.0)).1;
+        EmitterSample { light: sample.light.times(texel.colour).map(|c| c.flush(FAINT)), ..sample }
     }
 
     /// A place on a surface that emits, sampled by area, with its front's normal.
@@ -210,7 +225,7 @@ impl<R: Scalar> Density<R> {
 
     /// A radiance over the density.
     #[inline(always)]
-    fn share_of(&self, radiance: V3<R>) -> V3<R> {
+    pub(super) fn share_of(&self, radiance: V3<R>) -> V3<R> {
         let share = self.under.div(self.over).flush(FAINT);
         (radiance * share).map(|c| c.flush(FAINT))
     }

@@ -2,9 +2,11 @@
 //! extent, and the choice among all, are in a file of their own.
 
 mod emitter;
+mod environment;
 
 pub(crate) use emitter::on_circle;
 pub use emitter::{Density, EmitterSample, Lighting};
+pub use environment::{Environment, HEADER};
 
 use crate::data::{Effects, Light, numbers};
 use crate::geometry::SurfaceInteraction;

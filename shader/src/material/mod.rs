@@ -24,10 +24,11 @@ pub use physical::{closure, transmittance};
 pub use specular::Specular;
 
 use crate::buffer::read;
-use crate::data::{Effects, Material, Primitive, numbers};
-use crate::geometry::SurfaceInteraction;
-use crate::real::{Real, Scalar, V3};
-use crate::scene::ShadingData;
+use crate::data::{Effects, Launch, Maps, Material, Normals, Primitive, numbers};
+use crate::geometry::{SurfaceInteraction, tangents};
+use crate::real::{Real, SMALL, Scalar, TINY, V3};
+use crate::scene::{LaunchContext, ShadingData};
+use crate::texture::{Cone, Covering, Place};
 
 /// A material at an interaction, with the normal that light sees.
 #[derive(Clone, Copy)]
@@ -50,32 +51,67 @@ pub struct Surface<R: Real> {
     pub ior: R,
 }
 
-impl<R: Scalar> Surface<R> {
-    /// The surface of a primitive at an interaction, seen along `direction`.
+/// What a ray has met.
+#[derive(Clone, Copy)]
+pub struct Seen<R: Real> {
+    /// The primitive's index in leaf order.
+    pub index: u32,
+    /// The primitive.
+    pub primitive: Primitive,
+    /// The place on it.
+    pub interaction: SurfaceInteraction<R>,
+    /// The ray's unit direction.
+    pub direction: V3<R>,
+    /// How wide it is there.
+    pub cone: Cone<R>,
+}
+
+impl<R: Scalar> Seen<R> {
+    /// What its textures say, or of `only` emission that. Nothing but white in a scene without.
     #[inline(always)]
-    pub fn new(
-        effects: Effects,
-        shading: &ShadingData<'_>,
-        primitive_index: u32,
-        primitive: &Primitive,
-        direction: V3<R>,
-        interaction: &SurfaceInteraction<R>,
-    ) -> Self {
+    pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, only: u32) -> Covering<R> {
+        let (effects, launched) = (launch.spec.effects, launch.spec.launch);
+        let weights = self.interaction.coordinates;
+        let place = Place { index: self.index, weights, count: launch.frame.vertices };
+        let mut footprint = R::splat(0.0);
+        if effects.has(Effects::TEXTURED) && launched.has(Launch::MIPMAPPED) {
+            let facing = (self.interaction.normal, self.direction);
+            footprint = self.cone.footprint(&shading.textures, &place, &self.primitive, facing);
+        }
+        let maps = if only == Maps::EMISSION { (only, only + 1) } else { (0, Maps::COUNT) };
+        let own = || read(shading.maps, self.primitive.material());
+        Covering::new((effects, launched), &shading.textures, own, &place, footprint, maps)
+    }
+}
+
+impl<R: Scalar> Surface<R> {
+    /// The surface of what a ray has met, with what covers it.
+    #[inline(always)]
+    pub fn new(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
+        let Seen { index, primitive, interaction, direction, .. } = seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal = if effects.has(Effects::SMOOTH) {
-            interpolated(shading, primitive_index, direction, interaction)
+            interpolated(shading, *index, *direction, interaction)
         } else {
             interaction.normal
+        };
+        let normal = if effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED) {
+            mapped(shading, seen, normal, covering.normal)
+        } else {
+            normal
+        };
+        let covered = |colour: V3<R>| {
+            if effects.has(Effects::TEXTURED | Effects::COLOURED) { colour.times(covering.base) } else { colour }
         };
         let other = effects.has(Effects::CHECKER)
             && material.checker.w != 0
             && odd_cell(interaction, number(material.checker.w));
         Surface {
             normal,
-            ambient: if other { colour(material.checker_ambient) } else { colour(material.ambient) },
-            diffuse: if other { colour(material.checker) } else { colour(material.diffuse) },
+            ambient: covered(if other { colour(material.checker_ambient) } else { colour(material.ambient) }),
+            diffuse: covered(if other { colour(material.checker) } else { colour(material.diffuse) }),
             specular: colour(material.specular),
             shininess: number(material.specular.w),
             reflection: colour(material.reflection),
@@ -112,6 +148,56 @@ fn interpolated<R: Scalar>(
     V3::select(lost, interaction.normal, unit)
 }
 
+/// The tangent at a place, at right angles to a normal, and the sign of the bitangent; a zero vector if there is none.
+#[inline(always)]
+fn tangent<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> (V3<R>, R) {
+    let (u, v) = seen.interaction.coordinates;
+    let Normals { a, b, c } = read(shading.tangents, seen.index);
+    let of = |record| V3::<R>::splat(numbers(record));
+    let sum = of(a) * (R::splat(1.0) - u - v) + of(b) * u + of(c) * v;
+    let across = sum - normal * normal.dot(sum);
+    let (unit, length) = across.map(|c| c.flush(SMALL)).normalised();
+    // Along the normal there is no tangent.
+    let none = length.lt(R::splat(1.0 / 1024.0));
+    (V3::select(none, V3::zero(), unit), R::splat(f32::from_bits(a.w)))
+}
+
+/// The axes of a surface's frame: tangent, bitangent and normal, of unit length.
+#[inline(always)]
+pub fn axes<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> [V3<R>; 3] {
+    let [x, y] = tangents(normal);
+    if !effects.has(Effects::TANGENTS) {
+        return [x, y, normal];
+    }
+    let (along, sign) = tangent(shading, seen, normal);
+    let none = along.greatest().eq(R::splat(0.0)) && (-along).greatest().eq(R::splat(0.0));
+    let side = R::select(seen.interaction.front, sign, -sign);
+    let across = normal.cross(along).map(|c| c.flush(TINY)) * side;
+    [V3::select(none, x, along), V3::select(none, y, across), normal]
+}
+
+/// A normal by a map's, which is in the frame of the front's tangent, bitangent and normal. Where the map's leads away from the
+/// viewer it is bent back until it is seen.
+#[inline(always)]
+fn mapped<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>, map: V3<R>) -> V3<R> {
+    /// The least cosine to the viewer.
+    const LEAST: f32 = 1.0 / 64.0;
+    let (zero, front) = (R::splat(0.0), seen.interaction.front);
+    let (along, sign) = tangent(shading, seen, normal);
+    let own = V3::select(front, normal, -normal);
+    let across = own.cross(along).map(|c| c.flush(TINY)) * sign;
+    let part = |axis: V3<R>, length: R| (axis * length.flush(SMALL)).map(|c| c.flush(SMALL));
+    let sum = part(along, map.x) + part(across, map.y) + part(own, map.z);
+    let unit = sum.map(|c| c.flush(SMALL)).normalised().0;
+    let unit = V3::select(front, unit, -unit);
+    let none = unit.dot(unit).eq(zero);
+    let unit = V3::select(none, normal, unit);
+    let seen_by = -unit.dot(seen.direction);
+    let bent = (unit - seen.direction * (R::splat(LEAST) - seen_by)).map(|c| c.flush(SMALL)).normalised().0;
+    let bent = V3::select(zero.lt(-bent.dot(seen.direction)), bent, normal);
+    V3::select(R::splat(LEAST).le(seen_by), unit, bent)
+}
+
 /// Cells of a checkerboard over the two axes that the surface faces least.
 #[inline(always)]
 fn odd_cell<R: Scalar>(interaction: &SurfaceInteraction<R>, cells: R) -> bool {
@@ -130,7 +216,7 @@ fn odd_cell<R: Scalar>(interaction: &SurfaceInteraction<R>, cells: R) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Normals, pack};
+    use crate::data::pack;
     use glam::Vec3;
 
     fn contact(normal: Vec3, position: [f32; 3]) -> SurfaceInteraction<f32> {
@@ -164,7 +250,7 @@ mod tests {
     /// The shading normal where vertices have these.
     fn smooth_of(normals: [Vec3; 3], weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
         let [a, b, c] = normals.map(|n| pack(n, 0));
-        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[] };
+        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[], ..ShadingData::default() };
         let interaction = SurfaceInteraction { coordinates: weights, ..contact(own, [0.0; 3]) };
         interpolated(&shading, 0, V3::splat(from), &interaction)
     }

@@ -2,10 +2,12 @@
 
 use super::bsdf::{Bsdf, Layers, Way};
 use super::fresnel::Reflectance;
-use super::{Ggx, Surface};
+use super::{Ggx, Seen, Surface, axes};
 use crate::data::{Effects, Physical, numbers};
-use crate::geometry::{SurfaceInteraction, tangents};
-use crate::real::{Real, Scalar, V3};
+use crate::geometry::SurfaceInteraction;
+use crate::real::{Real, Scalar, TINY, V3};
+use crate::scene::ShadingData;
+use crate::texture::Covering;
 
 /// What a physical material says at a place, as textures may change it there.
 #[derive(Clone, Copy)]
@@ -16,14 +18,51 @@ pub struct Parameters<R: Real> {
     pub roughness: R,
     /// In [0, 1].
     pub metalness: R,
+    /// Linear RGB in [0, 1].
+    pub transmission: V3<R>,
+    /// What the dielectric part reflects at normal incidence, linear RGB in [0, 1].
+    pub normal: V3<R>,
+    /// The same at grazing angles.
+    pub grazing: R,
+    /// Strength of anisotropy in [0, 1].
+    pub anisotropy: R,
+    /// Cosine and sine of the angle of the grain.
+    pub grain: (R, R),
 }
 
 impl<R: Scalar> Parameters<R> {
-    /// What the record says by itself.
+    /// What the record says, as textures change it.
     #[inline(always)]
-    pub fn new(material: &Physical) -> Self {
-        let shape = V3::<R>::splat(numbers(material.shape));
-        Parameters { base: V3::splat(numbers(material.base)), roughness: shape.x, metalness: shape.y }
+    pub fn new(material: &Physical, covering: &Covering<R>) -> Self {
+        let colour = |record| V3::<R>::splat(numbers(record));
+        let number = |bits| R::splat(f32::from_bits(bits));
+        let shape = colour(material.shape);
+        let grain = (number(material.eta.w), number(material.k.w));
+        // Angles add: that of the material and that of the map.
+        let (cosine, sine) = covering.grain;
+        let turned = (grain.0 * cosine - grain.1 * sine, grain.1 * cosine + grain.0 * sine);
+        let strength = (cosine * cosine + sine * sine).sqrt();
+        Parameters {
+            base: colour(material.base).times(covering.base),
+            roughness: shape.x * covering.roughness,
+            metalness: shape.y * covering.metalness,
+            transmission: colour(material.transmission) * covering.transmission,
+            normal: colour(material.dielectric).times(covering.specular_tint) * covering.specular_weight,
+            grazing: number(material.dielectric.w) * covering.specular_weight,
+            anisotropy: shape.z * strength,
+            grain: turned,
+        }
+    }
+
+    /// The axes of a surface's frame, turned to the grain.
+    #[inline(always)]
+    fn turned(&self, [x, y, z]: [V3<R>; 3]) -> [V3<R>; 3] {
+        let (cosine, sine) = self.grain;
+        let none = cosine.eq(R::splat(0.0)) && sine.eq(R::splat(0.0));
+        let across = |a: V3<R>, b: V3<R>| (a + b).map(|c| c.flush(TINY));
+        let (cosine, sine) = (R::select(none, R::splat(1.0), cosine), sine);
+        let along = across(x * cosine, y * sine).direction_and_length().0;
+        [along, across(y * cosine, x * -sine).direction_and_length().0, z]
     }
 }
 
@@ -31,19 +70,22 @@ impl<R: Scalar> Parameters<R> {
 #[inline(always)]
 pub fn closure<R: Scalar>(
     effects: Effects,
+    shading: &ShadingData<'_>,
     material: &Physical,
-    surface: &Surface<R>,
-    interaction: &SurfaceInteraction<R>,
-    direction: V3<R>,
+    (seen, surface): (&Seen<R>, &Surface<R>),
+    covering: &Covering<R>,
 ) -> Bsdf<R> {
-    let [x, y] = tangents(surface.normal);
-    let axes = [x, y, surface.normal];
+    let mut axes = axes(effects, shading, seen, surface.normal);
     let layers = if material.has(Physical::IS_PHYSICAL) {
-        physical(effects, material, &Parameters::new(material), interaction)
+        let at = Parameters::new(material, covering);
+        if effects.has(Effects::ANISOTROPIC) {
+            axes = at.turned(axes);
+        }
+        physical(effects, material, &at, &seen.interaction)
     } else {
-        whitted(effects, surface, interaction)
+        whitted(effects, surface, &seen.interaction)
     };
-    Bsdf::new(effects, axes, direction, layers)
+    Bsdf::new(effects, axes, seen.direction, layers)
 }
 
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.
@@ -56,7 +98,8 @@ fn physical<R: Scalar>(
 ) -> Layers<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let number = |bits| R::splat(f32::from_bits(bits));
-    let ggx = rough(at.roughness, number(material.shape.z));
+    let anisotropy = if effects.has(Effects::ANISOTROPIC) { at.anisotropy } else { zero };
+    let ggx = rough(at.roughness, anisotropy);
     let none = Layers {
         diffuse: V3::zero(),
         through: V3::zero(),
@@ -75,7 +118,7 @@ fn physical<R: Scalar>(
         return none;
     }
     let (metal, rest) = (at.metalness, one - at.metalness);
-    let transmission = V3::<R>::splat(numbers(material.transmission));
+    let transmission = at.transmission;
     let (base, white) = (at.base * rest, V3::new(one, one, one));
     let passes = zero.lt(transmission.greatest()) && zero.lt(rest);
     let way = if !passes {
@@ -88,15 +131,15 @@ fn physical<R: Scalar>(
     let is_body = effects.has(Effects::REFRACTION) && way == Way::BODY;
     let ior = number(material.shape.w);
     let dielectric = if is_body { zero } else { rest };
-    let grazing = number(material.dielectric.w) * dielectric + metal;
+    let grazing = at.grazing * dielectric + metal;
     Layers {
         diffuse: base.times(white - transmission),
         through: if passes { base.times(transmission) } else { V3::zero() },
         reflectance: Reflectance {
-            normal: V3::splat(numbers(material.dielectric)) * dielectric + at.base * metal,
+            normal: at.normal * dielectric + at.base * metal,
             grazing: V3::new(grazing, grazing, grazing),
             is_conductor: false,
-            glass: if is_body { number(material.dielectric.w) * rest } else { zero },
+            glass: if is_body { at.grazing * rest } else { zero },
             eta: if is_body { interaction.relative_ior(ior) } else { one },
         },
         way,

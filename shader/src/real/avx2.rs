@@ -136,6 +136,23 @@ macro_rules! registers {
                 $number(unsafe { transmute::<[f32; $count], $floats>([<f32 as Real>::ROUNDOFF; $count]) })
             };
 
+            #[inline(always)]
+            fn sieve(mask: $mask, numbers: [Self; 5], mut test: impl FnMut([f32; 5]) -> bool) -> $mask {
+                let asked = <Self as Lanes<f32>>::bits(mask);
+                let lanes = numbers.map(|number| {
+                    let mut lanes = [0.0; $count];
+                    Lanes::<f32>::put(number, &mut lanes);
+                    lanes
+                });
+                let mut kept = [0.0; $count];
+                for (i, kept) in kept.iter_mut().enumerate() {
+                    if asked >> i & 1 == 1 && test(lanes.map(|lanes| lanes[i])) {
+                        *kept = 1.0;
+                    }
+                }
+                mask & Self::splat(0.0).lt(<Self as Lanes<f32>>::taken(&kept))
+            }
+
             instruction! {
                 fn splat(x: f32) -> Self { $number($all(x)) }
                 fn lt(self, other: Self) -> $mask { $mask($compare::<_CMP_LT_OQ>(self.0, other.0)) }

@@ -76,6 +76,10 @@ impl<const N: usize> Real for F32xN<N> {
     const ROUNDOFF: Self = F32xN([<f32 as Real>::ROUNDOFF; N]);
 
     #[inline(always)]
+    fn sieve(mask: MaskxN<N>, numbers: [Self; 5], mut test: impl FnMut([f32; 5]) -> bool) -> MaskxN<N> {
+        MaskxN(from_fn(|i| bits(mask.0[i] != 0 && test(numbers.map(|lanes| lanes.0[i])))))
+    }
+    #[inline(always)]
     fn splat(x: f32) -> Self {
         F32xN([x; N])
     }

@@ -108,6 +108,9 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     /// `a` where the mask holds, else `b`.
     fn select_index(mask: Self::Mask, a: Self::Index, b: Self::Index) -> Self::Index;
 
+    /// The lanes of a mask in which a test of five numbers, in single precision, holds.
+    fn sieve(mask: Self::Mask, numbers: [Self; 5], test: impl FnMut([f32; 5]) -> bool) -> Self::Mask;
+
     /// The lesser, by compare and select; `other` if either is NaN.
     #[inline(always)]
     fn min(self, other: Self) -> Self {

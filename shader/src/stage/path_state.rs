@@ -3,7 +3,10 @@
 use super::segment::NOWHERE;
 use super::{REACHED, Segment};
 use crate::buffer::{read, write};
+use crate::data::Launch;
 use crate::real::{Real, Scalar, V3};
+use crate::scene::LaunchContext;
+use crate::texture::Cone;
 
 /// Records that a path takes in device memory: those of a [`super::Segment`] first, so that its ray is traced as a stream's.
 pub const STATE_RECORDS: u32 = 4;
@@ -28,10 +31,9 @@ pub struct PathState<R: Real> {
     pub density: R,
     /// The column and, in the upper half, the row of its pixel in the image.
     pub pixel: u32,
-    /// Paths that wait in this slot, where paths branch.
-    pub pending: u32,
-    /// How many vertices the slot has had, where paths branch.
-    pub vertex: u32,
+    /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width and the spread of the
+    /// path's [`Cone`].
+    pub beside: (R, R),
 }
 
 /// A ray to a sampled light, and the light that arrives if nothing is between.
@@ -50,8 +52,30 @@ impl<R: Scalar> PathState<R> {
         let at = |k| R::load(read(paths, (level * STATE_RECORDS + k) * slots + slot));
         let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, pixel)) =
             (at(0), at(1), at(2), at(3));
-        let (pending, vertex) = (rest.y.to_f32() as u32, rest.z.to_f32() as u32);
-        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, pending, vertex }
+        let beside = (rest.y, rest.z);
+        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, beside }
+    }
+
+    /// Paths that wait in this slot, and vertices that it has had, where paths branch.
+    #[inline(always)]
+    pub fn counts(&self) -> (u32, u32) {
+        (self.beside.0.to_f32() as u32, self.beside.1.to_f32() as u32)
+    }
+
+    /// With others, each below 2^24, which are numbers of single precision.
+    #[inline(always)]
+    pub fn with_counts(self, pending: u32, vertex: u32) -> Self {
+        PathState { beside: (R::splat(pending as f32), R::splat(vertex as f32)), ..self }
+    }
+
+    /// How wide it is. Where paths branch, each begins as narrow as the camera's.
+    #[inline(always)]
+    pub fn cone(&self, launch: &LaunchContext<'_>) -> Cone<R> {
+        if launch.spec.launch.has(Launch::TREE) {
+            Cone { width: R::splat(0.0), spread: R::splat(launch.frame.spread) }
+        } else {
+            Cone { width: self.beside.0, spread: self.beside.1 }
+        }
     }
 
     /// Keeps it at a level; `follows` unless it is not to be traced.
@@ -61,10 +85,8 @@ impl<R: Scalar> PathState<R> {
         let PathState { origin, direction, source_primitive, .. } = *self;
         let at = |k| (level * STATE_RECORDS + k) * slots + slot;
         Segment { origin, direction, limit, source_primitive }.store(slots, at(0), paths);
-        // Counts below 2^24 are numbers of single precision.
-        let counts = (R::splat(self.pending as f32), R::splat(self.vertex as f32));
         write(paths, at(2), R::store(self.weight, self.bounces));
-        write(paths, at(3), R::store(V3::new(self.density, counts.0, counts.1), self.pixel));
+        write(paths, at(3), R::store(V3::new(self.density, self.beside.0, self.beside.1), self.pixel));
     }
 }
 

@@ -26,7 +26,7 @@ pub use hybrid::{Cut, Hybrid, Interleaved, Sequential, StackMax};
 pub use if_if::IfIf;
 #[cfg(not(target_arch = "spirv"))]
 pub use leaf::Triangles;
-pub use leaf::{Leaf, Primitives};
+pub use leaf::{Cutout, Leaf, Primitives};
 pub use packet::Packet;
 pub use speculative::Speculative;
 pub use while_while::WhileWhile;

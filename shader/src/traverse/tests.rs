@@ -135,6 +135,7 @@ impl World {
             wide: &self.wide,
             bvh8: Bvh8View { nodes: &self.bvh8.0, triangles: &self.bvh8.1, ..Bvh8View::default() },
             bounds: &[],
+            cutout: Default::default(),
         }
     }
 

@@ -1,5 +1,6 @@
 //! What the leaves of a hierarchy hold. Every traversal method takes it as a type, as it takes what a ray searches for.
 
+mod cutout;
 mod disk;
 mod primitives;
 mod sphere;
@@ -7,6 +8,7 @@ mod sphere;
 mod tests;
 mod triangle;
 
+pub use cutout::Cutout;
 #[cfg(not(target_arch = "spirv"))]
 pub use primitives::Triangles;
 pub use primitives::{Primitives, coordinates};

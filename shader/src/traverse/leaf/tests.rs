@@ -22,6 +22,7 @@ fn hit<Q: Query, R: Scalar>(primitives: &[Primitive], effects: u32, ray: &Ray<R>
         wide: &[],
         bvh8: Bvh8View::default(),
         bounds: &[],
+        cutout: Default::default(),
     };
     let mut hit = Hit::none(R::splat(f32::MAX));
     for index in 0..primitives.len() as u32 {

@@ -134,6 +134,10 @@ fn accept_candidate<Q: Query, R: Real>(
     }
     // Lanes outside divide by one, so that none divides by zero.
     let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
+    if effects.has(Effects::CUTOUT) && triangle.is_cutout() && inside.any() {
+        let weights = (candidate.u * scale, candidate.v * scale);
+        inside = context.cutout.kept(&context.base, (triangle, index), weights, ray, inside);
+    }
     let met = Meeting { inside, t: candidate.depth * scale, u: candidate.u, v: candidate.v, scale };
     accept::<Q, R>(met, context.bounds(index, || triangle.triangle_bounds()), Identity { index, number }, ray, hit);
 }

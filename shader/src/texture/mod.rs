@@ -1,0 +1,82 @@
+//! Textures on surfaces, by arithmetic of our own on one buffer of texels: no device filters them by itself, so that pictures have
+//! the same bits on all.
+
+mod cone;
+mod covering;
+mod filter;
+
+pub use cone::Cone;
+pub use covering::Covering;
+pub use filter::{Texel, sample};
+
+use crate::buffer::read;
+use crate::data::{Colours, Effects, Launch, TexCoords, TextureMap};
+use crate::real::{Scalar, V3};
+use glam::UVec4;
+
+/// What textures are made of.
+#[derive(Clone, Copy, Default)]
+pub struct Textures<'a> {
+    /// Every texture that some material takes.
+    pub textures: &'a [TextureMap],
+    /// The table of sRGB, and the texels of all.
+    pub texels: &'a [u32],
+    /// In leaf order; the second set, where there is one, behind the first.
+    pub coordinates: &'a [TexCoords],
+    /// Vertex colours in leaf order ([`Effects::COLOURED`]).
+    pub colours: &'a [Colours],
+}
+
+impl Textures<'_> {
+    /// The value of a map at a place: an index into all, plus one.
+    #[inline(always)]
+    pub fn at<R: Scalar>(&self, launch: Launch, map: u32, place: &Place<R>, footprint: R) -> (TextureMap, Texel<R>) {
+        let map = read(self.textures, map - 1);
+        (map, sample(launch, self, &map, place.coordinates(self, &map), footprint))
+    }
+}
+
+/// A place on a triangle.
+#[derive(Clone, Copy)]
+pub struct Place<R> {
+    /// Its index in leaf order.
+    pub index: u32,
+    /// The weights of its second and third vertex.
+    pub weights: (R, R),
+    /// Primitives in leaf order, by which a second set of coordinates is found.
+    pub count: u32,
+}
+
+impl<R: Scalar> Place<R> {
+    /// A value at the place, of its values at the vertices.
+    #[inline(always)]
+    fn weighted(&self, a: R, b: R, c: R) -> R {
+        let (u, v) = self.weights;
+        a * (R::splat(1.0) - u - v) + b * u + c * v
+    }
+
+    /// The texture coordinates of a map there.
+    #[inline(always)]
+    pub fn coordinates(&self, textures: &Textures<'_>, map: &TextureMap) -> (R, R) {
+        let set = if map.place.w & TextureMap::SECOND_SET != 0 { self.count } else { 0 };
+        let TexCoords { ab, c } = read(textures.coordinates, set + self.index);
+        let number = |bits: u32| R::splat(f32::from_bits(bits));
+        let u = self.weighted(number(ab.x), number(ab.z), number(c.x));
+        let v = self.weighted(number(ab.y), number(ab.w), number(c.y));
+        let of = |row: UVec4| number(row.x) * u + number(row.y) * v + number(row.z);
+        (of(map.u), of(map.v))
+    }
+
+    /// The vertices' colour and opacity there.
+    #[inline(always)]
+    pub fn colour(&self, effects: Effects, textures: &Textures<'_>) -> Texel<R> {
+        if !effects.has(Effects::COLOURED) {
+            return Texel::white();
+        }
+        let Colours { a, b, c } = read(textures.colours, self.index);
+        let number = |bits: u32| R::splat(f32::from_bits(bits));
+        let channel = |a, b, c| self.weighted(number(a), number(b), number(c));
+        let colour = V3::new(channel(a.x, b.x, c.x), channel(a.y, b.y, c.y), channel(a.z, b.z, c.z));
+        Texel { colour, alpha: channel(a.w, b.w, c.w) }
+    }
+}

@@ -57,6 +57,7 @@ fn scene() -> Scene {
             normals: Vec::new(),
             triangles: vec![[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]],
             materials: vec![0, 0, 1, 1],
+            ..Mesh::default()
         },
         spheres: Vec::new(),
         disks: Vec::new(),
@@ -75,5 +76,6 @@ fn scene() -> Scene {
         ambient: Vec3::ONE,
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
         hierarchy: None,
+        environment: None,
     }
 }

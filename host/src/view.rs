@@ -1,7 +1,7 @@
 //! What changes from picture to picture of a scene: nothing here touches geometry, hierarchies or kernels.
 
 use eyerays_shader::camera;
-use eyerays_shader::data::{Frame, Lens, Order};
+use eyerays_shader::data::{Frame, Lens, Order, numbers};
 use glam::DVec3;
 
 use crate::device_scene::{DeviceScene, flushed};
@@ -103,6 +103,8 @@ impl View {
         let pixel_slots = camera::slots(region.width, region.height, order);
         Frame {
             lens: self.lens,
+            // Half a sample's height is a step of the lens at distance 1.
+            spread: 2.0 * numbers(self.lens.up).length(),
             width: self.width,
             height: self.height,
             samples: self.grid,

@@ -4,7 +4,8 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Maps, Material, Normals, Primitive, Specialisation, numbers,
+    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Maps, Material, Normals, Primitive, Specialisation,
+    numbers,
 };
 use crate::texture::Textures;
 use crate::traverse::Cutout;

@@ -34,6 +34,7 @@ impl Bare {
             wide: &[],
             bvh8: Bvh8View::default(),
             bounds: &[],
+            cutout: Default::default(),
         };
         let mut hit = Hit::none(R::splat(limit));
         for index in 0..self.primitives.len() as u32 {

@@ -18,25 +18,13 @@ pub fn empty() -> Scene {
         ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
         hierarchy: None,
+        environment: None,
     }
 }
 
 /// A material that answers to nothing.
 pub fn black() -> Material {
-    Material {
-        name: String::new(),
-        ambient: Vec3::ZERO,
-        diffuse: Vec3::ZERO,
-        specular: Vec3::ZERO,
-        shininess: 1.0,
-        reflection: Vec3::ZERO,
-        transmission: Vec3::ZERO,
-        ior: 1.5,
-        checker: None,
-        emission: Vec3::ZERO,
-        two_sided: false,
-        physical: None,
-    }
+    Material { name: String::new(), ambient: Vec3::ZERO, diffuse: Vec3::ZERO, shininess: 1.0, ..Material::default() }
 }
 
 /// Lambert's, with the same answer to ambient light.

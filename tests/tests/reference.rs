@@ -10,11 +10,12 @@ use eyerays_shader::camera;
 use eyerays_shader::data::{Effects, Light};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::LightSample;
-use eyerays_shader::material::{Surface, refract};
+use eyerays_shader::material::{Seen, Surface, refract};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::Scalar;
 use eyerays_shader::scene::{ShadingData, TraceContext};
 use eyerays_shader::stage::{Path, REACHED};
+use eyerays_shader::texture::{Cone, Covering};
 use eyerays_tests::{Posed, differences, pack, shipped};
 
 /// The largest difference of a channel that rounding explains.
@@ -60,11 +61,13 @@ impl Log<'_> {
             return story.events.push(primitive_index);
         }
         let packed = self.packed;
-        let looks = ShadingData { normals: packed.normals(), materials: packed.materials() };
+        let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), ..ShadingData::default() };
         let triangle = &geometry.primitive(primitive_index);
         let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, (hit.y, hit.z), path.direction);
-        let surface =
-            Surface::new(geometry.base.spec.effects, &looks, primitive_index, triangle, path.direction, &contact);
+        let (effects, direction) = (geometry.base.spec.effects, path.direction);
+        let cone = Cone { width: R::splat(0.0), spread: R::splat(0.0) };
+        let seen = Seen { index: primitive_index, primitive: *triangle, interaction: contact, direction, cone };
+        let surface = Surface::new(effects, &looks, &seen, &Covering::none());
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.number(), u32::from(contact.front)]);

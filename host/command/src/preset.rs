@@ -9,7 +9,7 @@ use crate::error::Result;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::{Integrator, Range, Sampler, Settings, Table, read_table};
+use eyerays::scene::{Filter, Integrator, Range, Sampler, Settings, Table, read_table};
 
 /// What a settings file says; its keys are the names of options of `eyerays render`, with `_` for `-`. What it
 /// does not say is left to the command line and the scene.
@@ -39,6 +39,9 @@ pub struct Preset {
     /// Where in a pixel its samples lie.
     #[serde(serialize_with = "wish")]
     pub sampler: Option<Sampler>,
+    /// What a ray sees of a texture.
+    #[serde(serialize_with = "wish")]
+    pub filter: Option<Filter>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,
     /// Samples of a pixel instead.
@@ -73,6 +76,7 @@ impl Preset {
             bvh: table.choice("bvh")?,
             integrator: table.choice("integrator")?,
             sampler: table.choice("sampler")?,
+            filter: table.choice("filter")?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
             spp: table.whole("spp", 1, Settings::MOST_SPP)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,

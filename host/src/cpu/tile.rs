@@ -193,8 +193,9 @@ impl<R: Scalar> Launch<'_, '_, R> {
         self.observer.wave(scene, &self.queue, &self.records);
         let Records { paths, hits, shadows, sums, .. } = &mut self.records;
         let (lights, shading) = (self.planned.laid.lights(), self.planned.laid.shading());
+        let environment = self.planned.laid.packed.environment();
         self.next.extend(self.queue.iter().filter(|&&slot| {
-            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, lights, sums: &mut *sums };
+            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, lights, environment, sums: &mut *sums };
             integrator::shade(&scene.base, &shading, slot, wave)
         }));
     }

@@ -1,11 +1,12 @@
 //! Every light that an integrator chooses from which samples one of them, and how likely each is.
 
-use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Primitive, pack};
+use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Maps, Primitive, pack};
 use glam::{DVec3, UVec4, Vec3};
 use std::f64::consts::PI;
 
 use super::normalisation::Normalisation;
 use super::records::colour;
+use super::textures::{Textures, mean};
 use crate::scene::{Light, Material};
 
 /// What emits, as kernels read it.
@@ -15,6 +16,8 @@ pub struct Lighting {
     pub emitters: Vec<Emitter>,
     /// By material; empty if none emits.
     pub emissions: Vec<Emission>,
+    /// The probability that the environment is chosen of all.
+    pub environment: f32,
 }
 
 /// The primitives that emit: what does not change with the lights beside them.
@@ -25,14 +28,17 @@ pub(super) struct Lamps {
     emissions: Vec<(Emission, f64)>,
     /// The least and the greatest corner around all of them, if there are any.
     pub bounds: Option<[Vec3; 2]>,
+    /// Light from far away, over all directions.
+    far_light: f64,
 }
 
 impl Lamps {
-    pub fn new(materials: &[Material], primitives: &[Primitive]) -> Self {
+    pub fn new(materials: &[Material], primitives: &[Primitive], (textures, far_light): (&Textures, f64)) -> Self {
         if materials.iter().all(|material| material.emission == Vec3::ZERO) {
-            return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None };
+            return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
         }
-        let power = |primitive: &Primitive| area(primitive) * flux(&materials[primitive.material() as usize]);
+        let fluxes: Vec<f64> = materials.iter().map(flux).collect();
+        let power = |primitive: &Primitive| area(primitive) * fluxes[primitive.material() as usize];
         let powers = primitives.iter().zip(0..).map(|(primitive, index)| (primitive.number(), index, power(primitive)));
         let mut powers: Vec<(u32, u32, f64)> = powers.filter(|&(.., power)| power > 0.0).collect();
         powers.sort_unstable_by_key(|&(number, index, _)| (number, index));
@@ -40,12 +46,18 @@ impl Lamps {
         let boxes = powers.iter().map(|&(_, index, _)| primitives[index as usize].bounds());
         let boxes = boxes.map(|(least, greatest)| [least, greatest]);
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
-        let emission = |material: &Material| {
-            let sides = UVec4::new(u32::from(material.two_sided), 0, 0, 0);
+        let emission = |(material, number): (&Material, usize)| {
+            let map = textures.maps.get(number).map_or(0, |maps| maps.of(Maps::EMISSION));
+            let sides = UVec4::new(u32::from(material.two_sided), map, 0, 0);
             (Emission { radiance: colour(material.emission, 0), sides }, flux(material))
         };
-        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().map(emission).collect() };
-        Lamps { powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(), emissions, bounds }
+        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
+        Lamps {
+            powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(),
+            emissions,
+            bounds,
+            far_light,
+        }
     }
 }
 
@@ -53,16 +65,20 @@ impl Lighting {
     /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene.
     pub(super) fn new(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Self {
         let of_lights = lights.0.iter().map(|light| power(light, normalisation.scale));
-        let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).collect();
+        // That on a scene within a sphere of radius 1.
+        let far = (lamps.far_light > 0.0).then_some(PI * lamps.far_light);
+        let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).chain(far).collect();
         let total: f64 = powers.iter().sum();
         let records = lights.0.iter().zip(lights.1).map(|(light, record)| scaled(light, record, normalisation));
         let records = records.chain(lamps.powers.iter().map(|&(index, _)| of_primitive(index)));
+        let records = records.chain(far.map(|_| of_environment()));
         let emitters = records.zip(table(&powers)).map(|(light, choice)| Emitter { light, choice }).collect();
         let with_density = |&(emission, flux): &(Emission, f64)| {
             let density = (flux / total) as f32;
             Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
-        Lighting { emitters, emissions: lamps.emissions.iter().map(with_density).collect() }
+        let environment = far.map_or(0.0, |power| (power / total) as f32);
+        Lighting { emitters, environment, emissions: lamps.emissions.iter().map(with_density).collect() }
     }
 }
 
@@ -85,7 +101,8 @@ fn power(light: &Light, scale: f64) -> f64 {
 
 /// Power of a unit of area.
 fn flux(material: &Material) -> f64 {
-    PI * brightness(material.emission) * if material.two_sided { 2.0 } else { 1.0 }
+    let covered = material.maps.emission.as_ref().map_or(Vec3::ONE, |map| mean(&map.texture));
+    PI * brightness(material.emission * covered) * if material.two_sided { 2.0 } else { 1.0 }
 }
 
 /// The area of a primitive as rays meet it.
@@ -110,6 +127,11 @@ fn scaled(light: &Light, record: &LightRecord, normalisation: &Normalisation) ->
             LightRecord { colour: colour(intensity, record.colour.w), ..*record }
         }
     }
+}
+
+fn of_environment() -> LightRecord {
+    let nothing = pack(Vec3::ZERO, 0);
+    LightRecord { position: pack(Vec3::ZERO, Emitter::ENVIRONMENT), colour: nothing, axis: nothing }
 }
 
 fn of_primitive(index: u32) -> LightRecord {

@@ -10,15 +10,20 @@ use eyerays_shader::data::{
 };
 
 mod check;
+mod environment;
+mod levels;
 mod lighting;
 mod normalisation;
 mod records;
+mod tangents;
+mod textures;
 mod view;
 mod words;
 
 pub use lighting::Lighting;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
+pub use textures::Textures;
 pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
@@ -48,6 +53,8 @@ pub struct DeviceScene {
     physicals: Vec<PhysicalRecord>,
     lights: Vec<LightRecord>,
     lighting: Lighting,
+    textures: Textures,
+    environment: Vec<u32>,
     /// A material that emits, by its name.
     emissive: Option<String>,
     lamps: Lamps,
@@ -105,7 +112,9 @@ impl DeviceScene {
         let physicals =
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation)?;
-        let lamps = Lamps::new(&scene.materials, &primitives);
+        let textures = Textures::new(scene, effects, &bvh.order)?;
+        let (environment, far_light) = scene.environment.as_ref().map(environment::words).unwrap_or_default();
+        let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
         Ok(DeviceScene {
             statistics,
@@ -118,6 +127,8 @@ impl DeviceScene {
             physicals,
             lights,
             lighting,
+            textures,
+            environment,
             emissive,
             lamps,
             effects,
@@ -182,6 +193,16 @@ impl DeviceScene {
         &self.physicals
     }
 
+    /// What covers surfaces.
+    pub fn textures(&self) -> &Textures {
+        &self.textures
+    }
+
+    /// Light from far away, see [`eyerays_shader::light::Environment`]; empty if there is none.
+    pub fn environment(&self) -> &[u32] {
+        &self.environment
+    }
+
     /// Lights in file order.
     pub fn lights(&self) -> &[LightRecord] {
         &self.lights
@@ -198,6 +219,7 @@ impl DeviceScene {
             Background::Colour(colour) => colour == Vec3::ZERO,
             Background::Gradient { horizon, zenith } => horizon == Vec3::ZERO && zenith == Vec3::ZERO,
         };
+        let is_black = is_black && self.environment.is_empty();
         if is_black { self.lamps.bounds } else { Some([-EVERYWHERE, EVERYWHERE]) }
     }
 
@@ -222,13 +244,15 @@ impl DeviceScene {
     }
 
     /// What it holds of each kind, in bytes, with what a CPU makes of it.
-    pub fn bytes(&self) -> [(&'static str, usize); 6] {
+    pub fn bytes(&self) -> [(&'static str, usize); 8] {
         [
             ("node pairs", size_of_val(&self.nodes[..])),
             ("wide nodes", size_of_val(&self.wide[..])),
             ("primitives", size_of_val(&self.primitives[..])),
             ("own boxes", size_of_val(&self.bounds[..])),
             ("normals", size_of_val(&self.normals[..])),
+            ("textures", self.textures.bytes()),
+            ("environment", size_of_val(&self.environment[..])),
             ("nodes and leaves of a CPU", self.bvh8().bytes()),
         ]
     }
@@ -245,10 +269,11 @@ impl DeviceScene {
 
     /// What kernels are compiled for that follow the camera's rays by a traversal.
     pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
+        let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
         let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
-            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits()),
+            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,
@@ -322,6 +347,7 @@ impl DeviceScene {
             roulette,
             clamp,
             reach,
+            environment: self.lighting.environment,
             vertices: self.primitives.len() as u32,
             ..Frame::default()
         }

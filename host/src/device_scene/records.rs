@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Background, Conductor, Integrator, Light, Material, Physical, Scene, Settings};
+use crate::scene::{Alpha, Background, Conductor, Integrator, Light, Material, Physical, Scene, Settings};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
@@ -31,10 +31,19 @@ pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
 }
 
 /// What microfacets do.
-const MICROFACETS: u32 = Effects::PHYSICAL | Effects::CONDUCTOR | Effects::THIN | Effects::ABSORBING;
+const MICROFACETS: u32 =
+    Effects::PHYSICAL | Effects::CONDUCTOR | Effects::THIN | Effects::ABSORBING | Effects::ANISOTROPIC;
 
 /// What is of the surfaces alone.
-const GEOMETRY: u32 = Effects::SMOOTH | Effects::SPHERE | Effects::DISK | Effects::GRADIENT;
+const GEOMETRY: u32 = Effects::SMOOTH
+    | Effects::SPHERE
+    | Effects::DISK
+    | Effects::GRADIENT
+    | Effects::CUTOUT
+    | Effects::TEXTURED
+    | Effects::COLOURED
+    | Effects::TANGENTS
+    | Effects::ENVIRONMENT;
 
 /// The effects that a scene has, if rays may bounce.
 pub(super) fn effects(scene: &Scene) -> Effects {
@@ -61,11 +70,22 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::THIN, physical(&|p| p.is_transparent() && p.thin));
     ask(Effects::ABSORBING, physical(&absorbs));
     ask(Effects::REFRACTION, physical(&|p| p.is_transparent() && !p.thin));
+    ask(Effects::ANISOTROPIC, physical(&|p| p.anisotropy > 0.0));
+    ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
+    ask(Effects::COLOURED, !scene.mesh.colours.is_empty());
+    let has_grain = |m: &Material| m.maps.normal.is_some() || m.physical.is_some_and(|p| p.anisotropy > 0.0);
+    ask(Effects::TANGENTS, used(&has_grain));
+    ask(Effects::CUTOUT, used(&is_cutout));
+    ask(Effects::ENVIRONMENT, scene.environment.is_some());
     Effects(bits)
 }
 
 fn is_transparent(m: &Material) -> bool {
     m.transmission != Vec3::ZERO || m.physical.is_some_and(|p| p.is_transparent())
+}
+
+fn is_cutout(m: &Material) -> bool {
+    m.alpha != Alpha::Opaque
 }
 
 fn absorbs(p: &Physical) -> bool {
@@ -76,7 +96,11 @@ fn absorbs(p: &Physical) -> bool {
 pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
-    let flags = |material: u32| if clear[material as usize] { Primitive::TRANSPARENT } else { 0 };
+    let cut: Vec<bool> = scene.materials.iter().map(is_cutout).collect();
+    let flags = |material: u32| {
+        let flag = |flag, holds: &[bool]| if holds[material as usize] { flag } else { 0 };
+        flag(Primitive::TRANSPARENT, &clear) | flag(Primitive::CUTOUT, &cut)
+    };
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());

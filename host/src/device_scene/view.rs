@@ -7,6 +7,8 @@ use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::integrator::ScatterContext;
 use eyerays_shader::light as shading;
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
+use eyerays_shader::texture::Textures;
+use eyerays_shader::traverse::Cutout;
 
 use super::{DeviceScene, Lighting, NodeWords, PrimitiveWords};
 use crate::error::Result;
@@ -53,12 +55,34 @@ impl<'a> SceneView<'a> {
 
     /// What surfaces look like.
     pub fn shading(&self) -> ShadingData<'_> {
-        ShadingData { normals: self.packed.normals(), materials: self.packed.materials() }
+        let packed = self.packed;
+        ShadingData {
+            normals: packed.normals(),
+            materials: packed.materials(),
+            tangents: &packed.textures().tangents,
+            maps: &packed.textures().maps,
+            textures: self.textures(),
+        }
+    }
+
+    fn textures(&self) -> Textures<'_> {
+        let textures = self.packed.textures();
+        Textures {
+            textures: &textures.textures,
+            texels: &textures.texels,
+            coordinates: &textures.coordinates,
+            colours: &textures.colours,
+        }
     }
 
     /// What an integrator chooses from that samples one light of all.
     fn lighting(&self) -> shading::Lighting<'_> {
-        shading::Lighting { emitters: &self.lighting.emitters, emissions: &self.lighting.emissions }
+        shading::Lighting {
+            emitters: &self.lighting.emitters,
+            emissions: &self.lighting.emissions,
+            textures: self.textures(),
+            environment: self.packed.environment(),
+        }
     }
 
     /// What scatters where integrators sample.
@@ -89,6 +113,7 @@ impl<'a> SceneView<'a> {
             wide: self.packed.wide(),
             bvh8: self.bvh8,
             bounds: self.packed.bounds(),
+            cutout: Cutout { opacities: &self.packed.textures().opacities, textures: self.textures() },
         }
     }
 

@@ -26,8 +26,8 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 10] {
-        let packed = self.packed;
+    pub fn bytes(&self) -> [(u32, &[u8]); 18] {
+        let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
         let (emitters, emissions): (&[_], &[_]) =
@@ -45,6 +45,14 @@ impl<'a> SceneRecords<'a> {
             (binding::EMITTERS, bytemuck::cast_slice(emitters)),
             (binding::EMISSIONS, bytemuck::cast_slice(emissions)),
             (binding::PHYSICALS, bytemuck::cast_slice(physicals)),
+            (binding::MAPS, bytemuck::cast_slice(&textures.maps)),
+            (binding::TEXTURES, bytemuck::cast_slice(&textures.textures)),
+            (binding::TEXELS, bytemuck::cast_slice(&textures.texels)),
+            (binding::COORDINATES, bytemuck::cast_slice(&textures.coordinates)),
+            (binding::COLOURS, bytemuck::cast_slice(&textures.colours)),
+            (binding::TANGENTS, bytemuck::cast_slice(&textures.tangents)),
+            (binding::OPACITIES, bytemuck::cast_slice(&textures.opacities)),
+            (binding::ENVIRONMENT, bytemuck::cast_slice(packed.environment())),
         ]
     }
 }

@@ -11,6 +11,7 @@ mod bounded;
 mod encode;
 mod exr;
 mod read;
+mod texels;
 mod transfer;
 
 use std::fmt;
@@ -21,6 +22,8 @@ use crate::math;
 
 pub use encode::encode;
 pub use read::{decode, read};
+pub use texels::{decode_texture, read_texture};
+pub(crate) use transfer::{linear_table, quantise_to_byte};
 pub use transfer::{linear_to_srgb, srgb_to_linear};
 
 /// The image formats that are written and read.

@@ -19,6 +19,11 @@ use crate::memory::Room;
 /// What is missing, unreadable, empty or not a regular file, and those of [`decode`]. They name
 /// the file.
 pub fn read(path: &Path) -> Result<Film> {
+    decode(BufReader::new(open(path)?)).map_err(|error| error.of(path))
+}
+
+/// Opens an image file.
+pub(super) fn open(path: &Path) -> Result<File> {
     let fault = |error: io::Error| Error::file(path, read_error(&error));
     // Before it is opened: to open a FIFO waits for a writer.
     let found = fs::metadata(path).map_err(fault)?;
@@ -31,8 +36,7 @@ pub fn read(path: &Path) -> Result<Film> {
     if found.len() == 0 {
         return Err(Error::file(path, "is empty; write the image again"));
     }
-    let file = File::open(path).map_err(fault)?;
-    decode(BufReader::new(file)).map_err(|error| error.of(path))
+    File::open(path).map_err(fault)
 }
 
 /// Decodes a PNG, EXR or HDR file, told apart by their first bytes. A PNG's sRGB values become
@@ -48,7 +52,7 @@ pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
 }
 
 /// The most bytes that are read before the size of an image is known: its header, and what describes it.
-const MOST_HEADER: u64 = 16 << 20;
+pub(super) const MOST_HEADER: u64 = 16 << 20;
 /// What decoding takes: two buffers of four floats.
 const MEMORY_PER_PIXEL: u64 = 32;
 
@@ -92,7 +96,7 @@ fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
 }
 
 /// Refuses pixels of so many bytes each that there is no memory for.
-fn room(width: u32, height: u32, each: u64) -> Result<()> {
+pub(super) fn room(width: u32, height: u32, each: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * each;
     Room::now().check(bytes).map_err(|why| {
         Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))
@@ -101,7 +105,7 @@ fn room(width: u32, height: u32, each: u64) -> Result<()> {
 
 /// Refuses an EXR whose parts hold more than their pixels may: a decoder takes memory by the size of the data, and
 /// `image` asks for that of the display alone.
-fn check_parts(reader: &mut impl BufRead) -> Result<()> {
+pub(super) fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     let damaged = |error| match error {
         ::exr::error::Error::Io(error) => Error::new(read_error(&error)),
         error => Error::new(format!("is damaged or of an unknown kind ({error}); write the image again")),
@@ -143,7 +147,7 @@ where
     image.pixels().map(|pixel| pixel.0.map(&linear)).collect()
 }
 
-fn decode_error(error: ImageError) -> Error {
+pub(super) fn decode_error(error: ImageError) -> Error {
     Error::new(match error {
         ImageError::IoError(error) => read_error(&error),
         ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
@@ -151,7 +155,7 @@ fn decode_error(error: ImageError) -> Error {
     })
 }
 
-fn read_error(error: &io::Error) -> String {
+pub(super) fn read_error(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file; check the name".to_owned(),
         ErrorKind::PermissionDenied => "no permission to read; change it".to_owned(),

@@ -30,7 +30,7 @@ pub(super) fn quantise(linear: f64, steps: f64) -> f64 {
 static LEAST_OF_VALUE: LazyLock<Vec<f64>> = LazyLock::new(|| (1..=255).map(|value| least(value, 255.0)).collect());
 
 /// [`quantise`] for 8 bits.
-pub(super) fn quantise_to_byte(linear: f64) -> u8 {
+pub(crate) fn quantise_to_byte(linear: f64) -> u8 {
     LEAST_OF_VALUE.partition_point(|&least| least <= linear) as u8
 }
 
@@ -46,7 +46,7 @@ fn least(value: u32, steps: f64) -> f64 {
 }
 
 /// Linear light for every one of `steps + 1` sRGB values, so that equal values decode equally.
-pub(super) fn linear_table(steps: u16) -> Vec<f32> {
+pub(crate) fn linear_table(steps: u16) -> Vec<f32> {
     (0..=steps).map(|step| srgb_to_linear(f64::from(step) / f64::from(steps)) as f32).collect()
 }
 

@@ -4,9 +4,10 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Vec3};
 
+use super::map::Images;
 use super::range::Range;
 use super::table::Table;
-use super::{Background, Camera, Light, Settings, Transport};
+use super::{Background, Camera, Environment, Light, Settings, Transport};
 use crate::error::Result;
 use crate::film::Film;
 
@@ -24,6 +25,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
         spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
+        filter: table.choice("filter")?.unwrap_or(default.filter),
         transport: transport(&mut table)?,
     };
     settings.grid().map_err(|error| table.fault_of("spp", error.message()))?;
@@ -45,11 +47,11 @@ fn transport(table: &mut Table) -> Result<Transport> {
     })
 }
 
-/// Reads `[background]`: a `color`, or a `horizon` and a `zenith`.
+/// Reads `[background]`: a `color`, a `horizon` and a `zenith`, or an `environment`.
 ///
 /// # Errors
 /// Both or neither, a colour below 0, or an unknown key.
-pub fn background(mut table: Table) -> Result<Background> {
+pub fn background(mut table: Table, images: &mut Images) -> Result<(Background, Option<Environment>)> {
     if table.has("color") && (table.has("horizon") || table.has("zenith")) {
         let fault = "[background] has a color and a gradient; remove the one or the other";
         return Err(table.fault_of("color", fault));
@@ -58,7 +60,9 @@ pub fn background(mut table: Table) -> Result<Background> {
         let fault = "ambient is no key of [background]; move it above the first table";
         return Err(table.fault_of("ambient", fault));
     }
+    let environment = environment(&mut table, images)?;
     let colour = table.triple("color", Range::AMOUNT)?;
+    let colour = if environment.is_some() { colour.or(Some(Vec3::ZERO)) } else { colour };
     let horizon = table.triple("horizon", Range::AMOUNT)?;
     let zenith = table.triple("zenith", Range::AMOUNT)?;
     let background = match (colour, horizon, zenith) {
@@ -67,7 +71,25 @@ pub fn background(mut table: Table) -> Result<Background> {
         _ => Background::Gradient { horizon: table.need("horizon", horizon)?, zenith: table.need("zenith", zenith)? },
     };
     table.done()?;
-    Ok(background)
+    Ok((background, environment))
+}
+
+/// The picture that `[background]` names, if it does; with it a colour is what the camera sees of one that is not visible.
+fn environment(table: &mut Table, images: &mut Images) -> Result<Option<Environment>> {
+    let Some(name) = table.name("environment")? else { return Ok(None) };
+    if table.has("horizon") || table.has("zenith") {
+        let fault = "[background] has an environment and a gradient; remove the one or the other";
+        return Err(table.fault_of("environment", fault));
+    }
+    let texture = images.texture(&name).map_err(|error| table.fault_of("environment", error.to_string()))?;
+    let visible = table.flag("visible")?.unwrap_or(true);
+    if visible && table.has("color") {
+        let fault = "a color is what the camera sees of an environment that is not visible; set visible to false";
+        return Err(table.fault_of("color", fault));
+    }
+    let rotation = table.number("rotation", Range::ANY)?.unwrap_or(0.0);
+    let scale = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
+    Ok(Some(Environment { texture, rotation, scale, visible }))
 }
 
 /// Reads every `[[camera]]`.

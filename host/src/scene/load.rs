@@ -11,6 +11,7 @@ use super::file;
 use super::files::{Files, is, read_mesh};
 use super::frame;
 use super::geometry::Geometry;
+use super::map::Images;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
 use super::obj::Obj;
@@ -66,6 +67,7 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         lights: frame::lights(),
         cameras: Vec::new(),
         background: frame::background(),
+        environment: None,
         ambient: Vec3::splat(0.2),
         settings: Settings::default(),
         hierarchy: None,
@@ -111,12 +113,13 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     let mut table = Source::new(path, text(path, bytes)?).parse()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
-    let background = table.table("background")?.map(document::background);
-    let background = background.transpose()?;
+    let mut images = Images::new(file::folder(path));
+    let background = table.table("background")?.map(|table| document::background(table, &mut images));
+    let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
     let ambient = table.triple("ambient", Range::AMOUNT)?;
     let cameras = document::cameras(table.tables("camera")?.unwrap_or_default())?;
     let lights = table.tables("light")?.map(document::lights).transpose()?;
-    let overrides = overrides(table.tables("material")?.unwrap_or_default())?;
+    let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut images)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();
     // A section's misspelt name is a likelier fault than a missing section.
     table.done()?;
@@ -133,11 +136,13 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         spheres,
         disks,
         parts,
-        files: files.paths,
+        files: files.paths.into_iter().chain(images.paths()).collect(),
         materials,
-        lights: lights.unwrap_or_else(frame::lights),
+        // An environment is light enough.
+        lights: lights.unwrap_or_else(|| if environment.is_some() { Vec::new() } else { frame::lights() }),
         cameras,
-        background: background.unwrap_or(Background::Colour(Vec3::ZERO)),
+        background,
+        environment,
         ambient: ambient.unwrap_or(Vec3::ZERO),
         settings,
         hierarchy: None,
@@ -145,10 +150,10 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     Ok((framed(path, scene)?, warnings))
 }
 
-fn overrides(tables: Vec<Table>) -> Result<Overrides> {
+fn overrides(tables: Vec<Table>, images: &mut Images) -> Result<Overrides> {
     let mut overrides = Overrides::new();
     for mut table in tables {
-        let (name, fields) = Fields::read(&mut table)?;
+        let (name, fields) = Fields::read(&mut table, images)?;
         let idle = format!("no surface has the material {name:?}");
         let idle = table.fault_of("name", idle).to_string();
         if overrides.contains_key(&name) {

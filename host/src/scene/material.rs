@@ -2,13 +2,14 @@
 
 use glam::Vec3;
 
+use super::map::{self, Images};
 use super::range::Range;
 use super::table::Table;
-use super::{Checker, Material, Physical, physical};
+use super::{Alpha, Checker, Maps, Material, Physical, physical};
 use crate::error::Result;
 
 /// What a file says of a material; the rest is left to whoever else describes it.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Fields {
     pub ambient: Option<Vec3>,
     pub diffuse: Option<Vec3>,
@@ -21,6 +22,9 @@ pub struct Fields {
     pub emission: Option<Vec3>,
     pub two_sided: Option<bool>,
     pub physical: physical::Fields,
+    pub maps: Maps,
+    pub alpha: Option<Alpha>,
+    pub opacity: Option<f32>,
 }
 
 /// The name of the material of a surface that names none.
@@ -37,7 +41,7 @@ impl Fields {
     ///
     /// # Errors
     /// A missing name, a number out of range, or an unknown key.
-    pub fn read(table: &mut Table) -> Result<(String, Fields)> {
+    pub fn read(table: &mut Table, images: &mut Images) -> Result<(String, Fields)> {
         let name = table.name("name")?;
         let name = table.need("name", name)?;
         let fields = Fields {
@@ -52,6 +56,9 @@ impl Fields {
             emission: table.triple("emission", Range::AMOUNT)?,
             two_sided: table.flag("two_sided")?,
             physical: physical::Fields::read(table)?,
+            maps: map::maps(table, images)?,
+            alpha: alpha(table)?,
+            opacity: table.number("opacity", Range::SHARE)?,
         };
         Ok((name, fields))
     }
@@ -70,6 +77,9 @@ impl Fields {
             emission: self.emission.or(under.emission),
             two_sided: self.two_sided.or(under.two_sided),
             physical: self.physical.over(under.physical),
+            maps: self.maps.over(under.maps),
+            alpha: self.alpha.or(under.alpha),
+            opacity: self.opacity.or(under.opacity),
         }
     }
 
@@ -80,6 +90,9 @@ impl Fields {
         let physical = self.physical.finish(self.diffuse, self.transmission, ior);
         let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
         let diffuse = self.diffuse.unwrap_or(plain.diffuse);
+        // Who gives an opacity means it.
+        let is_blended = self.opacity.is_some() || self.maps.opacity.is_some();
+        let alpha = if is_blended { Alpha::Blend } else { Alpha::Opaque };
         Material {
             name: name.to_owned(),
             ambient: self.ambient.unwrap_or(diffuse),
@@ -93,6 +106,9 @@ impl Fields {
             emission: self.emission.unwrap_or(Vec3::ZERO),
             two_sided: self.two_sided.unwrap_or(false),
             physical,
+            alpha: self.alpha.unwrap_or(alpha),
+            opacity: self.opacity.unwrap_or(1.0),
+            maps: self.maps,
         }
     }
 
@@ -118,6 +134,9 @@ impl Default for Material {
             emission: Vec3::ZERO,
             two_sided: false,
             physical: None,
+            maps: Maps::default(),
+            alpha: Alpha::Opaque,
+            opacity: 1.0,
         }
     }
 }
@@ -137,6 +156,20 @@ fn approximated(physical: &Physical) -> Material {
         reflection: mirror,
         ior,
         ..Material::default()
+    }
+}
+
+/// `alpha`: a word, or the least opacity that counts.
+fn alpha(table: &mut Table) -> Result<Option<Alpha>> {
+    let words = [("opaque", Alpha::Opaque), ("mask", Alpha::Mask(0.5)), ("blend", Alpha::Blend)];
+    let alpha = table.word("alpha", &words)?;
+    let least = table.number("alpha_cutoff", Range::SHARE)?;
+    match (alpha, least) {
+        (Some(Alpha::Opaque | Alpha::Blend), Some(_)) => {
+            Err(table.fault_of("alpha_cutoff", "alpha_cutoff is of a mask; set alpha to \"mask\" or remove it"))
+        }
+        (_, Some(least)) => Ok(Some(Alpha::Mask(least))),
+        (alpha, None) => Ok(alpha),
     }
 }
 

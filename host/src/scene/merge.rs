@@ -3,7 +3,7 @@
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, TryReserveError};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
@@ -31,7 +31,7 @@ impl Override {
 
     fn over(&self, fields: Fields) -> Fields {
         self.used.set(true);
-        self.fields.over(fields)
+        self.fields.clone().over(fields)
     }
 }
 
@@ -47,6 +47,16 @@ pub struct Merge {
     parts: Vec<Part>,
     materials: Vec<Material>,
     by_name: HashMap<String, Vec<u32>>,
+}
+
+/// Adds what more vertices have, and `none` for those that have nothing; nothing as long as none has anything.
+fn put<T: Copy>(all: &mut Vec<T>, more: Vec<T>, (before, after): (usize, usize), none: T) {
+    if all.is_empty() && more.is_empty() {
+        return;
+    }
+    all.resize(before, none);
+    all.extend(more);
+    all.resize(after, none);
 }
 
 /// The fields of a scene that its parts make.
@@ -73,7 +83,7 @@ impl Merge {
         let mut numbers = vec![all; materials.len()];
         geometry.renumber(|local| {
             let (name, fields) = &materials[local as usize];
-            *numbers[local as usize].get_or_insert_with(|| self.number(name, *fields, overrides))
+            *numbers[local as usize].get_or_insert_with(|| self.number(name, fields.clone(), overrides))
         });
         match geometry {
             Geometry::Mesh(mesh) => self.append(mesh),
@@ -98,14 +108,21 @@ impl Merge {
             self.mesh = mesh;
             return;
         }
-        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
-        let first = self.mesh.positions.len() as u32;
+        let before = self.mesh.positions.len();
+        self.mesh.normals.resize(before, Vec3::ZERO);
+        let first = before as u32;
         let shift = |triangle: [u32; 3]| triangle.map(|vertex| first + vertex);
         self.mesh.triangles.extend(mesh.triangles.into_iter().map(shift));
         self.mesh.materials.extend(mesh.materials);
         self.mesh.positions.extend(mesh.positions);
         self.mesh.normals.extend(mesh.normals);
-        self.mesh.normals.resize(self.mesh.positions.len(), Vec3::ZERO);
+        let after = self.mesh.positions.len();
+        self.mesh.normals.resize(after, Vec3::ZERO);
+        let [first, second] = mesh.coordinates;
+        put(&mut self.mesh.coordinates[0], first, (before, after), Vec2::ZERO);
+        put(&mut self.mesh.coordinates[1], second, (before, after), Vec2::ZERO);
+        put(&mut self.mesh.tangents, mesh.tangents, (before, after), Vec4::ZERO);
+        put(&mut self.mesh.colours, mesh.colours, (before, after), Vec4::ONE);
     }
 
     fn reserve(&mut self, more: &Geometry) -> Result<(), TryReserveError> {
@@ -128,6 +145,14 @@ impl Merge {
         if self.mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
             self.mesh.normals = Vec::new();
         }
+        let maps = || self.materials.iter().flat_map(|material| material.maps.all());
+        let is_covered = |set| maps().any(|map| map.placement.set == set);
+        let is_used = [maps().next().is_some(), is_covered(1)];
+        for (coordinates, is_used) in self.mesh.coordinates.iter_mut().zip(is_used) {
+            if !is_used {
+                *coordinates = Vec::new();
+            }
+        }
         let Merge { mesh, spheres, disks, parts, materials, .. } = self;
         Merged { mesh, spheres, disks, parts, materials }
     }
@@ -140,7 +165,7 @@ impl Merge {
             let known = own.chain(overrides.keys().map(String::as_str));
             return Err(format!("unknown material {name:?}; {}", suggest(name, known)));
         }
-        let fields = own.map_or(Fields::default(), |(_, fields)| *fields);
+        let fields = own.map_or(Fields::default(), |(_, fields)| fields.clone());
         Ok(self.number(name, fields, overrides))
     }
 

@@ -10,13 +10,16 @@ mod binary;
 mod budget;
 mod check;
 mod document;
+mod environment;
 mod extent;
 mod file;
 mod files;
+mod filter;
 mod frame;
 mod geometry;
 mod lines;
 mod load;
+mod map;
 mod material;
 mod merge;
 mod mtl;
@@ -35,6 +38,7 @@ mod source;
 mod suggest;
 mod table;
 mod tally;
+mod texture;
 mod transform;
 mod transport;
 mod xyzr;
@@ -43,6 +47,8 @@ mod xyzr;
 mod tests;
 
 pub use binary::{ENDING, Hierarchy, write};
+pub use environment::Environment;
+pub use filter::Filter;
 pub use frame::default_camera;
 pub use load::{load, read_table};
 pub use physical::{Absorption, Conductor, Physical};
@@ -51,10 +57,11 @@ pub use range::Range;
 pub use sampler::Sampler;
 pub use suggest::suggest;
 pub use table::Table;
+pub use texture::{Alpha, Map, Maps, Placement, Texels, Texture, Wrap};
 pub use transport::{Direct, Integrator, Transport};
 
 use eyerays_shader::data::NodeRef;
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use crate::choice::Named;
@@ -88,6 +95,8 @@ pub struct Scene {
     pub cameras: Vec<Camera>,
     /// What a ray that leaves the scene sees.
     pub background: Background,
+    /// Light from far away, which takes the background's place.
+    pub environment: Option<Environment>,
     /// Ambient light, linear RGB; times a material's ambient colour.
     pub ambient: Vec3,
     /// What the scene file asks of a rendering; the command line has the last word.
@@ -105,8 +114,12 @@ impl Scene {
 
     /// Bytes of its geometry.
     pub fn bytes(&self) -> usize {
-        let Mesh { positions, normals, triangles, materials } = &self.mesh;
+        let Mesh { positions, normals, triangles, materials, coordinates, tangents, colours } = &self.mesh;
         let mesh = [
+            size_of_val(&coordinates[0][..]),
+            size_of_val(&coordinates[1][..]),
+            size_of_val(&tangents[..]),
+            size_of_val(&colours[..]),
             size_of_val(&positions[..]),
             size_of_val(&normals[..]),
             size_of_val(&triangles[..]),
@@ -139,6 +152,14 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// One index into [`Scene::materials`] a triangle.
     pub materials: Vec<u32>,
+    /// Two sets of texture coordinates, the second down; each as many as positions, or none at all.
+    pub coordinates: [Vec<Vec2>; 2],
+    /// Unit tangents along the first texture coordinate, and the sign of the bitangent (the cross product of normal and tangent times
+    /// it); zeros for none. As many as positions, or none at all.
+    pub tangents: Vec<Vec4>,
+    /// Colours that base and diffuse colours are multiplied with, linear RGB and opacity in [0, 1]. As many as positions, or none
+    /// at all.
+    pub colours: Vec<Vec4>,
 }
 
 impl Mesh {
@@ -175,6 +196,19 @@ pub struct Material {
     pub two_sided: bool,
     /// How it scatters where integrators sample it; without this as the rest says.
     pub physical: Option<Physical>,
+    /// Its textures.
+    #[serde(skip)]
+    pub maps: Maps,
+    /// How opaque it is.
+    #[serde(default)]
+    pub alpha: Alpha,
+    /// The opacity in [0, 1] that `alpha` asks for, where its texture has 1.
+    #[serde(default = "opaque")]
+    pub opacity: f32,
+}
+
+fn opaque() -> f32 {
+    1.0
 }
 
 /// A procedural checkerboard over the surface's two major axes.
@@ -275,6 +309,9 @@ pub struct Settings {
     pub min_contribution: f32,
     /// Skip triangles seen from behind.
     pub culling: bool,
+    /// How textures are filtered.
+    #[serde(default)]
+    pub filter: Filter,
     /// How light is carried.
     pub transport: Transport,
 }
@@ -323,6 +360,7 @@ impl Default for Settings {
             bounces: 5,
             min_contribution: 1.0 / 1024.0,
             culling: false,
+            filter: Filter::default(),
             transport: Transport::default(),
         }
     }

@@ -100,16 +100,16 @@ impl Conductor {
 /// What a file says of a material by microfacets; the rest is left to whoever else describes it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Fields {
-    base: Option<Vec3>,
-    metallic: Option<f32>,
-    roughness: Option<f32>,
-    anisotropy: Option<f32>,
-    anisotropy_rotation: Option<f32>,
-    specular_weight: Option<f32>,
-    specular_tint: Option<Vec3>,
-    thin: Option<bool>,
-    absorption: Option<Absorption>,
-    conductor: Option<Conductor>,
+    pub base: Option<Vec3>,
+    pub metallic: Option<f32>,
+    pub roughness: Option<f32>,
+    pub anisotropy: Option<f32>,
+    pub anisotropy_rotation: Option<f32>,
+    pub specular_weight: Option<f32>,
+    pub specular_tint: Option<Vec3>,
+    pub thin: Option<bool>,
+    pub absorption: Option<Absorption>,
+    pub conductor: Option<Conductor>,
 }
 
 impl Fields {
@@ -174,8 +174,7 @@ impl Fields {
 fn absorption(mut table: Table) -> Result<Absorption> {
     let colour = table.triple("color", Range::SHARE)?;
     let distance = table.number("distance", Range::LENGTH)?;
-    let absorption =
-        Absorption { colour: table.need("color", colour)?, distance: table.need("distance", distance)? };
+    let absorption = Absorption { colour: table.need("color", colour)?, distance: table.need("distance", distance)? };
     table.done()?;
     Ok(absorption)
 }

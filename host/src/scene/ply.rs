@@ -178,7 +178,7 @@ impl Found {
         if normals.iter().all(|&normal| normal == Vec3::ZERO) {
             normals.clear();
         }
-        Ok(Mesh { materials: vec![0; triangles.len()], positions, normals, triangles })
+        Ok(Mesh { materials: vec![0; triangles.len()], positions, normals, triangles, ..Mesh::default() })
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use glam::Vec2;
 use glam::{DVec3, Vec3};
 
 use super::{Disk, Mesh, Sphere};
@@ -45,7 +46,10 @@ pub fn disk(disk: &Disk, triangles: u32) -> Mesh {
 
 /// A parallelogram or any flat convex quadrilateral, from its corners counter-clockwise.
 pub fn quad(corners: [Vec3; 4]) -> Mesh {
-    Mesh { positions: corners.to_vec(), ..flat(vec![[0, 1, 2], [0, 2, 3]]) }
+    // The picture stands upright where the first corner is its lower left.
+    let coordinates = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::new(1.0, 0.0), Vec2::ZERO];
+    let coordinates = [coordinates.to_vec(), Vec::new()];
+    Mesh { positions: corners.to_vec(), coordinates, ..flat(vec![[0, 1, 2], [0, 2, 3]]) }
 }
 
 /// A box along the axes from its least to its greatest corner, seen from outside.

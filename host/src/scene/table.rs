@@ -1,7 +1,7 @@
 //! Strict reading of TOML tables: every value is checked where it is taken, and what nobody takes
 //! is an unknown key. Every error knows its line.
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -156,6 +156,37 @@ impl<'s> Table<'s> {
         self.map(key, |table, value| match value.get_ref() {
             DeValue::Array(_) => table.check_triple(key, &value, &range),
             _ => table.check(key, &value, &range).map(Vec3::splat),
+        })
+    }
+
+    /// A string, or a table whose string `within` is it, for the rest of that table.
+    pub fn text_or_table(
+        &mut self,
+        key: &'static str,
+        within: &'static str,
+    ) -> Result<Option<(String, Option<Table<'s>>)>> {
+        self.map(key, |parent, value| {
+            let at = value.span().start;
+            match value.into_inner() {
+                DeValue::String(text) => Ok((text.into_owned(), None)),
+                DeValue::Table(table) => {
+                    let mut table = Table::new(parent.source.clone(), format!("[{key}]"), at, table);
+                    let text = table.name(within)?;
+                    Ok((table.need(within, text)?, Some(table)))
+                }
+                _ => Err(parent.fault_of(key, format!("{key:?} must be a file's name or a table"))),
+            }
+        })
+    }
+
+    /// Two numbers in the range, or one for both.
+    pub fn two(&mut self, key: &'static str, range: Range) -> Result<Option<Vec2>> {
+        self.map(key, |table, value| match value.get_ref() {
+            DeValue::Array(_) => {
+                let items = table.items(key, &value, "two numbers", 2)?;
+                Ok(Vec2::new(table.check(key, items[0], &range)?, table.check(key, items[1], &range)?))
+            }
+            _ => table.check(key, &value, &range).map(Vec2::splat),
         })
     }
 

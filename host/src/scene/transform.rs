@@ -85,6 +85,10 @@ impl Transform {
         for normal in &mut mesh.normals {
             *normal = unit(cofactors * normal.as_dvec3() * sign);
         }
+        for tangent in &mut mesh.tangents {
+            let along = unit(self.linear * tangent.truncate().as_dvec3());
+            *tangent = along.extend(tangent.w * sign as f32);
+        }
         if mirrored {
             mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
         }

@@ -8,11 +8,11 @@ use crate::light::Lighting;
 use crate::real::Fast;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
-use crate::texture::Textures;
 use crate::stage::{self, ShadowInputs};
+use crate::texture::Textures;
 use crate::traverse::{
-    Closest, Cut, Cutout, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential, Speculative,
-    StackMax, WhileWhile,
+    Closest, Cut, Cutout, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential,
+    Speculative, StackMax, WhileWhile,
 };
 use crate::warp::{Alone, Subgroup, append, take};
 use glam::{UVec3, UVec4};

@@ -43,12 +43,7 @@ pub(super) fn at<R: Scalar>(
 
 /// What of a path has come through the body whose inside it hits.
 #[inline(always)]
-fn arrived<R: Scalar>(
-    effects: Effects,
-    physicals: &[Physical],
-    vertex: &Vertex<R>,
-    seen: &Seen<R>,
-) -> Vertex<R> {
+fn arrived<R: Scalar>(effects: Effects, physicals: &[Physical], vertex: &Vertex<R>, seen: &Seen<R>) -> Vertex<R> {
     if !effects.has(Effects::ABSORBING) || seen.interaction.front {
         return *vertex;
     }

@@ -64,7 +64,6 @@ impl<R: Scalar> Vertex<R> {
         Seen { index, primitive, interaction, direction, cone }
     }
 
-
     /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.
     #[inline(always)]
     pub fn asks(

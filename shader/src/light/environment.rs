@@ -112,14 +112,12 @@ impl<'a> Environment<'a> {
         let half = R::splat(0.5);
         let (x, y) = (x - half, y - half);
         let (column, row) = (x.floor_index(), y.floor_index());
-        let share = |place: R, index: i32| (place - R::splat(index as f32)).max(R::splat(0.0)).flush(STEP);
         let (right, down) = (share(x, column), share(y, row));
-        let (width, last) = (self.width as i32, self.height as i32 - 1);
-        let around = |i: i32| (if i < 0 { i + width } else if i >= width { i - width } else { i }) as u32;
-        let within = |i: i32| i.max(0).min(last) as u32;
-        let mixed = |a: V3<R>, b: V3<R>, share: R| a + (b - a) * share;
-        let in_row = |row| mixed(self.texel(around(column), row), self.texel(around(column + 1), row), right);
-        mixed(in_row(within(row)), in_row(within(row + 1)), down).map(|c| c.flush(FAINT))
+        let (left, beside) = (around(column, self.width), around(column + 1, self.width));
+        let (upper, lower) = (within(row, self.height), within(row + 1, self.height));
+        let above = mixed(self.texel(left, upper), self.texel(beside, upper), right);
+        let below = mixed(self.texel(left, lower), self.texel(beside, lower), right);
+        mixed(above, below, down).map(|c| c.flush(FAINT))
     }
 
     /// The solid angle of a texel of a row.
@@ -141,8 +139,7 @@ impl<'a> Environment<'a> {
     #[inline(always)]
     pub fn density<R: Scalar>(&self, direction: V3<R>, probability: R) -> Density<R> {
         let (x, y) = self.place(direction);
-        let index = |place: R, count: u32| place.floor_index().max(0).min(count as i32 - 1) as u32;
-        let (column, row) = (index(x, self.width), index(y, self.height));
+        let (column, row) = (within(x.floor_index(), self.width), within(y.floor_index(), self.height));
         let (of_row, of_column) = (self.entry(self.rows(), row, 0), self.entry(self.columns(row), column, 0));
         self.likely(of_row, of_column, probability)
     }
@@ -176,6 +173,37 @@ impl<'a> Environment<'a> {
         let light = density.share_of(self.radiance(direction));
         EmitterSample { direction, limit: R::splat(f32::MAX), light, density }
     }
+}
+
+/// How far a place is beyond a texel's middle.
+#[inline(always)]
+fn share<R: Scalar>(place: R, index: i32) -> R {
+    (place - R::splat(index as f32)).max(R::splat(0.0)).flush(STEP)
+}
+
+#[inline(always)]
+fn mixed<R: Real>(a: V3<R>, b: V3<R>, share: R) -> V3<R> {
+    a + (b - a) * share
+}
+
+/// A column by an index that may be one beside the picture.
+#[inline(always)]
+fn around(index: i32, width: u32) -> u32 {
+    let width = width as i32;
+    let index = if index < 0 {
+        index + width
+    } else if index >= width {
+        index - width
+    } else {
+        index
+    };
+    index as u32
+}
+
+/// The nearest row or column of a picture.
+#[inline(always)]
+fn within(index: i32, count: u32) -> u32 {
+    index.max(0).min(count as i32 - 1) as u32
 }
 
 /// The least share of a texel that counts, so that no product with it is subnormal.

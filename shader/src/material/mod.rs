@@ -102,16 +102,21 @@ impl<R: Scalar> Surface<R> {
         } else {
             normal
         };
-        let covered = |colour: V3<R>| {
-            if effects.has(Effects::TEXTURED | Effects::COLOURED) { colour.times(covering.base) } else { colour }
-        };
         let other = effects.has(Effects::CHECKER)
             && material.checker.w != 0
             && odd_cell(interaction, number(material.checker.w));
         Surface {
             normal,
-            ambient: covered(if other { colour(material.checker_ambient) } else { colour(material.ambient) }),
-            diffuse: covered(if other { colour(material.checker) } else { colour(material.diffuse) }),
+            ambient: covered(
+                effects,
+                if other { colour(material.checker_ambient) } else { colour(material.ambient) },
+                covering,
+            ),
+            diffuse: covered(
+                effects,
+                if other { colour(material.checker) } else { colour(material.diffuse) },
+                covering,
+            ),
             specular: colour(material.specular),
             shininess: number(material.specular.w),
             reflection: colour(material.reflection),
@@ -119,6 +124,12 @@ impl<R: Scalar> Surface<R> {
             ior: number(material.reflection.w),
         }
     }
+}
+
+/// A colour below what covers it.
+#[inline(always)]
+fn covered<R: Scalar>(effects: Effects, colour: V3<R>, covering: &Covering<R>) -> V3<R> {
+    if effects.has(Effects::TEXTURED | Effects::COLOURED) { colour.times(covering.base) } else { colour }
 }
 
 /// The direction in which a surface mirrors. An interpolated normal may mirror a ray into its own surface; the triangle's normal

@@ -8,6 +8,13 @@ macro_rules! alone {
         type Index = u32;
 
         #[inline(always)]
+        fn sieve(mask: bool, numbers: [Self; 5], mut test: impl FnMut([f32; 5]) -> bool) -> bool {
+            use $crate::real::Scalar;
+            let [a, b, c, d, e] = numbers;
+            mask && test([a.to_f32(), b.to_f32(), c.to_f32(), d.to_f32(), e.to_f32()])
+        }
+
+        #[inline(always)]
         fn select(mask: bool, a: Self, b: Self) -> Self {
             if mask { a } else { b }
         }

@@ -6,9 +6,6 @@ impl Real for f64 {
     crate::alone!();
     const ROUNDOFF: f64 = 1.0 / (1u64 << 53) as f64;
 
-    fn sieve(mask: bool, numbers: [f64; 5], mut test: impl FnMut([f32; 5]) -> bool) -> bool {
-        mask && test(numbers.map(|x| x as f32))
-    }
     fn splat(x: f32) -> f64 {
         f64::from(x)
     }

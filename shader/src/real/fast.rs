@@ -47,12 +47,6 @@ impl Real for Fast {
     comparisons!(Fast, inner);
 
     #[inline(always)]
-    fn sieve(mask: bool, numbers: [Fast; 5], mut test: impl FnMut([f32; 5]) -> bool) -> bool {
-        let [a, b, c, d, e] = numbers;
-        mask && test([a.0, b.0, c.0, d.0, e.0])
-    }
-
-    #[inline(always)]
     fn div(self, divisor: Fast) -> Fast {
         Fast(self.0 / divisor.0)
     }

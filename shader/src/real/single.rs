@@ -110,11 +110,6 @@ impl Real for f32 {
     comparisons!(id, id);
 
     #[inline(always)]
-    fn sieve(mask: bool, numbers: [f32; 5], mut test: impl FnMut([f32; 5]) -> bool) -> bool {
-        mask && test(numbers)
-    }
-
-    #[inline(always)]
     fn div(self, divisor: f32) -> f32 {
         #[cfg(target_arch = "spirv")]
         return soft::div(self, divisor);

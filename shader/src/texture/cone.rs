@@ -45,7 +45,8 @@ impl<R: Scalar> Cone<R> {
     ) -> R {
         /// A ray that grazes a surface sees no coarser texels than one that meets it at this cosine.
         const GRAZING: f32 = 1.0 / 16.0;
-        let [a, b, c] = primitive.vertices().map(V3::<R>::splat);
+        let [a, b, c] = primitive.vertices();
+        let (a, b, c) = (V3::<R>::splat(a), V3::splat(b), V3::splat(c));
         let edge = |to: V3<R>| (to - a).map(|c| c.flush(SMALL));
         let cross = edge(b).cross(edge(c)).map(|c| c.flush(SMALL));
         let area = cross.dot(cross).flush(FAINT).sqrt();

@@ -63,16 +63,24 @@ impl Level {
             let word = |i: u32| number(read(texels, self.start + 3 * index + i));
             return Texel { colour: V3::new(word(0), word(1), word(2)), alpha: R::splat(1.0) };
         }
-        /// The share of 255 that a step is: the products are exact at 0 and 255.
-        const STEP: f32 = 1.0 / 255.0;
         let word = read(texels, self.start + index);
-        let share = |byte: u32| R::splat(byte as f32 * STEP);
-        let colour = |byte: u32| {
-            if flags & TextureMap::SRGB != 0 { number(read(texels, byte)) } else { share(byte) }
-        };
-        let colour = V3::new(colour(word & 255), colour((word >> 8) & 255), colour((word >> 16) & 255));
+        let (red, green, blue) = (word & 255, (word >> 8) & 255, (word >> 16) & 255);
+        let colour = V3::new(channel(texels, flags, red), channel(texels, flags, green), channel(texels, flags, blue));
         Texel { colour, alpha: share(word >> 24) }
     }
+}
+
+/// A byte as a share of 255; the products are exact at both ends.
+#[inline(always)]
+fn share<R: Real>(byte: u32) -> R {
+    const STEP: f32 = 1.0 / 255.0;
+    R::splat(byte as f32 * STEP)
+}
+
+/// A byte of a colour or of anything else.
+#[inline(always)]
+fn channel<R: Real>(texels: &[u32], flags: u32, byte: u32) -> R {
+    if flags & TextureMap::SRGB != 0 { R::splat(f32::from_bits(read(texels, byte))) } else { share(byte) }
 }
 
 /// Half an edge, rounded down, at least 1.
@@ -97,13 +105,16 @@ pub fn sample<R: Scalar>(
     let level = Level::of(map, level);
     let (wrap_u, wrap_v) = ((flags >> TextureMap::WRAP_SHIFT) & 3, (flags >> (TextureMap::WRAP_SHIFT + 2)) & 3);
     let (x, y) = (Axis::new(u, level.width, wrap_u), Axis::new(v, level.height, wrap_v));
-    let texel = |x, y| level.texel::<R>(textures.texels, flags, (x, y));
+    let texels = textures.texels;
     if launch.has(Launch::NEAREST) || flags & TextureMap::NEAREST != 0 {
-        return texel(x.nearest(), y.nearest());
+        return level.texel(texels, flags, (x.nearest(), y.nearest()));
     }
-    let above = texel(x.first, y.first).mix(texel(x.second, y.first), x.share);
-    let below = texel(x.first, y.second).mix(texel(x.second, y.second), x.share);
-    above.mix(below, y.share)
+    let (left, right) =
+        (level.texel(texels, flags, (x.first, y.first)), level.texel(texels, flags, (x.second, y.first)));
+    let above = left.mix(right, x.share);
+    let (left, right) =
+        (level.texel(texels, flags, (x.first, y.second)), level.texel(texels, flags, (x.second, y.second)));
+    above.mix(left.mix(right, x.share), y.share)
 }
 
 /// The level whose texels are nearest in size to a footprint: each is twice as wide as those of the one before.
@@ -180,7 +191,8 @@ mod tests {
     /// A texture of one level whose texels' red is their number, in floats.
     fn numbered(width: u32, height: u32, wrap: [u32; 2]) -> (TextureMap, Vec<u32>) {
         let flags = TextureMap::FLOATS | (wrap[0] | wrap[1] << 2) << TextureMap::WRAP_SHIFT;
-        let map = TextureMap { place: UVec4::new(0, width, height, flags), u: UVec4::new(0, 0, 0, 1), ..Zeroable::zeroed() };
+        let map =
+            TextureMap { place: UVec4::new(0, width, height, flags), u: UVec4::new(0, 0, 0, 1), ..Zeroable::zeroed() };
         (map, (0..width * height).flat_map(|i| [(i as f32).to_bits(), 0, 0]).collect())
     }
 
@@ -236,11 +248,8 @@ mod tests {
     fn bytes_are_shares_or_go_through_the_table() {
         let mut texels: Vec<u32> = (0..256u32).map(|byte| (byte as f32 * 2.0).to_bits()).collect();
         texels.push(0x80ff_0001);
-        let map = |flags| TextureMap {
-            place: UVec4::new(256, 1, 1, flags),
-            u: UVec4::new(0, 0, 0, 1),
-            ..Zeroable::zeroed()
-        };
+        let map =
+            |flags| TextureMap { place: UVec4::new(256, 1, 1, flags), u: UVec4::new(0, 0, 0, 1), ..Zeroable::zeroed() };
         let got = sample::<f32>(Launch(0), &textures(&texels), &map(TextureMap::SRGB), (0.5, 0.5), 0.0);
         assert_eq!((got.colour, got.alpha), (V3::new(2.0, 0.0, 510.0), 128.0 * (1.0 / 255.0)));
         let got = sample::<f32>(Launch(0), &textures(&texels), &map(0), (0.5, 0.5), 0.0);

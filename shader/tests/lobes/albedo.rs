@@ -49,7 +49,9 @@ fn no_surface_makes_light() {
     for angle in [0.0, 0.5, 1.0, 1.3, 1.5] {
         for (x, y) in [(0.1, 0.1), (0.5, 0.2), (1.0, 1.0)] {
             let of = |layers| albedo(&Seen::from(layers, direction(angle, 0.5)));
-            for (name, layers) in [("facets", facets(x, y)), ("gold", gold(x, y)), ("plastic", plastic(x, y)), ("pane", pane(x, y))] {
+            for (name, layers) in
+                [("facets", facets(x, y)), ("gold", gold(x, y)), ("plastic", plastic(x, y)), ("pane", pane(x, y))]
+            {
                 println!("{name} at {angle}, {x}, {y}: {}", of(layers));
                 assert!(of(layers) < 1.0 + 1e-2, "{name} at {angle}, {x}, {y}: {}", of(layers));
             }

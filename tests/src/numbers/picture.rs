@@ -39,7 +39,8 @@ fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         }
         queue.retain(|&slot| {
             let lights = posed.lights();
-            let wave = Wave::<R> { paths: &mut paths, hits: &hits, shadows: &shadows, lights, sums: &mut sums };
+            let (environment, sums) = (posed.environment(), &mut sums);
+            let wave = Wave::<R> { paths: &mut paths, hits: &hits, shadows: &shadows, lights, environment, sums };
             integrator::shade(&context.base, &scene.shading(), slot, wave)
         });
         context.base.spec = spec.with_launch(Launch::SECONDARY);
@@ -70,7 +71,7 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         queue.retain(|&slot| {
             let (paths, segments, sums) = (&mut paths, &mut segments, &mut sums);
             let exchange = Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums };
-            integrator::scatter::<R>(&base, &scene.shading(), &scene.lighting(), slot, exchange)
+            integrator::scatter::<R>(&base, &scene.scattering(), slot, exchange)
         });
         for slot in wave {
             let inputs = ShadowInputs { lights: &[], paths: &segments, hits: &hits };

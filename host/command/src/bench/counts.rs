@@ -264,6 +264,7 @@ mod tests {
             wide: &[],
             bvh8: Default::default(),
             bounds: &[],
+            cutout: Default::default(),
         };
         in_scene(&scene, traversal.method, 1, stream, question).unwrap()
     }

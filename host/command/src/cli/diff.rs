@@ -34,7 +34,7 @@ pub(super) struct Diff {
     /// The picture to compare with
     #[arg(conflicts_with_all = [
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
-        "no_passthrough", "size", "samples", "sampler", "camera", "eye", "target", "fov", "bounces", "min_contribution",
+        "no_passthrough", "size", "samples", "sampler", "filter", "camera", "eye", "target", "fov", "bounces", "min_contribution",
         "cull", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
     ])]
     second: Option<PathBuf>,

@@ -20,7 +20,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Sampler, Scene, Settings};
+use eyerays::scene::{self, Camera, Filter, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -62,6 +62,9 @@ pub(super) struct Effort {
     /// Where in a pixel its samples lie [default: the scene's]
     #[arg(long, value_parser = choice::<Sampler>())]
     sampler: Option<Sampler>,
+    /// What a ray sees of a texture [default: the scene's]
+    #[arg(long, value_parser = choice::<Filter>())]
+    filter: Option<Filter>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
@@ -83,6 +86,7 @@ impl Effort {
             spp: self.spp.or(file.spp.filter(|_| self.samples.is_none())),
             transport: self.transport.over_file(file),
             sampler: self.sampler.or(file.sampler),
+            filter: self.filter.or(file.filter),
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),
@@ -212,6 +216,7 @@ impl View {
             bounces: effort.bounces.unwrap_or(own.bounces),
             min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
             culling: self.cull.unwrap_or(own.culling),
+            filter: effort.filter.unwrap_or(own.filter),
         };
         Film::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;

@@ -107,6 +107,7 @@ impl Setting {
             bvh: Some(self.bvh),
             integrator: Some(self.integrator),
             sampler: Some(self.sampler),
+            filter: None,
             samples: (self.spp == 0).then_some(self.samples),
             spp: (self.spp > 0).then_some(self.spp),
             bounces: Some(self.bounces),

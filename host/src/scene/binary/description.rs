@@ -70,6 +70,7 @@ impl Description {
             lights,
             cameras,
             background,
+            environment: None,
             ambient,
             settings,
         }

@@ -42,6 +42,7 @@ pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
         normals: list(normals),
         triangles: list(triangles),
         materials: list(materials),
+        ..Mesh::default()
     };
     let description = Description::parse(description)?;
     let [.., pairs, order, bounds] = sections;

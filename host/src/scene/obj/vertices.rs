@@ -57,7 +57,7 @@ impl Corners {
             normals = Vec::new();
         }
         let positions = pairs.iter().map(|&(position, _)| positions[position as usize - 1]).collect();
-        Mesh { positions, normals, triangles, materials }
+        Mesh { positions, normals, triangles, materials, ..Mesh::default() }
     }
 }
 

@@ -31,6 +31,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         ambient: Vec3::ZERO,
         settings: Settings::default(),
         hierarchy: None,
+        environment: None,
     }
 }
 

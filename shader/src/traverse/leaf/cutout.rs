@@ -54,8 +54,8 @@ impl Cutout<'_> {
         if least >= 0.0 {
             return opacity >= least;
         }
-        let [x, y, z] = direction.map(f32::to_bits);
-        let [drawn, ..] = hash([x ^ triangle.number(), y, z]);
+        let [x, y, z] = direction;
+        let [drawn, ..] = hash([x.to_bits() ^ triangle.number(), y.to_bits(), z.to_bits()]);
         unit(drawn) < opacity
     }
 }

@@ -1,0 +1,203 @@
+//! Textures as kernels read them: every picture once, with coarser levels of itself.
+
+use std::sync::Arc;
+
+use eyerays_shader::data::{Colours, Effects, Maps as MapsRecord, Normals, Opacity, TexCoords, TextureMap};
+use glam::{UVec4, Vec2, Vec3, Vec4};
+use rayon::prelude::*;
+
+use super::levels;
+use super::normalisation::flushed_number;
+use super::tangents;
+use crate::error::{Error, Result};
+use crate::image::linear_table;
+use crate::scene::{Alpha, Map, Material, Scene, Texels, Texture, Wrap};
+
+/// What covers the surfaces of a scene; each empty unless it has a use for it.
+#[derive(Default)]
+pub struct Textures {
+    /// By material.
+    pub maps: Vec<MapsRecord>,
+    /// Every map.
+    pub textures: Vec<TextureMap>,
+    /// The table of sRGB, and the texels of all pictures.
+    pub texels: Vec<u32>,
+    /// In leaf order, of both sets one after the other.
+    pub coordinates: Vec<TexCoords>,
+    /// In leaf order.
+    pub colours: Vec<Colours>,
+    /// In leaf order.
+    pub tangents: Vec<Normals>,
+    /// By material.
+    pub opacities: Vec<Opacity>,
+}
+
+impl Textures {
+    /// Those of a scene whose primitives have an order.
+    ///
+    /// # Errors
+    /// More texels than kernels count.
+    pub(super) fn new(scene: &Scene, effects: Effects, order: &[u32]) -> Result<Textures> {
+        let mut pack = Pack::default();
+        if effects.has(Effects::TEXTURED) {
+            pack.texels.extend(linear_table(u8::MAX.into()).into_iter().map(f32::to_bits));
+            pack.maps = scene.materials.iter().map(|material| pack.maps(material)).collect::<Result<_>>()?;
+        }
+        let mut opacities = Vec::new();
+        if effects.has(Effects::CUTOUT) {
+            opacities = scene.materials.iter().map(|material| pack.opacity(material)).collect::<Result<_>>()?;
+        }
+        let mesh = &scene.mesh;
+        let of = |set: usize| triangles(order, scene, |triangle| texcoords(&mesh.coordinates[set], triangle));
+        let mut coordinates = Vec::new();
+        if effects.has(Effects::TEXTURED) {
+            coordinates = of(0);
+            if !mesh.coordinates[1].is_empty() {
+                coordinates.extend(of(1));
+            }
+        }
+        let is_coloured = effects.has(Effects::COLOURED);
+        let colours = if is_coloured { triangles(order, scene, |corners| colours(scene, corners)) } else { Vec::new() };
+        let has_tangents = effects.has(Effects::TANGENTS);
+        let tangents = if has_tangents { tangents::tangents(scene, order) } else { Vec::new() };
+        let Pack { maps, textures, texels, .. } = pack;
+        Ok(Textures { maps, textures, texels, coordinates, colours, tangents, opacities })
+    }
+
+    /// Bytes of the texels of pictures.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.texels[..])
+    }
+}
+
+/// A record for each slot: of a triangle's corners, zeros for anything else.
+fn triangles<T: bytemuck::Zeroable + Send>(order: &[u32], scene: &Scene, of: impl Fn([u32; 3]) -> T + Sync) -> Vec<T> {
+    let record = |&primitive: &u32| match scene.mesh.triangles.get(primitive as usize) {
+        Some(&corners) => of(corners),
+        None => T::zeroed(),
+    };
+    order.par_iter().map(record).collect()
+}
+
+fn texcoords(coordinates: &[Vec2], corners: [u32; 3]) -> TexCoords {
+    let at = |vertex: u32| coordinates.get(vertex as usize).copied().unwrap_or(Vec2::ZERO);
+    let bits = |x: f32| flushed_number(x).to_bits();
+    let [a, b, c] = corners.map(at);
+    TexCoords { ab: UVec4::new(bits(a.x), bits(a.y), bits(b.x), bits(b.y)), c: UVec4::new(bits(c.x), bits(c.y), 0, 0) }
+}
+
+fn colours(scene: &Scene, corners: [u32; 3]) -> Colours {
+    let at = |vertex: u32| scene.mesh.colours.get(vertex as usize).copied().unwrap_or(Vec4::ONE);
+    let [a, b, c] = corners.map(|vertex| UVec4::from_array(at(vertex).to_array().map(|x| flushed_number(x).to_bits())));
+    Colours { a, b, c }
+}
+
+/// Pictures and maps so far.
+#[derive(Default)]
+struct Pack {
+    maps: Vec<MapsRecord>,
+    textures: Vec<TextureMap>,
+    texels: Vec<u32>,
+    /// Where the levels of a picture start and how many there are, by the picture and whether it is a colour.
+    placed: Vec<(Arc<Texture>, bool, (u32, u32))>,
+}
+
+impl Pack {
+    fn maps(&mut self, material: &Material) -> Result<MapsRecord> {
+        let maps = &material.maps;
+        let mut put = |map: &Option<Map>, is_colour| self.map(map.as_ref(), is_colour, 1.0);
+        let base = put(&maps.base, true)?;
+        let metallic_roughness = put(&maps.metallic_roughness, false)?;
+        let emission = put(&maps.emission, true)?;
+        let transmission = put(&maps.transmission, false)?;
+        let weight = put(&maps.specular_weight, false)?;
+        let tint = put(&maps.specular_tint, true)?;
+        let anisotropy = put(&maps.anisotropy, false)?;
+        let normal = self.map(maps.normal.as_ref(), false, maps.normal_scale)?;
+        Ok(MapsRecord {
+            first: UVec4::new(base, metallic_roughness, normal, emission),
+            second: UVec4::new(transmission, weight, tint, anisotropy),
+        })
+    }
+
+    fn opacity(&mut self, material: &Material) -> Result<Opacity> {
+        let (opacity, least) = match material.alpha {
+            Alpha::Opaque => (1.0, 0.0),
+            Alpha::Mask(least) => (material.opacity, least),
+            Alpha::Blend => (material.opacity, -1.0),
+        };
+        let map = match material.alpha {
+            Alpha::Opaque => 0,
+            // Its alpha is no colour.
+            _ => self.map(material.maps.opacity.as_ref().or(material.maps.base.as_ref()), true, 1.0)?,
+        };
+        Ok(Opacity { mask: UVec4::new(flushed_number(opacity).to_bits(), flushed_number(least).to_bits(), map, 0) })
+    }
+
+    /// The number of a map plus one; 0 for none.
+    fn map(&mut self, map: Option<&Map>, is_colour: bool, factor: f32) -> Result<u32> {
+        let Some(map) = map else { return Ok(0) };
+        let (start, levels) = self.place(&map.texture, is_colour)?;
+        let placement = &map.placement;
+        let wrap = |wrap| match wrap {
+            Wrap::Repeat => TextureMap::REPEAT,
+            Wrap::Mirror => TextureMap::MIRROR,
+            Wrap::Clamp => TextureMap::CLAMP,
+        };
+        let [across, down] = placement.wrap.map(wrap);
+        let flag = |flag, holds| if holds { flag } else { 0 };
+        let is_float = matches!(map.texture.texels, Texels::Floats(_));
+        let flags = flag(TextureMap::FLOATS, is_float)
+            | flag(TextureMap::SRGB, is_colour && !is_float)
+            | flag(TextureMap::NEAREST, placement.nearest)
+            | flag(TextureMap::SECOND_SET, placement.set == 1)
+            | (across | down << 2) << TextureMap::WRAP_SHIFT;
+        let row = |row: [f32; 3], word| {
+            let [a, b, c] = row.map(|x| flushed_number(x).to_bits());
+            UVec4::new(a, b, c, word)
+        };
+        let [u, v] = placement.transform;
+        let record = TextureMap {
+            place: UVec4::new(start, map.texture.width, map.texture.height, flags),
+            u: row(u, levels),
+            v: row(v, flushed_number(factor).to_bits()),
+        };
+        let found = self.textures.iter().position(|other| *other == record);
+        let number = found.unwrap_or_else(|| {
+            self.textures.push(record);
+            self.textures.len() - 1
+        });
+        Ok(number as u32 + 1)
+    }
+
+    fn place(&mut self, texture: &Arc<Texture>, is_colour: bool) -> Result<(u32, u32)> {
+        let same = |(other, colour, _): &&(Arc<Texture>, bool, _)| Arc::ptr_eq(other, texture) && *colour == is_colour;
+        if let Some((.., place)) = self.placed.iter().find(same) {
+            return Ok(*place);
+        }
+        let start = self.texels.len();
+        let levels = levels::append(texture, is_colour, &mut self.texels);
+        let full = || Error::new(format!("the texture {:?} is one too many; use smaller ones", texture.name));
+        u32::try_from(self.texels.len()).map_err(|_| full())?;
+        let place = (start as u32, levels);
+        self.placed.push((texture.clone(), is_colour, place));
+        Ok(place)
+    }
+}
+
+/// The mean of a picture's light, linear RGB.
+pub(super) fn mean(texture: &Texture) -> Vec3 {
+    let mut words = Vec::new();
+    let levels = levels::append(texture, true, &mut words);
+    debug_assert!(levels > 0);
+    match texture.texels {
+        Texels::Floats(_) => {
+            Vec3::from_slice(&words[words.len() - 3..].iter().map(|&w| f32::from_bits(w)).collect::<Vec<_>>())
+        }
+        Texels::Bytes(_) => {
+            let table = linear_table(u8::MAX.into());
+            let word = words[words.len() - 1];
+            Vec3::from_array([0, 8, 16].map(|shift| table[(word >> shift & 255) as usize]))
+        }
+    }
+}

@@ -293,6 +293,8 @@ fn options_that_contradict_each_other() {
         (&["--json", "-o", "-"], &["--json", "name a file"]),
         (&["--half", "-o", "a.hdr"], &["--half", ".exr"]),
         (&["--half"], &["--half", ".exr"]),
+        (&["--tone", "agx", "-o", "a.exr"], &["--tone", "EXR", ".png"]),
+        (&["--tone", "neutral", "-o", "a.hdr"], &["--tone", "HDR", ".png"]),
     ] {
         place.refuse(&[&["render", "scene.toml"], options].concat(), wants);
     }

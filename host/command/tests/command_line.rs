@@ -173,6 +173,26 @@ fn every_format_is_written_and_read_again() {
 }
 
 #[test]
+fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = |output: &str, more: &[&str]| {
+        let bright = ["render", "scene.toml", "--device", "cpu", "--exposure", "4", "-o", output];
+        place.succeed(&[&bright, more].concat());
+        fs::read(place.path(output)).unwrap()
+    };
+    let cut_off = render("a.png", &[]);
+    assert_eq!(cut_off, render("b.png", &["--tone", "none"]));
+    render("c.exr", &["--tone", "none"]);
+    let whites = |name: &str| image::read(&place.path(name)).unwrap().pixels.iter().filter(|&&p| p == [1.0; 3]).count();
+    let before = whites("a.png");
+    for tone in ["neutral", "agx"] {
+        let name = format!("{tone}.png");
+        assert_ne!(cut_off, render(&name, &["--tone", tone, "--bits", "16"]));
+        assert!(whites(&name) < before, "{tone}: {} of {before}", whites(&name));
+    }
+}
+
+#[test]
 fn diff_returns_what_it_found() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {

@@ -215,6 +215,27 @@ fn diff_returns_what_it_found() {
     }
 }
 
+#[test]
+fn diff_tells_how_far_pictures_look_apart_when_asked() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for (name, exposure) in [("a.exr", "0"), ("b.exr", "0.1"), ("c.exr", "1")] {
+        place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", name, "--exposure", exposure]);
+    }
+    let mean = |other: &str| {
+        let json = place.run(&["diff", "a.exr", other, "--json", "--flip"]).json();
+        json["mean_flip"].as_f64().unwrap()
+    };
+    assert_eq!(mean("a.exr"), 0.0);
+    assert!(0.0 < mean("b.exr") && mean("b.exr") < mean("c.exr") && mean("c.exr") <= 1.0);
+    assert!(place.succeed(&["diff", "a.exr", "a.exr", "--flip"]).text().ends_with("mean FLIP           0.000000\n"));
+    let mapped = place.run(&["diff", "a.exr", "c.exr", "--flip-map", "seen.png", "-o", "heat.png"]);
+    assert!(mapped.text().contains("mean FLIP"), "{}", mapped.text());
+    let [seen, heat] = ["seen.png", "heat.png"].map(|name| image::read(&place.path(name)).unwrap());
+    assert!((seen.width, seen.height) == (24, 18) && !seen.bits_equal(&heat));
+    let unasked = place.run(&["diff", "a.exr", "c.exr", "--json"]).json();
+    assert!(unasked.as_object().unwrap().contains_key("mean_flip") && unasked["mean_flip"].is_null());
+}
+
 /// Reading and building may take long before the first pixel.
 #[cfg(target_os = "linux")]
 #[test]

@@ -23,7 +23,7 @@ use crate::math;
 pub use encode::encode;
 pub use read::{decode, read};
 pub use tone::ToneMap;
-pub use transfer::{linear_to_srgb, srgb_to_linear};
+pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
 
 /// The image formats that are written and read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

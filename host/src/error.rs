@@ -65,6 +65,11 @@ pub enum Error {
         /// The format.
         format: Format,
     },
+    /// A tone map, in a format that keeps light as it is.
+    NoTone {
+        /// The format.
+        format: Format,
+    },
     /// So many threads can't be started.
     Threads {
         /// How many.
@@ -229,6 +234,7 @@ impl Error {
                 format!("too little memory for an image of {width}x{height} pixels; choose a smaller size")
             }
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
+            Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
             Error::Threads { threads, message } => format!("can't start {threads} threads ({message})"),
             Error::ReferenceOnGpu => "reference precision is double precision on the CPU".to_owned(),
             Error::NoGpu => "there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver".to_owned(),

@@ -4,7 +4,7 @@
 //! software, the same code everywhere; clippy forbids std's (`clippy.toml`). Arithmetic and square roots of std are
 //! correctly rounded everywhere.
 
-pub use libm::{atan, cos, exp2, log as ln, log10, pow, sin, sincos as sin_cos, tan};
+pub use libm::{atan, cos, exp2, log as ln, log2, log10, pow, sin, sincos as sin_cos, tan};
 
 /// The greatest power of two that is no more than a positive normal number.
 pub fn power_of_two_below(x: f64) -> f64 {
@@ -36,6 +36,7 @@ mod tests {
             (cos(0.24), 0x3fef_1533_606b_4659),
             (exp2(1.972 / 100.0), 0x3ff0_385f_3ee7_ddfe),
             (ln(0.01), 0xc012_6bb1_bbb5_5516),
+            (log2(0.165), 0xc004_cbb2_c51d_0aed),
             (log10(0.054), 0xbff4_481d_7b1c_4103),
             (pow(0.028, 2.4), 0x3f28_9609_024c_d92e),
         ];

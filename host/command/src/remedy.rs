@@ -10,6 +10,9 @@ pub fn worded(error: &Error) -> String {
         Error::NoHalf { format } => {
             return format!("--half is for .exr files, not for {format}; leave it out or write .exr");
         }
+        Error::NoTone { format } => {
+            return format!("--tone is for .png files, not for {format}; leave it out or write .png");
+        }
         Error::Threads { .. } => ": ask for fewer",
         Error::ReferenceOnGpu => ": use --device cpu, or --precision exact",
         Error::NoGpu => ", or use --device cpu",

@@ -293,6 +293,8 @@ fn options_that_contradict_each_other() {
         (&["--json", "-o", "-"], &["--json", "name a file"]),
         (&["--half", "-o", "a.hdr"], &["--half", ".exr"]),
         (&["--half"], &["--half", ".exr"]),
+        (&["--tone", "agx", "-o", "a.exr"], &["--tone", "EXR", ".png"]),
+        (&["--tone", "neutral", "-o", "a.hdr"], &["--tone", "HDR", ".png"]),
     ] {
         place.refuse(&[&["render", "scene.toml"], options].concat(), wants);
     }
@@ -334,6 +336,12 @@ fn pictures_that_cannot_be_compared() {
     place.refuse(&["diff", "a.png", "missing.png"], &["missing.png", "no such file"]);
     place.refuse(&["diff", "a.png", "text.png"], &["text.png"]);
     place.refuse(&["diff", "a.png", "b.png", "-o", "map.png"], &["24x18", "23x18"]);
+    place.refuse(&["diff", "a.png", "b.png", "--flip"], &["24x18", "23x18"]);
+    place.refuse(&["diff", "a.png", "a.png", "--flip-map", "map.txt"], &["map.txt", ".png"]);
+    place.refuse(&["diff", "a.png", "a.png", "--flip-map", "a.png"], &["a.png", "would replace"]);
+    place.refuse(&["diff", "a.png", "a.png", "--flip-map", "c.png", "-o", "c.png"], &["c.png", "same file"]);
+    place.refuse(&["diff", "a.png", "a.png", "--flip-map", "-", "-o", "-"], &["--flip-map -", "name a file"]);
+    place.refuse(&["diff", "a.png", "a.png", "--flip-map", "-", "--json"], &["--json", "name a file"]);
     place.refuse(&["diff", "a.png", "a.png", "--tolerance=-1"], &["--tolerance"]);
     place.refuse(&["diff", "a.png", "a.png", "--tolerance", "nan"], &["--tolerance"]);
 }

@@ -173,6 +173,26 @@ fn every_format_is_written_and_read_again() {
 }
 
 #[test]
+fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = |output: &str, more: &[&str]| {
+        let bright = ["render", "scene.toml", "--device", "cpu", "--exposure", "4", "-o", output];
+        place.succeed(&[&bright, more].concat());
+        fs::read(place.path(output)).unwrap()
+    };
+    let cut_off = render("a.png", &[]);
+    assert_eq!(cut_off, render("b.png", &["--tone", "none"]));
+    render("c.exr", &["--tone", "none"]);
+    let whites = |name: &str| image::read(&place.path(name)).unwrap().pixels.iter().filter(|&&p| p == [1.0; 3]).count();
+    let before = whites("a.png");
+    for tone in ["neutral", "agx"] {
+        let name = format!("{tone}.png");
+        assert_ne!(cut_off, render(&name, &["--tone", tone, "--bits", "16"]));
+        assert!(whites(&name) < before, "{tone}: {} of {before}", whites(&name));
+    }
+}
+
+#[test]
 fn diff_returns_what_it_found() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {
@@ -193,6 +213,27 @@ fn diff_returns_what_it_found() {
     for number in ["differing_pixels", "largest_ulps", "largest_difference", "rmse", "psnr"] {
         assert!(comparison[number].as_f64().is_some_and(|x| x > 0.0), "{number}: {comparison}");
     }
+}
+
+#[test]
+fn diff_tells_how_far_pictures_look_apart_when_asked() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    for (name, exposure) in [("a.exr", "0"), ("b.exr", "0.1"), ("c.exr", "1")] {
+        place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", name, "--exposure", exposure]);
+    }
+    let mean = |other: &str| {
+        let json = place.run(&["diff", "a.exr", other, "--json", "--flip"]).json();
+        json["mean_flip"].as_f64().unwrap()
+    };
+    assert_eq!(mean("a.exr"), 0.0);
+    assert!(0.0 < mean("b.exr") && mean("b.exr") < mean("c.exr") && mean("c.exr") <= 1.0);
+    assert!(place.succeed(&["diff", "a.exr", "a.exr", "--flip"]).text().ends_with("mean FLIP           0.000000\n"));
+    let mapped = place.run(&["diff", "a.exr", "c.exr", "--flip-map", "seen.png", "-o", "heat.png"]);
+    assert!(mapped.text().contains("mean FLIP"), "{}", mapped.text());
+    let [seen, heat] = ["seen.png", "heat.png"].map(|name| image::read(&place.path(name)).unwrap());
+    assert!((seen.width, seen.height) == (24, 18) && !seen.bits_equal(&heat));
+    let unasked = place.run(&["diff", "a.exr", "c.exr", "--json"]).json();
+    assert!(unasked.as_object().unwrap().contains_key("mean_flip") && unasked["mean_flip"].is_null());
 }
 
 /// Reading and building may take long before the first pixel.

@@ -54,14 +54,18 @@ fn another_platform_gives_the_same_films_and_files() {
     let foreign: Vec<&str> = foreign.split_whitespace().collect();
     let place = Place::new(&[("turned.toml", TURNED)]);
     let framed = shipped("rod").replace(".toml", ".obj");
-    for (scene, format) in
-        [(shipped("cornell"), "png"), (shipped("glass"), "exr"), (framed, "hdr"), ("turned.toml".to_owned(), "png")]
-    {
+    for (scene, format, tone) in [
+        (shipped("cornell"), "png", "agx"),
+        (shipped("glass"), "exr", "none"),
+        (framed, "hdr", "none"),
+        ("turned.toml".to_owned(), "png", "none"),
+        ("turned.toml".to_owned(), "png", "neutral"),
+    ] {
         let render = |name: &str, mut program: Command| {
             let name = format!("{name}.{format}");
             program.args(["render", &scene, "-o", &name, "--json"]).current_dir(place.path(""));
             // An emulator is slow.
-            program.args(["--size", "24x16", "--samples", "1", "--device", "cpu", "--exposure", "0.3"]);
+            program.args(["--size", "24x16", "--samples", "1", "--device", "cpu", "--exposure", "0.3", "--tone", tone]);
             let outcome: Outcome = program.output().expect("the program starts").into();
             assert_eq!(outcome.code, Some(0), "{program:?}: {}", outcome.stderr);
             (outcome.json()["film_hash"].take(), fs::read(place.path(&name)).unwrap())

@@ -99,7 +99,11 @@ fn short(x: f64) -> String {
     if x == 0.0 { "0".to_owned() } else { format!("{x:.6e}") }
 }
 
-fn check_sizes(a: &Film, b: &Film) -> Result<()> {
+/// Refuses films that cannot be compared pixel by pixel.
+///
+/// # Errors
+/// An invalid film and unequal sizes.
+pub fn check_sizes(a: &Film, b: &Film) -> Result<()> {
     a.validate()?;
     b.validate()?;
     if (a.width, a.height) == (b.width, b.height) {

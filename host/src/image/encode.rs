@@ -10,14 +10,14 @@ use rayon::prelude::*;
 
 use super::exr::{self, exposed};
 use super::transfer::{quantise, quantise_to_byte};
-use super::{BitDepth, Encoding, Format};
+use super::{BitDepth, Encoding, Format, ToneMap};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::math;
 
 /// Encodes a film and writes the file's bytes, at once and in order, so that any writer will do.
 ///
-/// In a PNG, NaN and what is below 0 become 0 and what is above 1 becomes 1. In an HDR, NaN and
+/// In a PNG, NaN and what is below 0 become 0 and what is above 1 becomes 1, unless a tone map finds a place for it. In an HDR, NaN and
 /// what is below 0 become 0 and infinity becomes the format's greatest value; pixels darker than
 /// the least normal `f32` become black. An EXR keeps all of them; with floats of 16 bits, finite values
 /// beyond ±65504 become that.
@@ -30,7 +30,7 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
     let scale = encoding.scale()?;
     let refused = |error: &dyn fmt::Display| Error::new(format!("the image cannot be encoded as {format}: {error}"));
     let bytes = match format {
-        Format::Png => png(film, encoding.bits, scale).map_err(|e| refused(&e))?,
+        Format::Png => png(film, encoding, scale).map_err(|e| refused(&e))?,
         Format::Exr if encoding.half => exr::half(film, scale).map_err(|e| refused(&e))?,
         Format::Exr => exr::single(film, scale).map_err(|e| refused(&e))?,
         Format::Hdr => hdr(film, scale).map_err(|e| refused(&e))?,
@@ -38,10 +38,10 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 
-/// Every channel of every pixel, converted.
-fn samples<T: Send>(film: &Film, convert: impl Fn(f64) -> T + Sync) -> Vec<T> {
-    let values: &[f32] = film.pixels.as_flattened();
-    values.par_iter().map(|&v| convert(v.into())).collect()
+/// Every channel of every pixel, exposed, mapped to the screen and converted.
+fn samples<T: Send>(film: &Film, tone: ToneMap, scale: f64, convert: impl Fn(f64) -> T + Sync) -> Vec<T> {
+    let shown = |pixel: &[f32; 3]| tone.apply(pixel.map(|v| f64::from(v) * scale)).map(&convert);
+    film.pixels.par_iter().map(shown).collect::<Vec<_>>().into_flattened()
 }
 
 /// The chunks that say what wrote the file and that its colours are sRGB: length, type, data and
@@ -53,14 +53,14 @@ const PNG_CHUNKS: &[u8] = b"\
 /// Where a PNG's first chunk, the IHDR, ends.
 const PNG_HEADER: usize = 33;
 
-fn png(film: &Film, depth: BitDepth, scale: f64) -> ImageResult<Vec<u8>> {
-    match depth {
+fn png(film: &Film, encoding: &Encoding, scale: f64) -> ImageResult<Vec<u8>> {
+    match encoding.bits {
         BitDepth::Eight => {
-            let values = samples(film, |v| quantise_to_byte(v * scale));
+            let values = samples(film, encoding.tone, scale, quantise_to_byte);
             png_of(film, &values, ExtendedColorType::Rgb8)
         }
         BitDepth::Sixteen => {
-            let values = samples(film, |v| quantise(v * scale, 65_535.0) as u16);
+            let values = samples(film, encoding.tone, scale, |v| quantise(v, 65_535.0) as u16);
             png_of(film, bytemuck::cast_slice(&values), ExtendedColorType::Rgb16)
         }
     }

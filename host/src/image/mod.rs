@@ -2,7 +2,7 @@
 //!
 //! | Format | Values | Loses |
 //! |---|---|---|
-//! | PNG | sRGB, 8 or 16 bit | what is outside \[0, 1\], and rounds |
+//! | PNG | sRGB, 8 or 16 bit, by a [`ToneMap`] or without | what is outside \[0, 1\], and rounds |
 //! | OpenEXR | linear, 32-bit floats | nothing at an exposure of 0 |
 //! | OpenEXR, half | linear, 16-bit floats | what is beyond ±65504, and about 0.05 % |
 //! | Radiance HDR | linear, 8 bit and a shared exponent | negative values, and about 1 % |
@@ -11,7 +11,11 @@ mod bounded;
 mod encode;
 mod exr;
 mod read;
+<<<<<<< HEAD
 mod texels;
+=======
+mod tone;
+>>>>>>> acc828f86a2e761a09fd7e2d675d78d039476d3e
 mod transfer;
 
 use std::fmt;
@@ -22,9 +26,14 @@ use crate::math;
 
 pub use encode::encode;
 pub use read::{decode, read};
+<<<<<<< HEAD
 pub use texels::{decode_texture, read_texture};
 pub(crate) use transfer::{linear_table, quantise_to_byte};
 pub use transfer::{linear_to_srgb, srgb_to_linear};
+=======
+pub use tone::ToneMap;
+pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
+>>>>>>> acc828f86a2e761a09fd7e2d675d78d039476d3e
 
 /// The image formats that are written and read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -98,6 +107,8 @@ pub struct Encoding {
     pub bits: BitDepth,
     /// Floats of 16 bits instead of 32; only in an EXR.
     pub half: bool,
+    /// After the exposure; only in a PNG, as the other formats keep light as it is.
+    pub tone: ToneMap,
 }
 
 impl Encoding {
@@ -107,10 +118,13 @@ impl Encoding {
     /// Whether a file of the format can be written so.
     ///
     /// # Errors
-    /// Those of [`Encoding::scale`], and floats of 16 bits in another format than EXR.
+    /// Those of [`Encoding::scale`], floats of 16 bits in another format than EXR, and a tone map in another than PNG.
     pub fn check(&self, format: Format) -> Result<()> {
         if self.half && format != Format::Exr {
             return Err(Error::NoHalf { format });
+        }
+        if self.tone != ToneMap::None && format != Format::Png {
+            return Err(Error::NoTone { format });
         }
         self.scale().map(drop)
     }

@@ -9,7 +9,7 @@ use crate::film::Film;
 
 const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
 
-const SIXTEEN: Encoding = Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen, half: false };
+const SIXTEEN: Encoding = Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen, half: false, tone: ToneMap::None };
 
 fn bytes(film: &Film, format: Format, encoding: &Encoding) -> Vec<u8> {
     let mut bytes = Vec::new();
@@ -153,6 +153,30 @@ fn exposure_applies_to_every_format() {
     for exposure_ev in [f32::NAN, f32::INFINITY, -300.0] {
         let encoding = Encoding { exposure_ev, ..SIXTEEN };
         assert!(encode(&film, Format::Exr, &encoding, io::sink()).is_err());
+    }
+}
+
+#[test]
+fn a_png_has_the_values_of_its_tone_map() {
+    for tone in [ToneMap::None, ToneMap::Neutral, ToneMap::Agx] {
+        for (bits, steps) in [(BitDepth::Eight, 255_u16), (BitDepth::Sixteen, 65_535)] {
+            let encoding = Encoding { exposure_ev: 0.7, bits, tone, ..Encoding::default() };
+            let table = transfer::linear_table(steps);
+            let scale = encoding.scale().unwrap();
+            let shown = |pixel: &[f32; 3]| {
+                let exposed = pixel.map(|v| f64::from(v) * scale);
+                tone.apply(exposed).map(|v| table[transfer::quantise(v, steps.into()) as usize])
+            };
+            for film in [odd_film(), striped_film()] {
+                let wanted: Vec<_> = film.pixels.iter().map(shown).collect();
+                assert_eq!(round_trip(&film, Format::Png, &encoding).pixels, wanted, "{tone} {steps}");
+            }
+        }
+        let encoding = Encoding { tone, ..Encoding::default() };
+        for format in [Format::Exr, Format::Hdr] {
+            let written = encode(&odd_film(), format, &encoding, io::sink());
+            assert_eq!(written.err(), (tone != ToneMap::None).then_some(Error::NoTone { format }));
+        }
     }
 }
 

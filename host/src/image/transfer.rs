@@ -29,8 +29,9 @@ pub(super) fn quantise(linear: f64, steps: f64) -> f64 {
 /// The least linear light of each sRGB value of 8 bits but 0: a search among them takes a fifth of a power.
 static LEAST_OF_VALUE: LazyLock<Vec<f64>> = LazyLock::new(|| (1..=255).map(|value| least(value, 255.0)).collect());
 
-/// [`quantise`] for 8 bits.
-pub(crate) fn quantise_to_byte(linear: f64) -> u8 {
+/// The nearest sRGB value of 8 bits for linear light, which is what a PNG has: 0 for what is less than 0 and for NaN, 255
+/// for what is more than 1.
+pub fn quantise_to_byte(linear: f64) -> u8 {
     LEAST_OF_VALUE.partition_point(|&least| least <= linear) as u8
 }
 

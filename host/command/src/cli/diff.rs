@@ -1,8 +1,8 @@
 //! `eyerays diff`.
 
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::slice;
 
 use clap::Args;
 use serde_json::json;
@@ -11,6 +11,7 @@ use super::console;
 use super::options::{DeviceArgs, Effort, Read, View};
 use super::progress;
 use crate::error::{Error, Result};
+use crate::flip::Flip;
 use crate::output::{self, Destination};
 use eyerays::compare::{Comparison, compare, heat_map};
 use eyerays::film::Film;
@@ -21,6 +22,7 @@ use eyerays::scene;
 pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays diff before.png after.png -o difference.png
+  eyerays diff before.exr after.exr --flip-map seen.png
   eyerays diff scenes/cornell.toml --size 256x256
 Exit code 1 tells that the pictures differ by more than the tolerance.";
 
@@ -40,7 +42,13 @@ pub(super) struct Diff {
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)
     #[arg(short, long, value_name = "FILE")]
-    output: Option<std::ffi::OsString>,
+    output: Option<OsString>,
+    /// Tell too how far the pictures look apart to a person: mean FLIP, 0 to 1, as 8 bits show them
+    #[arg(long)]
+    flip: bool,
+    /// Write a map of FLIP (black where they look equal, pale yellow for 1), and tell the mean
+    #[arg(long, value_name = "FILE")]
+    flip_map: Option<OsString>,
     /// The largest absolute difference of a channel that still counts as the same
     #[arg(long, value_name = "X", default_value_t = 0.0)]
     tolerance: f32,
@@ -64,24 +72,38 @@ impl Diff {
         if !(self.tolerance >= 0.0 && self.tolerance.is_finite()) {
             return Err(Error::new(format!("--tolerance {} is no finite number from 0 up", self.tolerance)));
         }
-        let heat = self.output.clone().map(Destination::from);
-        if let Some(destination) = &heat {
-            super::one_on_stdout(self.json, destination)?;
-            destination.format()?;
-            output::check_apart(slice::from_ref(destination), self.second.iter().chain([&self.first]))?;
-            output::check_writable(destination)?;
-        }
+        let [heat, seen] = [&self.output, &self.flip_map].map(|name| name.clone().map(Destination::from));
+        let outputs: Vec<Destination> = heat.iter().chain(&seen).cloned().collect();
+        self.check(&outputs)?;
         let (a, b, names) = match &self.second {
             Some(second) => self.pictures(second)?,
-            None => self.renderings(heat.as_slice(), quiet)?,
+            None => self.renderings(&outputs, quiet)?,
         };
         let comparison = compare(&a, &b)?;
+        let looks = self.flip || seen.is_some();
+        let flip = looks.then(|| progress::stage("measuring FLIP", quiet, || Flip::new(&a, &b))).transpose()?;
         if let Some(destination) = &heat {
             output::write_picture(&heat_map(&a, &b)?, destination, &Encoding::default())?;
         }
-        self.report(&comparison, &names, quiet)?;
+        if let (Some(destination), Some(flip)) = (&seen, &flip) {
+            output::write_picture(&flip.map()?, destination, &Encoding::default())?;
+        }
+        self.report(&comparison, flip.as_ref(), &names, quiet)?;
         let differs = comparison.exceeds(self.tolerance);
         Ok(if differs { ExitCode::from(DIFFERENT) } else { ExitCode::SUCCESS })
+    }
+
+    /// Refuses outputs that cannot be written or would replace what is read.
+    fn check(&self, outputs: &[Destination]) -> Result<()> {
+        if outputs.iter().filter(|output| **output == Destination::Stdout).count() > 1 {
+            return Err(Error::new("-o - and --flip-map - both write to standard output: name a file for one of them"));
+        }
+        for output in outputs {
+            super::one_on_stdout(self.json, output)?;
+            output.format()?;
+        }
+        output::check_apart(outputs, self.second.iter().chain([&self.first]))?;
+        outputs.iter().try_for_each(output::check_writable)
     }
 
     fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
@@ -123,14 +145,18 @@ impl Diff {
         Ok((gpu.film, cpu.film, [gpu.device, cpu.device]))
     }
 
-    fn report(&self, comparison: &Comparison, names: &[String; 2], quiet: bool) -> Result<()> {
+    fn report(&self, comparison: &Comparison, flip: Option<&Flip>, names: &[String; 2], quiet: bool) -> Result<()> {
+        let mean = flip.map(Flip::mean);
         if self.json {
-            return console::print_json(&json!({ "first": names[0], "second": names[1], "comparison": comparison }));
+            return console::print_json(
+                &json!({ "first": names[0], "second": names[1], "comparison": comparison, "mean_flip": mean }),
+            );
         }
         if quiet {
             return Ok(());
         }
         console::print_line(format_args!("{} against {}", names[0], names[1]))?;
-        console::print(&comparison.to_string())
+        console::print(&comparison.to_string())?;
+        mean.map_or(Ok(()), |mean| console::print_line(format_args!("mean FLIP           {mean:.6}")))
     }
 }

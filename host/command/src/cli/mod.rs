@@ -135,7 +135,9 @@ fn plural(count: usize, noun: &str) -> String {
 /// Standard output is for the JSON or for a picture.
 fn one_on_stdout(json: bool, picture: &Destination) -> Result<()> {
     if json && matches!(picture, Destination::Stdout) {
-        return Err(Error::new("--json and -o - both write to standard output: name a file for the picture"));
+        return Err(Error::new(
+            "--json and a picture named - both write to standard output: name a file for the picture",
+        ));
     }
     Ok(())
 }

@@ -16,7 +16,7 @@ use super::summary::{Summary, Times};
 use crate::error::Result;
 use crate::output::{self, Destination};
 use crate::preset::Preset;
-use eyerays::image::{BitDepth, Encoding};
+use eyerays::image::{BitDepth, Encoding, ToneMap};
 use eyerays::render::{Backend, DeviceWish};
 
 pub(super) const EXAMPLES: &str = "\
@@ -24,6 +24,7 @@ Examples:
   eyerays render scenes/cornell.toml -o cornell.png
   eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
   eyerays render scenes/whitted.toml -o - > whitted.png
+  eyerays render scenes/cornell_path.toml --exposure 1 --tone agx
   eyerays render scenes/cornell.toml --settings fast.toml";
 
 #[derive(Args)]
@@ -45,6 +46,9 @@ pub(super) struct Render {
     /// Bits a channel of a PNG: 8 or 16
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u32,
+    /// How a PNG shows light brighter than a screen's white
+    #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
+    tone: ToneMap,
     /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
     #[arg(long)]
     half: bool,
@@ -73,7 +77,7 @@ impl Render {
         };
         super::one_on_stdout(self.json, &destination)?;
         let bits = BitDepth::from_bits(self.bits)?;
-        let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half };
+        let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half, tone: self.tone };
         encoding.check(destination.format()?)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;

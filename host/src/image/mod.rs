@@ -11,11 +11,8 @@ mod bounded;
 mod encode;
 mod exr;
 mod read;
-<<<<<<< HEAD
 mod texels;
-=======
 mod tone;
->>>>>>> acc828f86a2e761a09fd7e2d675d78d039476d3e
 mod transfer;
 
 use std::fmt;
@@ -26,14 +23,10 @@ use crate::math;
 
 pub use encode::encode;
 pub use read::{decode, read};
-<<<<<<< HEAD
 pub use texels::{decode_texture, read_texture};
-pub(crate) use transfer::{linear_table, quantise_to_byte};
-pub use transfer::{linear_to_srgb, srgb_to_linear};
-=======
 pub use tone::ToneMap;
+pub(crate) use transfer::linear_table;
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
->>>>>>> acc828f86a2e761a09fd7e2d675d78d039476d3e
 
 /// The image formats that are written and read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -264,7 +264,7 @@ impl DeviceScene {
 
     /// Can a primary ray's light come from further rays?
     pub fn has_secondary_rays(&self) -> bool {
-        self.effects().has(Effects::REFLECTION | Effects::REFRACTION)
+        self.effects().has(Effects::REFLECTION | Effects::REFRACTION | Effects::PHYSICAL)
     }
 
     /// What kernels are compiled for that follow the camera's rays by a traversal.

@@ -20,8 +20,10 @@ pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
 /// The effects that a scene asks for, of those that it has, under some settings.
 pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
     let out = match settings.transport.integrator {
-        Integrator::Whitted | Integrator::Distributed if settings.bounces > 0 => MICROFACETS,
-        Integrator::Whitted | Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS,
+        Integrator::Whitted if settings.bounces > 0 => MICROFACETS,
+        Integrator::Whitted => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS,
+        Integrator::Distributed if settings.bounces > 0 => Effects::ABSORBING,
+        Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION | Effects::ABSORBING,
         Integrator::Ao => !(GEOMETRY | Effects::TRANSPARENT),
         // What is behind glass is lit through it, by light that is bent there, or not at all.
         Integrator::Path => Effects::TRANSPARENT | Effects::SPECULAR,

@@ -9,7 +9,7 @@ use crate::device_scene::DeviceScene;
 pub fn whitted(packed: &DeviceScene) -> Needs {
     let waves = if !packed.has_secondary_rays() {
         Waves::AtMost(0)
-    } else if packed.effects().has(Effects::REFRACTION) {
+    } else if packed.effects().has(Effects::REFRACTION | Effects::THIN) {
         Waves::Branching
     } else {
         Waves::AtMost(packed.settings().bounces)

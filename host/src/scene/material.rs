@@ -154,6 +154,7 @@ fn approximated(physical: &Physical) -> Material {
         diffuse: opaque + base * metallic - mirror,
         specular: physical.reflectance() * (1.0 - roughness),
         reflection: mirror,
+        transmission: if conductor.is_some() { Vec3::ZERO } else { base * transmission * (1.0 - metallic) },
         ior,
         ..Material::default()
     }

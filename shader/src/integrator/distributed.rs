@@ -7,11 +7,12 @@ use crate::buffer::read;
 use crate::data::{Effects, Maps, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, LightSample, Lighting};
-use crate::material::{INVERSE_PI, Specular, Surface, eval_phong};
+use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
+use crate::texture::Covering;
 
 /// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
 #[inline(always)]
@@ -21,26 +22,58 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let (path, effects) = (vertex.path, launch.spec.effects);
-    let ScatterContext { shading, lighting, .. } = context;
+    let ScatterContext { shading, lighting, physicals } = context;
     let seen = vertex.met(launch);
     let (primitive, interaction) = (seen.primitive, seen.interaction);
     let covering = seen.covering(launch, shading, Maps::BASE);
     let surface = Surface::new(effects, shading, &seen, &covering);
-    let mut light = surface.ambient;
-    if effects.has(Effects::EMISSIVE) {
-        let emission = read(lighting.emissions, primitive.material());
-        if emission.shines(interaction.front) {
-            let radiance = V3::splat(numbers(emission.radiance));
-            let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };
-            light = light + radiance.map(|c| c.flush(FAINT));
-        }
+    if effects.has(Effects::PHYSICAL) {
+        let material = read(physicals, primitive.material());
+        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
+        let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
+        let shadow = light_by_closure(launch, lighting, vertex, (&interaction, &closure));
+        let draws = vertex.draws.set(path.counts().1);
+        let [reflected, passed] = closure.branches(&interaction, (draws.x, draws.y));
+        let on = |s: &ClosureSample<R>| vertex.on((&interaction, s.origin), s.direction, s.factor, s.density);
+        return branched(launch, light, shadow, (on(&reflected), on(&passed)));
     }
+    let light = shining(effects, lighting, (&seen, &surface), &covering);
     let light = share(launch, &path, light);
     let shadow = sampled_light(launch, lighting, vertex, &interaction, &surface);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return Scattered::once(light, shadow, path, false);
     }
-    let (reflected, refracted) = branches(effects, vertex, &interaction, &surface);
+    branched(launch, light, shadow, branches(effects, vertex, &interaction, &surface))
+}
+
+/// What a surface sends by itself: ambient light and what it emits.
+#[inline(always)]
+fn shining<R: Scalar>(
+    effects: Effects,
+    lighting: &Lighting<'_>,
+    (seen, surface): (&Seen<R>, &Surface<R>),
+    covering: &Covering<R>,
+) -> V3<R> {
+    let mut light = surface.ambient;
+    if effects.has(Effects::EMISSIVE) {
+        let emission = read(lighting.emissions, seen.primitive.material());
+        if emission.shines(seen.interaction.front) {
+            let radiance = V3::splat(numbers(emission.radiance));
+            let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };
+            light = light + radiance.map(|c| c.flush(FAINT));
+        }
+    }
+    light
+}
+
+/// Goes on with those rays that count.
+#[inline(always)]
+fn branched<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    light: V3<R>,
+    shadow: ShadowRay<R>,
+    (reflected, refracted): (PathState<R>, PathState<R>),
+) -> Scattered<R> {
     let counts = |path: &PathState<R>| counts(launch, path.bounces, path.weight);
     let (first, second) = (counts(&reflected), counts(&refracted));
     Scattered {
@@ -53,6 +86,49 @@ pub(super) fn at<R: Scalar>(
     }
 }
 
+/// Is there any light to sample?
+#[inline(always)]
+fn is_lit(launch: &LaunchContext<'_>) -> bool {
+    launch.spec.effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) && launch.frame.emitters > 0
+}
+
+/// A sample of one light as seen from a vertex, and where its shadow ray starts.
+#[inline(always)]
+fn drawn_light<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    interaction: &SurfaceInteraction<R>,
+) -> (EmitterSample<R>, V3<R>) {
+    let number = vertex.path.counts().1;
+    let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
+    let origin = interaction.offset_ray_origin(interaction.normal);
+    (EmitterSample::new(launch, lighting, origin, decisions.x, (places.z, places.w)), origin)
+}
+
+/// The light of one light, by a closure: of one that rays find, what the base scatters alone, since facets send rays of their own.
+#[inline(always)]
+fn light_by_closure<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    vertex: &Vertex<R>,
+    (interaction, closure): (&SurfaceInteraction<R>, &Bsdf<R>),
+) -> ShadowRay<R> {
+    if !is_lit(launch) {
+        return ShadowRay::none();
+    }
+    let (sample, origin) = drawn_light(launch, lighting, vertex, interaction);
+    let value = if sample.density.over.eq(R::splat(0.0)) {
+        closure.eval(interaction, sample.direction).value
+    } else {
+        closure.eval_base(interaction, sample.direction)
+    };
+    let light = value.times(sample.light).map(|c| c.flush(FAINT));
+    let passes = !interaction.faces(sample.direction);
+    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { origin };
+    vertex.asks(launch, (interaction, origin), &sample, light)
+}
+
 /// The light of one light, by Whitted's model over pi.
 #[inline(always)]
 fn sampled_light<R: Scalar>(
@@ -63,13 +139,10 @@ fn sampled_light<R: Scalar>(
     surface: &Surface<R>,
 ) -> ShadowRay<R> {
     let (path, effects) = (&vertex.path, launch.spec.effects);
-    if !effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) || launch.frame.emitters == 0 {
+    if !is_lit(launch) {
         return ShadowRay::none();
     }
-    let number = path.counts().1;
-    let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
-    let origin = interaction.offset_ray_origin(interaction.normal);
-    let sample = EmitterSample::new(launch, lighting, origin, decisions.x, (places.z, places.w));
+    let (sample, origin) = drawn_light(launch, lighting, vertex, interaction);
     if !interaction.faces(sample.direction) {
         return ShadowRay::none();
     }

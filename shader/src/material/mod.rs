@@ -169,9 +169,12 @@ fn tangent<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) 
     let across = sum - normal * normal.dot(sum);
     let (unit, length) = across.map(|c| c.flush(SMALL)).normalised();
     // Along the normal there is no tangent.
-    let none = length.lt(R::splat(1.0 / 1024.0));
+    let none = length.lt(R::splat(LEAST_TANGENT));
     (V3::select(none, V3::zero(), unit), R::splat(f32::from_bits(a.w)))
 }
+
+/// The least sine between a tangent and a normal.
+const LEAST_TANGENT: f32 = 1.0 / 1024.0;
 
 /// The axes of a surface's frame: tangent, bitangent and normal, of unit length.
 #[inline(always)]

@@ -71,7 +71,7 @@ impl<R: Scalar> Covering<R> {
             }
         }
         if effects.has(Effects::COLOURED) {
-            covering.base = covering.base.times(place.colour(effects, textures).colour);
+            covering.base = covering.base.times(place.colour(effects, textures));
         }
         covering
     }

@@ -1,6 +1,6 @@
 //! Texels to a value at a place.
 
-use super::Textures;
+use super::{Place, Textures};
 use crate::buffer::read;
 use crate::data::{Launch, TextureMap};
 use crate::real::{Real, Scalar, V3};
@@ -15,13 +15,6 @@ pub struct Texel<R: Real> {
 }
 
 impl<R: Real> Texel<R> {
-    /// White and opaque.
-    #[inline(always)]
-    pub fn white() -> Self {
-        let one = R::splat(1.0);
-        Texel { colour: V3::new(one, one, one), alpha: one }
-    }
-
     #[inline(always)]
     fn mix(self, other: Self, share: R) -> Self {
         Texel {
@@ -115,6 +108,25 @@ pub fn sample<R: Scalar>(
     let (left, right) =
         (level.texel(texels, flags, (x.first, y.second)), level.texel(texels, flags, (x.second, y.second)));
     above.mix(left.mix(right, x.share), y.share)
+}
+
+/// The opacity of the finest level alone, of the four texels around: what the kernels that follow rays hold of a texture.
+#[inline(always)]
+pub fn opacity<R: Scalar>(textures: &Textures<'_>, map: u32, place: &Place<R>) -> R {
+    let map = read(textures.textures, map - 1);
+    let (flags, start, width) = (map.place.w, map.place.x, map.place.y);
+    if flags & TextureMap::FLOATS != 0 {
+        return R::splat(1.0);
+    }
+    let (u, v) = place.coordinates(textures, &map);
+    let (wrap_u, wrap_v) = ((flags >> TextureMap::WRAP_SHIFT) & 3, (flags >> (TextureMap::WRAP_SHIFT + 2)) & 3);
+    let (x, y) = (Axis::new(u, width, wrap_u), Axis::new(v, map.place.z, wrap_v));
+    let (upper, lower) = (start + y.first * width, start + y.second * width);
+    let corner = |word: u32| share::<R>(read(textures.texels, word) >> 24);
+    let (a, b) = (corner(upper + x.first), corner(upper + x.second));
+    let (c, d) = (corner(lower + x.first), corner(lower + x.second));
+    let (above, below) = (a + (b - a) * x.share, c + (d - c) * x.share);
+    above + (below - above) * y.share
 }
 
 /// The level whose texels are nearest in size to a footprint: each is twice as wide as those of the one before.

@@ -7,7 +7,7 @@ mod filter;
 
 pub use cone::Cone;
 pub use covering::Covering;
-pub use filter::{Texel, sample};
+pub use filter::{Texel, opacity, sample};
 
 use crate::buffer::read;
 use crate::data::{Colours, Effects, Launch, TexCoords, TextureMap};
@@ -67,16 +67,27 @@ impl<R: Scalar> Place<R> {
         (of(map.u), of(map.v))
     }
 
-    /// The vertices' colour and opacity there.
+    /// The vertices' opacity there.
     #[inline(always)]
-    pub fn colour(&self, effects: Effects, textures: &Textures<'_>) -> Texel<R> {
+    pub fn opacity(&self, effects: Effects, textures: &Textures<'_>) -> R {
         if !effects.has(Effects::COLOURED) {
-            return Texel::white();
+            return R::splat(1.0);
+        }
+        let Colours { a, b, c } = read(textures.colours, self.index);
+        let number = |bits: u32| R::splat(f32::from_bits(bits));
+        self.weighted(number(a.w), number(b.w), number(c.w))
+    }
+
+    /// The vertices' colour there.
+    #[inline(always)]
+    pub fn colour(&self, effects: Effects, textures: &Textures<'_>) -> V3<R> {
+        if !effects.has(Effects::COLOURED) {
+            let one = R::splat(1.0);
+            return V3::new(one, one, one);
         }
         let Colours { a, b, c } = read(textures.colours, self.index);
         let number = |bits: u32| R::splat(f32::from_bits(bits));
         let channel = |a, b, c| self.weighted(number(a), number(b), number(c));
-        let colour = V3::new(channel(a.x, b.x, c.x), channel(a.y, b.y, c.y), channel(a.z, b.z, c.z));
-        Texel { colour, alpha: channel(a.w, b.w, c.w) }
+        V3::new(channel(a.x, b.x, c.x), channel(a.y, b.y, c.y), channel(a.z, b.z, c.z))
     }
 }

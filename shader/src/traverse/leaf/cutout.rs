@@ -6,7 +6,7 @@ use crate::ray::Ray;
 use crate::real::Real;
 use crate::sampler::{hash, unit};
 use crate::scene::LaunchContext;
-use crate::texture::{Place, Textures};
+use crate::texture::{Place, Textures, opacity as opacity_of};
 
 /// How opaque materials are ([`Effects::CUTOUT`]).
 #[derive(Clone, Copy, Default)]
@@ -45,10 +45,10 @@ impl Cutout<'_> {
     ) -> bool {
         let mask = read(self.opacities, triangle.material()).mask;
         let place = Place { index, weights, count: launch.frame.vertices };
-        let (effects, launched) = (launch.spec.effects, launch.spec.launch);
-        let mut opacity = f32::from_bits(mask.x) * place.colour(effects, &self.textures).alpha;
+        let effects = launch.spec.effects;
+        let mut opacity = f32::from_bits(mask.x) * place.opacity(effects, &self.textures);
         if effects.has(Effects::TEXTURED) && mask.z != 0 {
-            opacity *= self.textures.at(launched, mask.z, &place, 0.0f32).1.alpha;
+            opacity *= opacity_of(&self.textures, mask.z, &place);
         }
         let least = f32::from_bits(mask.y);
         if least >= 0.0 {

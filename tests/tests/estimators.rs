@@ -2,7 +2,9 @@
 //! that seeds tell.
 
 use eyerays::film::Film;
-use eyerays::scene::{Direct, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays::scene::{
+    Direct, Environment, Integrator, Light, Physical, Sampler, Scene, Settings, Texels, Texture, Transport,
+};
 use eyerays_tests::{by, on_cpu, pack, shipped};
 use glam::Vec3;
 
@@ -94,6 +96,37 @@ fn lights_without_extent_beside_a_lamp() {
     lamp.expect("one is no mirror").emission = Vec3::splat(0.5);
     scene.settings.transport.integrator = Integrator::Path;
     assert_scene(&scene);
+}
+
+/// A scene below a picture of 16 x 8 texels, one of which is bright; a ball and the floor are of rough materials.
+fn below(column: usize, row: usize) -> Scene {
+    let mut texels = vec![[0.02, 0.03, 0.05]; 16 * 8];
+    texels[row * 16 + column] = [40.0, 35.0, 30.0];
+    let texture = Texture { name: "sky".into(), width: 16, height: 8, texels: Texels::Floats(texels) };
+    let mut scene = shipped("lights");
+    scene.lights.clear();
+    scene.environment = Some(Environment { texture: texture.into(), rotation: 25.0, scale: 0.5, visible: true });
+    let rough = Physical { base: Vec3::new(0.8, 0.5, 0.3), roughness: 0.4, ..Physical::default() };
+    let metal = Physical { metallic: 1.0, roughness: 0.3, anisotropy: 0.5, ..rough };
+    for (material, physical) in scene.materials.iter_mut().zip([rough, metal].into_iter().cycle()) {
+        material.physical = Some(physical);
+    }
+    scene.settings.transport.integrator = Integrator::Path;
+    scene
+}
+
+/// Also where the bright texel touches a pole: its directions are few, and its neighbours all around.
+#[test]
+fn light_of_an_environment_from_any_side() {
+    for (column, row) in [(9, 3), (3, 0), (12, 7)] {
+        let scene = below(column, row);
+        let settings = Settings { bounces: 2, ..settings(&scene) };
+        let power = estimate(&scene, by(Direct::Power, settings));
+        for direct in [Direct::Light, Direct::Surface] {
+            let what = format!("texel ({column}, {row}), power and {direct:?}");
+            assert_alike(&what, &power, &estimate(&scene, by(direct, settings)));
+        }
+    }
 }
 
 /// By another integrator.

@@ -3,6 +3,8 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
+
 use super::budget::Budget;
 use super::map::Images;
 use super::obj::{self, Obj};
@@ -84,7 +86,7 @@ impl<'p> Files<'p> {
     }
 }
 
-/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default; the other arguments are those of
+/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other arguments are those of
 /// [`obj::load`].
 ///
 /// # Errors
@@ -94,7 +96,12 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
         return obj::load(path, budget, images, is_covered);
     }
     let Ply { mesh, warnings } = ply::load(path, budget)?;
-    Ok(Obj { mesh, materials: part::plain(), warnings, libraries: Vec::new() })
+    let mut materials = part::plain();
+    if !mesh.colours.is_empty() {
+        // Vertices say what colour it is.
+        materials[0].1.diffuse = Some(Vec3::ONE);
+    }
+    Ok(Obj { mesh, materials, warnings, libraries: Vec::new() })
 }
 
 /// Does the path end like this, in capitals or not?

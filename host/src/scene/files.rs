@@ -3,7 +3,10 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use glam::Vec3;
+
 use super::budget::Budget;
+use super::map::Images;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
 use super::table::Table;
@@ -15,6 +18,10 @@ pub struct Files<'p> {
     folder: &'p Path,
     /// What is left for the geometry that is not placed yet.
     pub budget: Budget,
+    /// The pictures of all.
+    pub images: Images,
+    /// Do materials of the scene file cover meshes with textures?
+    pub is_covered: bool,
     meshes: HashMap<PathBuf, Obj>,
     spheres: HashMap<PathBuf, Vec<Sphere>>,
     /// What was ignored in them.
@@ -26,8 +33,16 @@ pub struct Files<'p> {
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names, all within the budget.
     pub fn new(folder: &'p Path, budget: Budget) -> Self {
-        let (meshes, spheres) = (HashMap::new(), HashMap::new());
-        Files { folder, budget, meshes, spheres, warnings: Vec::new(), paths: Vec::new() }
+        Files {
+            folder,
+            budget,
+            images: Images::new(folder),
+            is_covered: false,
+            meshes: HashMap::new(),
+            spheres: HashMap::new(),
+            warnings: Vec::new(),
+            paths: Vec::new(),
+        }
     }
 
     /// Where the file of a table's key `file` lies.
@@ -48,7 +63,7 @@ impl<'p> Files<'p> {
     /// Those of [`read_mesh`].
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
-            let mut obj = read_mesh(path, self.budget)?;
+            let mut obj = read_mesh(path, self.budget, &mut self.images, self.is_covered)?;
             self.warnings.append(&mut obj.warnings);
             self.paths.push(path.to_owned());
             self.paths.append(&mut obj.libraries);
@@ -71,16 +86,22 @@ impl<'p> Files<'p> {
     }
 }
 
-/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default.
+/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other arguments are those of
+/// [`obj::load`].
 ///
 /// # Errors
 /// Those of [`obj::load`] and [`ply::load`].
-pub fn read_mesh(path: &Path, budget: Budget) -> Result<Obj> {
+pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
     if !is(path, "ply") {
-        return obj::load(path, budget);
+        return obj::load(path, budget, images, is_covered);
     }
     let Ply { mesh, warnings } = ply::load(path, budget)?;
-    Ok(Obj { mesh, materials: part::plain(), warnings, libraries: Vec::new() })
+    let mut materials = part::plain();
+    if !mesh.colours.is_empty() {
+        // Vertices say what colour it is.
+        materials[0].1.diffuse = Some(Vec3::ONE);
+    }
+    Ok(Obj { mesh, materials, warnings, libraries: Vec::new() })
 }
 
 /// Does the path end like this, in capitals or not?

@@ -51,7 +51,8 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
 }
 
 fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Obj { mesh, materials, warnings, libraries } = read_mesh(path, budget)?;
+    let mut images = Images::new(file::folder(path));
+    let Obj { mesh, materials, warnings, libraries } = read_mesh(path, budget, &mut images, false)?;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let placed = Placed { name, geometry: Geometry::Mesh(mesh), materials, material: None };
     let mut merge = Merge::default();
@@ -62,7 +63,7 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         spheres,
         disks,
         parts,
-        files: libraries,
+        files: libraries.into_iter().chain(images.paths()).collect(),
         materials,
         lights: frame::lights(),
         cameras: Vec::new(),
@@ -113,13 +114,13 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     let mut table = Source::new(path, text(path, bytes)?).parse()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
-    let mut images = Images::new(file::folder(path));
-    let background = table.table("background")?.map(|table| document::background(table, &mut images));
+    let mut files = Files::new(file::folder(path), budget);
+    let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
     let ambient = table.triple("ambient", Range::AMOUNT)?;
     let cameras = document::cameras(table.tables("camera")?.unwrap_or_default())?;
     let lights = table.tables("light")?.map(document::lights).transpose()?;
-    let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut images)?;
+    let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();
     // A section's misspelt name is a likelier fault than a missing section.
     table.done()?;
@@ -127,7 +128,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         let fault = "there is no [[mesh]]; add one with a file or a shape";
         return Err(Error::file(path, fault));
     }
-    let mut files = Files::new(file::folder(path), budget);
+    files.is_covered = overrides.values().any(Override::has_maps);
     let Merged { mesh, spheres, disks, parts, materials } = merge(meshes, &overrides, &mut files)?.finish();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
@@ -136,7 +137,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         spheres,
         disks,
         parts,
-        files: files.paths.into_iter().chain(images.paths()).collect(),
+        files: files.paths.into_iter().chain(files.images.paths()).collect(),
         materials,
         // An environment is light enough.
         lights: lights.unwrap_or_else(|| if environment.is_some() { Vec::new() } else { frame::lights() }),

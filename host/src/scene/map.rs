@@ -13,15 +13,16 @@ use crate::error::Result;
 use crate::image::read_texture;
 
 /// Pictures already read, since materials share them.
-pub struct Images<'p> {
-    folder: &'p Path,
+pub struct Images {
+    folder: PathBuf,
     textures: HashMap<PathBuf, Arc<Texture>>,
+    opacities: HashMap<PathBuf, Arc<Texture>>,
 }
 
-impl<'p> Images<'p> {
-    /// The pictures that a file in `folder` names.
-    pub fn new(folder: &'p Path) -> Self {
-        Images { folder, textures: HashMap::new() }
+impl Images {
+    /// The pictures that a file in `folder` names, and those that its meshes do.
+    pub fn new(folder: &Path) -> Self {
+        Images { folder: folder.to_owned(), textures: HashMap::new(), opacities: HashMap::new() }
     }
 
     /// The picture of a name, relative to the folder.
@@ -29,12 +30,32 @@ impl<'p> Images<'p> {
     /// # Errors
     /// Those of [`read_texture`].
     pub fn texture(&mut self, name: &str) -> Result<Arc<Texture>> {
-        let path = self.folder.join(name);
-        if let Some(texture) = self.textures.get(&path) {
+        self.at(&self.folder.join(name))
+    }
+
+    /// The picture of a path.
+    ///
+    /// # Errors
+    /// Those of [`read_texture`].
+    pub fn at(&mut self, path: &Path) -> Result<Arc<Texture>> {
+        if let Some(texture) = self.textures.get(path) {
             return Ok(texture.clone());
         }
-        let texture = Arc::new(read_texture(&path)?);
-        self.textures.insert(path, texture.clone());
+        let texture = Arc::new(read_texture(path)?);
+        self.textures.insert(path.to_owned(), texture.clone());
+        Ok(texture)
+    }
+
+    /// The [opacity](Texture::opacity) of the picture of a path.
+    ///
+    /// # Errors
+    /// Those of [`read_texture`].
+    pub fn opacity_at(&mut self, path: &Path) -> Result<Arc<Texture>> {
+        if let Some(texture) = self.opacities.get(path) {
+            return Ok(texture.clone());
+        }
+        let texture = Arc::new(self.at(path)?.opacity());
+        self.opacities.insert(path.to_owned(), texture.clone());
         Ok(texture)
     }
 

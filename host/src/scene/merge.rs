@@ -29,6 +29,11 @@ impl Override {
         (!self.used.get()).then(|| self.idle.clone())
     }
 
+    /// Does it have textures?
+    pub fn has_maps(&self) -> bool {
+        self.fields.maps.all().next().is_some()
+    }
+
     fn over(&self, fields: Fields) -> Fields {
         self.used.set(true);
         self.fields.clone().over(fields)

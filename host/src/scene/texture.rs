@@ -189,6 +189,27 @@ impl Texture {
         odd.map_or(Ok(()), |odd| Err(Error::new(fault(odd))))
     }
 
+    /// Does any texel let something through?
+    pub fn has_opacity(&self) -> bool {
+        match &self.texels {
+            Texels::Bytes(bytes) => bytes.iter().any(|texel| texel[3] < u8::MAX),
+            Texels::Floats(_) => false,
+        }
+    }
+
+    /// Its opacity in every channel: that of its texels where it [has](Texture::has_opacity) one, and else their red.
+    pub fn opacity(&self) -> Texture {
+        let channel = if self.has_opacity() { 3 } else { 0 };
+        let texels = match &self.texels {
+            Texels::Bytes(bytes) => bytes.iter().map(|texel| [texel[channel]; 4]).collect(),
+            Texels::Floats(floats) => {
+                let share = |red: f32| (f64::from(red).min(1.0) * 255.0).round() as u8;
+                floats.iter().map(|&[red, ..]| [share(red); 4]).collect()
+            }
+        };
+        Texture { name: self.name.clone(), texels: Texels::Bytes(texels), ..*self }
+    }
+
     /// Refuses a size that no texture may have.
     ///
     /// # Errors

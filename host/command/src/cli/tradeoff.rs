@@ -16,7 +16,7 @@ use crate::tradeoff::{self, Axes, Plan, Record, Report, Subject, Wish};
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Integrator, Sampler, Settings};
+use eyerays::scene::{Filter, Integrator, Sampler, Settings};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -101,6 +101,9 @@ struct Tried {
     /// Where in a pixel its samples lie [default: the scene's, and where light is sampled all that draw]
     #[arg(long, value_parser = choice::<Sampler>(), value_delimiter = ',')]
     sampler: Vec<Sampler>,
+    /// What a ray sees of a texture [default: the scene's, and where it has textures all]
+    #[arg(long, value_parser = choice::<Filter>(), value_delimiter = ',')]
+    filter: Vec<Filter>,
     /// Samples along a pixel's edge; the reference has the most [default: the scene's and 1,2,4; 1,2 with --quick]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     samples: Vec<u32>,
@@ -314,6 +317,7 @@ impl Tried {
         let samples: Vec<_> = edges.chain(self.spp.iter().map(|&spp| (1, spp))).collect();
         replace(&mut axes.samples, &samples);
         replace(&mut axes.samplers, &self.sampler);
+        replace(&mut axes.filters, &self.filter);
         replace(&mut axes.bounces, &self.bounces);
         replace(&mut axes.min_contributions, &self.min_contribution);
         replace(&mut axes.roulettes, &self.roulette);

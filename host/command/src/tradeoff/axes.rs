@@ -2,12 +2,12 @@
 
 use glam::Vec3;
 
-use super::Setting;
 use super::setting::has_tree;
+use super::{Axis, Setting};
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::Precision;
-use eyerays::scene::{Integrator, Material, Sampler, Scene, Settings, Transport};
+use eyerays::scene::{Filter, Integrator, Material, Sampler, Scene, Settings, Transport};
 
 /// Samples along a pixel's edge that are tried unless others are asked for.
 const SAMPLES: [u32; 3] = [4, 2, 1];
@@ -39,6 +39,8 @@ pub struct Axes {
     pub integrators: Vec<Integrator>,
     /// Where in a pixel its samples lie, the most even ones first.
     pub samplers: Vec<Sampler>,
+    /// How textures are filtered, those that tell most of a texture first.
+    pub filters: Vec<Filter>,
     /// Samples along a pixel's edge and of a pixel, as [`Setting`] has them; the most first.
     pub samples: Vec<(u32, u32)>,
     /// Limits of bounces, the highest first.
@@ -51,77 +53,10 @@ pub struct Axes {
     pub clamps: Vec<f32>,
 }
 
-/// A part of a setting.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// Precision with its triangle test.
-    Arithmetic,
-    /// How rays are followed.
-    Method,
-    /// How the hierarchy and its triangles lie in memory.
-    Layout,
-    /// Quality of the hierarchy.
-    Bvh,
-    /// How light is carried.
-    Integrator,
-    /// Where in a pixel its samples lie.
-    Sampler,
-    /// The number of samples.
-    Samples,
-    /// The limit of bounces.
-    Bounces,
-    /// The least contribution.
-    MinContribution,
-    /// Bounces before Russian roulette.
-    Roulette,
-    /// The most that light adds to a sample.
-    Clamp,
-}
-
-impl Axis {
-    /// All of them.
-    pub const ALL: [Axis; 11] = [
-        Axis::Arithmetic,
-        Axis::Method,
-        Axis::Layout,
-        Axis::Bvh,
-        Axis::Integrator,
-        Axis::Sampler,
-        Axis::Samples,
-        Axis::Bounces,
-        Axis::MinContribution,
-        Axis::Roulette,
-        Axis::Clamp,
-    ];
-    /// Those that leave a picture as it is: the fastest value is the best one.
-    pub const FREE: [Axis; 3] = [Axis::Method, Axis::Layout, Axis::Bvh];
-
-    /// Those that trade accuracy for speed.
-    pub fn trading() -> impl Iterator<Item = Axis> {
-        Axis::ALL.into_iter().filter(|axis| !Axis::FREE.contains(axis))
-    }
-
-    /// `setting` with the value that `other` has on this axis.
-    pub fn taken(self, setting: Setting, other: &Setting) -> Setting {
-        match self {
-            Axis::Arithmetic => Setting { precision: other.precision, triangle: other.triangle, ..setting },
-            Axis::Method => Setting { method: other.method, ..setting },
-            Axis::Layout => Setting { layout: other.layout, ..setting },
-            Axis::Bvh => Setting { bvh: other.bvh, ..setting },
-            Axis::Integrator => Setting { integrator: other.integrator, ..setting },
-            Axis::Sampler => Setting { sampler: other.sampler, ..setting },
-            Axis::Samples => Setting { samples: other.samples, spp: other.spp, ..setting },
-            Axis::Bounces => Setting { bounces: other.bounces, ..setting },
-            Axis::MinContribution => Setting { min_contribution: other.min_contribution, ..setting },
-            Axis::Roulette => Setting { roulette: other.roulette, ..setting },
-            Axis::Clamp => Setting { clamp: other.clamp, ..setting },
-        }
-    }
-}
-
 impl Axes {
     /// What is tried of a scene with these settings of its own, by these integrators (none: its own). Only where rays are
-    /// followed on does it matter how often, and only where light is sampled how that is done.
+    /// followed on does it matter how often, only where light is sampled how that is done, and only where there are textures how
+    /// they are filtered.
     pub fn of(scene: &Scene, own: &Settings, integrators: &[Integrator]) -> Axes {
         let base = Setting::of(own);
         let fast = [TriangleTest::Watertight, TriangleTest::Moller].map(|test| (Precision::Fast, test));
@@ -132,6 +67,7 @@ impl Axes {
             bvhs: vec![Bvh::Medium, Bvh::Fast, Bvh::High],
             integrators: if integrators.is_empty() { vec![base.integrator] } else { integrators.to_vec() },
             samplers: vec![base.sampler],
+            filters: vec![base.filter],
             samples: vec![(base.samples, base.spp)],
             bounces: vec![base.bounces],
             min_contributions: vec![base.min_contribution],
@@ -160,6 +96,9 @@ impl Axes {
         }
         if any(Integrator::chooses_lights) {
             self.clamps.extend(CLAMPS);
+        }
+        if scene.materials.iter().any(|material| material.maps.all().next().is_some()) {
+            self.filters.extend([Filter::Mipmap, Filter::Bilinear, Filter::Nearest]);
         }
         if any(Integrator::samples) {
             self.samplers.extend([Sampler::Sobol, Sampler::Jittered, Sampler::Random]);
@@ -197,6 +136,7 @@ impl Axes {
         };
         self.integrators.sort_by_key(left_out);
         self.samplers.sort_by_key(unevenness);
+        self.filters.sort_by_key(|&filter| lost(filter));
         self.samples.sort_by_key(|&samples| (std::cmp::Reverse(a_pixel(samples)), samples));
         self.bounces.sort_unstable_by(|a, b| b.cmp(a));
         self.min_contributions.sort_unstable_by(f32::total_cmp);
@@ -204,6 +144,7 @@ impl Axes {
         self.clamps.sort_unstable_by(|&a, &b| limit(b).total_cmp(&limit(a)));
         self.integrators.dedup();
         self.samplers.dedup();
+        self.filters.dedup();
         self.samples.dedup_by_key(|samples| a_pixel(*samples));
         self.bounces.dedup();
         self.min_contributions.dedup();
@@ -225,6 +166,7 @@ impl Axes {
             Axis::Bvh => each(&self.bvhs, |bvh| Setting { bvh, ..setting }),
             Axis::Integrator => each(&self.integrators, |integrator| Setting { integrator, ..setting }),
             Axis::Sampler => each(&self.samplers, |sampler| Setting { sampler, ..setting }),
+            Axis::Filter => each(&self.filters, |filter| Setting { filter, ..setting }),
             Axis::Samples => each(&self.samples, |(samples, spp)| Setting { samples, spp, ..setting }),
             Axis::Bounces => each(&self.bounces, |bounces| Setting { bounces, ..setting }),
             Axis::MinContribution => {
@@ -244,7 +186,8 @@ impl Axes {
     }
 
     /// What the reference is rendered with: a scene's own settings, but by the integrator that leaves out least, with
-    /// the most samples that are tried, and no fewer bounces, no higher contribution and no lower limits than is tried.
+    /// the most samples that are tried, and no fewer bounces, no higher contribution, no lower limits and no coarser filter than
+    /// is tried.
     pub fn reference(&self, own: Settings) -> Settings {
         let (samples, spp) = self.samples[0];
         let transport = Transport {
@@ -262,6 +205,7 @@ impl Axes {
             spp,
             bounces: own.bounces.max(self.bounces[0]),
             min_contribution: own.min_contribution.min(self.min_contributions[0]),
+            filter: if lost(own.filter) < lost(self.filters[0]) { own.filter } else { self.filters[0] },
             transport,
             ..own
         }
@@ -276,6 +220,15 @@ impl Axes {
 /// How many samples that is, of a pixel.
 fn a_pixel((edge, spp): (u32, u32)) -> u32 {
     if spp > 0 { spp } else { edge * edge }
+}
+
+/// The order of what filters lose of a texture. Many samples of a pixel make up for what bilinear leaves to them.
+fn lost(filter: Filter) -> u32 {
+    match filter {
+        Filter::Mipmap => 0,
+        Filter::Bilinear => 1,
+        Filter::Nearest => 2,
+    }
 }
 
 /// What a clamp lets pass.

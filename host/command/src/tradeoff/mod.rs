@@ -5,6 +5,7 @@
 //! how far it is from the reference, and a [`Report`] of [`Record`]s is what tables and plots are made of.
 
 mod axes;
+mod axis;
 mod csv;
 mod front;
 mod hits;
@@ -21,7 +22,8 @@ mod table;
 #[cfg(test)]
 mod tests;
 
-pub use axes::{Axes, Axis};
+pub use axes::Axes;
+pub use axis::Axis;
 pub use csv::csv;
 pub use front::front;
 pub use hits::HitErrors;

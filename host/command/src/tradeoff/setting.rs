@@ -6,7 +6,7 @@ use crate::preset::{Preset, name, named};
 use eyerays::method::{Layout, Method, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::{Integrator, Sampler, Settings, Transport};
+use eyerays::scene::{Filter, Integrator, Sampler, Settings, Transport};
 
 /// A value on each [`Axis`](super::Axis).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -32,6 +32,9 @@ pub struct Setting {
     /// Where in a pixel its samples lie.
     #[serde(serialize_with = "named")]
     pub sampler: Sampler,
+    /// How textures are filtered.
+    #[serde(serialize_with = "named")]
+    pub filter: Filter,
     /// Samples along a pixel's edge, 1 where `spp` counts.
     pub samples: u32,
     /// Samples of a pixel; 0 for the square of `samples`.
@@ -57,6 +60,7 @@ impl Setting {
             bvh: Bvh::default(),
             integrator: own.transport.integrator,
             sampler: own.sampler,
+            filter: own.filter,
             samples: if own.spp > 0 { 1 } else { own.samples },
             spp: own.spp,
             bounces: own.bounces,
@@ -73,9 +77,10 @@ impl Setting {
 
     /// A scene's own settings with these instead.
     pub fn settings(&self, own: Settings) -> Settings {
-        let Setting { integrator, sampler, samples, spp, bounces, min_contribution, roulette, clamp, .. } = *self;
+        let Setting { integrator, sampler, filter, samples, spp, bounces, min_contribution, roulette, clamp, .. } =
+            *self;
         let transport = Transport { integrator, roulette, clamp, ..own.transport };
-        Settings { samples, spp, sampler, bounces, min_contribution, transport, ..own }
+        Settings { samples, spp, sampler, filter, bounces, min_contribution, transport, ..own }
     }
 
     /// Can the sampler place so many samples?
@@ -107,7 +112,7 @@ impl Setting {
             bvh: Some(self.bvh),
             integrator: Some(self.integrator),
             sampler: Some(self.sampler),
-            filter: None,
+            filter: Some(self.filter),
             samples: (self.spp == 0).then_some(self.samples),
             spp: (self.spp > 0).then_some(self.spp),
             bounces: Some(self.bounces),
@@ -136,6 +141,7 @@ impl Setting {
             (self.bvh != other.bvh, format!("BVH {}", name(self.bvh))),
             (self.integrator != other.integrator, name(self.integrator)),
             (self.sampler != other.sampler, name(self.sampler)),
+            (self.filter != other.filter, name(self.filter)),
             ((self.samples, self.spp) != (other.samples, other.spp), samples),
             (self.bounces != other.bounces, counted(self.bounces, "bounce")),
             (self.min_contribution != other.min_contribution, format!("contribution {}", share(self.min_contribution))),
@@ -156,6 +162,7 @@ impl Setting {
             ("bvh", name(self.bvh)),
             ("integrator", name(self.integrator)),
             ("sampler", name(self.sampler)),
+            ("filter", name(self.filter)),
             if self.spp > 0 { ("spp", self.spp.to_string()) } else { ("samples", self.samples.to_string()) },
             ("bounces", self.bounces.to_string()),
         ];

@@ -42,6 +42,7 @@ fn sections(report: &Report) -> Vec<(&'static str, Vec<&Record>)> {
         (Some(Axis::Bvh), "Quality of the hierarchy"),
         (Some(Axis::Integrator), "Integrator"),
         (Some(Axis::Sampler), "Sampler"),
+        (Some(Axis::Filter), "Filter of textures"),
         (Some(Axis::Samples), "Samples"),
         (Some(Axis::Bounces), "Bounces"),
         (Some(Axis::MinContribution), "Least contribution"),

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 use super::super::Unplaced;
 use super::super::lines::{self, Lines, NOT_UTF8};
@@ -100,6 +100,8 @@ impl Notes {
 pub(super) struct Block {
     pub positions: Vec<Vec3>,
     pub normals: Vec<Vec3>,
+    /// Of textures, down.
+    pub coordinates: Vec<Vec2>,
     pub faces: Faces,
     pub events: Vec<Event>,
     pub notes: Notes,
@@ -113,6 +115,7 @@ impl Block {
         let mut block = Block {
             positions: Vec::new(),
             normals: Vec::new(),
+            coordinates: Vec::new(),
             faces: Faces::after(before),
             events: Vec::new(),
             notes: Notes::default(),
@@ -147,7 +150,10 @@ impl Block {
                 self.normals.push(normal(rest)?);
                 self.faces.before.normals += 1;
             }
-            "vt" => self.faces.before.textures += 1,
+            "vt" => {
+                self.coordinates.push(coordinates(rest)?);
+                self.faces.before.textures += 1;
+            }
             "f" | "fo" => self.faces.read(line, rest)?,
             "usemtl" => self.events.push(event(About::Material(rest.to_owned()))),
             "mtllib" => self.events.push(event(About::Libraries(rest.to_owned()))),
@@ -203,6 +209,17 @@ fn normal(rest: &str) -> Unplaced<Vec3> {
     }
     // Exporters write NaN for the normal of a face without area: it is flat.
     Ok(unit(DVec3::from(xyz)))
+}
+
+/// Texture coordinates: up in a file, down in a mesh. A third one is of textures with depth.
+fn coordinates(rest: &str) -> Unplaced<Vec2> {
+    let mut words = lines::words(rest);
+    let Some(u) = words.next() else {
+        return Err(format!("vt takes two numbers, not {rest:?}; add what is missing"));
+    };
+    // One is enough of textures that are a line.
+    let v = words.next().map_or(Ok(0.0), |word| lines::number("vt", word));
+    Ok(Vec2::new(lines::number("vt", u)?, 1.0 - v?))
 }
 
 fn three<'r>(key: &str, rest: &'r str) -> Unplaced<[&'r str; 3]> {

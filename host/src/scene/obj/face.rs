@@ -7,11 +7,12 @@ use super::super::tally::Tally;
 use super::super::{Unplaced, lines};
 use super::block::Before;
 
-/// Numbers from 1; the normal's is 0 where there is none.
+/// Numbers from 1; those of the normal and of the texture coordinates are 0 where there are none.
 #[derive(Clone, Copy)]
 pub(super) struct Corner {
     pub position: u32,
     pub normal: u32,
+    pub coordinates: u32,
 }
 
 /// A face, and where its corners and its triangles end.
@@ -107,12 +108,12 @@ impl Faces {
     fn corner(&mut self, line: usize, word: &str) -> Unplaced<Corner> {
         let mut parts = word.split('/');
         let position = index("vertex", parts.next(), self.before.positions)?;
-        self.extra(line, "texture vertex", parts.next(), self.before.textures)?;
+        let coordinates = self.extra(line, "texture vertex", parts.next(), self.before.textures)?;
         let normal = self.extra(line, "normal", parts.next(), self.before.normals)?;
         if position == 0 || parts.next().is_some() {
             return Err(format!("the corner {word:?} is none of v, v/vt, v//vn and v/vt/vn; correct it"));
         }
-        Ok(Corner { position, normal })
+        Ok(Corner { position, normal, coordinates })
     }
 
     /// As [`index`], of what a face can do without: exporters number normals that they do not write.

@@ -3,6 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use super::super::map::Images;
 use super::super::material::{DEFAULT, Fields};
 use super::super::tally::Tally;
 use super::super::{file, mtl};
@@ -27,6 +28,7 @@ pub(super) struct Warnings {
 pub(super) struct Libraries<'p> {
     /// The mesh file.
     path: &'p Path,
+    images: &'p mut Images,
     materials: Vec<(String, Fields)>,
     by_name: HashMap<String, u32>,
     paths: HashSet<PathBuf>,
@@ -36,11 +38,19 @@ pub(super) struct Libraries<'p> {
     warnings: Vec<String>,
 }
 
+impl Materials {
+    /// Does any of them have textures?
+    pub fn has_maps(&self) -> bool {
+        self.materials.iter().any(|(_, fields)| fields.maps.all().next().is_some())
+    }
+}
+
 impl<'p> Libraries<'p> {
     /// None yet.
-    pub fn new(path: &'p Path) -> Self {
+    pub fn new(path: &'p Path, images: &'p mut Images) -> Self {
         Libraries {
             path,
+            images,
             materials: vec![(DEFAULT.to_owned(), Fields::default())],
             by_name: HashMap::new(),
             paths: HashSet::new(),
@@ -98,7 +108,7 @@ impl<'p> Libraries<'p> {
         if !path.exists() {
             return Ok(false);
         }
-        let library = mtl::load(&path)?;
+        let library = mtl::load(&path, self.images)?;
         // Paths that differ in dots and slashes are equal.
         self.paths.insert(path);
         self.warnings.extend(library.warnings);

@@ -12,7 +12,7 @@ mod vertices;
 
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use memmap2::Mmap;
 use rayon::prelude::*;
 
@@ -22,6 +22,7 @@ use self::library::Libraries;
 use self::vertices::Corners;
 use super::budget::Budget;
 use super::lines::MOST_LINE;
+use super::map::Images;
 use super::material::Fields;
 use super::{Mesh, file};
 use crate::error::{Error, Result};
@@ -36,12 +37,13 @@ pub struct Obj {
     pub libraries: Vec<PathBuf>,
 }
 
-/// Reads a mesh file and the material files it names. A normal is zero where the file has none.
+/// Reads a mesh file, the material files it names and their pictures. A normal is zero where the file has none. It has texture
+/// coordinates where a material of its own files has a texture, or where it `is_covered` by those of others.
 ///
 /// # Errors
 /// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget
 /// has room for.
-pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
+pub fn load(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
     let map = || {
         let file = file::open(path, file::MOST_MESH)?;
         // SAFETY: the mapping is read-only. Another process that changes the file meanwhile changes what is read, and what
@@ -49,16 +51,16 @@ pub fn load(path: &Path, budget: Budget) -> Result<Obj> {
         unsafe { Mmap::map(&file) }.map_err(|error| file::explain(&error))
     };
     let text = map().map_err(|fault: String| Error::file(path, fault))?;
-    parse(path, &text, budget)
+    parse_by(Sizes::USUAL, &text, Found::new(path, budget, images, is_covered))
 }
 
-/// The mesh of a text.
+/// The mesh of a text, with texture coordinates.
+#[cfg(test)]
 pub(super) fn parse(path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
-    parse_by(Sizes::USUAL, path, text, budget)
+    parse_by(Sizes::USUAL, text, Found::new(path, budget, &mut Images::new(file::folder(path)), true))
 }
 
-fn parse_by(sizes: Sizes, path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
-    let mut found = Found::new(path, budget);
+fn parse_by(sizes: Sizes, text: &[u8], mut found: Found) -> Result<Obj> {
     // Memory that was used before is there sooner than new one.
     let mut copies: Vec<Vec<u8>> = Vec::new();
     for window in blocks::of(text, sizes.window) {
@@ -78,9 +80,11 @@ fn parse_by(sizes: Sizes, path: &Path, text: &[u8], budget: Budget) -> Result<Ob
 struct Found<'p> {
     path: &'p Path,
     budget: Budget,
+    is_covered: bool,
     before: Before,
     positions: Vec<Vec3>,
     normals: Vec<Vec3>,
+    coordinates: Vec<Vec2>,
     corners: Corners,
     /// Of every triangle.
     materials: Vec<u32>,
@@ -91,17 +95,19 @@ struct Found<'p> {
 }
 
 impl<'p> Found<'p> {
-    fn new(path: &'p Path, budget: Budget) -> Self {
+    fn new(path: &'p Path, budget: Budget, images: &'p mut Images, is_covered: bool) -> Self {
         Found {
             path,
             budget,
+            is_covered,
             before: Before::default(),
             positions: Vec::new(),
             normals: Vec::new(),
+            coordinates: Vec::new(),
             corners: Corners::default(),
             materials: Vec::new(),
             material: 0,
-            libraries: Libraries::new(path),
+            libraries: Libraries::new(path, images),
             notes: Notes::default(),
         }
     }
@@ -124,6 +130,7 @@ impl<'p> Found<'p> {
         for block in &blocks {
             self.positions.extend_from_slice(&block.positions);
             self.normals.extend_from_slice(&block.normals);
+            self.coordinates.extend_from_slice(&block.coordinates);
         }
         blocks.par_iter_mut().for_each(|block| block.faces.cut(&self.positions));
         for ((block, text), before) in blocks.into_iter().zip(texts).zip(before) {
@@ -158,17 +165,22 @@ impl<'p> Found<'p> {
     /// # Errors
     /// There was no face.
     fn finish(self) -> Result<Obj> {
-        let Found { path, positions, normals, corners, materials, libraries, notes, .. } = self;
+        let Found {
+            path, is_covered, positions, normals, coordinates, mut corners, materials, libraries, notes, ..
+        } = self;
         if corners.len() == 0 {
             let none = || Error::file(path, "there is no face in it; is it a Wavefront OBJ mesh?");
             return Err(notes.left_out(path).unwrap_or_else(none));
         }
         let (libraries, of_libraries) = libraries.finish();
+        if !is_covered && !libraries.has_maps() {
+            corners.uncover();
+        }
         let [latin, others @ ..] = notes.warnings(path);
         let [missing, nameless] = of_libraries.faults;
         let warnings = [latin, missing, nameless].into_iter().chain(others).flatten();
         Ok(Obj {
-            mesh: corners.mesh(&positions, &normals, materials),
+            mesh: corners.mesh(&positions, &normals, &coordinates, materials),
             materials: libraries.materials,
             warnings: of_libraries.warnings.into_iter().chain(warnings).collect(),
             libraries: libraries.paths,

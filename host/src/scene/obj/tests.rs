@@ -5,9 +5,13 @@ use proptest::prelude::*;
 use super::*;
 use crate::scene::tests::{Folder, budget};
 
+fn parse_whole(sizes: Sizes, path: &Path, text: &[u8], bytes: u64) -> Result<Obj> {
+    parse_by(sizes, text, Found::new(path, budget(bytes), &mut Images::new(Path::new("")), true))
+}
+
 /// What was read, or why not, as text.
 fn read(sizes: Sizes, path: &Path, text: &[u8], bytes: u64) -> String {
-    match parse_by(sizes, path, text, budget(bytes)) {
+    match parse_whole(sizes, path, text, bytes) {
         Ok(obj) => format!("{obj:?}"),
         Err(error) => error.to_string(),
     }
@@ -23,6 +27,8 @@ const LINES: &[&str] = &[
     "vn 0 0 2",
     "vn 1 1 nan",
     "vt 0 0",
+    "vt 0.5 1 0",
+    "f 1/-1 2/1/1 3",
     "f 1 2 3",
     "f -1 -2 -3",
     "f 1//1 2//1 3//2",
@@ -49,7 +55,18 @@ const LINES: &[&str] = &[
     "\u{a0}v 1 1 1",
 ];
 /// Statements that end the reading.
-const FAULTS: &[&str] = &["v 1 2", "f 1 2", "f 1 2 999999", "vn 0 x 0", "mtllib", "mtllib ../a.mtl", "f 0 1 2"];
+const FAULTS: &[&str] = &[
+    "v 1 2",
+    "vt",
+    "vt 0 nan",
+    "f 1/99 2 3",
+    "f 1 2",
+    "f 1 2 999999",
+    "vn 0 x 0",
+    "mtllib",
+    "mtllib ../a.mtl",
+    "f 0 1 2",
+];
 
 fn texts() -> impl Strategy<Value = Vec<u8>> {
     let ends = prop::sample::select(vec!["\n", "\r\n", "\n\n"]);
@@ -96,7 +113,7 @@ proptest! {
 fn a_line_that_is_too_long_is_told_where_it_starts() {
     let text = [&b"v 0 0 0\nv "[..], &vec![b' '; 5 << 20], b"\nf 1 1 1\n"].concat();
     for sizes in [Sizes::USUAL, Sizes { window: 1000, block: 100 }] {
-        let error = parse_by(sizes, Path::new("a.obj"), &text[..], budget(1 << 20)).unwrap_err();
+        let error = parse_whole(sizes, Path::new("a.obj"), &text[..], 1 << 20).unwrap_err();
         assert_eq!(error.place().and_then(|(_, line)| line), Some(2), "{error}");
         assert!(error.message().contains("4194304 bytes"), "{error}");
     }

@@ -1,8 +1,9 @@
-//! The vertices of a mesh: a file numbers positions and normals apart, a mesh pairs of them.
+//! The vertices of a mesh: a file numbers positions, normals and texture coordinates apart, a mesh all together.
 
 use std::collections::HashMap;
+use std::hash::Hash;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::super::Mesh;
@@ -15,6 +16,8 @@ pub(super) struct Corners {
     positions: Vec<[u32; 3]>,
     /// Normals from 1, 0 for none; none at all as long as no corner has one.
     normals: Option<Vec<[u32; 3]>>,
+    /// Texture coordinates, likewise.
+    coordinates: Option<Vec<[u32; 3]>>,
 }
 
 /// No vertex yet.
@@ -30,65 +33,102 @@ impl Corners {
     pub fn extend(&mut self, triangles: &[[Corner; 3]]) {
         let before = self.positions.len();
         self.positions.par_extend(triangles.par_iter().map(|triangle| triangle.map(|corner| corner.position)));
-        if self.normals.is_none()
-            && triangles.par_iter().any(|triangle| triangle.iter().any(|corner| corner.normal > 0))
-        {
-            self.normals = Some(vec![[0; 3]; before]);
-        }
-        if let Some(normals) = &mut self.normals {
-            normals.par_extend(triangles.par_iter().map(|triangle| triangle.map(|corner| corner.normal)));
-        }
+        extend(&mut self.normals, before, triangles, |corner| corner.normal);
+        extend(&mut self.coordinates, before, triangles, |corner| corner.coordinates);
     }
 
-    /// The mesh of them, whose vertices are those that are used, each once. A normal is zero where there is none.
-    pub fn mesh(self, positions: &[Vec3], normals: &[Vec3], materials: Vec<u32>) -> Mesh {
-        let Corners { positions: mut triangles, normals: of_corners } = self;
-        let mut vertices = Vertices::of(positions.len());
-        for (i, triangle) in triangles.iter_mut().enumerate() {
-            let of_corners = of_corners.as_ref().map_or([0; 3], |normals| normals[i]);
-            for (corner, normal) in triangle.iter_mut().zip(of_corners) {
-                *corner = vertices.number(*corner, normal);
-            }
+    /// Forgets texture coordinates.
+    pub fn uncover(&mut self) {
+        self.coordinates = None;
+    }
+
+    /// The mesh of them, whose vertices are those that are used, each once. Where there is none, a normal is zero, and texture
+    /// coordinates are.
+    pub fn mesh(self, positions: &[Vec3], normals: &[Vec3], coordinates: &[Vec2], materials: Vec<u32>) -> Mesh {
+        let Corners { positions: mut triangles, normals: of_normals, coordinates: of_coordinates } = self;
+        let normal = |triangle: usize, corner: usize| of_normals.as_ref().map_or(0, |all| all[triangle][corner]);
+        let place = |number: u32| positions[number as usize - 1];
+        let upright = |number: u32| number.checked_sub(1).map_or(Vec3::ZERO, |i| normals[i as usize]);
+        let covered = |number: u32| number.checked_sub(1).map_or(Vec2::ZERO, |i| coordinates[i as usize]);
+        let mut mesh = Mesh { materials, ..Mesh::default() };
+        // Pairs take less than triples of which one number is always 0.
+        if let Some(of_coordinates) = &of_coordinates {
+            let rest = |triangle: usize, corner: usize| (normal(triangle, corner), of_coordinates[triangle][corner]);
+            let vertices = numbered(&mut triangles, positions.len(), rest);
+            mesh.positions = vertices.iter().map(|&(position, _)| place(position)).collect();
+            mesh.normals = of_normals.iter().flat_map(|_| vertices.iter().map(|&(_, (n, _))| upright(n))).collect();
+            mesh.coordinates[0] = vertices.iter().map(|&(_, (_, c))| covered(c)).collect();
+        } else {
+            let vertices = numbered(&mut triangles, positions.len(), normal);
+            mesh.positions = vertices.iter().map(|&(position, _)| place(position)).collect();
+            mesh.normals = of_normals.iter().flat_map(|_| vertices.iter().map(|&(_, n)| upright(n))).collect();
         }
-        let pairs = vertices.pairs;
-        let normal = |&(_, normal): &(u32, u32)| normal.checked_sub(1).map_or(Vec3::ZERO, |i| normals[i as usize]);
-        let mut normals: Vec<Vec3> = of_corners.iter().flat_map(|_| pairs.iter().map(normal)).collect();
-        if normals.iter().all(|&normal| normal == Vec3::ZERO) {
-            normals = Vec::new();
+        if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
+            mesh.normals = Vec::new();
         }
-        let positions = pairs.iter().map(|&(position, _)| positions[position as usize - 1]).collect();
-        Mesh { positions, normals, triangles, materials, ..Mesh::default() }
+        Mesh { triangles, ..mesh }
     }
 }
 
-/// Pairs of a position and a normal, numbered as they come.
-struct Vertices {
-    pairs: Vec<(u32, u32)>,
+/// Adds what the corners of more triangles have to what those before do.
+fn extend(
+    all: &mut Option<Vec<[u32; 3]>>,
+    before: usize,
+    more: &[[Corner; 3]],
+    number: impl Fn(&Corner) -> u32 + Copy + Sync,
+) {
+    if all.is_none() && more.par_iter().any(|triangle| triangle.iter().any(|corner| number(corner) > 0)) {
+        *all = Some(vec![[0; 3]; before]);
+    }
+    if let Some(all) = all {
+        all.par_extend(more.par_iter().map(|triangle| triangle.each_ref().map(number)));
+    }
+}
+
+/// Numbers the vertices of triangles, whose corners are positions so far, and returns them: positions, and the rest of what a
+/// corner of a triangle has.
+fn numbered<E: Copy + Eq + Hash>(
+    triangles: &mut [[u32; 3]],
+    positions: usize,
+    rest: impl Fn(usize, usize) -> E,
+) -> Vec<(u32, E)> {
+    let mut vertices = Vertices::of(positions);
+    for (i, triangle) in triangles.iter_mut().enumerate() {
+        for (j, corner) in triangle.iter_mut().enumerate() {
+            *corner = vertices.number(*corner, rest(i, j));
+        }
+    }
+    vertices.all
+}
+
+/// Vertices of a position and the rest that there is to one, numbered as they come.
+struct Vertices<E> {
+    all: Vec<(u32, E)>,
     /// The first vertex of each position.
     first: Vec<u32>,
-    /// Those of other normals.
-    others: HashMap<(u32, u32), u32>,
+    /// Those of another rest.
+    others: HashMap<(u32, E), u32>,
 }
 
-impl Vertices {
+impl<E: Copy + Eq + Hash> Vertices<E> {
     fn of(positions: usize) -> Self {
-        Vertices { pairs: Vec::new(), first: vec![NONE; positions + 1], others: HashMap::new() }
+        Vertices { all: Vec::new(), first: vec![NONE; positions + 1], others: HashMap::new() }
     }
 
-    fn number(&mut self, position: u32, normal: u32) -> u32 {
-        let next = self.pairs.len() as u32;
+    fn number(&mut self, position: u32, rest: E) -> u32 {
+        let next = self.all.len() as u32;
         let first = &mut self.first[position as usize];
         if *first == NONE {
             *first = next;
-        } else if self.pairs[*first as usize].1 == normal {
+        } else if self.all[*first as usize].1 == rest {
             return *first;
         } else {
-            let number = *self.others.entry((position, normal)).or_insert(next);
+            let number = *self.others.entry((position, rest)).or_insert(next);
             if number != next {
                 return number;
             }
         }
-        self.pairs.push((position, normal));
+        self.all.push((position, rest));
         next
     }
 }

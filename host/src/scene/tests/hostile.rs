@@ -6,12 +6,13 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::budget;
+use crate::scene::map::Images;
 use crate::scene::{load, mtl, obj, xyzr};
 
 /// Words of the format between words of no format.
 fn word() -> impl Strategy<Value = String> {
     prop_oneof![
-        4 => "(v|vn|vt|f|usemtl|mtllib|o|l|newmtl|Kd|d|illum|map_Kd) ",
+        4 => "(v|vn|vt|f|usemtl|mtllib|o|l|newmtl|Kd|d|illum|Pr|Ke|map_Kd -s|norm -bm) ",
         8 => "-?[0-9]{1,2} ",
         3 => "-?[0-9]{0,2}/[0-9]?/-?[0-9]{0,20} ",
         2 => "-?[0-9]\\.[0-9]e-?[0-9]{1,2} ",
@@ -52,6 +53,8 @@ proptest! {
             prop_assert!(mesh.positions.iter().all(|position| position.is_finite()));
             let inside = |&vertex: &u32| (vertex as usize) < mesh.positions.len();
             prop_assert!(mesh.triangles.iter().flatten().all(inside));
+            prop_assert!(mesh.coordinates[0].is_empty() || mesh.coordinates[0].len() == mesh.positions.len());
+            prop_assert!(mesh.coordinates[0].iter().all(|place| place.is_finite()));
             let unit = |n: &Vec3| *n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
             prop_assert!(mesh.normals.iter().all(unit));
             let known = |&material: &u32| (material as usize) < obj.materials.len();
@@ -75,7 +78,7 @@ proptest! {
 
     #[test]
     fn a_material_file_is_refused_or_in_range(bytes in text()) {
-        if let Ok(library) = mtl::parse(Path::new("/nowhere/a.mtl"), &bytes) {
+        if let Ok(library) = mtl::parse(Path::new("/nowhere/a.mtl"), &bytes, &mut Images::new(Path::new("/nowhere"))) {
             for (name, fields) in library.materials {
                 let material = fields.finish(&name);
                 let share = |colour: Vec3| colour == colour.clamp(Vec3::ZERO, Vec3::ONE);

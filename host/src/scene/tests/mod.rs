@@ -6,6 +6,7 @@ mod obj;
 mod ply;
 mod round;
 mod shipped;
+mod textures;
 mod toml;
 
 use std::fs;

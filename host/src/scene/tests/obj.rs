@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
+use crate::scene::map::Images;
 use crate::scene::{Mesh, Scene, mtl, obj};
 
 fn mesh(text: &str) -> Mesh {
@@ -25,6 +26,9 @@ const REFUSED: &[(&str, usize, &str)] = &[
     ("v 1 2 inf\n", 1, "no finite number"),
     ("# 1\n\nv 1 2 1e39\n", 3, "no finite number"),
     ("v 1 2 # 3\n", 1, "three numbers"),
+    ("vt\n", 1, "two numbers"),
+    ("vt 0 nan\n", 1, "no finite number"),
+    ("vt x 0\n", 1, "no number"),
     ("vn 1 2\n", 1, "three numbers"),
     ("vn 1 2 x\n", 1, "no number"),
     ("v 0 0 0\nf 1 1 2\n", 2, "vertex 2 does not exist, 1 precede"),
@@ -256,19 +260,24 @@ fn materials_that_make_no_sense_are_refused() {
         ("newmtl m\nillum\n", 2, "0 to 10"),
         ("newmtl m\nmap_Kd -s 1 1 1 ../a.png\n", 2, "outside"),
         ("newmtl m\nbump /a.png\n", 2, "outside"),
+        ("map_Kd a.png\n", 1, "before newmtl"),
+        ("newmtl m\nnorm -bm a.png\n", 2, "-bm holds \"a.png\", which is no number"),
+        ("newmtl m\nmap_Kd -o 1 inf a.png\n", 2, "-o holds inf"),
+        ("newmtl m\nmap_Kd -s 1 3e38 -o 0 3e38 a.png\n", 2, "lead out of single precision"),
+        ("newmtl m\nKe 1 x\n", 2, "no number"),
     ] {
-        let error = mtl::parse(Path::new("a.mtl"), text.as_bytes()).unwrap_err();
+        let error = mtl::parse(Path::new("a.mtl"), text.as_bytes(), &mut Images::new(Path::new(""))).unwrap_err();
         assert_refused(&error, "a.mtl", Some(line), why);
     }
 }
 
 #[test]
-fn textures_and_clamped_numbers_are_warned_of_once_a_file() {
-    let (scene, warnings) = with_material("newmtl m\nKd 2 -1 0.5\nKs 0.5\nNi 0\nmap_Kd a.png\nmap_Ks b c.png\n");
+fn unused_pictures_and_clamped_numbers_are_warned_of_once_a_file() {
+    let (scene, warnings) = with_material("newmtl m\nKd 2 -1 0.5\nKs 0.5\nNi 0\nmap_Ns a.png\nmap_Ks b c.png\n");
     assert_eq!(scene.materials[0].diffuse, Vec3::new(1.0, 0.0, 0.5));
     assert_eq!(scene.materials[0].specular, Vec3::splat(0.5));
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].contains("a.mtl:5: map_Kd and 1 more ignored"), "{warnings:?}");
+    assert!(warnings[0].contains("a.mtl:5: map_Ns and 1 more ignored"), "{warnings:?}");
     assert!(warnings[1].contains("a.mtl:2: Kd and 1 more out of range"), "{warnings:?}");
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
@@ -78,6 +78,55 @@ fn strips_turn_and_end_and_normals_have_unit_length() {
     assert_eq!(ply.warnings, ["a.ply: the element \"edge\" is ignored: only polygons are read"]);
 }
 
+/// A triangle whose vertices have more properties than places.
+fn with(properties: &str, vertices: [&str; 3]) -> ply::Ply {
+    let vertex = |rest: &str| format!("0 1 2 {rest}\n");
+    let text = format!(
+        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n{properties}\
+         element face 1\nproperty list uchar int vertex_indices\nend_header\n{}3 0 1 2\n",
+        vertices.map(vertex).concat()
+    );
+    read(text.as_bytes())
+}
+
+#[test]
+fn coordinates_run_down_by_any_of_their_names() {
+    for [u, v] in [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]] {
+        let mesh = with(&format!("property float {u}\nproperty float {v}\n"), ["0 0", "0.5 1", "2 -1"]).mesh;
+        let wanted = [[0.0, 1.0], [0.5, 0.0], [2.0, 2.0]].map(Vec2::from);
+        assert_eq!(mesh.coordinates, [wanted.to_vec(), Vec::new()]);
+    }
+    assert_eq!(with("property float u\n", ["0", "1", "2"]).mesh.coordinates[0], []);
+}
+
+#[test]
+fn colours_are_srgb_in_bytes_and_linear_in_floats() {
+    let colours = |kind: &str, more: &str| {
+        ["red", "green", "blue"].map(|name| format!("property {kind} {name}\n")).concat() + more
+    };
+    let bytes = with(&colours("uchar", "property uchar alpha\n"), ["255 0 0 255", "128 128 128 51", "0 0 255 0"]);
+    let grey = 0.215_860_5;
+    let wanted = [[1.0, 0.0, 0.0, 1.0], [grey, grey, grey, 0.2], [0.0, 0.0, 1.0, 0.0]].map(Vec4::from);
+    assert_eq!((bytes.mesh.colours, bytes.warnings.len()), (wanted.to_vec(), 0));
+    let floats = with(&colours("float", ""), ["0.25 0.5 1", "-1 2 nan", "1 1 1"]).mesh;
+    let wanted = [[0.25, 0.5, 1.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]].map(Vec4::from);
+    assert_eq!(floats.colours, wanted);
+    let foreign = with(&colours("int", ""), ["255 0 0", "0 0 0", "0 0 0"]);
+    assert_eq!(foreign.mesh.colours, []);
+    assert!(foreign.warnings[0].contains("colours are ignored: make them uchar"), "{:?}", foreign.warnings);
+}
+
+#[test]
+fn beneath_colours_a_mesh_is_white() {
+    let text = String::from_utf8(as_text()).unwrap();
+    let vertex = "property uchar quality\n";
+    let more = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
+    let text = text.replace(vertex, more).replace(" 7\n", " 7 8 9\n");
+    let folder = Folder::new(&[("a.ply", text.as_bytes())]);
+    let (scene, warnings) = folder.load("a.ply").unwrap();
+    assert_eq!((scene.materials[0].diffuse, scene.mesh.colours.len(), warnings.len()), (Vec3::ONE, 5, 0));
+}
+
 #[test]
 fn it_is_a_scene_and_a_mesh_of_a_scene() {
     let toml = b"[[mesh]]\nfile = \"a.ply\"\nmaterial = \"red\"\n[[material]]\nname = \"red\"\ndiffuse = [1, 0, 0]\n";
@@ -92,6 +141,7 @@ fn it_is_a_scene_and_a_mesh_of_a_scene() {
 #[test]
 fn what_makes_no_sense_is_refused_in_a_line() {
     let spoiled = |from: &str, to: &str| String::from_utf8(as_text()).unwrap().replace(from, to).into_bytes();
+    let covered = String::from_utf8(spoiled("uchar quality", "float s\nproperty float t")).unwrap();
     let mut nowhere = little();
     let height = header("binary_little_endian").len() + 5 * 13 + 4;
     nowhere[height..height + 4].copy_from_slice(&f32::NAN.to_le_bytes());
@@ -106,6 +156,7 @@ fn what_makes_no_sense_is_refused_in_a_line() {
         (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
         (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "was it written to the end"),
         (spoiled("float z", "float w"), "have no x, y and z"),
+        (covered.replace(" 7\n", " 0 nan\n").into_bytes(), "vertex 0, counted from 0, has the texture coordinates"),
         (spoiled("vertex_indices", "corners"), "has no list vertex_indices"),
         (spoiled("float x", "int8 x"), ""),
         (little()[..little().len() - 3].to_vec(), "was it written to the end"),

@@ -6,7 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::error::Error;
-use eyerays::scene::{Integrator, Material, Sampler, Settings, Transport};
+use eyerays::scene::{Filter, Integrator, Map, Material, Placement, Sampler, Settings, Texels, Texture, Transport};
 
 /// Is it beaten?
 fn is_beaten(point: (f64, f64), all: &[(f64, f64)]) -> bool {
@@ -219,6 +219,27 @@ fn where_light_is_sampled_it_is_tried_how() {
     let mut hurried = path.clone();
     hurried.hurry(&own);
     assert_eq!(hurried.samples, [(1, 1)]);
+}
+
+#[test]
+fn filters_are_tried_where_there_are_textures_and_the_reference_loses_least() {
+    let plain = scene(0.0);
+    let own = Settings { filter: Filter::Bilinear, ..plain.settings };
+    assert_eq!(Axes::of(&plain, &own, &[]).filters, [Filter::Bilinear]);
+    let mut covered = plain;
+    let texels = Texels::Bytes(vec![[255; 4]]);
+    let texture = Texture { name: "white".to_owned(), width: 1, height: 1, texels }.into();
+    covered.materials[0].maps.base = Some(Map { texture, placement: Placement::default() });
+    let axes = Axes::of(&covered, &own, &[]);
+    assert_eq!(axes.filters, [Filter::Mipmap, Filter::Bilinear, Filter::Nearest]);
+    assert_eq!(axes.reference(own).filter, Filter::Mipmap);
+    let axes = Axes { filters: vec![Filter::Nearest], ..axes };
+    assert_eq!(axes.reference(own).filter, Filter::Bilinear);
+    let base = axes.base(Setting::of(&own));
+    let nearest = Setting { filter: Filter::Nearest, ..Setting::of(&own) };
+    assert_eq!((base, nearest.beside(&Setting::of(&own))), (nearest, "nearest".to_owned()));
+    assert_eq!(nearest.settings(own).filter, Filter::Nearest);
+    assert_eq!(nearest.preset(eyerays::render::DeviceWish::Cpu).filter, Some(Filter::Nearest));
 }
 
 /// Nothing is tried that can not be or that makes no difference.

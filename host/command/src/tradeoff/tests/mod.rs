@@ -6,7 +6,7 @@ use super::*;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::Precision;
-use eyerays::scene::{Integrator, Sampler};
+use eyerays::scene::{Filter, Integrator, Sampler};
 
 /// The default for four samples, eight bounces and 1/1024.
 fn setting() -> Setting {
@@ -18,6 +18,7 @@ fn setting() -> Setting {
         bvh: Bvh::Medium,
         integrator: Integrator::Whitted,
         sampler: Sampler::Regular,
+        filter: Filter::Mipmap,
         samples: 4,
         spp: 0,
         bounces: 8,
@@ -58,6 +59,7 @@ fn axes() -> Axes {
         bvhs: vec![Bvh::Medium, Bvh::Fast, Bvh::High],
         integrators: vec![Integrator::Whitted],
         samplers: vec![Sampler::Regular],
+        filters: vec![Filter::Mipmap],
         samples: vec![(4, 0), (2, 0), (1, 0)],
         bounces: vec![8, 2, 0],
         min_contributions: vec![1.0 / 1024.0, 1.0 / 64.0],

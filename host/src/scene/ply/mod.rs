@@ -1,12 +1,15 @@
 //! Meshes in the Polygon File Format, as text or binary numbers of either order.
 
+mod element;
+
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
 
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Header, Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{ElementDef, Header};
 
+use self::element::{Corners, Has, Ignored, Vertex};
 use super::budget::Budget;
 use super::lines::MOST_LINE;
 use super::normal::unit;
@@ -45,7 +48,7 @@ pub(super) fn parse(path: &Path, source: impl Read, budget: Budget) -> Result<Pl
 struct Found {
     budget: Budget,
     vertices: Vec<Vertex>,
-    has_normals: bool,
+    has: Has,
     triangles: Vec<[u32; 3]>,
     /// Faces that no triangles fill.
     crossing: usize,
@@ -55,7 +58,7 @@ struct Found {
 impl Found {
     fn new(budget: Budget) -> Self {
         let (vertices, triangles, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        Found { budget, vertices, has_normals: false, triangles, crossing: 0, warnings }
+        Found { budget, vertices, has: Has::default(), triangles, crossing: 0, warnings }
     }
 
     fn read(&mut self, reader: &mut Reader<impl BufRead>) -> Checked<()> {
@@ -96,13 +99,12 @@ impl Found {
         element: &ElementDef,
         header: &Header,
     ) -> Checked<()> {
-        let has = |names: [&str; 3]| names.iter().all(|&name| element.properties.contains_key(name));
-        if !has(["x", "y", "z"]) {
+        if !Has::all(element, &["x", "y", "z"]) {
             return Err("its vertices have no x, y and z; is it a mesh?".into());
         }
-        self.has_normals = has(["nx", "ny", "nz"]);
-        if has(["red", "green", "blue"]) {
-            self.warnings.push("the vertices' colours are ignored; give the mesh a material".into());
+        self.has = Has::of(element);
+        if self.has.foreign_colours {
+            self.warnings.push("the vertices' colours are ignored: make them uchar, or float between 0 and 1".into());
         }
         self.vertices = Parser::new().read_payload_for_element(reader, element, header)?;
         Ok(())
@@ -152,34 +154,50 @@ impl Found {
     /// The mesh, with the vertices that triangles use.
     fn mesh(self) -> Unplaced<Mesh> {
         const UNUSED: u32 = u32::MAX;
-        let Found { vertices, has_normals, mut triangles, .. } = self;
+        let Found { vertices, has, mut triangles, .. } = self;
         if triangles.is_empty() {
             return Err("there is no face in it that can be drawn; is it a mesh?".into());
         }
         let mut numbers = vec![UNUSED; vertices.len()];
-        let (mut positions, mut normals) = (Vec::new(), Vec::new());
+        let mut mesh = Mesh { materials: vec![0; triangles.len()], ..Mesh::default() };
         for corner in triangles.as_flattened_mut() {
             let number = &mut numbers[*corner as usize];
             if *number == UNUSED {
-                *number = positions.len() as u32;
-                let Vertex { position, normal } = vertices[*corner as usize];
-                if !position.iter().all(|number| number.is_finite()) {
-                    return Err(format!(
-                        "vertex {corner}, counted from 0, is at {position:?}, which is nowhere; correct it"
-                    ));
-                }
-                positions.push(Vec3::from(position));
-                if has_normals {
-                    normals.push(unit(DVec3::from(normal.map(f64::from))));
-                }
+                *number = mesh.positions.len() as u32;
+                append(&mut mesh, &vertices[*corner as usize], has)
+                    .map_err(|fault| format!("vertex {corner}, counted from 0, {fault}; correct it"))?;
             }
             *corner = *number;
         }
-        if normals.iter().all(|&normal| normal == Vec3::ZERO) {
-            normals.clear();
+        if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
+            mesh.normals.clear();
         }
-        Ok(Mesh { materials: vec![0; triangles.len()], positions, normals, triangles, ..Mesh::default() })
+        Ok(Mesh { triangles, ..mesh })
     }
+}
+
+/// Adds a vertex and what it has.
+fn append(mesh: &mut Mesh, vertex: &Vertex, has: Has) -> Unplaced<()> {
+    let Vertex { position, normal, coordinates, colour } = *vertex;
+    if !position.iter().all(|number| number.is_finite()) {
+        return Err(format!("is at {position:?}, which is nowhere"));
+    }
+    mesh.positions.push(Vec3::from(position));
+    if has.normals {
+        mesh.normals.push(unit(DVec3::from(normal.map(f64::from))));
+    }
+    if has.coordinates {
+        let [u, v] = coordinates;
+        if !(u.is_finite() && v.is_finite()) {
+            return Err(format!("has the texture coordinates {coordinates:?}, which are not finite"));
+        }
+        // Up in a file, down in a mesh.
+        mesh.coordinates[0].push(Vec2::new(u, 1.0 - v));
+    }
+    if has.colours {
+        mesh.colours.push(colour.into());
+    }
+    Ok(())
 }
 
 /// The lists of corners of an element.
@@ -260,79 +278,5 @@ impl<R: BufRead> BufRead for Bounded<R> {
         let text = self.inner.fill_buf().unwrap_or_default();
         self.since = if text[..amount.min(text.len())].ends_with(b"\n") { 0 } else { self.since + amount };
         self.inner.consume(amount);
-    }
-}
-
-#[derive(Default, Clone, Copy)]
-struct Vertex {
-    position: [f32; 3],
-    normal: [f32; 3],
-}
-
-impl PropertyAccess for Vertex {
-    fn new() -> Self {
-        Vertex::default()
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        let to = match name {
-            "x" => &mut self.position[0],
-            "y" => &mut self.position[1],
-            "z" => &mut self.position[2],
-            "nx" => &mut self.normal[0],
-            "ny" => &mut self.normal[1],
-            "nz" => &mut self.normal[2],
-            _ => return PropertyAccessResult::Ignored,
-        };
-        match value.to_f32_lossy() {
-            Some(number) => *to = number,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
-        PropertyAccessResult::Set
-    }
-}
-
-/// The corners of a face, or of strips.
-#[derive(Default)]
-struct Corners(Vec<i64>);
-
-impl Corners {
-    /// Is this the list's name? Both are in use.
-    fn is(name: &str) -> bool {
-        matches!(name, "vertex_indices" | "vertex_index")
-    }
-}
-
-impl PropertyAccess for Corners {
-    fn new() -> Self {
-        Corners::default()
-    }
-
-    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
-        if !Corners::is(name) {
-            return PropertyAccessResult::Ignored;
-        }
-        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
-            list.into_iter().map(Into::into).collect()
-        }
-        self.0 = match value {
-            Property::ListChar(list) => wide(list),
-            Property::ListUChar(list) => wide(list),
-            Property::ListShort(list) => wide(list),
-            Property::ListUShort(list) => wide(list),
-            Property::ListInt(list) => wide(list),
-            Property::ListUInt(list) => wide(list),
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
-        PropertyAccessResult::Set
-    }
-}
-
-/// What is read to get past it.
-struct Ignored;
-
-impl PropertyAccess for Ignored {
-    fn new() -> Self {
-        Ignored
     }
 }

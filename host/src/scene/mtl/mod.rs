@@ -1,0 +1,260 @@
+//! Wavefront material files, mapped to the thesis' illumination model.
+//!
+//! | MTL | material |
+//! |---|---|
+//! | `Kd`, `Ks`, `Ns` | diffuse, specular, shininess |
+//! | `Ka` | ambient; as diffuse where absent |
+//! | `illum` 0, 1 | no highlight, whatever `Ks` says |
+//! | `illum` 3, 5 | a mirror: reflection is `Ks` |
+//! | `d` below 1, or `illum` 6, 7, or `illum` 4, 9 with `Ni` above 1 | glass |
+//! | `Ni` | index of refraction; where absent 1.5 for `illum` 4, 6, 7, 9 and else 1, which does not bend |
+//! | `Pr`, `Pm` | roughness and metalness of what is no glass, which is then of microfacets, with `Kd` as its base |
+//! | `map_Kd` | texture of the base and diffuse colour, times `Kd`; white where that is absent or black |
+//! | `map_Ke` | texture of the emission, times `Ke`; white where that is absent or black |
+//! | `Ke` alone | nothing, since Whitted's model refuses what emits and exporters write it for much |
+//! | `map_d` | blended opacity, times `d`, which then makes no glass: the picture's alpha, or its red without |
+//! | `norm` | texture of normals, whose slopes `-bm` multiplies |
+//! | `map_Pr`, `map_Pm` | texture of roughness (green) and metalness (blue), where both name the same picture |
+//! | other pictures | nothing |
+//!
+//! Glass passes the share 1 - `d` of the light (all of it where `d` is 1 or absent), coloured by
+//! `Tf`, or where that is absent by the hue of `Kd` (its brightest channel passes in full). `Kd` and
+//! `Ka` are scaled by the share that does not pass. `Tr` is 1 - `d`. `illum` 4 alone does not make
+//! glass, since exporters write it for everything.
+//!
+//! Of the options of pictures `-s`, `-o`, `-clamp` and `-bm` count. Their files lie in the material file's folder or below it.
+//!
+//! Files are read here and not by tobj, which panics on `Kd 1 0`.
+
+mod picture;
+mod statements;
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use glam::Vec3;
+
+use self::picture::{Picture, Pictures, Statement, UNUSED};
+use self::statements::Statements;
+use super::lines::{self, Lines, NOT_UTF8};
+use super::map::Images;
+use super::material::Fields;
+use super::tally::Tally;
+use super::{Unplaced, file};
+use crate::error::{Error, Result};
+
+/// The materials of a file in its order, by name, and what of it was ignored or clamped.
+#[derive(Debug, Default)]
+pub struct Library {
+    pub materials: Vec<(String, Fields)>,
+    pub warnings: Vec<String>,
+}
+
+/// Reads a material file and its pictures.
+///
+/// # Errors
+/// A file that cannot be read, a line that says nothing sensible, or a damaged picture. Finite numbers out of range
+/// are clamped with a warning, since many exporters write them; without a picture that is missing a surface is drawn.
+pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
+    let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
+    parse(path, &bytes, images)
+}
+
+/// The materials of a text.
+pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Library> {
+    let mut lines = Lines::new(path, bytes);
+    let mut reader = Reader::new(path);
+    while let Some((number, line)) = lines.advance()? {
+        reader.line = number;
+        reader.read(line).map_err(|fault| Error::line(path, number, fault))?;
+    }
+    reader.finish(images)
+}
+
+/// What a `newmtl` says.
+#[derive(Default)]
+struct New {
+    numbers: Statements,
+    pictures: Pictures,
+}
+
+struct Reader<'p> {
+    path: &'p Path,
+    line: usize,
+    materials: Vec<(String, New)>,
+    /// Pictures that there is no use for, that are not there, and that are of another format.
+    unused: Tally,
+    missing: Tally,
+    foreign: Tally,
+    clamped: Tally,
+    nameless: Tally,
+    latin: Tally,
+}
+
+impl<'p> Reader<'p> {
+    fn new(path: &'p Path) -> Self {
+        let [unused, missing, foreign, clamped, nameless, latin] = std::array::from_fn(|_| Tally::default());
+        Reader { path, line: 0, materials: Vec::new(), unused, missing, foreign, clamped, nameless, latin }
+    }
+
+    fn read(&mut self, line: &[u8]) -> Unplaced<()> {
+        let text = lines::text(line);
+        if let Cow::Owned(_) = text {
+            self.latin.add(self.line, "line");
+        }
+        let Some((key, rest)) = lines::split(&text) else {
+            return Ok(());
+        };
+        match key {
+            "newmtl" => {
+                if rest.is_empty() {
+                    self.nameless.add(self.line, key);
+                }
+                let new = (rest.to_owned(), New::default());
+                self.materials.push(new);
+                Ok(())
+            }
+            "Ka" | "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "Pr" | "Pm" | "illum" => {
+                let mut now = self.latest(key)?.numbers;
+                self.statement(&mut now, key, rest)?;
+                self.latest(key)?.numbers = now;
+                Ok(())
+            }
+            "map_Kd" | "map_Ke" | "map_d" | "norm" | "map_Pr" | "map_Pm" => {
+                let picture = self.picture(key, rest)?;
+                let pictures = &mut self.latest(key)?.pictures;
+                let of = match key {
+                    "map_Kd" => &mut pictures.base,
+                    "map_Ke" => &mut pictures.emission,
+                    "map_d" => &mut pictures.opacity,
+                    "norm" => &mut pictures.normal,
+                    "map_Pr" => &mut pictures.roughness,
+                    _ => &mut pictures.metallic,
+                };
+                *of = picture;
+                Ok(())
+            }
+            "bump" | "disp" | "decal" | "refl" => self.ignore(key, rest),
+            _ if key.starts_with("map_") => self.ignore(key, rest),
+            _ => Ok(()),
+        }
+    }
+
+    /// The material that a statement is of.
+    fn latest(&mut self, key: &str) -> Unplaced<&mut New> {
+        let latest = self.materials.last_mut().map(|(_, new)| new);
+        latest.ok_or_else(|| format!("{key} comes before newmtl; name the material first"))
+    }
+
+    fn statement(&mut self, now: &mut Statements, key: &str, rest: &str) -> Unplaced<()> {
+        match key {
+            "Ka" => now.ka = Some(self.colour(key, rest)?),
+            "Kd" => now.kd = Some(self.colour(key, rest)?),
+            "Ks" => now.ks = Some(self.colour(key, rest)?),
+            "Ke" => now.ke = Some((self.light(key, rest)?, self.line)),
+            "Tf" => now.tf = Some(self.colour(key, rest)?),
+            "Ns" => now.ns = Some(self.number(key, rest, 0.0, f32::MAX)?),
+            "Ni" => now.ni = Some(self.number(key, rest, 1.0, 4.0)?),
+            "d" => now.d = Some(self.number(key, without_halo(rest), 0.0, 1.0)?),
+            "Pr" => now.pr = Some(self.number(key, rest, 0.0, 1.0)?),
+            "Pm" => now.pm = Some(self.number(key, rest, 0.0, 1.0)?),
+            "Tr" => now.d = now.d.or(Some(1.0 - self.number(key, rest, 0.0, 1.0)?)),
+            _ => {
+                let model = lines::words(rest).next().and_then(|word| word.parse().ok());
+                now.illum = model.filter(|&model| model <= 10);
+                if now.illum.is_none() {
+                    return Err(format!("illum takes a number from 0 to 10, not {rest:?}"));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn colour(&mut self, key: &str, rest: &str) -> Unplaced<Vec3> {
+        self.clamped(key, rest, Vec3::ONE)
+    }
+
+    fn light(&mut self, key: &str, rest: &str) -> Unplaced<Vec3> {
+        self.clamped(key, rest, Vec3::MAX)
+    }
+
+    /// One number stands for three equal ones, as the format has it.
+    fn clamped(&mut self, key: &str, rest: &str, most: Vec3) -> Unplaced<Vec3> {
+        let colour = match numbers(key, rest)?[..] {
+            [grey] => Vec3::splat(grey),
+            [r, g, b] => Vec3::new(r, g, b),
+            ref all => return Err(format!("{key} takes three numbers, not {}", all.len())),
+        };
+        let clamped = colour.clamp(Vec3::ZERO, most);
+        if colour != clamped {
+            self.clamped.add(self.line, key);
+        }
+        Ok(clamped)
+    }
+
+    fn number(&mut self, key: &str, rest: &str, least: f32, most: f32) -> Unplaced<f32> {
+        let [number] = numbers(key, rest)?[..] else {
+            return Err(format!("{key} takes one number, not {rest:?}"));
+        };
+        let clamped = number.clamp(least, most);
+        if number != clamped {
+            self.clamped.add(self.line, key);
+        }
+        Ok(clamped)
+    }
+
+    /// The picture of a statement, if there is one that can be read.
+    fn picture(&mut self, key: &str, rest: &str) -> Unplaced<Option<Picture>> {
+        let Statement { name, placement, strength } = Statement::parse(rest)?;
+        let path = file::inside(file::folder(self.path), name)?;
+        let what = format_args!("{key} {name:?}");
+        if name.is_empty() || !path.exists() {
+            self.missing.add(self.line, what);
+        } else if !picture::is_known(&path) {
+            self.foreign.add(self.line, what);
+        } else {
+            return Ok(Some(Picture { path, placement, strength, line: self.line }));
+        }
+        Ok(None)
+    }
+
+    /// A picture that is not opened; but a file that points out of its folder is not to be trusted.
+    /// Options come before the name, and the name may hold blanks: no word may lead outside.
+    fn ignore(&mut self, key: &str, rest: &str) -> Unplaced<()> {
+        self.unused.add(self.line, key);
+        rest.split_whitespace().try_for_each(|name| file::downward(name).map(drop))
+    }
+
+    fn finish(self, images: &mut Images) -> Result<Library> {
+        let path = self.path;
+        let (mut apart, mut unlit) = (Tally::default(), Tally::default());
+        let mut materials = Vec::with_capacity(self.materials.len());
+        for (name, New { numbers, pictures }) in self.materials {
+            let (maps, alpha) = pictures.maps(path, images, &mut apart)?;
+            if let Some(line) = numbers.unlit(&maps) {
+                unlit.add(line, "Ke");
+            }
+            materials.push((name, numbers.fields(maps, alpha)));
+        }
+        let warnings = [
+            self.latin.warn(path, NOT_UTF8),
+            self.nameless.warn(path, "without a name: usemtl without a name means it"),
+            self.missing.warn(path, "not found: surfaces are drawn without"),
+            self.foreign.warn(path, "is no .png, .jpg, .exr or .hdr: surfaces are drawn without; convert it"),
+            self.unused.warn(path, UNUSED),
+            apart.warn(path, "ignored: roughness and metalness are read of one picture that both name"),
+            unlit.warn(path, "ignored: give the material an emission in a scene file"),
+            self.clamped.warn(path, "out of range: the nearest value is used"),
+        ];
+        Ok(Library { materials, warnings: warnings.into_iter().flatten().collect() })
+    }
+}
+
+fn numbers(key: &str, rest: &str) -> Unplaced<Vec<f32>> {
+    lines::words(rest).map(|word| lines::number(key, word)).collect()
+}
+
+/// `d -halo 0.5` would fade glass towards its rim; the number counts all the same.
+fn without_halo(rest: &str) -> &str {
+    rest.strip_prefix("-halo").map_or(rest, str::trim_start)
+}

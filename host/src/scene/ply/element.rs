@@ -1,0 +1,146 @@
+//! The records of elements that are read.
+
+use std::sync::LazyLock;
+
+use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
+
+use crate::image::linear_table;
+
+/// Names of texture coordinates.
+const COORDINATES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
+/// Linear light of a byte of sRGB.
+static LIGHT: LazyLock<Vec<f32>> = LazyLock::new(|| linear_table(u8::MAX.into()));
+
+/// What vertices have beside their places.
+#[derive(Debug, Default, Clone, Copy)]
+pub(super) struct Has {
+    pub normals: bool,
+    pub coordinates: bool,
+    pub colours: bool,
+    /// Colours of which nothing says how bright they are.
+    pub foreign_colours: bool,
+}
+
+impl Has {
+    /// That of an element.
+    pub fn of(element: &ElementDef) -> Self {
+        let names = ["red", "green", "blue"];
+        let has_colours = Has::all(element, &names);
+        let is_light = |name: &&str| {
+            let kind = element.properties.get(*name).map(|property| &property.data_type);
+            matches!(kind, Some(PropertyType::Scalar(ScalarType::UChar | ScalarType::Float | ScalarType::Double)))
+        };
+        let colours = has_colours && names.iter().all(is_light);
+        Has {
+            normals: Has::all(element, &["nx", "ny", "nz"]),
+            coordinates: COORDINATES.iter().any(|names| Has::all(element, names)),
+            colours,
+            foreign_colours: has_colours && !colours,
+        }
+    }
+
+    /// Does an element have all of these properties?
+    pub fn all(element: &ElementDef, names: &[&str]) -> bool {
+        names.iter().all(|&name| element.properties.contains_key(name))
+    }
+}
+
+#[derive(Clone, Copy)]
+pub(super) struct Vertex {
+    pub position: [f32; 3],
+    pub normal: [f32; 3],
+    /// Of textures, up.
+    pub coordinates: [f32; 2],
+    /// Linear RGB and opacity in [0, 1].
+    pub colour: [f32; 4],
+}
+
+impl PropertyAccess for Vertex {
+    fn new() -> Self {
+        Vertex { position: [0.0; 3], normal: [0.0; 3], coordinates: [0.0; 2], colour: [1.0; 4] }
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        let to = match name {
+            "x" => &mut self.position[0],
+            "y" => &mut self.position[1],
+            "z" => &mut self.position[2],
+            "nx" => &mut self.normal[0],
+            "ny" => &mut self.normal[1],
+            "nz" => &mut self.normal[2],
+            "s" | "u" | "texture_u" => &mut self.coordinates[0],
+            "t" | "v" | "texture_v" => &mut self.coordinates[1],
+            "red" => return put(&mut self.colour[0], &value, |byte| LIGHT[usize::from(byte)]),
+            "green" => return put(&mut self.colour[1], &value, |byte| LIGHT[usize::from(byte)]),
+            "blue" => return put(&mut self.colour[2], &value, |byte| LIGHT[usize::from(byte)]),
+            "alpha" => return put(&mut self.colour[3], &value, |byte| f32::from(byte) / 255.0),
+            _ => return PropertyAccessResult::Ignored,
+        };
+        match value.to_f32_lossy() {
+            Some(number) => *to = number,
+            None => return PropertyAccessResult::UnsupportedType,
+        }
+        PropertyAccessResult::Set
+    }
+}
+
+/// Sets a channel; what is beyond [0, 1] becomes the nearest value.
+fn put(channel: &mut f32, value: &Property, of_byte: impl Fn(u8) -> f32) -> PropertyAccessResult {
+    *channel = match *value {
+        Property::UChar(byte) => of_byte(byte),
+        Property::Float(light) => share(light),
+        Property::Double(light) => share(light as f32),
+        _ => return PropertyAccessResult::Ignored,
+    };
+    PropertyAccessResult::Set
+}
+
+/// NaN is dark.
+fn share(light: f32) -> f32 {
+    if light > 0.0 { light.min(1.0) } else { 0.0 }
+}
+
+/// The corners of a face, or of strips.
+#[derive(Default)]
+pub(super) struct Corners(pub Vec<i64>);
+
+impl Corners {
+    /// Is this the list's name? Both are in use.
+    pub fn is(name: &str) -> bool {
+        matches!(name, "vertex_indices" | "vertex_index")
+    }
+}
+
+impl PropertyAccess for Corners {
+    fn new() -> Self {
+        Corners::default()
+    }
+
+    fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
+        if !Corners::is(name) {
+            return PropertyAccessResult::Ignored;
+        }
+        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
+            list.into_iter().map(Into::into).collect()
+        }
+        self.0 = match value {
+            Property::ListChar(list) => wide(list),
+            Property::ListUChar(list) => wide(list),
+            Property::ListShort(list) => wide(list),
+            Property::ListUShort(list) => wide(list),
+            Property::ListInt(list) => wide(list),
+            Property::ListUInt(list) => wide(list),
+            _ => return PropertyAccessResult::UnsupportedType,
+        };
+        PropertyAccessResult::Set
+    }
+}
+
+/// What is read to get past it.
+pub(super) struct Ignored;
+
+impl PropertyAccess for Ignored {
+    fn new() -> Self {
+        Ignored
+    }
+}

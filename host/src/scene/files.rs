@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use glam::Vec3;
 
 use super::budget::Budget;
+use super::gltf::{self, Gltf};
 use super::map::Images;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
@@ -86,12 +87,15 @@ impl<'p> Files<'p> {
     }
 }
 
-/// Reads a Wavefront or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other arguments are those of
-/// [`obj::load`].
+/// Reads a Wavefront mesh or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices, or the
+/// meshes of a glTF scene; the other arguments are those of [`obj::load`].
 ///
 /// # Errors
-/// Those of [`obj::load`] and [`ply::load`].
+/// Those of [`obj::load`], [`ply::load`] and [`gltf::load`].
 pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
+    if is_gltf(path) {
+        return gltf::load(path, budget).map(|scene| meshes_of(path, scene));
+    }
     if !is(path, "ply") {
         return obj::load(path, budget, images, is_covered);
     }
@@ -102,6 +106,21 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
         materials[0].1.diffuse = Some(Vec3::ONE);
     }
     Ok(Obj { mesh, materials, warnings, libraries: Vec::new() })
+}
+
+/// The meshes of a scene, with a warning of what else it has.
+fn meshes_of(path: &Path, scene: Gltf) -> Obj {
+    let Gltf { mut obj, lights, cameras } = scene;
+    if !lights.is_empty() || !cameras.is_empty() {
+        let what = "its lights and cameras are left out: the scene that it is a mesh of has its own";
+        obj.warnings.push(format!("{}: {what}", path.display()));
+    }
+    obj
+}
+
+/// Is it a glTF file by its ending, of JSON or binary?
+pub fn is_gltf(path: &Path) -> bool {
+    is(path, "gltf") || is(path, "glb")
 }
 
 /// Does the path end like this, in capitals or not?

@@ -8,9 +8,10 @@ use super::binary;
 use super::budget::Budget;
 use super::document;
 use super::file;
-use super::files::{Files, is, read_mesh};
+use super::files::{Files, is, is_gltf, read_mesh};
 use super::frame;
 use super::geometry::Geometry;
+use super::gltf::{self, Gltf};
 use super::map::Images;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
@@ -19,17 +20,19 @@ use super::part::{self, Placed};
 use super::range::Range;
 use super::source::Source;
 use super::table::Table;
-use super::{Background, Scene, Settings};
+use super::{Background, Integrator, Material, Sampler, Scene, Settings, Transport};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
-/// Loads a TOML scene, a bare Wavefront or PLY mesh, or a binary scene ([`write`](super::write)), and says in warnings what of it
-/// is not drawn.
+/// Loads a TOML scene, a glTF scene, a bare Wavefront or PLY mesh, or a binary scene ([`write`](super::write)), and says in
+/// warnings what of it is not drawn.
 ///
-/// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky.
+/// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky. A glTF scene is drawn by
+/// paths, from its own cameras and by its own lights; without them it is seen as a mesh is, in a grey that lights it from all
+/// sides.
 ///
 /// # Errors
-/// A path that is no readable `.toml`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
+/// A path that is no readable `.toml`, `.gltf`, `.glb`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
     load_within(path, Budget::new(Room::now()))
@@ -44,15 +47,49 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
         load_toml(path, budget)
     } else if is(path, "obj") || is(path, "ply") {
         load_mesh(path, budget)
+    } else if is_gltf(path) {
+        load_gltf(path, budget)
     } else {
-        let fault = "unknown kind of scene; name a .toml or .eyerays scene or an .obj or .ply mesh";
+        let fault = "unknown kind of scene; name a .toml, .gltf, .glb or .eyerays scene or an .obj or .ply mesh";
         Err(Error::file(path, fault))
     }
 }
 
 fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let mut images = Images::new(file::folder(path));
-    let Obj { mesh, materials, warnings, libraries } = read_mesh(path, budget, &mut images, false)?;
+    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
+    scene.files.extend(images.paths());
+    Ok((framed(path, scene)?, warnings))
+}
+
+/// The light that a glTF scene without any is in, linear RGB: what is white and matt looks a bright grey of 80 % in it, and
+/// what is darker keeps its form.
+const STUDIO: Vec3 = Vec3::splat(0.6);
+
+fn load_gltf(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+    let Gltf { obj, lights, cameras } = gltf::load(path, budget)?;
+    let (scene, warnings) = bare(path, obj)?;
+    let is_lit = !lights.is_empty() || scene.materials.iter().any(shines);
+    let background = Background::Colour(if is_lit { Vec3::ZERO } else { STUDIO });
+    let settings = Settings {
+        spp: 64,
+        sampler: Sampler::Sobol,
+        bounces: 6,
+        transport: Transport { integrator: Integrator::Path, ..Transport::default() },
+        ..Settings::default()
+    };
+    let scene = Scene { lights, cameras, background, ambient: Vec3::ZERO, settings, ..scene };
+    Ok((framed(path, scene)?, warnings))
+}
+
+/// Is it a light, rather than a thing with glowing spots, which shows its form in the light of others?
+fn shines(material: &Material) -> bool {
+    material.emission.max_element() > 1.0 || material.emission != Vec3::ZERO && material.maps.emission.is_none()
+}
+
+/// A scene of one mesh without a camera, and the warnings of it.
+fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<String>)> {
+    let Obj { mesh, materials, warnings, libraries } = obj;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let placed = Placed { name, geometry: Geometry::Mesh(mesh), materials, material: None };
     let mut merge = Merge::default();
@@ -63,7 +100,7 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         spheres,
         disks,
         parts,
-        files: libraries.into_iter().chain(images.paths()).collect(),
+        files: libraries,
         materials,
         lights: frame::lights(),
         cameras: Vec::new(),
@@ -73,7 +110,7 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         settings: Settings::default(),
         hierarchy: None,
     };
-    Ok((framed(path, scene)?, warnings))
+    Ok((scene, warnings))
 }
 
 /// Gives a scene without a camera one that sees all of it.

@@ -17,6 +17,7 @@ mod files;
 mod filter;
 mod frame;
 mod geometry;
+mod gltf;
 mod lines;
 mod load;
 mod map;

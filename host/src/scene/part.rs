@@ -1,6 +1,6 @@
 //! A `[[mesh]]` of a TOML scene: a file or a shape, and where it goes.
 
-use super::files::{Files, is};
+use super::files::{Files, is, is_gltf};
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
 use super::named::{self, Wish};
@@ -83,8 +83,8 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
         return Ok((name, geometry, plain()));
     }
-    if !is(&path, "obj") && !is(&path, "ply") {
-        let fault = format!("{name:?} is no .obj, .ply or .xyzr; name a mesh or a list of spheres");
+    if !is(&path, "obj") && !is(&path, "ply") && !is_gltf(&path) {
+        let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
     }
     let Obj { mesh, materials, .. } = files.mesh(&path)?;

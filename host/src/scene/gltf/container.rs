@@ -1,0 +1,65 @@
+//! From a file to its JSON and to the bytes that come with it.
+
+use std::ops::Range;
+
+use crate::scene::{Unplaced, file};
+
+/// Where in a file its JSON is, and the binary chunk if there is one.
+pub struct Container {
+    pub json: Range<usize>,
+    pub chunk: Option<Range<usize>>,
+}
+
+/// How every binary file begins.
+pub const MAGIC: &[u8] = b"glTF";
+const JSON: &[u8] = b"JSON";
+const BINARY: &[u8] = b"BIN\0";
+/// Magic, version and length.
+const HEADER: usize = 12;
+
+/// Finds the chunks of a binary file, or takes all of it for JSON. It goes by the first bytes: names may lie.
+///
+/// # Errors
+/// Another version, a file that ends early, no JSON, or more of it than [`file::MOST_TEXT`].
+pub fn open(bytes: &[u8]) -> Unplaced<Container> {
+    let container =
+        if bytes.starts_with(MAGIC) { chunks(bytes)? } else { Container { json: 0..bytes.len(), chunk: None } };
+    let (length, most) = (container.json.len(), file::MOST_TEXT);
+    if length as u64 > most {
+        return Err(format!("the JSON holds {length} bytes and {most} is the most that is read; split the file"));
+    }
+    Ok(container)
+}
+
+fn chunks(bytes: &[u8]) -> Unplaced<Container> {
+    let ends = || "the file ends early; was it written to the end?".to_owned();
+    let version = word(bytes, 4).ok_or_else(ends)?;
+    if version != 2 {
+        return Err(format!("this is a binary glTF of version {version}; convert it to version 2"));
+    }
+    let length = word(bytes, 8).ok_or_else(ends)?;
+    let bytes = bytes.get(..length).ok_or_else(ends)?;
+    let (json, kind) = chunk(bytes, HEADER)?.ok_or_else(ends)?;
+    if kind != JSON {
+        return Err("its first chunk is not JSON; write the file again".into());
+    }
+    // The format pads chunks to four bytes, and their lengths count the padding.
+    let next = chunk(bytes, json.end)?;
+    let chunk = next.and_then(|(range, kind)| (kind == BINARY).then_some(range));
+    Ok(Container { json, chunk })
+}
+
+/// The place and the kind of the chunk at an offset; nothing at the end.
+fn chunk(bytes: &[u8], at: usize) -> Unplaced<Option<(Range<usize>, &[u8])>> {
+    let (Some(length), Some(kind)) = (word(bytes, at), bytes.get(at + 4..at + 8)) else { return Ok(None) };
+    let start = at + 8;
+    match start.checked_add(length) {
+        Some(end) if end <= bytes.len() => Ok(Some((start..end, kind))),
+        _ => Err(format!("a chunk claims {length} bytes, and the file ends before; was it written to the end?")),
+    }
+}
+
+fn word(bytes: &[u8], at: usize) -> Option<usize> {
+    let word = bytes.get(at..)?.first_chunk::<4>()?;
+    usize::try_from(u32::from_le_bytes(*word)).ok()
+}

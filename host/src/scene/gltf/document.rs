@@ -1,0 +1,264 @@
+//! The JSON of a glTF file, as far as it is read. Nothing in it is trusted: any number may be out of range, any index may
+//! name nothing, and any list may have the wrong length.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::marker::PhantomData;
+use std::ops::Deref;
+
+use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::{Deserialize, Deserializer};
+
+use super::shading::Material;
+
+/// The most nodes, and the most of anything else, that a file may list.
+const MOST: usize = 1_000_000;
+/// What the elements of one list may take of memory, in bytes: in JSON they may be three bytes each.
+const MOST_BYTES: usize = 256 << 20;
+
+/// A list that is refused before it takes too much memory.
+pub struct List<T>(Vec<T>);
+
+impl<T> Default for List<T> {
+    fn default() -> Self {
+        List(Vec::new())
+    }
+}
+
+impl<T> Deref for List<T> {
+    type Target = [T];
+
+    fn deref(&self) -> &[T] {
+        &self.0
+    }
+}
+
+impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        struct Elements<T>(PhantomData<T>);
+        impl<'de, T: Deserialize<'de>> Visitor<'de> for Elements<T> {
+            type Value = List<T>;
+
+            fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+                out.write_str("a list")
+            }
+
+            fn visit_seq<A: SeqAccess<'de>>(self, mut from: A) -> Result<List<T>, A::Error> {
+                let most = MOST.min(MOST_BYTES / size_of::<T>().max(1));
+                let mut list = Vec::new();
+                while let Some(element) = from.next_element()? {
+                    if list.len() == most {
+                        return Err(A::Error::custom(format!("a list has more than {most} elements; split the file")));
+                    }
+                    list.push(element);
+                }
+                Ok(List(list))
+            }
+        }
+        from.deserialize_seq(Elements(PhantomData))
+    }
+}
+
+/// The whole of it.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Document {
+    pub asset: Asset,
+    pub extensions_used: List<String>,
+    pub extensions_required: List<String>,
+    pub scene: Option<usize>,
+    pub scenes: List<Scene>,
+    pub nodes: List<Node>,
+    pub meshes: List<Mesh>,
+    pub accessors: List<Accessor>,
+    pub buffer_views: List<BufferView>,
+    pub buffers: List<Buffer>,
+    pub materials: List<Material>,
+    pub textures: List<Texture>,
+    pub images: List<Image>,
+    pub samplers: List<Sampler>,
+    pub cameras: List<Camera>,
+    pub skins: List<IgnoredAny>,
+    pub animations: List<IgnoredAny>,
+    pub extensions: DocumentExtensions,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Asset {
+    pub version: Option<String>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Scene {
+    pub nodes: List<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Node {
+    pub name: Option<String>,
+    pub children: Vec<usize>,
+    pub mesh: Option<usize>,
+    pub camera: Option<usize>,
+    pub skin: Option<usize>,
+    pub matrix: Option<Vec<f64>>,
+    pub translation: Option<Vec<f64>>,
+    pub rotation: Option<Vec<f64>>,
+    pub scale: Option<Vec<f64>>,
+    pub extensions: NodeExtensions,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct NodeExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub light: Option<LightOf>,
+}
+
+/// Which light a node carries.
+#[derive(Deserialize)]
+pub struct LightOf {
+    pub light: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Mesh {
+    pub primitives: List<Primitive>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Primitive {
+    pub attributes: BTreeMap<String, usize>,
+    pub indices: Option<usize>,
+    pub material: Option<usize>,
+    pub mode: Option<u64>,
+    pub targets: Vec<IgnoredAny>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Accessor {
+    pub buffer_view: Option<usize>,
+    pub byte_offset: usize,
+    pub component_type: u64,
+    pub normalized: bool,
+    pub count: usize,
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub sparse: Option<Box<Sparse>>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Sparse {
+    pub count: usize,
+    pub indices: SparsePart,
+    pub values: SparsePart,
+}
+
+/// Where the indices or the values of a sparse accessor are; values have the component type of their accessor.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct SparsePart {
+    pub buffer_view: usize,
+    pub byte_offset: usize,
+    pub component_type: u64,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct BufferView {
+    pub buffer: usize,
+    pub byte_offset: usize,
+    pub byte_length: usize,
+    pub byte_stride: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Buffer {
+    pub uri: Option<String>,
+    pub byte_length: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Texture {
+    pub source: Option<usize>,
+    pub sampler: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Image {
+    pub name: Option<String>,
+    pub uri: Option<String>,
+    pub buffer_view: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Sampler {
+    pub mag_filter: Option<u64>,
+    pub wrap_s: Option<u64>,
+    pub wrap_t: Option<u64>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Camera {
+    pub name: Option<String>,
+    pub perspective: Option<Perspective>,
+}
+
+#[derive(Deserialize)]
+pub struct Perspective {
+    /// Radians.
+    pub yfov: f64,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct DocumentExtensions {
+    #[serde(rename = "KHR_lights_punctual")]
+    pub lights: Lights,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Lights {
+    pub lights: List<Light>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Light {
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub color: Option<[f64; 3]>,
+    pub intensity: Option<f64>,
+    pub spot: Spot,
+}
+
+/// Half angles in radians.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Spot {
+    pub inner_cone_angle: Option<f64>,
+    pub outer_cone_angle: Option<f64>,
+}
+
+/// What a list holds under a number; `owner` is the JSON path of what names it.
+///
+/// # Errors
+/// There is no such element.
+pub fn pick<'l, T>(list: &'l [T], number: usize, owner: &str, noun: &str) -> Result<&'l T, String> {
+    list.get(number).ok_or_else(|| match list.len() {
+        0 => format!("{owner}: there is no {noun} {number}; the file has none"),
+        count => format!("{owner}: there is no {noun} {number}; the file has {count}"),
+    })
+}

@@ -1,0 +1,41 @@
+//! Which extensions are read, and what is said of the others.
+
+use super::document::Document;
+use super::notes::Notes;
+use crate::scene::Unplaced;
+
+/// Those that are drawn.
+const KNOWN: [&str; 11] = [
+    "KHR_lights_punctual",
+    "KHR_materials_anisotropy",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_specular",
+    "KHR_materials_transmission",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+    "KHR_materials_volume",
+    "KHR_mesh_quantization",
+    "KHR_texture_transform",
+];
+
+/// Those that change nothing of a picture.
+const IDLE: [&str; 2] = ["KHR_xmp", "KHR_xmp_json_ld"];
+
+/// The most that are named one by one.
+const MOST_NAMED: usize = 20;
+
+/// Refuses what a file can't be drawn without, and says what it is drawn without.
+///
+/// # Errors
+/// An extension that is required and not read.
+pub fn check(document: &Document, notes: &mut Notes) -> Unplaced<()> {
+    let is_unknown = |name: &&String| !KNOWN.contains(&name.as_str()) && !IDLE.contains(&name.as_str());
+    if let Some(name) = document.extensions_required.iter().find(is_unknown) {
+        return Err(format!("extensionsRequired: {name:?} is not read; save the file without it"));
+    }
+    for name in document.extensions_used.iter().filter(is_unknown).take(MOST_NAMED) {
+        notes.once(name, &format!("the extension {name:?} is left out: the picture may look different"));
+    }
+    Ok(())
+}

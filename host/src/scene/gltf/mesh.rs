@@ -1,0 +1,155 @@
+//! The meshes of all nodes as one, in world units.
+
+use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
+
+use super::accessor::Accessors;
+use super::document::{Document, pick};
+use super::node::Placed;
+use super::notes::Notes;
+use super::primitive::{Mode, Plan, Primitive};
+use crate::scene::budget::Budget;
+use crate::scene::{MAX_PRIMITIVES, Mesh, Unplaced, normal};
+
+/// All that is placed so far.
+pub struct Merge<'f> {
+    document: &'f Document,
+    accessors: Accessors<'f>,
+    budget: Budget,
+    mesh: Mesh,
+    /// Of what was placed or looked at, so that what draws nothing is not free.
+    triangles: usize,
+    vertices: usize,
+}
+
+impl<'f> Merge<'f> {
+    /// Nothing yet, within the budget.
+    pub fn new(document: &'f Document, accessors: Accessors<'f>, budget: Budget) -> Self {
+        Merge { document, accessors, budget, mesh: Mesh::default(), triangles: 0, vertices: 0 }
+    }
+
+    /// Adds the mesh of a number at all the nodes that have it. A mesh is read once, and is gone before the next.
+    ///
+    /// # Errors
+    /// There is no such mesh, it makes no sense, or it is too large.
+    pub fn add(&mut self, number: usize, nodes: &[&Placed], notes: &mut Notes) -> Unplaced<()> {
+        let Some(first) = nodes.first() else { return Ok(()) };
+        let owner = format!("nodes[{}].mesh", first.number);
+        let mesh = pick(&self.document.meshes, number, &owner, "mesh")?;
+        for (part, of) in mesh.primitives.iter().enumerate() {
+            let here = format!("meshes[{number}].primitives[{part}]");
+            if !of.targets.is_empty() {
+                notes.once("targets", "morph targets are left out: meshes have their first shape");
+            }
+            let Some(mode) = Mode::from_code(of.mode).map_err(|fault| format!("{here}.{fault}"))? else {
+                notes.once("mode", "points and lines are left out: only triangles are drawn");
+                continue;
+            };
+            let material = match of.material {
+                Some(material) => {
+                    pick(&self.document.materials, material, &format!("{here}.material"), "material")?;
+                    // The first of the scene's is for what names none.
+                    u32::try_from(material + 1).unwrap_or(0)
+                }
+                None => 0,
+            };
+            let plan = Plan::new(of, mode, &self.accessors, &here)?;
+            self.count(&plan, nodes.len()).map_err(|fault| format!("{here}: {fault}"))?;
+            let primitive = plan.read(of, &self.accessors, &here)?;
+            for placed in nodes {
+                self.place(&primitive, material, placed).map_err(|fault| format!("{here}: {fault}"))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses too much before anything is read or allocated for it.
+    fn count(&mut self, plan: &Plan, nodes: usize) -> Unplaced<()> {
+        let triangles = plan.triangles.saturating_mul(nodes).saturating_add(self.triangles);
+        // One more for each node: even what is empty takes its time.
+        let vertices = plan.vertices.saturating_add(1).saturating_mul(nodes).saturating_add(self.vertices);
+        let most = 4 * MAX_PRIMITIVES;
+        if triangles > most || vertices > most {
+            let fault = format!("{triangles} triangles with {vertices} vertices in all are more than a scene may have");
+            return Err(format!("{fault}; use fewer"));
+        }
+        (self.triangles, self.vertices) = (triangles, vertices);
+        self.budget.check(triangles, vertices)
+    }
+
+    fn place(&mut self, of: &Primitive, material: u32, placed: &Placed) -> Unplaced<()> {
+        let transform = Transform::new(placed.world);
+        let before = self.mesh.positions.len();
+        let after = before + of.positions.len();
+        let range = (before, after);
+        self.mesh.positions.extend(of.positions.iter().map(|&position| transform.position(position)));
+        let is_finite = self.mesh.positions.iter().skip(before).all(|position| position.is_finite());
+        if !is_finite {
+            return Err(format!("nodes[{}] takes it out of single precision; make it smaller", placed.number));
+        }
+        put(&mut self.mesh.normals, of.normals.iter().map(|&normal| transform.normal(normal)), range, Vec3::ZERO);
+        put(&mut self.mesh.tangents, of.tangents.iter().map(|&tangent| transform.tangent(tangent)), range, Vec4::ZERO);
+        for (all, more) in self.mesh.coordinates.iter_mut().zip(&of.coordinates) {
+            put(all, more.iter().copied(), range, Vec2::ZERO);
+        }
+        put(&mut self.mesh.colours, of.colours.iter().copied(), range, Vec4::ONE);
+        let first = u32::try_from(before).map_err(|_| "there are too many vertices; use fewer")?;
+        self.mesh.triangles.extend(of.triangles.iter().map(|triangle| {
+            let [a, b, c] = triangle.map(|vertex| first + vertex);
+            if transform.is_mirror { [a, c, b] } else { [a, b, c] }
+        }));
+        self.mesh.materials.resize(self.mesh.triangles.len(), material);
+        Ok(())
+    }
+
+    /// All of it.
+    pub fn finish(self) -> Mesh {
+        self.mesh
+    }
+}
+
+/// Adds what more vertices have, and `none` for those that have nothing; nothing as long as none has anything.
+fn put<T: Copy>(all: &mut Vec<T>, more: impl ExactSizeIterator<Item = T>, (before, after): (usize, usize), none: T) {
+    if all.is_empty() && more.len() == 0 {
+        return;
+    }
+    all.resize(before, none);
+    all.extend(more);
+    all.resize(after, none);
+}
+
+/// Where a node puts what it has.
+struct Transform {
+    world: DMat4,
+    /// What normals are multiplied with: the inverse transpose, times a positive number.
+    normals: DMat3,
+    is_mirror: bool,
+}
+
+impl Transform {
+    fn new(world: DMat4) -> Self {
+        let [a, b, c] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
+        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
+        let is_mirror = a.dot(b.cross(c)) < 0.0;
+        // Of a matrix without an inverse, too, these are the normals.
+        Transform { world, normals: if is_mirror { -cofactors } else { cofactors }, is_mirror }
+    }
+
+    fn position(&self, position: Vec3) -> Vec3 {
+        self.world.transform_point3(position.as_dvec3()).as_vec3()
+    }
+
+    fn normal(&self, of: Vec3) -> Vec3 {
+        normal::unit(self.normals * of.as_dvec3())
+    }
+
+    /// The bitangent's sign turns where the node mirrors. Without a direction all is zero, which is none.
+    fn tangent(&self, tangent: Vec4) -> Vec4 {
+        let direction: DVec3 = self.world.transform_vector3(tangent.truncate().as_dvec3());
+        let unit = normal::unit(direction);
+        if unit == Vec3::ZERO {
+            return Vec4::ZERO;
+        }
+        let is_turned = (tangent.w < 0.0) != self.is_mirror;
+        unit.extend(if is_turned { -1.0 } else { 1.0 })
+    }
+}

@@ -1,0 +1,154 @@
+//! Scenes in glTF 2.0, as JSON with files beside it or as one binary file.
+//!
+//! Files come from strangers. Their JSON is read into lists of bounded size, all counts are checked before anything is
+//! allocated for them, and no index is followed unchecked.
+
+mod accessor;
+mod buffer;
+mod camera;
+mod component;
+mod container;
+mod document;
+mod extension;
+mod light;
+mod material;
+mod mesh;
+mod node;
+mod notes;
+mod picture;
+mod primitive;
+mod shading;
+mod uri;
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use self::accessor::Accessors;
+use self::buffer::Buffers;
+use self::camera::Cameras;
+use self::document::Document;
+use self::mesh::Merge;
+use self::node::Placed;
+use self::notes::Notes;
+use self::picture::Pictures;
+use super::budget::Budget;
+use super::material::{DEFAULT, Fields};
+use super::obj::Obj;
+use super::{Camera, Light, Mesh, Unplaced, file};
+use crate::error::{Error, Result};
+
+/// A scene but for its surroundings.
+#[derive(Debug)]
+pub struct Gltf {
+    /// All meshes as one in world units, the materials that its triangles index (the first is the default), what was
+    /// ignored, and every other file that was read.
+    pub obj: Obj,
+    /// In the order of nodes.
+    pub lights: Vec<Light>,
+    /// Likewise, each with a name of its own.
+    pub cameras: Vec<Camera>,
+}
+
+/// Reads a `.gltf` or `.glb` file and those that it names, which lie in its folder or below. It has the pose that it has at rest.
+///
+/// # Errors
+/// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
+/// triangle, or more than the budget has room for: each says where in the JSON.
+pub fn load(path: &Path, budget: Budget) -> Result<Gltf> {
+    let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
+    parse(path, &bytes, budget)
+}
+
+/// The scene of the bytes of a file.
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<Gltf> {
+    read(path, bytes, budget).map_err(|fault| Error::file(path, fault))
+}
+
+fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
+    let container = container::open(bytes)?;
+    let document = document(bytes.get(container.json).unwrap_or_default())?;
+    let chunk = container.chunk.and_then(|range| bytes.get(range));
+    let folder = file::folder(path);
+    let mut notes = Notes::new(path);
+    extension::check(&document, &mut notes)?;
+    if !document.animations.is_empty() {
+        notes.once("animations", "animations are left out: nothing moves");
+    }
+    let nodes = node::walk(&document)?;
+    if nodes.iter().any(|placed| placed.node.skin.is_some()) {
+        notes.once("skins", "skins are left out: meshes have the shape that they are stored in");
+    }
+    let buffers = Buffers::read(&document, chunk, folder)?;
+    let mesh = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let mut lights = Vec::new();
+    let mut cameras = Cameras::default();
+    for placed in &nodes {
+        lights.extend(light::read(placed, &document.extensions.lights.lights, &mut notes)?);
+        cameras.add(placed, &document, &mut notes)?;
+    }
+    let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
+    let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
+    let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
+    Ok(Gltf { obj, lights, cameras: cameras.all })
+}
+
+fn document(json: &[u8]) -> Unplaced<Document> {
+    // Some writers begin with the mark of UTF-8.
+    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let document: Document = serde_json::from_slice(json).map_err(|error| format!("the JSON is no glTF: {error}"))?;
+    match document.asset.version.as_deref() {
+        None | Some("2") => Ok(document),
+        Some(version) if version.starts_with("2.") => Ok(document),
+        Some(version) => Err(format!("asset.version: this is glTF {version}; convert it to 2.0")),
+    }
+}
+
+fn merged(
+    document: &Document,
+    buffers: &Buffers,
+    nodes: &[Placed],
+    budget: Budget,
+    notes: &mut Notes,
+) -> Unplaced<Mesh> {
+    let mut by_mesh: BTreeMap<usize, Vec<&Placed>> = BTreeMap::new();
+    for placed in nodes {
+        if let Some(mesh) = placed.node.mesh {
+            by_mesh.entry(mesh).or_default().push(placed);
+        }
+    }
+    let mut merge = Merge::new(document, Accessors::new(document, buffers), budget);
+    for (mesh, nodes) in by_mesh {
+        merge.add(mesh, &nodes, notes)?;
+    }
+    let mesh = merge.finish();
+    if mesh.triangles.is_empty() {
+        return Err("there is no triangle in its scene; does a node of it have a mesh?".into());
+    }
+    Ok(mesh)
+}
+
+/// All materials under the numbers that triangles have, read if any has it, and the files of their pictures.
+type Materials = (Vec<(String, Fields)>, Vec<PathBuf>);
+
+fn materials(
+    document: &Document,
+    buffers: &Buffers,
+    mesh: &Mesh,
+    folder: &Path,
+    notes: &mut Notes,
+) -> Unplaced<Materials> {
+    let mut pictures = Pictures::new(document, buffers, folder);
+    let mut is_used = vec![false; document.materials.len() + 1];
+    for &material in &mesh.materials {
+        if let Some(is_used) = is_used.get_mut(material as usize) {
+            *is_used = true;
+        }
+    }
+    let mut materials = vec![(DEFAULT.to_owned(), material::plain())];
+    for ((number, of), is_used) in document.materials.iter().enumerate().zip(is_used.into_iter().skip(1)) {
+        let fields = if is_used { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
+        let name = of.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("material {number}"));
+        materials.push((name, fields));
+    }
+    Ok((materials, pictures.paths))
+}

@@ -1,0 +1,135 @@
+//! Textures: pictures, how they are sampled, and how materials lay them.
+
+use std::collections::HashMap;
+use std::io::Cursor;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use super::buffer::Buffers;
+use super::document::{Document, Image, Sampler, pick};
+use super::notes::Notes;
+use super::shading::{Info, Transform};
+use super::uri::{self, Target};
+use crate::image::{decode_texture, read_texture};
+use crate::scene::{Map, Placement, Texture, Unplaced, Wrap};
+
+/// The most texels of all pictures of a file: 2 GiB.
+const MOST_TEXELS: u64 = 1 << 29;
+
+/// The pictures that materials take, each decoded once.
+pub struct Pictures<'f> {
+    document: &'f Document,
+    buffers: &'f Buffers<'f>,
+    folder: &'f Path,
+    decoded: HashMap<usize, Arc<Texture>>,
+    texels: u64,
+    /// The files that were read for them.
+    pub paths: Vec<PathBuf>,
+}
+
+impl<'f> Pictures<'f> {
+    /// Those of a document in `folder`.
+    pub fn new(document: &'f Document, buffers: &'f Buffers<'f>, folder: &'f Path) -> Self {
+        Pictures { document, buffers, folder, decoded: HashMap::new(), texels: 0, paths: Vec::new() }
+    }
+
+    /// A texture as a material takes it; `owner` is the JSON path of where it does. None if there is no picture that is read.
+    ///
+    /// # Errors
+    /// A number that names nothing, a picture that cannot be read, or a transform that is out of range.
+    pub fn map(&mut self, info: Option<&Info>, owner: &str, notes: &mut Notes) -> Unplaced<Option<Map>> {
+        let Some(info) = info else { return Ok(None) };
+        let number = info.index.ok_or_else(|| format!("{owner}.index: there is none; name a texture"))?;
+        let texture = pick(&self.document.textures, number, &format!("{owner}.index"), "texture")?;
+        let Some(source) = texture.source else {
+            notes.once("source", &format!("textures[{number}] has no PNG or JPEG image and is left out"));
+            return Ok(None);
+        };
+        let of_sampler = format!("textures[{number}].sampler");
+        let sampler = texture.sampler.map(|number| pick(&self.document.samplers, number, &of_sampler, "sampler"));
+        let placement = placement(info, sampler.transpose()?, owner, notes)?;
+        let texture = self.texture(source, &format!("textures[{number}].source"))?;
+        Ok(Some(Map { texture, placement }))
+    }
+
+    fn texture(&mut self, number: usize, owner: &str) -> Unplaced<Arc<Texture>> {
+        if let Some(texture) = self.decoded.get(&number) {
+            return Ok(texture.clone());
+        }
+        let image = pick(&self.document.images, number, owner, "image")?;
+        let texture = self.decode(image, number)?;
+        self.texels += u64::from(texture.width) * u64::from(texture.height);
+        if self.texels > MOST_TEXELS {
+            return Err(format!(
+                "images[{number}]: all pictures together have more than {MOST_TEXELS} texels; make them smaller"
+            ));
+        }
+        let texture = Arc::new(texture);
+        self.decoded.insert(number, texture.clone());
+        Ok(texture)
+    }
+
+    fn decode(&mut self, image: &Image, number: usize) -> Unplaced<Texture> {
+        let here = format!("images[{number}]");
+        let name = image.name.as_deref().filter(|name| !name.is_empty()).unwrap_or(&here);
+        let of_bytes = |bytes: &[u8], key| {
+            decode_texture(name, Cursor::new(bytes))
+                .map_err(|error| format!("{here}.{key}: the image {}", error.message()))
+        };
+        if let Some(view) = image.buffer_view {
+            let (bytes, _) = self.buffers.view(view, &format!("{here}.bufferView"))?;
+            return of_bytes(bytes, "bufferView");
+        }
+        let Some(uri) = &image.uri else {
+            return Err(format!("{here}: there is neither a uri nor a bufferView; write the file again"));
+        };
+        match uri::follow(uri, self.folder).map_err(|fault| format!("{here}.uri: {fault}"))? {
+            Target::Bytes(bytes) => of_bytes(&bytes, "uri"),
+            Target::File(path) => {
+                let texture = read_texture(&path).map_err(|error| format!("{here}.uri: {error}"))?;
+                self.paths.push(path);
+                Ok(texture)
+            }
+        }
+    }
+}
+
+fn placement(info: &Info, sampler: Option<&Sampler>, owner: &str, notes: &mut Notes) -> Unplaced<Placement> {
+    let transform = info.extensions.transform.as_ref();
+    let set = transform.and_then(|transform| transform.tex_coord).or(info.tex_coord).unwrap_or(0);
+    if set > 1 {
+        notes.once("set", &format!("{owner}.texCoord: the set {set} is not read, 0 takes its place: only 0 and 1 are"));
+    }
+    let set = if set == 1 { 1 } else { 0 };
+    let default = Sampler::default();
+    let sampler = sampler.unwrap_or(&default);
+    let wrap = [sampler.wrap_s, sampler.wrap_t].map(wrap);
+    let placement = Placement { set, wrap, nearest: sampler.mag_filter == Some(9728), ..Placement::default() };
+    let Some(transform) = transform else { return Ok(placement) };
+    laid(placement, transform).ok_or_else(|| {
+        format!("{owner}.extensions.KHR_texture_transform: a number is out of single precision; repair it")
+    })
+}
+
+fn wrap(code: Option<u64>) -> Wrap {
+    match code {
+        Some(33071) => Wrap::Clamp,
+        Some(33648) => Wrap::Mirror,
+        _ => Wrap::Repeat,
+    }
+}
+
+/// The placement by a transform, if all its numbers are finite.
+fn laid(placement: Placement, transform: &Transform) -> Option<Placement> {
+    let pair = |[x, y]: [f64; 2]| Vec2::new(x as f32, y as f32);
+    let scale = transform.scale.map_or(Vec2::ONE, pair);
+    let offset = transform.offset.map_or(Vec2::ZERO, pair);
+    let degrees = transform.rotation.unwrap_or(0.0).to_degrees() as f32;
+    if !degrees.is_finite() {
+        return None;
+    }
+    let placement = placement.transformed(scale, degrees, offset);
+    placement.transform.as_flattened().iter().all(|number| number.is_finite()).then_some(placement)
+}

@@ -1,0 +1,349 @@
+//! Files of strangers: refused in a line that says where, or read in full, but never a panic and never a long wait.
+
+use std::path::Path;
+
+use glam::Vec3;
+use serde_json::{Value, json};
+
+use super::model::{F32, Model, U16, data, floats, picture, shorts};
+use crate::error::Result;
+use crate::scene::gltf::{self, Gltf};
+use crate::scene::tests::{Folder, budget};
+
+fn parse(bytes: &[u8]) -> Result<Gltf> {
+    gltf::parse(Path::new("/nowhere/a.glb"), bytes, budget(1 << 24))
+}
+
+/// Asserts why a file is refused.
+fn assert_refused(bytes: &[u8], why: &str) {
+    let error = parse(bytes).expect_err(why).to_string();
+    assert!(error.starts_with("/nowhere/a.glb: ") && !error.contains('\n'), "{error}");
+    assert!(error.contains(why), "{error}, wanted: {why}");
+}
+
+/// A triangle whose JSON has another value at a path: `/accessors/0/count`.
+fn changed(path: &str, value: Value) -> Vec<u8> {
+    let mut model = Model::triangle();
+    set(&mut model.json, path, value);
+    model.glb()
+}
+
+fn set(json: &mut Value, path: &str, value: Value) {
+    let (parent, key) = path.rsplit_once('/').unwrap();
+    let parent = json.pointer_mut(parent).unwrap();
+    match key.parse::<usize>() {
+        Ok(number) => parent[number] = value,
+        Err(_) => parent[key] = value,
+    }
+}
+
+#[test]
+fn numbers_that_name_nothing_are_refused_where_they_stand() {
+    for (path, value, why) in [
+        ("/accessors/0/bufferView", json!(9), "accessors[0].bufferView: there is no buffer view 9; the file has 1"),
+        ("/accessors/0/componentType", json!(5124), "accessors[0].componentType: 5124 is none of"),
+        ("/accessors/0/type", json!("VEC2"), "accessors[0].type: \"VEC2\" is not VEC3"),
+        (
+            "/accessors/0/count",
+            json!(4),
+            "accessors[0]: 4 elements of 12 bytes from 0 are more than the 36 of buffer view 0",
+        ),
+        ("/accessors/0/count", json!(u64::MAX), "accessors[0].count"),
+        ("/accessors/0/count", json!(-1), "the JSON is no glTF"),
+        ("/accessors/0/byteOffset", json!(u64::MAX), "accessors[0]: 3 elements"),
+        ("/bufferViews/0/byteLength", json!(40), "bufferViews[0]: 40 bytes from 0 are more than the 36 of buffer 0"),
+        ("/bufferViews/0/byteOffset", json!(u64::MAX), "bufferViews[0]: 36 bytes"),
+        ("/bufferViews/0/buffer", json!(1), "bufferViews[0].buffer: there is no buffer 1; the file has 1"),
+        ("/bufferViews/0/byteStride", json!(4), "bufferViews[0].byteStride: 4 is less than"),
+        (
+            "/meshes/0/primitives/0/attributes/POSITION",
+            json!(3),
+            "primitives[0].attributes.POSITION: there is no accessor 3",
+        ),
+        ("/meshes/0/primitives/0/attributes", json!({}), "meshes[0].primitives[0].attributes: there is no POSITION"),
+        ("/meshes/0/primitives/0/indices", json!(1), "meshes[0].primitives[0].indices: there is no accessor 1"),
+        (
+            "/meshes/0/primitives/0/material",
+            json!(0),
+            "primitives[0].material: there is no material 0; the file has none",
+        ),
+        ("/meshes/0/primitives/0/mode", json!(7), "meshes[0].primitives[0].mode: 7 is none of"),
+        ("/nodes/0/mesh", json!(1), "nodes[0].mesh: there is no mesh 1"),
+        ("/nodes/0/children", json!([5]), "nodes[0].children: there is no node 5"),
+        ("/nodes/0/children", json!([0]), "nodes[0]: it is reached twice"),
+        ("/nodes/0/children", json!([0, 0]), "nodes[0].children: node 0 has two parents"),
+        ("/nodes/0/matrix", json!([1, 0]), "nodes[0].matrix: it has 2 numbers and needs 16"),
+        ("/nodes/0/scale", json!([1e300, 1e300, 1]), "nodes[0] takes it out of single precision"),
+        ("/nodes/0/camera", json!(0), "nodes[0].camera: there is no camera 0"),
+        ("/scene", json!(1), "scene: there is no scene 1"),
+        ("/scenes/0/nodes", json!([1]), "scenes[0].nodes: there is no node 1"),
+        ("/scenes/0/nodes", json!([]), "there is no triangle in its scene"),
+        ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "\"KHR_draco_mesh_compression\" is not read"),
+        ("/asset/version", json!("1.0"), "this is glTF 1.0; convert it to 2.0"),
+    ] {
+        assert_refused(&changed(path, value), why);
+    }
+}
+
+#[test]
+fn places_that_are_none_and_corners_out_of_range_are_refused() {
+    let mut model = Model::triangle();
+    model.bytes[..4].copy_from_slice(&f32::NAN.to_le_bytes());
+    assert_refused(&model.glb(), "meshes[0].primitives[0].attributes.POSITION: vertex 0 is at [NaN, 0, 0]");
+    let mut model = Model::triangle();
+    let indices = model.accessor("SCALAR", U16, 3, &shorts(&[0, 1, 3]));
+    model.primitive()["indices"] = json!(indices);
+    assert_refused(&model.glb(), "meshes[0].primitives[0].indices: corner 2 names vertex 3 of 3");
+    let normal = model.accessor("VEC3", F32, 1, &floats(&[0.0, 0.0, 1.0]));
+    model.bytes[40..42].copy_from_slice(&[2, 0]);
+    model.primitive()["attributes"]["NORMAL"] = json!(normal);
+    assert_refused(&model.glb(), "attributes.NORMAL: it has 1 elements for 3 positions");
+}
+
+#[test]
+fn files_that_end_early_or_are_of_another_kind_are_refused() {
+    let whole = Model::triangle().glb();
+    for (bytes, why) in [
+        (&whole[..10], "the file ends early"),
+        (&whole[..30], "the file ends early"),
+        (&whole[..whole.len() - 4], "the file ends early"),
+        (b"glTF\x01\0\0\0\0\0\0\0", "a binary glTF of version 1"),
+        (b"solid thing", "the JSON is no glTF: expected value at line 1 column 1"),
+        (b"{}", "there is no triangle"),
+        (b"[]", "there is no triangle"),
+    ] {
+        assert_refused(bytes, why);
+    }
+    let mut longer = whole.clone();
+    longer[12..16].copy_from_slice(&u32::MAX.to_le_bytes());
+    assert_refused(&longer, "a chunk claims 4294967295 bytes");
+}
+
+#[test]
+fn too_many_triangles_are_refused_before_they_are_made() {
+    let mut model = Model::triangle();
+    // Zeros that take no bytes.
+    model.json["accessors"][0] = json!({ "componentType": F32, "count": u32::MAX, "type": "VEC3" });
+    assert_refused(&model.glb(), "use fewer");
+    let mut model = Model::triangle();
+    model.json["accessors"][0] = json!({ "componentType": F32, "count": 30_000, "type": "VEC3" });
+    let nodes = 20_000;
+    model.json["nodes"] = (0..nodes).map(|_| json!({ "mesh": 0 })).collect();
+    model.json["scenes"][0]["nodes"] = (0..nodes).collect();
+    assert_refused(&model.glb(), "meshes[0].primitives[0]: 200000000 triangles with");
+    let mut text = br#"{"nodes":["#.to_vec();
+    text.extend(b"{},".repeat(1_000_001));
+    text.extend(b"{}]}");
+    assert_refused(&text, "a list has more than 1000000 elements");
+}
+
+#[test]
+fn a_chain_of_many_nodes_is_walked() {
+    let mut model = Model::triangle();
+    let nodes = 100_000;
+    let node = |number: u32| json!({ "children": [number + 1], "translation": [0.5, 0, 0] });
+    model.json["nodes"] = (0..nodes).map(node).chain([json!({ "mesh": 0 })]).collect();
+    let mesh = parse(&model.glb()).unwrap().obj.mesh;
+    assert_eq!(mesh.positions[0], Vec3::new(50_000.0, 0.0, 0.0));
+}
+
+#[test]
+fn only_files_in_the_folder_are_read() {
+    let model = Model::triangle();
+    let with = |uri: &str| {
+        let mut json = model.json.clone();
+        json["buffers"] = json!([{ "uri": uri, "byteLength": model.bytes.len() }]);
+        serde_json::to_vec(&json).unwrap()
+    };
+    for (uri, why) in [
+        ("https://example.org/a.bin", "buffers[0].uri: \"https://example.org/a.bin\" is an address and is not fetched"),
+        ("file:///a.bin", "is an address"),
+        ("/a.bin", "lies outside this file's folder"),
+        ("b/%2e%2e/../a.bin", "lies outside this file's folder"),
+        ("%2Fa.bin", "lies outside this file's folder"),
+        ("C:/a.bin", "lies outside this file's folder"),
+        ("none.bin", "buffers[0].uri: \"none.bin\": there is no such file"),
+        ("data:;base64,AAAA", "buffers[0].byteLength: it claims 36 bytes and there are 3"),
+        ("data:;base64,!", "is not base64"),
+        ("data:text/plain,x", "is not in base64"),
+    ] {
+        assert_refused(&with(uri), why);
+    }
+    let folder = Folder::new(&[("my triangle.bin", &model.bytes), ("a.gltf", &with("my%20triangle.bin"))]);
+    let (scene, _) = folder.load("a.gltf").unwrap();
+    assert_eq!(scene.files, [folder.path("my triangle.bin")]);
+}
+
+#[test]
+fn textures_that_make_no_sense_are_refused() {
+    let textured = |path: &str, value: Value| {
+        let mut model = seed();
+        set(&mut model.json, path, value);
+        model.glb()
+    };
+    for (path, value, why) in [
+        ("/images/0/uri", json!(data(b"BM picture")), "images[0].uri: the image is not a PNG, JPEG, EXR or HDR image"),
+        ("/images/0/uri", json!(data(&picture()[..40])), "images[0].uri: the image "),
+        ("/images/0", json!({}), "images[0]: there is neither a uri nor a bufferView"),
+        ("/textures/0/source", json!(2), "textures[0].source: there is no image 2; the file has 1"),
+        ("/textures/0/sampler", json!(2), "textures[0].sampler: there is no sampler 2"),
+        ("/materials/0/normalTexture/index", json!(2), "materials[0].normalTexture.index: there is no texture 2"),
+        (
+            "/materials/0/emissiveFactor",
+            json!([-1, 0, 0]),
+            "materials[0].emissiveFactor: -1 must be a finite number of at least 0",
+        ),
+        ("/cameras/0/perspective/yfov", json!(9), "cameras[0].perspective.yfov"),
+        ("/extensions/KHR_lights_punctual/lights/0/type", json!("sun"), "lights[0].type: \"sun\" is none of"),
+        ("/extensions/KHR_lights_punctual/lights/0/intensity", json!(-3), "below 0"),
+    ] {
+        assert_refused(&textured(path, value), why);
+    }
+}
+
+/// A file with something of everything.
+fn seed() -> Model {
+    let mut model = Model::triangle();
+    let normal = model.accessor("VEC3", F32, 3, &floats(&[[0.0, 0.0, 1.0]; 3].concat()));
+    let tangent = model.accessor("VEC4", F32, 3, &floats(&[[1.0, 0.0, 0.0, 1.0]; 3].concat()));
+    let coordinates = model.accessor("VEC2", 5121, 3, &[0, 0, 1, 0, 0, 1]);
+    let indices = model.accessor("SCALAR", U16, 4, &shorts(&[0, 1, 2, 0]));
+    let (places, values) = (model.view(&shorts(&[1])), model.view(&floats(&[2.0, 0.0, 0.0])));
+    model.json["accessors"][0]["sparse"] = json!({
+        "count": 1, "indices": { "bufferView": places, "componentType": U16 }, "values": { "bufferView": values }
+    });
+    let attributes = json!({ "POSITION": 0, "NORMAL": normal, "TANGENT": tangent, "TEXCOORD_0": coordinates });
+    model.json["meshes"][0]["primitives"] = json!([
+        { "attributes": attributes, "indices": indices, "mode": 5, "material": 0 },
+        { "attributes": { "POSITION": 0 } },
+    ]);
+    model.json["images"] = json!([{ "uri": data(&picture()) }]);
+    model.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+    model.json["samplers"] = json!([{ "magFilter": 9728 }]);
+    model.json["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorFactor": [1, 0.5, 0.25, 1], "baseColorTexture": { "index": 0 } },
+        "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1, "scale": [2, 3] } } },
+        "emissiveFactor": [1, 0, 0],
+        "extensions": { "KHR_materials_ior": { "ior": 1.4 }, "KHR_materials_transmission": { "transmissionFactor": 0.5 } },
+    }]);
+    model.json["cameras"] = json!([{ "perspective": { "yfov": 1 } }]);
+    let spot = json!({ "outerConeAngle": 0.5, "innerConeAngle": 0.25 });
+    model.json["extensions"] =
+        json!({ "KHR_lights_punctual": { "lights": [{ "type": "spot", "intensity": 2, "spot": spot }] } });
+    model.json["nodes"] = json!([
+        { "mesh": 0, "children": [1], "rotation": [0, 0, 0, 1], "scale": [1, -2, 1] },
+        { "mesh": 0, "camera": 0, "translation": [0, 0, 3], "extensions": { "KHR_lights_punctual": { "light": 0 } } },
+    ]);
+    model
+}
+
+/// Numbers of Marsaglia's xorshift, so that each run changes the same files.
+struct Dice(u64);
+
+impl Dice {
+    fn below(&mut self, most: usize) -> usize {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 % most as u64) as usize
+    }
+}
+
+/// The bytes with a few bits flipped, an end cut off, or other numbers in their JSON.
+fn mutated(seed: &[u8], dice: &mut Dice) -> Vec<u8> {
+    let mut bytes = seed.to_vec();
+    match dice.below(8) {
+        0 => bytes.truncate(dice.below(seed.len())),
+        1 | 2 => {
+            for _ in 0..=dice.below(4) {
+                let at = dice.below(seed.len());
+                bytes[at] ^= 1 << dice.below(8);
+            }
+        }
+        _ => {
+            for _ in 0..=dice.below(2) {
+                other_number(&mut bytes, dice);
+            }
+        }
+    }
+    bytes
+}
+
+const NUMBERS: [&str; 16] = [
+    "-1",
+    "0",
+    "1",
+    "2",
+    "3",
+    "5",
+    "7",
+    "255",
+    "65536",
+    "4294967295",
+    "4294967296",
+    "18446744073709551615",
+    "1e-300",
+    "1e300",
+    "-0.5",
+    "null",
+];
+
+/// Replaces a number; a binary file's lengths are made good, so that its JSON is looked at.
+fn other_number(bytes: &mut Vec<u8>, dice: &mut Dice) {
+    let is_digit = |byte: &u8| byte.is_ascii_digit();
+    let from = dice.below(bytes.len());
+    let Some(start) =
+        (from..bytes.len()).find(|&at| b":[,".contains(&bytes[at]) && bytes.get(at + 1).is_some_and(is_digit))
+    else {
+        return;
+    };
+    let end = (start + 1..bytes.len()).find(|&at| !is_digit(&bytes[at])).unwrap_or(bytes.len());
+    let number = NUMBERS[dice.below(NUMBERS.len())].as_bytes();
+    let longer = number.len().wrapping_sub(end - start - 1) as u32;
+    bytes.splice(start + 1..end, number.iter().copied());
+    if bytes.starts_with(b"glTF") {
+        for at in [8, 12] {
+            let length = u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()).wrapping_add(longer);
+            bytes[at..at + 4].copy_from_slice(&length.to_le_bytes());
+        }
+    }
+}
+
+#[test]
+fn ten_thousand_damaged_files_are_refused_or_whole() {
+    let model = seed();
+    let seeds = [model.gltf(), model.glb()];
+    seeds.iter().for_each(|seed| assert_eq!(parse(seed).unwrap().obj.mesh.triangles.len(), 6));
+    let mut dice = Dice(0x2545_f491_4f6c_dd1d);
+    let mut read = 0;
+    for number in 0..10_000 {
+        let bytes = mutated(&seeds[number % 2], &mut dice);
+        match parse(&bytes) {
+            Ok(scene) => {
+                read += 1;
+                assert_whole(&scene);
+            }
+            Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
+        }
+    }
+    // Else the changes are too coarse to find anything.
+    assert!((1_000..9_000).contains(&read), "{read} of them are read");
+}
+
+fn assert_whole(scene: &Gltf) {
+    let mesh = &scene.obj.mesh;
+    let vertices = mesh.positions.len();
+    assert!(!mesh.triangles.is_empty() && mesh.triangles.len() == mesh.materials.len());
+    let [first, second] = &mesh.coordinates;
+    let lengths = [mesh.normals.len(), mesh.tangents.len(), mesh.colours.len(), first.len(), second.len()];
+    assert!(lengths.iter().all(|&length| length == 0 || length == vertices), "{lengths:?} of {vertices}");
+    assert!(mesh.triangles.iter().flatten().all(|&vertex| (vertex as usize) < vertices));
+    assert!(mesh.materials.iter().all(|&material| (material as usize) < scene.obj.materials.len()));
+    assert!(mesh.positions.iter().all(|position| position.is_finite()));
+    let unit = |n: &Vec3| *n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
+    assert!(mesh.normals.iter().all(unit));
+    for (name, fields) in &scene.obj.materials {
+        let maps = fields.maps.all().count();
+        assert!(maps <= 2 && fields.clone().finish(name).opacity <= 1.0);
+    }
+}

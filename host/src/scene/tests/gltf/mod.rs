@@ -1,0 +1,242 @@
+//! Scenes in glTF: what comes out of them.
+
+mod hostile;
+mod model;
+
+use glam::{Vec2, Vec3, Vec4};
+use serde_json::json;
+
+use self::model::{F32, Model, U16, data, floats, picture, shorts};
+use super::Folder;
+use crate::scene::gltf::Gltf;
+use crate::scene::{Alpha, Background, Integrator, Light, Wrap};
+
+#[test]
+fn a_triangle_is_a_scene_in_grey_light_and_a_mesh_of_a_scene() {
+    let mut model = Model::triangle();
+    let toml = b"[[mesh]]\nfile = \"a.glb\"\nposition = [0, 0, 2]\n[render]\nsize = [8, 8]\n";
+    let files: [(&str, &[u8]); 3] = [("a.gltf", &model.gltf()), ("a.glb", &model.glb()), ("a.toml", toml)];
+    let folder = Folder::new(&files);
+    let (scene, warnings) = folder.load("a.gltf").unwrap();
+    assert_eq!(scene.mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::Y]);
+    assert_eq!((&scene.mesh.triangles[..], warnings.len()), (&[[0, 1, 2]][..], 0));
+    assert_eq!((scene.lights.len(), scene.cameras.len(), scene.settings.spp), (0, 1, 64));
+    assert_eq!(scene.background, Background::Colour(Vec3::splat(0.6)));
+    assert_eq!(scene.settings.transport.integrator, Integrator::Path);
+    let physical = scene.materials[0].physical.unwrap();
+    assert_eq!((physical.base, physical.metallic, physical.roughness), (Vec3::ONE, 1.0, 1.0));
+    scene.check().unwrap();
+    let (bare, _) = folder.load("a.glb").unwrap();
+    assert_eq!(bare.mesh, scene.mesh);
+    let (toml, warnings) = folder.load("a.toml").unwrap();
+    assert_eq!((toml.mesh.positions[1], warnings.len()), (Vec3::new(1.0, 0.0, 2.0), 0));
+    model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 1.0, "znear": 0.1 } }]);
+    model.json["nodes"][0]["camera"] = json!(0);
+    let folder = Folder::new(&[("a.glb", &model.glb()), ("a.toml", toml_of_one())]);
+    let (_, warnings) = folder.load("a.toml").unwrap();
+    assert!(warnings[0].contains("its lights and cameras are left out"), "{warnings:?}");
+}
+
+fn toml_of_one() -> &'static [u8] {
+    b"[[mesh]]\nfile = \"a.glb\"\n"
+}
+
+#[test]
+fn strips_and_fans_turn_and_only_vertices_in_use_are_kept() {
+    let mut model = Model::triangle();
+    let corners = floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.0, 0.0, 9.0, 9.0, 9.0]);
+    let position = model.accessor("VEC3", F32, 5, &corners);
+    let indices = model.accessor("SCALAR", U16, 4, &shorts(&[0, 1, 2, 3]));
+    *model.primitive() = json!({ "attributes": { "POSITION": position }, "indices": indices, "mode": 5 });
+    let mesh = model.mesh();
+    assert_eq!((mesh.positions.len(), &mesh.triangles[..]), (4, &[[0, 1, 2], [1, 3, 2]][..]));
+    model.primitive()["mode"] = json!(6);
+    let mesh = model.mesh();
+    let places = |triangle: [u32; 3]| triangle.map(|corner| mesh.positions[corner as usize].truncate());
+    let [zero, one] = [Vec2::ZERO, Vec2::ONE];
+    assert_eq!(
+        mesh.triangles.iter().copied().map(places).collect::<Vec<_>>(),
+        [[Vec2::X, Vec2::Y, zero], [Vec2::Y, one, zero]]
+    );
+}
+
+#[test]
+fn sparse_elements_replace_those_of_the_base_or_zeros() {
+    let mut model = Model::triangle();
+    let places = model.view(&shorts(&[2]));
+    let values = model.view(&floats(&[0.0, 5.0, 0.0]));
+    let sparse = json!({
+        "count": 1,
+        "indices": { "bufferView": places, "componentType": U16 },
+        "values": { "bufferView": values },
+    });
+    model.json["accessors"][0]["sparse"] = sparse;
+    assert_eq!(model.mesh().positions, [Vec3::ZERO, Vec3::X, 5.0 * Vec3::Y]);
+    model.json["accessors"][0].as_object_mut().unwrap().remove("bufferView");
+    let of_zeros = model.mesh();
+    assert_eq!(of_zeros.positions, [Vec3::ZERO, Vec3::ZERO, 5.0 * Vec3::Y]);
+}
+
+#[test]
+fn quantised_and_interleaved_numbers_are_read() {
+    let mut model = Model::triangle();
+    // Four bytes of position and four of a colour.
+    let bytes: Vec<u8> =
+        [[0, 0, 0, 0, 255, 0, 51, 7], [127, 0, 0, 0, 0, 255, 0, 7], [0, 129, 0, 0, 0, 0, 255, 7]].concat();
+    let position = model.accessor("VEC3", 5120, 3, &bytes);
+    model.json["bufferViews"][1]["byteStride"] = json!(8);
+    model.json["accessors"][1]["normalized"] = json!(true);
+    let colour = json!({ "bufferView": 1, "byteOffset": 4, "componentType": 5121, "count": 3, "type": "VEC3", "normalized": true });
+    model.json["accessors"].as_array_mut().unwrap().push(colour);
+    *model.primitive() = json!({ "attributes": { "POSITION": position, "COLOR_0": 2 } });
+    model.json["extensionsRequired"] = json!(["KHR_mesh_quantization"]);
+    let mesh = model.mesh();
+    assert_eq!(mesh.positions, [Vec3::ZERO, Vec3::X, Vec3::NEG_Y]);
+    assert_eq!(mesh.colours[0], Vec4::new(1.0, 0.0, 0.2, 1.0));
+}
+
+#[test]
+fn nodes_place_meshes_and_mirrors_turn_them_back() {
+    let mut model = Model::triangle();
+    let up = floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0]);
+    let normal = model.accessor("VEC3", F32, 3, &up);
+    let tangent = model.accessor("VEC4", F32, 3, &floats(&[[1.0, 0.0, 0.0, 1.0]; 3].concat()));
+    model.primitive()["attributes"]["NORMAL"] = json!(normal);
+    model.primitive()["attributes"]["TANGENT"] = json!(tangent);
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    model.json["nodes"] = json!([
+        { "children": [2, 1], "translation": [10, 0, 0] },
+        { "mesh": 0, "scale": [-2, 1, 1] },
+        { "mesh": 0, "rotation": [half, 0, 0, half] },
+        { "mesh": 0 },
+    ]);
+    let mesh = model.mesh();
+    // The quarter turn about x first, then the mirror; what no scene names is not there.
+    assert_eq!(mesh.positions.len(), 6);
+    assert!(mesh.positions[2].abs_diff_eq(Vec3::new(10.0, 0.0, 1.0), 1e-6), "{}", mesh.positions[2]);
+    assert!(mesh.normals[0].abs_diff_eq(Vec3::NEG_Y, 1e-6), "{}", mesh.normals[0]);
+    assert_eq!((mesh.positions[4], mesh.normals[3], mesh.triangles[1]), (Vec3::X * 8.0, Vec3::Z, [3, 5, 4]));
+    assert_eq!(mesh.tangents[3], Vec4::new(-1.0, 0.0, 0.0, -1.0));
+}
+
+#[test]
+fn materials_take_textures_and_extensions() {
+    let mut model = Model::triangle();
+    let coordinates = model.accessor("VEC2", F32, 3, &floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]));
+    model.primitive()["attributes"]["TEXCOORD_1"] = json!(coordinates);
+    model.primitive()["material"] = json!(0);
+    let view = model.view(&picture());
+    model.json["images"] = json!([{ "uri": data(&picture()) }, { "bufferView": view, "mimeType": "image/png" }]);
+    model.json["samplers"] = json!([{ "magFilter": 9728, "wrapS": 33071, "wrapT": 33648 }]);
+    model.json["textures"] = json!([{ "source": 0, "sampler": 0 }, { "source": 1 }]);
+    let quarter = std::f64::consts::FRAC_PI_2;
+    let turned = json!({ "KHR_texture_transform": { "offset": [0, 1], "rotation": quarter, "scale": [0.5, 0.5] } });
+    model.json["materials"] = json!([{
+        "name": "glass",
+        "pbrMetallicRoughness": {
+            "baseColorFactor": [0.5, 0.25, 1.5, 0.75], "metallicFactor": 0, "roughnessFactor": 0.25,
+            "baseColorTexture": { "index": 0, "texCoord": 1, "extensions": turned },
+        },
+        "normalTexture": { "index": 1, "scale": 2 },
+        "emissiveFactor": [1, 0.5, 0], "doubleSided": true, "alphaMode": "MASK",
+        "extensions": {
+            "KHR_materials_emissive_strength": { "emissiveStrength": 4 },
+            "KHR_materials_ior": { "ior": 1.25 },
+            "KHR_materials_transmission": { "transmissionFactor": 0.5 },
+            "KHR_materials_volume": { "thicknessFactor": 1, "attenuationDistance": 2, "attenuationColor": [1, 0, 0] },
+            "KHR_materials_anisotropy": { "anisotropyStrength": 0.5, "anisotropyRotation": quarter },
+            "KHR_materials_specular": { "specularFactor": 0.5, "specularColorFactor": [2, 1, 1] },
+            "KHR_materials_unknown": { "factor": "none" },
+        },
+    }]);
+    let Gltf { obj, .. } = model.load();
+    let (name, fields) = &obj.materials[1];
+    let physical = fields.physical;
+    assert_eq!((name.as_str(), obj.mesh.materials[0], fields.opacity), ("glass", 1, Some(0.75)));
+    assert_eq!((physical.base, physical.roughness), (Some(Vec3::new(0.5, 0.25, 1.0)), Some(0.25)));
+    assert_eq!((fields.emission, fields.two_sided), (Some(Vec3::new(4.0, 2.0, 0.0)), Some(true)));
+    assert_eq!((fields.alpha, fields.ior), (Some(Alpha::Mask(0.5)), Some(1.25)));
+    assert_eq!((fields.transmission, physical.thin), (Some(Vec3::splat(0.5)), Some(false)));
+    assert_eq!(physical.absorption.unwrap().distance, 2.0);
+    assert_eq!((physical.anisotropy_rotation, physical.specular_tint), (Some(90.0), Some(Vec3::ONE)));
+    let base = fields.maps.base.as_ref().unwrap();
+    assert_eq!((base.texture.width, base.placement.set, base.placement.nearest), (2, 1, true));
+    assert_eq!(base.placement.wrap, [Wrap::Clamp, Wrap::Mirror]);
+    // The extension's own example: the lower left quarter, turned clockwise.
+    let rows = base.placement.transform;
+    let at = |u: f32, v: f32| rows.map(|[x, y, z]| x * u + y * v + z);
+    assert!(Vec2::from(at(1.0, 0.0)).abs_diff_eq(Vec2::new(0.0, 0.5), 1e-6), "{rows:?}");
+    assert!(Vec2::from(at(0.0, 1.0)).abs_diff_eq(Vec2::new(0.5, 1.0), 1e-6), "{rows:?}");
+    assert_eq!((fields.maps.normal_scale, fields.maps.all().count()), (2.0, 2));
+    assert_eq!(obj.warnings.len(), 2, "{:?}", obj.warnings);
+}
+
+#[test]
+fn what_is_unlit_sends_out_its_colour() {
+    let mut model = Model::triangle();
+    model.primitive()["material"] = json!(0);
+    model.json["materials"] = json!([{
+        "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 0.75, 1] }, "extensions": { "KHR_materials_unlit": {} }
+    }]);
+    let Gltf { obj, .. } = model.load();
+    let (name, fields) = &obj.materials[1];
+    assert_eq!((name.as_str(), fields.emission), ("material 0", Some(Vec3::new(0.5, 0.25, 0.75))));
+    assert_eq!((fields.physical.base, obj.warnings.len()), (Some(Vec3::ZERO), 1));
+}
+
+#[test]
+fn lights_and_cameras_stand_where_their_nodes_are() {
+    let mut model = Model::triangle();
+    let lights = json!([
+        { "type": "point", "intensity": 3, "color": [1, 0.5, 0] },
+        { "type": "spot", "spot": { "outerConeAngle": 0.5 } },
+        { "type": "directional", "intensity": 0 },
+        { "type": "directional" },
+    ]);
+    model.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": lights } });
+    let carries = |light: u32| json!({ "KHR_lights_punctual": { "light": light } });
+    model.json["cameras"] = json!([
+        { "type": "perspective", "perspective": { "yfov": std::f64::consts::FRAC_PI_4 } },
+        { "type": "orthographic", "orthographic": {} },
+    ]);
+    model.json["nodes"] = json!([
+        { "mesh": 0, "children": [1, 2, 3, 4, 5] },
+        { "translation": [1, 2, 3], "extensions": carries(0) },
+        { "translation": [1, 2, 3], "extensions": carries(1), "camera": 0, "name": "front" },
+        { "extensions": carries(2), "camera": 0, "name": "front" },
+        { "rotation": [0, 1, 0, 0], "extensions": carries(3) },
+        { "camera": 1 },
+    ]);
+    let Gltf { obj, lights, cameras } = model.load();
+    let position = Vec3::new(1.0, 2.0, 3.0);
+    assert_eq!(lights.len(), 3);
+    assert_eq!(lights[0], Light::Point { position, colour: Vec3::new(3.0, 1.5, 0.0) });
+    assert!(
+        matches!(lights[1], Light::Spot { outer, inner: 0.0, target, .. } if outer == 0.5f32.to_degrees() && target == position - Vec3::Z)
+    );
+    assert!(matches!(lights[2], Light::Directional { direction, .. } if direction.abs_diff_eq(Vec3::Z, 1e-6)));
+    assert_eq!(cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>(), ["front", "front 2"]);
+    assert_eq!((cameras[0].eye, cameras[0].fov, cameras[0].up), (position, 45.0, Vec3::Y));
+    assert_eq!(obj.warnings, ["a.gltf: orthographic cameras are left out: only those with perspective are read"]);
+}
+
+#[test]
+fn what_is_left_out_is_said_once() {
+    let mut model = Model::triangle();
+    let primitive = model.primitive().clone();
+    let mut points = primitive.clone();
+    points["mode"] = json!(0);
+    let mut morphed = primitive.clone();
+    morphed["targets"] = json!([{ "POSITION": 0 }]);
+    model.json["meshes"][0]["primitives"] = json!([points, points, morphed, morphed]);
+    model.json["skins"] = json!([{ "joints": [0] }]);
+    model.json["animations"] = json!([{}, {}]);
+    model.json["nodes"][0]["skin"] = json!(0);
+    model.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_materials_ior"]);
+    let warnings = model.load().obj.warnings;
+    let wanted = ["KHR_materials_clearcoat", "animations", "skins", "points and lines", "morph targets"];
+    assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");
+    for (warning, wanted) in warnings.iter().zip(wanted) {
+        assert!(warning.contains(wanted), "{warning}");
+    }
+}

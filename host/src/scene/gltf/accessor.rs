@@ -79,7 +79,7 @@ impl<'f> Accessors<'f> {
         let stride = stride.unwrap_or(size);
         if stride < size {
             return Err(format!(
-                "bufferViews[{view}].byteStride: {stride} is less than the {size} bytes of an element"
+                "bufferViews[{view}].byteStride: {stride} is less than the {size} bytes of an element; write the file again"
             ));
         }
         let found = bytes.len();

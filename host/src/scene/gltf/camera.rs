@@ -1,6 +1,6 @@
 //! Cameras.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 use super::document::{Document, pick};
 use super::light::View;
@@ -14,7 +14,8 @@ use crate::scene::{Camera, Unplaced};
 pub struct Cameras {
     /// In the order of nodes.
     pub all: Vec<Camera>,
-    names: HashSet<String>,
+    /// The number that the next of a name gets, if the name is taken.
+    next: HashMap<String, u32>,
 }
 
 impl Cameras {
@@ -53,13 +54,15 @@ impl Cameras {
 
     /// The name, with a number if it is taken.
     fn name(&mut self, wish: &str) -> String {
-        if self.names.insert(wish.to_owned()) {
-            return wish.to_owned();
+        let mut number = self.next.get(wish).copied().unwrap_or(1);
+        loop {
+            let name = if number == 1 { wish.to_owned() } else { format!("{wish} {number}") };
+            number = number.saturating_add(1);
+            if !self.next.contains_key(&name) {
+                self.next.insert(name.clone(), 2);
+                self.next.insert(wish.to_owned(), number);
+                return name;
+            }
         }
-        // As many as there are cameras make one of them free.
-        let numbered = (2..self.all.len() + 3).map(|number| format!("{wish} {number}"));
-        let free = numbered.into_iter().find(|name| !self.names.contains(name)).unwrap_or_else(|| wish.to_owned());
-        self.names.insert(free.clone());
-        free
     }
 }

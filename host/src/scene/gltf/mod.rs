@@ -95,7 +95,13 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
 fn document(json: &[u8]) -> Unplaced<Document> {
     // Some writers begin with the mark of UTF-8.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
-    let document: Document = serde_json::from_slice(json).map_err(|error| format!("the JSON is no glTF: {error}"))?;
+    let mut from = serde_json::Deserializer::from_slice(json);
+    let document: Document = serde_path_to_error::deserialize(&mut from).map_err(|error| {
+        let (path, fault) = (error.path().to_string(), error.inner());
+        let owner = if path == "." { "the JSON".into() } else { path };
+        format!("{owner}: {fault}; write the file again as glTF 2.0")
+    })?;
+    from.end().map_err(|fault| format!("the JSON: {fault}; write the file again as glTF 2.0"))?;
     match document.asset.version.as_deref() {
         None | Some("2") => Ok(document),
         Some(version) if version.starts_with("2.") => Ok(document),

@@ -49,7 +49,7 @@ fn numbers_that_name_nothing_are_refused_where_they_stand() {
             "accessors[0]: 4 elements of 12 bytes from 0 are more than the 36 of buffer view 0",
         ),
         ("/accessors/0/count", json!(u64::MAX), "accessors[0].count"),
-        ("/accessors/0/count", json!(-1), "the JSON is no glTF"),
+        ("/accessors/0/count", json!(-1), "accessors[0].count: invalid value: integer `-1`"),
         ("/accessors/0/byteOffset", json!(u64::MAX), "accessors[0]: 3 elements"),
         ("/bufferViews/0/byteLength", json!(40), "bufferViews[0]: 40 bytes from 0 are more than the 36 of buffer 0"),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "bufferViews[0]: 36 bytes"),
@@ -108,7 +108,7 @@ fn files_that_end_early_or_are_of_another_kind_are_refused() {
         (&whole[..30], "the file ends early"),
         (&whole[..whole.len() - 4], "the file ends early"),
         (b"glTF\x01\0\0\0\0\0\0\0", "a binary glTF of version 1"),
-        (b"solid thing", "the JSON is no glTF: expected value at line 1 column 1"),
+        (b"solid thing", "the JSON: expected value at line 1 column 1; write the file again"),
         (b"{}", "there is no triangle"),
         (b"[]", "there is no triangle"),
     ] {

@@ -19,6 +19,8 @@ pub struct Budget {
 const PRIMITIVE: u64 = 480;
 /// What a vertex takes, used or not: its numbers while it is read, in a list that doubles as it grows.
 const VERTEX: u64 = 36;
+/// What a byte of a texture takes: itself, and its levels twice, as colours and as numbers, with a third more than the finest.
+const TEXEL: u64 = 4;
 
 impl Budget {
     /// All of the room there is.
@@ -43,6 +45,15 @@ impl Budget {
     pub fn check_round(&self, count: usize) -> Unplaced<()> {
         let all = Budget { round: self.round + count, ..*self };
         all.fits().map_err(|why| format!("{} spheres and disks {why}; use fewer", all.round))
+    }
+
+    /// Refuses textures of so many bytes.
+    ///
+    /// # Errors
+    /// What they would take of what there is.
+    pub fn check_textures(&self, bytes: u64) -> Unplaced<()> {
+        let fits = self.room.check(bytes.saturating_mul(TEXEL));
+        fits.map_err(|why| format!("textures of {bytes} bytes {why}; use smaller ones"))
     }
 
     fn fits(&self) -> Unplaced<()> {

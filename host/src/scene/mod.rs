@@ -86,7 +86,7 @@ pub struct Scene {
     pub disks: Vec<Disk>,
     /// Which triangles, spheres and disks came of what, in file order; together all of them.
     pub parts: Vec<Part>,
-    /// The meshes and material files that it was read from, beside the scene file itself.
+    /// The meshes, material files and pictures that it was read from, beside the scene file itself.
     pub files: Vec<std::path::PathBuf>,
     /// What the mesh's materials index; never empty.
     pub materials: Vec<Material>,

@@ -3,10 +3,11 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::textures::Pictures;
 use crate::quality;
 use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Part, Scene, Settings, Sphere, Unplaced};
 
-/// The fields of a [`Scene`] but for its geometry and the files that it came from.
+/// The fields of a [`Scene`] but for its geometry, the texels of its textures and the files that it came from.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Description {
@@ -19,11 +20,12 @@ pub struct Description {
     materials: Vec<Material>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
+    textures: Pictures,
 }
 
 impl Description {
-    /// That of a scene with a hierarchy of this quality.
-    pub fn of(scene: &Scene, hierarchy: Option<quality::Bvh>) -> Self {
+    /// That of a scene with these textures and a hierarchy of this quality.
+    pub fn of(scene: &Scene, textures: Pictures, hierarchy: Option<quality::Bvh>) -> Self {
         Description {
             hierarchy,
             ambient: scene.ambient,
@@ -33,6 +35,7 @@ impl Description {
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
             cameras: scene.cameras.clone(),
+            textures,
         }
     }
 
@@ -56,10 +59,14 @@ impl Description {
         toml::to_string(self).map_err(|error| error.to_string())
     }
 
-    /// The scene of this geometry, without a hierarchy.
-    pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>) -> Scene {
-        let Description { hierarchy: _, ambient, background, settings, parts, materials, lights, cameras } = self;
-        Scene {
+    /// The scene of this geometry and these texels, without a hierarchy.
+    ///
+    /// # Errors
+    /// Textures of other texels.
+    pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>, texels: &[u8]) -> Unplaced<Scene> {
+        let Description { hierarchy: _, ambient, background, settings, parts, materials, lights, cameras, textures } =
+            self;
+        let mut scene = Scene {
             mesh,
             spheres,
             disks,
@@ -73,6 +80,8 @@ impl Description {
             environment: None,
             ambient,
             settings,
-        }
+        };
+        textures.give(&mut scene, texels)?;
+        Ok(scene)
     }
 }

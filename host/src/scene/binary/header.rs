@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bytemuck::{Pod, Zeroable};
 use eyerays_shader::data::{Bounds, NodePair};
-use glam::Vec3;
+use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
@@ -13,13 +13,13 @@ use crate::scene::{Disk, Sphere, Unplaced};
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 2;
+const VERSION: u32 = 3;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.
 const BLOCK: usize = 1 << 20;
 /// Sections of a file.
-pub const SECTIONS: usize = 10;
+pub const SECTIONS: usize = 15;
 
 /// The first bytes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -42,10 +42,16 @@ pub struct Counts {
     pub positions: u64,
     /// As many as positions, or none.
     pub normals: u64,
+    /// Both sets of texture coordinates, tangents and colours, likewise.
+    pub coordinates: [u64; 2],
+    pub tangents: u64,
+    pub colours: u64,
     /// Each has a material too.
     pub triangles: u64,
     pub spheres: u64,
     pub disks: u64,
+    /// Bytes of the texels of all textures.
+    pub texels: u64,
     /// Of the hierarchy; all zero without one.
     pub pairs: u64,
     /// Each has a primitive and a box.
@@ -60,10 +66,15 @@ impl Counts {
             (self.description, 1),
             (self.positions, size_of::<Vec3>()),
             (self.normals, size_of::<Vec3>()),
+            (self.coordinates[0], size_of::<Vec2>()),
+            (self.coordinates[1], size_of::<Vec2>()),
+            (self.tangents, size_of::<Vec4>()),
+            (self.colours, size_of::<Vec4>()),
             (self.triangles, 3 * number),
             (self.triangles, number),
             (self.spheres, size_of::<Sphere>()),
             (self.disks, size_of::<Disk>()),
+            (self.texels, 1),
             (self.pairs, size_of::<NodePair>()),
             (self.slots, number),
             (self.slots, size_of::<Bounds>()),

@@ -36,18 +36,23 @@ pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
     let counts = header.counts;
     budget.check(counts.triangles as usize, counts.positions as usize)?;
     budget.check_round(counts.spheres as usize + counts.disks as usize)?;
-    let [description, positions, normals, triangles, materials, spheres, disks, ..] = all;
+    budget.check_textures(counts.texels)?;
+    let [description, positions, normals, first, second, tangents, colours, rest @ ..] = all;
+    let [triangles, materials, spheres, disks, texels, ..] = rest;
     let mesh = Mesh {
         positions: list(positions),
         normals: list(normals),
         triangles: list(triangles),
         materials: list(materials),
-        ..Mesh::default()
+        coordinates: [list(first), list(second)],
+        tangents: list(tangents),
+        colours: list(colours),
     };
     let description = Description::parse(description)?;
     let [.., pairs, order, bounds] = sections;
     let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, bytes.clone(), [pairs, order, bounds]));
-    let scene = Scene { hierarchy: kept, ..description.scene(mesh, list(spheres), list(disks)) };
+    let scene = description.scene(mesh, list(spheres), list(disks), texels)?;
+    let scene = Scene { hierarchy: kept, ..scene };
     if scene.cameras.is_empty() {
         return Err("it has no camera".into());
     }

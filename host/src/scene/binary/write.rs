@@ -6,6 +6,7 @@ use eyerays_bvh::Bvh;
 
 use super::description::Description;
 use super::header::{ALIGNMENT, Counts, Header};
+use super::textures::Pictures;
 use crate::error::{Error, Result};
 use crate::quality;
 use crate::scene::Scene;
@@ -18,7 +19,9 @@ use crate::scene::Scene;
 /// What [`Scene::check`] refuses, and what keeps `out` from being written.
 pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
-    let description = Description::of(scene, hierarchy.map(|(quality, _)| quality)).text().map_err(Error::new)?;
+    let (pictures, texels) = Pictures::of(scene);
+    let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));
+    let description = description.text().map_err(Error::new)?;
     let mesh = &scene.mesh;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
     let bvh = hierarchy.map_or(&none, |(_, bvh)| bvh);
@@ -26,9 +29,13 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
         description: description.len() as u64,
         positions: mesh.positions.len() as u64,
         normals: mesh.normals.len() as u64,
+        coordinates: mesh.coordinates.each_ref().map(|coordinates| coordinates.len() as u64),
+        tangents: mesh.tangents.len() as u64,
+        colours: mesh.colours.len() as u64,
         triangles: mesh.triangles.len() as u64,
         spheres: scene.spheres.len() as u64,
         disks: scene.disks.len() as u64,
+        texels: texels.len() as u64,
         pairs: bvh.nodes.len() as u64,
         slots: bvh.order.len() as u64,
     };
@@ -36,10 +43,15 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
         description.as_bytes(),
         bytemuck::cast_slice(&mesh.positions),
         bytemuck::cast_slice(&mesh.normals),
+        bytemuck::cast_slice(&mesh.coordinates[0]),
+        bytemuck::cast_slice(&mesh.coordinates[1]),
+        bytemuck::cast_slice(&mesh.tangents),
+        bytemuck::cast_slice(&mesh.colours),
         bytemuck::cast_slice(&mesh.triangles),
         bytemuck::cast_slice(&mesh.materials),
         bytemuck::cast_slice(&scene.spheres),
         bytemuck::cast_slice(&scene.disks),
+        &texels,
         bytemuck::cast_slice(&bvh.nodes),
         bytemuck::cast_slice(&bvh.order),
         bytemuck::cast_slice(&bvh.bounds),

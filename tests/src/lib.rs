@@ -3,6 +3,7 @@
 pub mod bare;
 pub mod brute_force;
 pub mod count;
+pub mod covered;
 pub mod machine;
 pub mod model;
 pub mod numbers;

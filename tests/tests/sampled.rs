@@ -6,7 +6,8 @@ use eyerays::cpu;
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
-use eyerays::scene::{Background, Direct, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays::scene::{Background, Direct, Filter, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays_tests::covered::covered;
 use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, shipped};
 use glam::Vec3;
 
@@ -103,6 +104,43 @@ fn everything_at_once() {
     let settings = Settings { transport, bounces: 6, ..settings(&scene, (40, 30), 4) };
     let packed = pack(&scene, &scene.cameras[0], settings);
     assert_same(&gpu, &packed, Traversal::default(), "distributed");
+}
+
+/// Physical materials, textures of every form by every filter, masks and blends below a picture of the sky, by every method that
+/// follows rays otherwise.
+#[test]
+fn surfaces_and_surroundings() {
+    let mut scene = covered();
+    let ways = [
+        (Integrator::Path, Filter::Mipmap, Method::Auto),
+        (Integrator::Path, Filter::Nearest, Method::Packet),
+        (Integrator::Path, Filter::Bilinear, Method::Wide),
+        (Integrator::Distributed, Filter::Mipmap, Method::WhileWhile),
+    ];
+    let films: Vec<_> = ways
+        .into_iter()
+        .map(|(integrator, filter, method)| {
+            let transport = Transport { integrator, ..scene.settings.transport };
+            let settings = Settings { transport, filter, bounces: 4, ..settings(&scene, (40, 30), 4) };
+            let packed = pack(&scene, &scene.cameras[0], settings);
+            let what = format!("{integrator}, {filter}, {method}");
+            if let Some(gpu) = quick() {
+                assert_same(&gpu, &packed, method.into(), &what);
+            }
+            on_cpu(&packed).0
+        })
+        .collect();
+    for pair in films.windows(2) {
+        assert!(!pair[0].bits_equal(&pair[1]), "a filter or an integrator changes nothing");
+    }
+    // Whitted's model refuses light that surfaces send out.
+    scene.materials[0].emission = Vec3::ZERO;
+    let settings = Settings { sampler: Sampler::Regular, spp: 4, size: (40, 30), bounces: 3, ..scene.settings };
+    let packed = pack(&scene, &scene.cameras[0], settings);
+    let Some(gpu) = exact() else { return };
+    let (film, _) = on_cpu(&packed);
+    let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
+    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "whitted");
 }
 
 /// In flight together or one by one, all at once or in parts: a film is kept with what rounding took off.

@@ -82,6 +82,11 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
     }
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
     assert_ne!(trace(split), trace(effects(0)));
+    // Only what is not opaque everywhere is asked where rays meet it.
+    assert!(trace(effects(Effects::CUTOUT)) > trace(effects(0)));
+    for effect in [Effects::PHYSICAL, Effects::TEXTURED, Effects::COLOURED, Effects::ENVIRONMENT, Effects::TANGENTS] {
+        assert_eq!(trace(effects(effect)), trace(effects(0)), "{effect:#x}");
+    }
 }
 
 /// The same where paths are scattered.
@@ -104,6 +109,19 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
     ] {
         assert!(count(effects(effect | Effects::LIT)) > count(lit), "{effect:#x}");
     }
+    let physical = Effects::LIT | Effects::PHYSICAL;
+    assert!(count(effects(physical)) > count(lit));
+    for effect in
+        [Effects::CONDUCTOR, Effects::THIN, Effects::REFRACTION, Effects::ABSORBING, Effects::ANISOTROPIC, Effects::TANGENTS]
+    {
+        assert!(count(effects(physical | effect)) > count(effects(physical)), "{effect:#x}");
+    }
+    for effect in [Effects::TEXTURED, Effects::COLOURED, Effects::ENVIRONMENT] {
+        assert!(count(effects(effect | Effects::LIT)) > count(lit), "{effect:#x}");
+    }
+    let textured = effects(Effects::TEXTURED | Effects::LIT);
+    assert!(count(textured.with_launch(Launch::MIPMAPPED)) > count(textured));
+    assert!(count(textured.with_launch(Launch::NEAREST)) < count(textured));
     assert!(count(lit) > count(effects(0)));
     assert!(count(effects(0).with_launch(Launch::OCCLUSION)) < count(effects(0)));
     for way in [Launch::BY_LIGHT, Launch::BY_SURFACE] {

@@ -2,7 +2,6 @@
 
 mod hostile;
 mod model;
-mod samples;
 
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::json;

@@ -111,9 +111,14 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
     }
     let physical = Effects::LIT | Effects::PHYSICAL;
     assert!(count(effects(physical)) > count(lit));
-    for effect in
-        [Effects::CONDUCTOR, Effects::THIN, Effects::REFRACTION, Effects::ABSORBING, Effects::ANISOTROPIC, Effects::TANGENTS]
-    {
+    for effect in [
+        Effects::CONDUCTOR,
+        Effects::THIN,
+        Effects::REFRACTION,
+        Effects::ABSORBING,
+        Effects::ANISOTROPIC,
+        Effects::TANGENTS,
+    ] {
         assert!(count(effects(physical | effect)) > count(effects(physical)), "{effect:#x}");
     }
     for effect in [Effects::TEXTURED, Effects::COLOURED, Effects::ENVIRONMENT] {

@@ -150,13 +150,14 @@ impl<R: Scalar> Axis<R> {
     fn new(coordinate: R, size: u32, wrap: u32) -> Self {
         let (zero, one, half) = (R::splat(0.0), R::splat(1.0), R::splat(0.5));
         let whole = |x: R| R::splat(x.floor_index() as f32);
+        // Beyond 2^23 whole numbers end, and whatever is left is taken for an edge.
         let within = if wrap == TextureMap::CLAMP {
             coordinate.max(zero).min(one)
         } else if wrap == TextureMap::MIRROR {
             let periods = whole(coordinate * half);
-            coordinate - (periods + periods)
+            (coordinate - (periods + periods)).max(zero).min(one + one)
         } else {
-            coordinate - whole(coordinate)
+            (coordinate - whole(coordinate)).max(zero).min(one)
         };
         let place = within * R::splat(size as f32) - half;
         let index = place.floor_index();

@@ -108,7 +108,7 @@ fn colours_are_srgb_in_bytes_and_linear_in_floats() {
     let grey = 0.215_860_5;
     let wanted = [[1.0, 0.0, 0.0, 1.0], [grey, grey, grey, 0.2], [0.0, 0.0, 1.0, 0.0]].map(Vec4::from);
     assert_eq!((bytes.mesh.colours, bytes.warnings.len()), (wanted.to_vec(), 0));
-    let floats = with(&colours("float", ""), ["0.25 0.5 1", "-1 2 nan", "1 1 1"]).mesh;
+    let floats = with(&colours("float", ""), ["0.25 0.5 1", "-1 2 0", "1 1 1"]).mesh;
     let wanted = [[0.25, 0.5, 1.0, 1.0], [0.0, 1.0, 0.0, 1.0], [1.0; 4]].map(Vec4::from);
     assert_eq!(floats.colours, wanted);
     let foreign = with(&colours("int", ""), ["255 0 0", "0 0 0", "0 0 0"]);
@@ -156,7 +156,7 @@ fn what_makes_no_sense_is_refused_in_a_line() {
         (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
         (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "was it written to the end"),
         (spoiled("float z", "float w"), "have no x, y and z"),
-        (covered.replace(" 7\n", " 0 nan\n").into_bytes(), "vertex 0, counted from 0, has the texture coordinates"),
+        (covered.replace(" 7\n", " 0 1e39\n").into_bytes(), "vertex 0, counted from 0, has the texture coordinates"),
         (spoiled("vertex_indices", "corners"), "has no list vertex_indices"),
         (spoiled("float x", "int8 x"), ""),
         (little()[..little().len() - 3].to_vec(), "was it written to the end"),

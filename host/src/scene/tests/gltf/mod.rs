@@ -14,7 +14,7 @@ use crate::scene::{Alpha, Background, Integrator, Light, Wrap};
 #[test]
 fn a_triangle_is_a_scene_in_grey_light_and_a_mesh_of_a_scene() {
     let mut model = Model::triangle();
-    let toml = b"[[mesh]]\nfile = \"a.glb\"\nposition = [0, 0, 2]\n[render]\nsize = [8, 8]\n";
+    let toml = b"[[mesh]]\nfile = \"a.glb\"\ntranslate = [0, 0, 2]\n[render]\nsize = [8, 8]\n";
     let files: [(&str, &[u8]); 3] = [("a.gltf", &model.gltf()), ("a.glb", &model.glb()), ("a.toml", toml)];
     let folder = Folder::new(&files);
     let (scene, warnings) = folder.load("a.gltf").unwrap();

@@ -65,12 +65,12 @@ fn maps(number: usize) -> Maps {
     Maps {
         base: Some(map(&bytes, 15.0)),
         metallic_roughness: Some(map(&floats, 0.0)),
-        normal: (number % 2 == 0).then(|| map(&bytes, 40.0)),
+        normal: number.is_multiple_of(2).then(|| map(&bytes, 40.0)),
         normal_scale: 0.6,
         emission: Some(map(&floats, 5.0)),
         transmission: Some(map(&bytes, 0.0)),
         specular_tint: Some(map(&floats, 0.0)),
-        anisotropy: (number % 3 == 0).then(|| map(&bytes, 0.0)),
+        anisotropy: number.is_multiple_of(3).then(|| map(&bytes, 0.0)),
         ..Maps::default()
     }
 }

@@ -31,31 +31,23 @@ const SHORTER: [Edit; 2] = [
 ];
 
 /// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
-const DUMMY: [Edit; 6] = [
+const DUMMY: [Edit; 5] = [
     (
         "src/resources.rs",
-        "            19 emissions EMISSIONS: Read Emission, \"emissions\";\n",
-        "            19 emissions EMISSIONS: Read Emission, \"emissions\";\n            20 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n",
+        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n            29 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",
         "        EMISSIVE = 13;\n",
-        "        EMISSIVE = 13;\n        /// Surfaces have the dummy's light.\n        DUMMY = 14;\n",
+        "        EMISSIVE = 13;\n        /// Surfaces have the dummy's light.\n        DUMMY = 24;\n",
     ),
+    // Of both kernels that shade.
+    ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
     (
         "src/entry/mod.rs",
-        "[frame primitives normals materials lights paths hits shadows sums queue next counters] {",
-        "[frame primitives normals materials lights paths hits shadows sums queue next counters dummy] {",
-    ),
-    (
-        "src/entry/mod.rs",
-        "[frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions] {",
-        "[frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions dummy] {",
-    ),
-    (
-        "src/entry/mod.rs",
-        "let shading = ShadingData { normals, materials };",
-        "let shading = ShadingData { normals, materials, dummy };",
+        "let shading = ShadingData { normals, materials, tangents, maps, textures };",
+        "let shading = ShadingData { normals, materials, tangents, maps, textures, dummy };",
     ),
     (
         "src/integrator/whitted.rs",
@@ -167,9 +159,9 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             assert!(old.words() == new.words(), "{scene}: {name} has other words");
             // And the effect is there for those that ask for it.
             if stage == Stage::Shade {
-                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 14), ..spec };
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 24), ..spec };
                 let dummy = cut(&after, &name, asked);
-                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&20), "{scene}: {name}");
+                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&29), "{scene}: {name}");
             }
         }
     }

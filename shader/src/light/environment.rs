@@ -123,14 +123,14 @@ impl<'a> Environment<'a> {
     /// The solid angle of a texel of a row.
     #[inline(always)]
     fn solid_angle<R: Scalar>(&self, row: u32) -> R {
-        let (upper, _) = self.from_pole(row);
+        let (upper, _) = self.beside_pole(row);
         let height: R = self.edge::<R>(upper + 1) - self.edge(upper);
         height * R::splat(core::f32::consts::TAU).div(R::splat(self.width as f32))
     }
 
     /// A row by its number from the nearer pole, and whether that is the lower one.
     #[inline(always)]
-    fn from_pole(&self, row: u32) -> (u32, bool) {
+    fn beside_pole(&self, row: u32) -> (u32, bool) {
         let mirrored = self.height - 1 - row;
         if row <= mirrored { (row, false) } else { (mirrored, true) }
     }
@@ -155,7 +155,7 @@ impl<'a> Environment<'a> {
     pub fn sample<R: Scalar>(&self, (across, down): (u32, u32), probability: R) -> EmitterSample<R> {
         let row = self.drawn(self.rows(), self.height, down);
         let column = self.drawn(self.columns(row.index), self.width, across);
-        let (pole, is_lower) = self.from_pole(row.index);
+        let (pole, is_lower) = self.beside_pole(row.index);
         let (near, far): (R, R) = (self.edge(pole), self.edge(pole + 1));
         let (one, share) = (R::splat(1.0), row.share::<R>());
         let share = if is_lower { one - share } else { share };
@@ -223,8 +223,7 @@ impl Drawn {
     /// Digits that single precision does not hold.
     #[inline(always)]
     fn shift(&self) -> u32 {
-        let digits = 32 - self.steps.leading_zeros();
-        if digits > 24 { digits - 24 } else { 0 }
+        (32 - self.steps.leading_zeros()).max(24) - 24
     }
 
     /// How far the drawn one is among those that mean it, in [0, 1).

@@ -379,6 +379,8 @@ fn half<R: Scalar>(a: V3<R>, b: V3<R>) -> V3<R> {
 }
 
 /// Steps for the base, given what it and the facets scatter.
+// A clamp holds a panic, which a kernel can't have.
+#[allow(clippy::manual_clamp)]
 #[inline(always)]
 fn steps<R: Scalar>(base: R, facets: R) -> i32 {
     let zero = R::splat(0.0);

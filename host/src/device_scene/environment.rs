@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::normalisation::flushed_number;
-use crate::image::linear_table;
+use crate::image::byte_to_linear;
 use crate::math;
 use crate::scene::{Environment, Texels};
 
@@ -43,16 +43,13 @@ fn below_pole(share: f64) -> f64 {
 
 /// Light of every texel, linear RGB.
 fn light(environment: &Environment) -> Vec<Vec3> {
-    let table = linear_table(u8::MAX.into());
     // Whatever is brighter than this is no picture of light, and its square would be infinite.
     let scaled = |v: [f32; 3]| {
         Vec3::from_array(v.map(|x| flushed_number((f64::from(x) * f64::from(environment.scale)).min(1e18) as f32)))
     };
     match &environment.texture.texels {
         Texels::Floats(floats) => floats.par_iter().map(|&v| scaled(v)).collect(),
-        Texels::Bytes(bytes) => {
-            bytes.par_iter().map(|&[r, g, b, _]| scaled([r, g, b].map(|byte| table[usize::from(byte)]))).collect()
-        }
+        Texels::Bytes(bytes) => bytes.par_iter().map(|&[r, g, b, _]| scaled([r, g, b].map(byte_to_linear))).collect(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use rayon::prelude::*;
 
-use crate::image::{linear_table, quantise_to_byte};
+use crate::image::{byte_to_linear, quantise_to_byte};
 use crate::scene::{Texels, Texture};
 
 /// Adds the words of all levels, the finest first, and returns how many levels there are. Colours of 8 bits are sRGB.
@@ -48,9 +48,8 @@ struct Level {
 
 impl Level {
     fn of(texture: &Texture, is_colour: bool) -> Level {
-        let table = linear_table(u8::MAX.into());
         let share = |byte: u8| f32::from(byte) / 255.0;
-        let colour = |byte: u8| if is_colour { table[usize::from(byte)] } else { share(byte) };
+        let colour = |byte: u8| if is_colour { byte_to_linear(byte) } else { share(byte) };
         let texels = match &texture.texels {
             Texels::Bytes(bytes) => {
                 let texel = |&[r, g, b, a]: &[u8; 4]| [colour(r), colour(g), colour(b), share(a)];

@@ -1,12 +1,12 @@
 //! Every light that an integrator chooses from which samples one of them, and how likely each is.
 
-use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Maps, Primitive, pack};
+use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Primitive, pack};
 use glam::{DVec3, UVec4, Vec3};
 use std::f64::consts::PI;
 
 use super::normalisation::Normalisation;
 use super::records::colour;
-use super::textures::{Textures, mean};
+use super::textures::Textures;
 use crate::scene::{Light, Material};
 
 /// What emits, as kernels read it.
@@ -37,7 +37,8 @@ impl Lamps {
         if materials.iter().all(|material| material.emission == Vec3::ZERO) {
             return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
         }
-        let fluxes: Vec<f64> = materials.iter().map(flux).collect();
+        let flux = |(material, number)| flux(material, textures.emission(number).1);
+        let fluxes: Vec<f64> = materials.iter().zip(0..).map(flux).collect();
         let power = |primitive: &Primitive| area(primitive) * fluxes[primitive.material() as usize];
         let powers = primitives.iter().zip(0..).map(|(primitive, index)| (primitive.number(), index, power(primitive)));
         let mut powers: Vec<(u32, u32, f64)> = powers.filter(|&(.., power)| power > 0.0).collect();
@@ -47,9 +48,8 @@ impl Lamps {
         let boxes = boxes.map(|(least, greatest)| [least, greatest]);
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
         let emission = |(material, number): (&Material, usize)| {
-            let map = textures.maps.get(number).map_or(0, |maps| maps.of(Maps::EMISSION));
-            let sides = UVec4::new(u32::from(material.two_sided), map, 0, 0);
-            (Emission { radiance: colour(material.emission, 0), sides }, flux(material))
+            let sides = UVec4::new(u32::from(material.two_sided), textures.emission(number).0, 0, 0);
+            (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
         let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
         Lamps {
@@ -99,9 +99,8 @@ fn power(light: &Light, scale: f64) -> f64 {
     }
 }
 
-/// Power of a unit of area.
-fn flux(material: &Material) -> f64 {
-    let covered = material.maps.emission.as_ref().map_or(Vec3::ONE, |map| mean(&map.texture));
+/// Power of a unit of area that is covered with a texture of some mean.
+fn flux(material: &Material, covered: Vec3) -> f64 {
     PI * brightness(material.emission * covered) * if material.two_sided { 2.0 } else { 1.0 }
 }
 

@@ -3,14 +3,15 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{BuildError, Bvh, Bvh8, Quality, Statistics};
+use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    NodePair, Normals, Physical as PhysicalRecord, Primitive, Specialisation, pack,
+    Normals, Physical as PhysicalRecord, Primitive, Specialisation, pack,
 };
 
 mod check;
 mod environment;
+mod hierarchy;
 mod levels;
 mod lighting;
 mod normalisation;
@@ -20,6 +21,7 @@ mod textures;
 mod view;
 mod words;
 
+pub use hierarchy::hierarchy;
 pub use lighting::Lighting;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
@@ -28,15 +30,12 @@ pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
 use glam::Vec3;
+use hierarchy::{centred, gathered, kept_or_built, refused};
 use lighting::Lamps;
-use rayon::prelude::*;
 
 use crate::error::{Error, Result};
 use crate::method::{Method, Traversal};
 use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
-
-/// References added by splitting triangles, as a share of the triangles.
-const SPLIT_BUDGET: f32 = 0.3;
 
 /// A corner beyond every scene.
 const EVERYWHERE: Vec3 = Vec3::splat((1u64 << 40) as f32);
@@ -354,47 +353,12 @@ impl DeviceScene {
     }
 }
 
-/// The hierarchy that kernels find a scene's primitives by: the one that the scene brings along if it has this quality,
-/// checked, or a new one.
-///
-/// # Errors
-/// As [`DeviceScene::new`].
-pub fn hierarchy(scene: &Scene, quality: Quality) -> Result<Bvh> {
-    scene.check()?;
-    kept_or_built(scene, &normalised(scene).1, quality)
-}
-
 fn normalised(scene: &Scene) -> (Normalisation, Vec<Primitive>) {
     // The cells of a checkerboard are counted from the world's origin.
     let moves = !records::effects(scene).has(Effects::CHECKER);
     let normalisation = Normalisation::of(scene.extremes(), moves);
     let primitives = records::primitives(scene, &normalisation);
     (normalisation, primitives)
-}
-
-fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> Result<Bvh> {
-    if let Some(kept) = scene.hierarchy.as_ref().filter(|kept| kept.quality().quality() == quality) {
-        let bvh = kept.read();
-        let fault = |e: BuildError| format!("the hierarchy that the scene brings along is not its own: {e}");
-        return bvh.check(primitives).map(|()| bvh).map_err(|e| Error::new(fault(e)));
-    }
-    let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
-    eyerays_bvh::build(&references, quality).map_err(refused)
-}
-
-/// The pairs as kernels test them, in the same memory.
-fn centred(mut pairs: Vec<NodePair>) -> Vec<CentredPair> {
-    pairs.par_iter_mut().for_each(|pair| *pair = bytemuck::cast(CentredPair::from(&*pair)));
-    bytemuck::cast_vec(pairs)
-}
-
-/// The primitives in the order of slots.
-fn gathered(primitives: Vec<Primitive>, order: &[u32]) -> Vec<Primitive> {
-    order.par_iter().map(|&primitive| primitives[primitive as usize]).collect()
-}
-
-fn refused(error: BuildError) -> Error {
-    Error::new(error.to_string())
 }
 
 fn lights(lights: &[Light], normalisation: &Normalisation) -> Result<Vec<LightRecord>> {

@@ -1,5 +1,6 @@
 //! The records of a scene's parts.
 
+use bytemuck::Zeroable;
 use eyerays_shader::data::{
     Effects, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive, pack,
 };
@@ -126,15 +127,23 @@ pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Pr
     records
 }
 
+/// A record for each slot: of a triangle's number and corners, zeros for anything else.
+pub(super) fn by_slot<T: Zeroable + Send>(
+    scene: &Scene,
+    order: &[u32],
+    of: impl Fn(usize, [u32; 3]) -> T + Sync,
+) -> Vec<T> {
+    let record = |&primitive: &u32| match scene.mesh.triangles.get(primitive as usize) {
+        Some(&corners) => of(primitive as usize, corners),
+        None => T::zeroed(),
+    };
+    order.par_iter().map(record).collect()
+}
+
 /// Its vertex normals in the order of slots, each with a primitive; what is no triangle has none.
 pub(super) fn normals(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let at = |v: u32| pack(flushed(scene.mesh.normals[v as usize]), 0);
-    let none = Normals { a: UVec4::ZERO, b: UVec4::ZERO, c: UVec4::ZERO };
-    let of = |&primitive: &u32| match scene.mesh.triangles.get(primitive as usize) {
-        Some(&[a, b, c]) => Normals { a: at(a), b: at(b), c: at(c) },
-        None => none,
-    };
-    order.par_iter().map(of).collect()
+    by_slot(scene, order, |_, [a, b, c]| Normals { a: at(a), b: at(b), c: at(c) })
 }
 
 /// A material's record.
@@ -159,7 +168,7 @@ pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecor
 
 /// A physical material's record; that of another says that it is none.
 pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
-    let Some(p) = m.physical else { return bytemuck::Zeroable::zeroed() };
+    let Some(p) = m.physical else { return PhysicalRecord::zeroed() };
     let flag = |flag: u32, holds: bool| if holds { flag } else { 0 };
     let flags = PhysicalRecord::IS_PHYSICAL
         | flag(PhysicalRecord::CONDUCTOR, p.conductor.is_some())

@@ -2,35 +2,23 @@
 
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use eyerays_shader::data::{Normals, pack};
-use glam::{UVec4, Vec3, Vec4};
-use rayon::prelude::*;
+use glam::{Vec3, Vec4};
 
 use super::normalisation::flushed;
+use super::records::by_slot;
 use crate::scene::{Mesh, Scene};
 
 /// Tangents in the order of slots; three zeros where there are none.
 pub(super) fn tangents(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let mesh = &scene.mesh;
     let made = if mesh.tangents.is_empty() && !mesh.coordinates[0].is_empty() { made(mesh) } else { Vec::new() };
-    let of = |triangle: usize, corner: usize| -> Vec4 {
-        if let Some(corners) = made.get(triangle) {
-            return corners[corner];
-        }
-        let vertex = mesh.triangles[triangle][corner] as usize;
-        mesh.tangents.get(vertex).copied().unwrap_or(Vec4::ZERO)
-    };
-    let none = Normals { a: UVec4::ZERO, b: UVec4::ZERO, c: UVec4::ZERO };
-    let record = |&primitive: &u32| {
-        let triangle = primitive as usize;
-        if triangle >= mesh.triangles.len() {
-            return none;
-        }
-        let [a, b, c] = [0, 1, 2].map(|corner| of(triangle, corner));
+    let own = |vertex: u32| mesh.tangents.get(vertex as usize).copied().unwrap_or(Vec4::ZERO);
+    by_slot(scene, order, |triangle, corners| {
+        let [a, b, c] = made.get(triangle).copied().unwrap_or_else(|| corners.map(own));
         let record = |tangent: Vec4, word| pack(flushed(tangent.truncate()), word);
         let sign = if a.w < 0.0 { -1.0f32 } else { 1.0 };
         Normals { a: record(a, sign.to_bits()), b: record(b, 0), c: record(c, 0) }
-    };
-    order.par_iter().map(record).collect()
+    })
 }
 
 /// Those of a mesh without, by its texture coordinates.

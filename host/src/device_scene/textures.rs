@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use eyerays_shader::data::{Colours, Effects, Maps as MapsRecord, Normals, Opacity, TexCoords, TextureMap};
 use glam::{UVec4, Vec2, Vec3, Vec4};
-use rayon::prelude::*;
 
 use super::levels;
 use super::normalisation::flushed_number;
+use super::records::by_slot;
 use super::tangents;
 use crate::error::{Error, Result};
-use crate::image::linear_table;
+use crate::image::byte_to_linear;
 use crate::scene::{Alpha, Map, Material, Scene, Texels, Texture, Wrap};
 
 /// What covers the surfaces of a scene; each empty unless it has a use for it.
@@ -30,6 +30,8 @@ pub struct Textures {
     pub tangents: Vec<Normals>,
     /// By material.
     pub opacities: Vec<Opacity>,
+    /// The mean of each map's light, linear RGB where it is a colour.
+    means: Vec<Vec3>,
 }
 
 impl Textures {
@@ -40,7 +42,7 @@ impl Textures {
     pub(super) fn new(scene: &Scene, effects: Effects, order: &[u32]) -> Result<Textures> {
         let mut pack = Pack::default();
         if effects.has(Effects::TEXTURED) {
-            pack.texels.extend(linear_table(u8::MAX.into()).into_iter().map(f32::to_bits));
+            pack.texels.extend((0..=u8::MAX).map(|byte| byte_to_linear(byte).to_bits()));
             pack.maps = scene.materials.iter().map(|material| pack.maps(material)).collect::<Result<_>>()?;
         }
         let mut opacities = Vec::new();
@@ -48,7 +50,7 @@ impl Textures {
             opacities = scene.materials.iter().map(|material| pack.opacity(material)).collect::<Result<_>>()?;
         }
         let mesh = &scene.mesh;
-        let of = |set: usize| triangles(order, scene, |triangle| texcoords(&mesh.coordinates[set], triangle));
+        let of = |set: usize| by_slot(scene, order, |_, corners| texcoords(&mesh.coordinates[set], corners));
         let mut coordinates = Vec::new();
         if effects.has(Effects::TEXTURED) {
             coordinates = of(0);
@@ -57,26 +59,24 @@ impl Textures {
             }
         }
         let is_coloured = effects.has(Effects::COLOURED);
-        let colours = if is_coloured { triangles(order, scene, |corners| colours(scene, corners)) } else { Vec::new() };
+        let colours =
+            if is_coloured { by_slot(scene, order, |_, corners| colours(scene, corners)) } else { Vec::new() };
         let has_tangents = effects.has(Effects::TANGENTS);
         let tangents = if has_tangents { tangents::tangents(scene, order) } else { Vec::new() };
-        let Pack { maps, textures, texels, .. } = pack;
-        Ok(Textures { maps, textures, texels, coordinates, colours, tangents, opacities })
+        let Pack { maps, textures, texels, means, .. } = pack;
+        Ok(Textures { maps, textures, texels, coordinates, colours, tangents, opacities, means })
+    }
+
+    /// What a material's emission is multiplied with: the map, 0 for none, and the mean of its light, linear RGB.
+    pub(super) fn emission(&self, material: usize) -> (u32, Vec3) {
+        let map = self.maps.get(material).map_or(0, |maps| maps.of(MapsRecord::EMISSION));
+        (map, if map > 0 { self.means[map as usize - 1] } else { Vec3::ONE })
     }
 
     /// Bytes of the texels of pictures.
     pub fn bytes(&self) -> usize {
         size_of_val(&self.texels[..])
     }
-}
-
-/// A record for each slot: of a triangle's corners, zeros for anything else.
-fn triangles<T: bytemuck::Zeroable + Send>(order: &[u32], scene: &Scene, of: impl Fn([u32; 3]) -> T + Sync) -> Vec<T> {
-    let record = |&primitive: &u32| match scene.mesh.triangles.get(primitive as usize) {
-        Some(&corners) => of(corners),
-        None => T::zeroed(),
-    };
-    order.par_iter().map(record).collect()
 }
 
 fn texcoords(coordinates: &[Vec2], corners: [u32; 3]) -> TexCoords {
@@ -98,8 +98,18 @@ struct Pack {
     maps: Vec<MapsRecord>,
     textures: Vec<TextureMap>,
     texels: Vec<u32>,
-    /// Where the levels of a picture start and how many there are, by the picture and whether it is a colour.
-    placed: Vec<(Arc<Texture>, bool, (u32, u32))>,
+    means: Vec<Vec3>,
+    /// By the picture and whether it is a colour.
+    placed: Vec<(Arc<Texture>, bool, Placed)>,
+}
+
+/// Where the texels of a picture are.
+#[derive(Clone, Copy)]
+struct Placed {
+    start: u32,
+    levels: u32,
+    /// The coarsest level.
+    mean: Vec3,
 }
 
 impl Pack {
@@ -137,7 +147,7 @@ impl Pack {
     /// The number of a map plus one; 0 for none.
     fn map(&mut self, map: Option<&Map>, is_colour: bool, factor: f32) -> Result<u32> {
         let Some(map) = map else { return Ok(0) };
-        let (start, levels) = self.place(&map.texture, is_colour)?;
+        let Placed { start, levels, mean } = self.place(&map.texture, is_colour)?;
         let placement = &map.placement;
         let wrap = |wrap| match wrap {
             Wrap::Repeat => TextureMap::REPEAT,
@@ -165,12 +175,13 @@ impl Pack {
         let found = self.textures.iter().position(|other| *other == record);
         let number = found.unwrap_or_else(|| {
             self.textures.push(record);
+            self.means.push(mean);
             self.textures.len() - 1
         });
         Ok(number as u32 + 1)
     }
 
-    fn place(&mut self, texture: &Arc<Texture>, is_colour: bool) -> Result<(u32, u32)> {
+    fn place(&mut self, texture: &Arc<Texture>, is_colour: bool) -> Result<Placed> {
         let same = |(other, colour, _): &&(Arc<Texture>, bool, _)| Arc::ptr_eq(other, texture) && *colour == is_colour;
         if let Some((.., place)) = self.placed.iter().find(same) {
             return Ok(*place);
@@ -179,25 +190,20 @@ impl Pack {
         let levels = levels::append(texture, is_colour, &mut self.texels);
         let full = || Error::new(format!("the texture {:?} is one too many; use smaller ones", texture.name));
         u32::try_from(self.texels.len()).map_err(|_| full())?;
-        let place = (start as u32, levels);
+        let place = Placed { start: start as u32, levels, mean: last(texture, &self.texels) };
         self.placed.push((texture.clone(), is_colour, place));
         Ok(place)
     }
 }
 
-/// The mean of a picture's light, linear RGB.
-pub(super) fn mean(texture: &Texture) -> Vec3 {
-    let mut words = Vec::new();
-    let levels = levels::append(texture, true, &mut words);
-    debug_assert!(levels > 0);
-    match texture.texels {
-        Texels::Floats(_) => {
-            Vec3::from_slice(&words[words.len() - 3..].iter().map(|&w| f32::from_bits(w)).collect::<Vec<_>>())
+/// The only texel of a picture's coarsest level, which the words end with.
+fn last(texture: &Texture, words: &[u32]) -> Vec3 {
+    match (&texture.texels, words) {
+        (Texels::Floats(_), [.., r, g, b]) => Vec3::from_array([*r, *g, *b].map(f32::from_bits)),
+        (Texels::Bytes(_), [.., word]) => {
+            let [r, g, b, _] = word.to_le_bytes();
+            Vec3::from_array([r, g, b].map(byte_to_linear))
         }
-        Texels::Bytes(_) => {
-            let table = linear_table(u8::MAX.into());
-            let word = words[words.len() - 1];
-            Vec3::from_array([0, 8, 16].map(|shift| table[(word >> shift & 255) as usize]))
-        }
+        _ => Vec3::ZERO,
     }
 }

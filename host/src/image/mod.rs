@@ -25,7 +25,7 @@ pub use encode::encode;
 pub use read::{decode, read};
 pub use texels::{decode_texture, read_texture};
 pub use tone::ToneMap;
-pub(crate) use transfer::linear_table;
+pub(crate) use transfer::byte_to_linear;
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
 
 /// The image formats that are written and read.

@@ -8,7 +8,7 @@ use std::path::Path;
 use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Primitive, Rgb};
 
 use super::bounded::{Allowance, Bounded};
-use super::transfer::linear_table;
+use super::transfer::{byte_to_linear, linear_table};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::memory::Room;
@@ -46,18 +46,28 @@ pub(super) fn open(path: &Path) -> Result<File> {
 /// # Errors
 /// What is none of these, damaged, truncated, or larger than a film may be. They name no file.
 pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
-    // The decoders' arithmetic is not proof against every hostile header.
-    catch_unwind(AssertUnwindSafe(|| decode_trusting(reader)))
-        .unwrap_or_else(|_| Err(Error::new("is damaged; write the image again")))
+    distrusting(|| {
+        let kinds = Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Film::MAX_PIXELS };
+        let (width, height, decoded) = pixels_of(reader, &kinds, |width, height| {
+            Film::check_size(width, height)?;
+            room(width, height, MEMORY_PER_PIXEL)
+        })?;
+        Film::from_pixels(width, height, linear_pixels(decoded))
+    })
+}
+
+/// Runs a decoder, whose arithmetic is not proof against every hostile header.
+pub(super) fn distrusting<T>(decode: impl FnOnce() -> Result<T>) -> Result<T> {
+    catch_unwind(AssertUnwindSafe(decode)).unwrap_or_else(|_| Err(Error::new("is damaged; write the image again")))
 }
 
 /// The most bytes that are read before the size of an image is known: its header, and what describes it.
-pub(super) const MOST_HEADER: u64 = 16 << 20;
+const MOST_HEADER: u64 = 16 << 20;
 /// What decoding takes: two buffers of four floats.
-const MEMORY_PER_PIXEL: u64 = 32;
+pub(super) const MEMORY_PER_PIXEL: u64 = 32;
 
 /// The most bytes that a pixel may have in a file, if the format is one of ours.
-fn most_per_pixel(format: ImageFormat) -> Option<u64> {
+pub(super) fn most_per_pixel(format: ImageFormat) -> Option<u64> {
     match format {
         ImageFormat::Png => Some(16),
         ImageFormat::Hdr => Some(8),
@@ -67,14 +77,29 @@ fn most_per_pixel(format: ImageFormat) -> Option<u64> {
     }
 }
 
-fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
+/// The images that are decoded.
+pub(super) struct Kinds {
+    /// What they are called.
+    pub names: &'static str,
+    /// The most bytes that a pixel may have in a file of a format, if it is one of them.
+    pub most_per_pixel: fn(ImageFormat) -> Option<u64>,
+    /// The most pixels that one may have.
+    pub most_pixels: u64,
+}
+
+/// Decodes an image whose size `check` accepts, reading no more of it than its size accounts for.
+pub(super) fn pixels_of(
+    reader: impl BufRead + Seek,
+    kinds: &Kinds,
+    check: impl FnOnce(u32, u32) -> Result<()>,
+) -> Result<(u32, u32, DynamicImage)> {
     let allowance = Allowance::new(MOST_HEADER);
     let reader = Bounded::new(reader, allowance.clone());
     let unreadable = |e: io::Error| Error::new(read_error(&e));
     let reader = ImageReader::new(reader).with_guessed_format().map_err(unreadable)?;
-    let kind = reader.format().and_then(|format| Some((format, most_per_pixel(format)?)));
+    let kind = reader.format().and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
     let Some((format, most_per_pixel)) = kind else {
-        return Err(Error::new("is not a PNG, EXR or HDR image"));
+        return Err(Error::new(format!("is not a {} image", kinds.names)));
     };
     let mut reader = reader.into_inner();
     if format == ImageFormat::OpenExr {
@@ -84,15 +109,13 @@ fn decode_trusting(reader: impl BufRead + Seek) -> Result<Film> {
     let mut reader = ImageReader::with_format(reader, format);
     let mut limits = Limits::default();
     // The widest pixel is one of four floats.
-    limits.max_alloc = Some(Film::MAX_PIXELS * 16);
+    limits.max_alloc = Some(kinds.most_pixels * 16);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(decode_error)?;
     let (width, height) = decoder.dimensions();
-    let pixels = Film::check_size(width, height)? as u64;
-    room(width, height, MEMORY_PER_PIXEL)?;
-    allowance.add(pixels * most_per_pixel);
-    let decoded = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
-    Film::from_pixels(width, height, linear_pixels(decoded))
+    check(width, height)?;
+    allowance.add(u64::from(width) * u64::from(height) * most_per_pixel);
+    Ok((width, height, DynamicImage::from_decoder(decoder).map_err(decode_error)?))
 }
 
 /// Refuses pixels of so many bytes each that there is no memory for.
@@ -105,7 +128,7 @@ pub(super) fn room(width: u32, height: u32, each: u64) -> Result<()> {
 
 /// Refuses an EXR whose parts hold more than their pixels may: a decoder takes memory by the size of the data, and
 /// `image` asks for that of the display alone.
-pub(super) fn check_parts(reader: &mut impl BufRead) -> Result<()> {
+fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     let damaged = |error| match error {
         ::exr::error::Error::Io(error) => Error::new(read_error(&error)),
         error => Error::new(format!("is damaged or of an unknown kind ({error}); write the image again")),
@@ -127,10 +150,7 @@ pub(super) fn check_parts(reader: &mut impl BufRead) -> Result<()> {
 fn linear_pixels(image: DynamicImage) -> Vec<[f32; 3]> {
     use DynamicImage::*;
     match image {
-        ImageLuma8(_) | ImageLumaA8(_) | ImageRgb8(_) | ImageRgba8(_) => {
-            let table = linear_table(u8::MAX.into());
-            pixels(&image.into_rgb8(), |v| table[usize::from(v)])
-        }
+        ImageLuma8(_) | ImageLumaA8(_) | ImageRgb8(_) | ImageRgba8(_) => pixels(&image.into_rgb8(), byte_to_linear),
         ImageLuma16(_) | ImageLumaA16(_) | ImageRgb16(_) | ImageRgba16(_) => {
             let table = linear_table(u16::MAX);
             pixels(&image.into_rgb16(), |v| table[usize::from(v)])
@@ -147,7 +167,7 @@ where
     image.pixels().map(|pixel| pixel.0.map(&linear)).collect()
 }
 
-pub(super) fn decode_error(error: ImageError) -> Error {
+fn decode_error(error: ImageError) -> Error {
     Error::new(match error {
         ImageError::IoError(error) => read_error(&error),
         ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
@@ -155,7 +175,7 @@ pub(super) fn decode_error(error: ImageError) -> Error {
     })
 }
 
-pub(super) fn read_error(error: &io::Error) -> String {
+fn read_error(error: &io::Error) -> String {
     match error.kind() {
         ErrorKind::NotFound | ErrorKind::NotADirectory => "no such file; check the name".to_owned(),
         ErrorKind::PermissionDenied => "no permission to read; change it".to_owned(),

@@ -47,8 +47,16 @@ fn least(value: u32, steps: f64) -> f64 {
 }
 
 /// Linear light for every one of `steps + 1` sRGB values, so that equal values decode equally.
-pub(crate) fn linear_table(steps: u16) -> Vec<f32> {
+pub(super) fn linear_table(steps: u16) -> Vec<f32> {
     (0..=steps).map(|step| srgb_to_linear(f64::from(step) / f64::from(steps)) as f32).collect()
+}
+
+/// [`linear_table`] of 8 bits.
+static LIGHT_OF_BYTE: LazyLock<Vec<f32>> = LazyLock::new(|| linear_table(u8::MAX.into()));
+
+/// Linear light for an sRGB value of 8 bits.
+pub(crate) fn byte_to_linear(byte: u8) -> f32 {
+    LIGHT_OF_BYTE[usize::from(byte)]
 }
 
 #[cfg(test)]

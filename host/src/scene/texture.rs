@@ -101,7 +101,7 @@ pub struct Maps {
     pub specular_tint: Option<Map>,
     /// Direction (red, green) and strength (blue) of anisotropy, linear.
     pub anisotropy: Option<Map>,
-    /// Opacity alone (red), linear; without this that of `base` counts.
+    /// Opacity alone (alpha); without this that of `base` counts.
     pub opacity: Option<Map>,
 }
 

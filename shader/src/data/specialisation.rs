@@ -71,11 +71,11 @@ bits! {
         /// Some primitives have tangents, and some material a use for them.
         TANGENTS = 20;
         /// Some material by microfacets is rougher along one axis than along the other.
-        ANISOTROPIC = 23;
+        ANISOTROPIC = 21;
         /// Some material is not opaque everywhere.
-        CUTOUT = 21;
+        CUTOUT = 22;
         /// The background is a picture.
-        ENVIRONMENT = 22;
+        ENVIRONMENT = 23;
     }
 }
 

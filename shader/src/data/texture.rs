@@ -34,8 +34,6 @@ impl TextureMap {
     pub const MIRROR: u32 = 1;
     /// Its edge goes on.
     pub const CLAMP: u32 = 2;
-    /// The words of the table of sRGB that texels start with: linear light for every byte.
-    pub const TABLE: u32 = 256;
     /// The largest width and height in texels.
     pub const MOST_SIDE: u32 = 16_384;
 }

@@ -1,10 +1,10 @@
 //! Distributed ray tracing (Cook, Porter and Carpenter, 1984; thesis 3.4.1): Whitted's tree of reflected and refracted rays, where
 //! lights have extent and each vertex asks one of them.
 
-use super::sampled::{ScatterContext, Scattered, Vertex, share};
+use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use super::whitted::counts;
 use crate::buffer::read;
-use crate::data::{Effects, Maps, numbers};
+use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, LightSample, Lighting};
 use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong};
@@ -25,7 +25,7 @@ pub(super) fn at<R: Scalar>(
     let ScatterContext { shading, lighting, physicals } = context;
     let seen = vertex.met(launch);
     let (primitive, interaction) = (seen.primitive, seen.interaction);
-    let covering = seen.covering(launch, shading, Maps::BASE);
+    let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {
         let material = read(physicals, primitive.material());
@@ -84,12 +84,6 @@ fn branched<R: Scalar>(
         other: refracted,
         waits: first && second,
     }
-}
-
-/// Is there any light to sample?
-#[inline(always)]
-fn is_lit(launch: &LaunchContext<'_>) -> bool {
-    launch.spec.effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) && launch.frame.emitters > 0
 }
 
 /// A sample of one light as seen from a vertex, and where its shadow ray starts.

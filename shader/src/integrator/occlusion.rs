@@ -1,7 +1,6 @@
 //! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
 
 use super::sampled::{Scattered, Vertex};
-use crate::data::Maps;
 use crate::material::{Surface, cosine_direction};
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
@@ -11,7 +10,7 @@ use crate::stage::{Segment, ShadowRay};
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let seen = vertex.met(launch);
-    let (interaction, covering) = (&seen.interaction, seen.covering(launch, shading, Maps::BASE));
+    let (interaction, covering) = (&seen.interaction, seen.covering(launch, shading, false));
     let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));

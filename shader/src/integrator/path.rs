@@ -1,9 +1,9 @@
 //! Path tracing (thesis 3.4.4; Kajiya, The Rendering Equation, 1986): at each vertex one sample of a light and one of the surface,
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
-use super::sampled::{ScatterContext, Scattered, Vertex, share};
+use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, Maps, Physical, numbers};
+use crate::data::{Effects, Frame, Launch, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting};
 use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, transmittance};
@@ -26,7 +26,7 @@ pub(super) fn at<R: Scalar>(
     let vertex = &arrived(effects, physicals, vertex, &seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
-    let covering = seen.covering(launch, shading, if is_last { Maps::EMISSION } else { Maps::BASE });
+    let covering = seen.covering(launch, shading, is_last);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
     if is_last {
         return Scattered::once(light, ShadowRay::none(), path, false);
@@ -142,8 +142,7 @@ fn sampled_light<R: Scalar>(
     choice: u32,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
-    let is_lit = effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) && launch.frame.emitters > 0;
-    if !is_lit || !closure.is_rough() {
+    if !is_lit(launch) || !closure.is_rough() {
         return ShadowRay::none();
     }
     let places = vertex.draws.set(vertex.path.bounces);

@@ -100,6 +100,12 @@ impl<R: Scalar> Vertex<R> {
     }
 }
 
+/// Is there any light to sample?
+#[inline(always)]
+pub(super) fn is_lit(launch: &LaunchContext<'_>) -> bool {
+    launch.spec.effects.has(Effects::LIT | Effects::EMISSIVE | Effects::ENVIRONMENT) && launch.frame.emitters > 0
+}
+
 /// What comes of it.
 pub(super) struct Scattered<R: Real> {
     /// What the vertex adds at once, linear RGB that reaches the pixel.

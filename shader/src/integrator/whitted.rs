@@ -3,7 +3,7 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Launch, Light, Maps};
+use crate::data::{Effects, Launch, Light};
 use crate::geometry::SurfaceInteraction;
 use crate::light::LightSample;
 use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
@@ -55,7 +55,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
     let cone = Cone { width: R::splat(0.0), spread: R::splat(launch.frame.spread) }.after(hit.x);
     let seen = Seen { index: primitive_index, primitive, interaction, direction: path.direction, cone };
-    let covering = seen.covering(launch, shading, Maps::BASE);
+    let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);

@@ -8,6 +8,7 @@
 use super::emitter::{Density, EmitterSample, on_circle};
 use crate::buffer::read;
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
+use crate::texture::beyond;
 
 /// An environment in device memory: a header, linear RGB of each texel in single precision, row by row from the top; for each row
 /// the last draw that means it; for each texel the last draw that means it in its row; and one less the cosine of the polar angle
@@ -112,12 +113,12 @@ impl<'a> Environment<'a> {
         let half = R::splat(0.5);
         let (x, y) = (x - half, y - half);
         let (column, row) = (x.floor_index(), y.floor_index());
-        let (right, down) = (share(x, column), share(y, row));
+        let (right, down) = (beyond(x, column), beyond(y, row));
         let (left, beside) = (around(column, self.width), around(column + 1, self.width));
         let (upper, lower) = (within(row, self.height), within(row + 1, self.height));
-        let above = mixed(self.texel(left, upper), self.texel(beside, upper), right);
-        let below = mixed(self.texel(left, lower), self.texel(beside, lower), right);
-        mixed(above, below, down).map(|c| c.flush(FAINT))
+        let above = self.texel::<R>(left, upper).mix(self.texel(beside, upper), right);
+        let below = self.texel::<R>(left, lower).mix(self.texel(beside, lower), right);
+        above.mix(below, down).map(|c| c.flush(FAINT))
     }
 
     /// The solid angle of a texel of a row.
@@ -175,17 +176,6 @@ impl<'a> Environment<'a> {
     }
 }
 
-/// How far a place is beyond a texel's middle.
-#[inline(always)]
-fn share<R: Scalar>(place: R, index: i32) -> R {
-    (place - R::splat(index as f32)).max(R::splat(0.0)).flush(STEP)
-}
-
-#[inline(always)]
-fn mixed<R: Real>(a: V3<R>, b: V3<R>, share: R) -> V3<R> {
-    a + (b - a) * share
-}
-
 /// A column by an index that may be one beside the picture.
 #[inline(always)]
 fn around(index: i32, width: u32) -> u32 {
@@ -205,9 +195,6 @@ fn around(index: i32, width: u32) -> u32 {
 fn within(index: i32, count: u32) -> u32 {
     index.max(0).min(count as i32 - 1) as u32
 }
-
-/// The least share of a texel that counts, so that no product with it is subnormal.
-const STEP: f32 = 1.0 / (1 << 20) as f32;
 
 /// An entry of a table of draws.
 #[derive(Clone, Copy)]

@@ -79,16 +79,16 @@ impl<R: Scalar> Bsdf<R> {
     #[inline(always)]
     pub fn new(effects: Effects, axes: [V3<R>; 3], direction: V3<R>, layers: Layers<R>) -> Self {
         let zero = R::splat(0.0);
-        let is_smooth = layers.ggx.x.eq(zero);
-        let under = R::splat(1.0);
-        let mut bsdf = Bsdf { effects, axes, viewer: V3::zero(), layers, is_smooth, under, diffuse: 0 };
+        let (is_smooth, one) = (layers.ggx.x.eq(zero), R::splat(1.0));
+        let mut bsdf = Bsdf { effects, axes, viewer: V3::zero(), layers, is_smooth, under: one, diffuse: 0 };
         bsdf.viewer = bsdf.local(-direction);
         bsdf.viewer.z = bsdf.viewer.z.max(R::splat(SMALL));
         let facet = bsdf.facet(V3::splat(Vec3::Z));
+        let mut base = layers.diffuse;
         if layers.is_coated {
-            bsdf.under = facet.rest.div((R::splat(1.0) - layers.reflectance.mean()).max(R::splat(SMALL)));
+            bsdf.under = facet.rest.div((one - layers.reflectance.mean()).max(R::splat(SMALL)));
+            base = base * facet.rest;
         }
-        let base = if layers.is_coated { layers.diffuse * facet.rest } else { layers.diffuse };
         let (own, facets) = (base.greatest(), facet.reflected.greatest() + (layers.through * facet.rest).greatest());
         bsdf.diffuse = steps(own, facets);
         bsdf
@@ -118,6 +118,12 @@ impl<R: Scalar> Bsdf<R> {
         self.effects.has(Effects::THIN) && self.layers.way == Way::THIN
     }
 
+    /// The index of refraction on the viewer's side over that on the other; 1 of a thin wall, which bends nothing.
+    #[inline(always)]
+    fn eta(&self) -> R {
+        if self.is_thin() { R::splat(1.0) } else { self.layers.reflectance.eta }
+    }
+
     /// What a facet of unit normal `h` reflects of light from the unit vector `w`.
     #[inline(always)]
     fn reflected(&self, w: V3<R>, h: V3<R>) -> V3<R> {
@@ -127,19 +133,13 @@ impl<R: Scalar> Bsdf<R> {
         self.layers.reflectance.at(has_conductors, has_glass, (w, h, cosine))
     }
 
-    /// The share of light that it does not.
-    #[inline(always)]
-    fn rest(&self, w: V3<R>, h: V3<R>) -> R {
-        (R::splat(1.0) - self.reflected(w, h).greatest().min(R::splat(1.0))).flush(FAINT)
-    }
-
     /// A facet of unit normal `h`, seen from the viewer.
     #[inline(always)]
     fn facet(&self, h: V3<R>) -> Facet<R> {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let reflected = self.reflected(self.viewer, h);
         let greatest = reflected.greatest().min(one);
-        let rest = (one - greatest).flush(FAINT);
+        let rest = rest(reflected);
         let passes = if self.passes() { (self.layers.through.greatest() * rest).flush(FAINT) } else { zero };
         let probability = if zero.lt(passes) { greatest.div(greatest + passes) } else { one };
         Facet { reflected, rest, probability }
@@ -148,7 +148,8 @@ impl<R: Scalar> Bsdf<R> {
     /// What the base sends to the viewer of light from a direction of the frame, with its cosine over pi.
     #[inline(always)]
     fn base(&self, to: V3<R>) -> V3<R> {
-        let share = if self.layers.is_coated { self.rest(to, V3::splat(Vec3::Z)) * self.under } else { self.under };
+        let share =
+            if self.layers.is_coated { rest(self.reflected(to, V3::splat(Vec3::Z))) * self.under } else { self.under };
         self.layers.diffuse * (share * (to.z * R::splat(INVERSE_PI))).flush(FAINT)
     }
 
@@ -188,18 +189,14 @@ impl<R: Scalar> Bsdf<R> {
 
     #[inline(always)]
     fn on_that_side(&self, to: V3<R>) -> Scattering<R> {
-        let (h, eta) = if self.is_thin() {
-            (half(self.viewer, V3::new(to.x, to.y, -to.z)), R::splat(1.0))
-        } else {
-            let eta = self.layers.reflectance.eta;
-            (refracting(self.viewer, to, eta), eta)
-        };
+        let (eta, mirrored) = (self.eta(), V3::new(to.x, to.y, -to.z));
+        let h = if self.is_thin() { half(self.viewer, mirrored) } else { refracting(self.viewer, to, eta) };
         if h.z.eq(R::splat(0.0)) {
             return Scattering::none();
         }
         let facet = self.facet(h);
         let (passed, likely) = if self.is_thin() {
-            self.layers.ggx.reflected(self.viewer, V3::new(to.x, to.y, -to.z), h)
+            self.layers.ggx.reflected(self.viewer, mirrored, h)
         } else {
             refracted(self.layers.ggx, self.viewer, to, h, eta)
         };
@@ -218,7 +215,7 @@ impl<R: Scalar> Bsdf<R> {
         let passed = if self.is_thin() {
             V3::new(mirrored.x, mirrored.y, -mirrored.z)
         } else {
-            refract(-self.viewer, h, self.layers.reflectance.eta).direction
+            refract(-self.viewer, h, self.eta()).direction
         };
         passed.map(|c| c.flush(SMALL))
     }
@@ -231,7 +228,7 @@ impl<R: Scalar> Bsdf<R> {
             let over = (facets * facet.probability).reciprocal();
             return (facet.reflected * over).map(|c| c.flush(FAINT));
         }
-        let eta = if self.is_thin() { R::splat(1.0) } else { self.layers.reflectance.eta };
+        let eta = self.eta();
         let over = (facets * (R::splat(1.0) - facet.probability)).reciprocal();
         (self.layers.through * (facet.rest * eta * eta * over)).map(|c| c.flush(FAINT))
     }
@@ -257,13 +254,18 @@ impl<R: Scalar> Bsdf<R> {
         }
         let agrees = self.agrees(interaction, to, direction);
         let factor = V3::select(agrees, self.smooth_factor(&facet, reflects), V3::zero());
-        // Glass magnifies a step beside a ray's own line; a mirror has corners to escape through.
-        let origin = if self.passes() && !self.is_thin() {
+        ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
+    }
+
+    /// Where a ray starts whose direction could be no other: glass magnifies a step beside its own line; a mirror has corners to
+    /// escape through.
+    #[inline(always)]
+    fn leave(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
+        if self.passes() && !self.is_thin() {
             interaction.offset_ray_origin_along(direction)
         } else {
             interaction.offset_ray_origin(direction)
-        };
-        ClosureSample { direction, factor, density: R::splat(0.0), origin }
+        }
     }
 }
 
@@ -289,12 +291,8 @@ impl<R: Scalar> Bsdf<R> {
             return [reflected, ClosureSample { factor: V3::zero(), ..reflected }];
         }
         let to = self.leaving(h, false);
-        let factor = if self.is_thin() {
-            facet.rest * self.shadowing(V3::new(to.x, to.y, -to.z), h)
-        } else {
-            let eta = self.layers.reflectance.eta;
-            facet.rest * eta * eta * self.shadowing(V3::new(to.x, to.y, -to.z), h)
-        };
+        let eta = self.eta();
+        let factor = facet.rest * eta * eta * self.shadowing(V3::new(to.x, to.y, -to.z), h);
         [reflected, self.branch(interaction, to, false, self.layers.through * factor)]
     }
 
@@ -320,12 +318,7 @@ impl<R: Scalar> Bsdf<R> {
         let direction = self.world(to);
         let is_right = R::splat(0.0).lt(to.z) == reflects && self.agrees(interaction, to, direction);
         let factor = V3::select(is_right, factor.map(|c| c.flush(FAINT)), V3::zero());
-        let origin = if self.passes() && !self.is_thin() {
-            interaction.offset_ray_origin_along(direction)
-        } else {
-            interaction.offset_ray_origin(direction)
-        };
-        ClosureSample { direction, factor, density: R::splat(0.0), origin }
+        ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
     }
 }
 
@@ -370,6 +363,12 @@ impl<R: Scalar> Closure<R> for Bsdf<R> {
         let factor = V3::select(counts, (value * over).map(|c| c.flush(FAINT)), V3::zero());
         ClosureSample { direction, factor, density, origin: interaction.offset_ray_origin(direction) }
     }
+}
+
+/// The share of light that is not reflected.
+#[inline(always)]
+fn rest<R: Scalar>(reflected: V3<R>) -> R {
+    (R::splat(1.0) - reflected.greatest().min(R::splat(1.0))).flush(FAINT)
 }
 
 /// The unit vector between two others.

@@ -4,12 +4,10 @@
 //! Directions are in the frame of the surface, whose normal is the third axis, point away from it, and are zero or at least 2^-40
 //! in each component.
 
+use super::INVERSE_PI;
 use crate::light::on_circle;
 use crate::real::{Real, SMALL, Scalar, V3};
 use crate::sampler::unit;
-
-/// One over pi.
-const INVERSE_PI: f32 = core::f32::consts::FRAC_1_PI;
 
 /// Facets by their roughness along two axes, each in [`Ggx::LEAST`, 1].
 #[derive(Clone, Copy)]

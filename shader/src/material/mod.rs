@@ -67,9 +67,9 @@ pub struct Seen<R: Real> {
 }
 
 impl<R: Scalar> Seen<R> {
-    /// What its textures say, or of `only` emission that. Nothing but white in a scene without.
+    /// What its textures say, or that of emission alone. Nothing but white in a scene without.
     #[inline(always)]
-    pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, only: u32) -> Covering<R> {
+    pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, emits_only: bool) -> Covering<R> {
         let (effects, launched) = (launch.spec.effects, launch.spec.launch);
         let weights = self.interaction.coordinates;
         let place = Place { index: self.index, weights, count: launch.frame.vertices };
@@ -78,7 +78,7 @@ impl<R: Scalar> Seen<R> {
             let facing = (self.interaction.normal, self.direction);
             footprint = self.cone.footprint(&shading.textures, &place, &self.primitive, facing);
         }
-        let maps = if only == Maps::EMISSION { (only, only + 1) } else { (0, Maps::COUNT) };
+        let maps = if emits_only { (Maps::EMISSION, Maps::EMISSION + 1) } else { (0, Maps::COUNT) };
         let own = || read(shading.maps, self.primitive.material());
         Covering::new((effects, launched), &shading.textures, own, &place, footprint, maps)
     }

@@ -56,6 +56,12 @@ impl<R: Real> V3<R> {
         V3::new(self.x * other.x, self.y * other.y, self.z * other.z)
     }
 
+    /// As far from one vector to another as a share says.
+    #[inline(always)]
+    pub fn mix(self, other: Self, share: R) -> Self {
+        self + (other - self) * share
+    }
+
     /// Applies a function to every component.
     #[inline(always)]
     pub fn map(self, f: impl Fn(R) -> R) -> Self {

@@ -17,10 +17,7 @@ pub struct Texel<R: Real> {
 impl<R: Real> Texel<R> {
     #[inline(always)]
     fn mix(self, other: Self, share: R) -> Self {
-        Texel {
-            colour: self.colour + (other.colour - self.colour) * share,
-            alpha: self.alpha + (other.alpha - self.alpha) * share,
-        }
+        Texel { colour: self.colour.mix(other.colour, share), alpha: self.alpha + (other.alpha - self.alpha) * share }
     }
 }
 
@@ -161,8 +158,7 @@ impl<R: Scalar> Axis<R> {
         };
         let place = within * R::splat(size as f32) - half;
         let index = place.floor_index();
-        let share = (place - R::splat(index as f32)).max(zero).flush(STEP);
-        Axis { first: wrapped(index, size, wrap), second: wrapped(index + 1, size, wrap), share }
+        Axis { first: wrapped(index, size, wrap), second: wrapped(index + 1, size, wrap), share: beyond(place, index) }
     }
 
     #[inline(always)]
@@ -171,8 +167,12 @@ impl<R: Scalar> Axis<R> {
     }
 }
 
-/// The least share of a texel that counts, so that no product with it is subnormal.
-const STEP: f32 = 1.0 / (1 << 20) as f32;
+/// How far a place is beyond the middle of a texel, in texels; none of it below 2^-20, so that no product with it is subnormal.
+#[inline(always)]
+pub(crate) fn beyond<R: Scalar>(place: R, index: i32) -> R {
+    const STEP: f32 = 1.0 / (1 << 20) as f32;
+    (place - R::splat(index as f32)).max(R::splat(0.0)).flush(STEP)
+}
 
 /// The texel of an index from -1 to twice the size.
 #[inline(always)]

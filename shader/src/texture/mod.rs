@@ -7,6 +7,7 @@ mod filter;
 
 pub use cone::Cone;
 pub use covering::Covering;
+pub(crate) use filter::beyond;
 pub use filter::{Texel, opacity, sample};
 
 use crate::buffer::read;

@@ -1,15 +1,11 @@
 //! The records of elements that are read.
 
-use std::sync::LazyLock;
-
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
-use crate::image::linear_table;
+use crate::image::byte_to_linear;
 
 /// Names of texture coordinates.
 const COORDINATES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
-/// Linear light of a byte of sRGB.
-static LIGHT: LazyLock<Vec<f32>> = LazyLock::new(|| linear_table(u8::MAX.into()));
 
 /// What vertices have beside their places.
 #[derive(Debug, Default, Clone, Copy)]
@@ -70,9 +66,9 @@ impl PropertyAccess for Vertex {
             "nz" => &mut self.normal[2],
             "s" | "u" | "texture_u" => &mut self.coordinates[0],
             "t" | "v" | "texture_v" => &mut self.coordinates[1],
-            "red" => return put(&mut self.colour[0], &value, |byte| LIGHT[usize::from(byte)]),
-            "green" => return put(&mut self.colour[1], &value, |byte| LIGHT[usize::from(byte)]),
-            "blue" => return put(&mut self.colour[2], &value, |byte| LIGHT[usize::from(byte)]),
+            "red" => return put(&mut self.colour[0], &value, byte_to_linear),
+            "green" => return put(&mut self.colour[1], &value, byte_to_linear),
+            "blue" => return put(&mut self.colour[2], &value, byte_to_linear),
             "alpha" => return put(&mut self.colour[3], &value, |byte| f32::from(byte) / 255.0),
             _ => return PropertyAccessResult::Ignored,
         };

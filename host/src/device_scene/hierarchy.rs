@@ -1,0 +1,47 @@
+//! The hierarchy of a scene, and what lies in its order.
+
+use eyerays_bvh::{BuildError, Bvh, Quality};
+use eyerays_shader::data::{CentredPair, NodePair, Primitive};
+use rayon::prelude::*;
+
+use super::normalised;
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// References added by splitting triangles, as a share of the triangles.
+const SPLIT_BUDGET: f32 = 0.3;
+
+/// The hierarchy that kernels find a scene's primitives by: the one that the scene brings along if it has this quality,
+/// checked, or a new one.
+///
+/// # Errors
+/// As [`DeviceScene::new`](super::DeviceScene::new).
+pub fn hierarchy(scene: &Scene, quality: Quality) -> Result<Bvh> {
+    scene.check()?;
+    kept_or_built(scene, &normalised(scene).1, quality)
+}
+
+pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> Result<Bvh> {
+    if let Some(kept) = scene.hierarchy.as_ref().filter(|kept| kept.quality().quality() == quality) {
+        let bvh = kept.read();
+        let fault = |e: BuildError| format!("the hierarchy that the scene brings along is not its own: {e}");
+        return bvh.check(primitives).map(|()| bvh).map_err(|e| Error::new(fault(e)));
+    }
+    let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
+    eyerays_bvh::build(&references, quality).map_err(refused)
+}
+
+/// The pairs as kernels test them, in the same memory.
+pub(super) fn centred(mut pairs: Vec<NodePair>) -> Vec<CentredPair> {
+    pairs.par_iter_mut().for_each(|pair| *pair = bytemuck::cast(CentredPair::from(&*pair)));
+    bytemuck::cast_vec(pairs)
+}
+
+/// The primitives in the order of slots.
+pub(super) fn gathered(primitives: Vec<Primitive>, order: &[u32]) -> Vec<Primitive> {
+    order.par_iter().map(|&primitive| primitives[primitive as usize]).collect()
+}
+
+pub(super) fn refused(error: BuildError) -> Error {
+    Error::new(error.to_string())
+}

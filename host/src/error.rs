@@ -70,6 +70,11 @@ pub enum Error {
         /// The format.
         format: Format,
     },
+    /// Layers, in a format that has none.
+    NoLayers {
+        /// The format.
+        format: Format,
+    },
     /// So many threads can't be started.
     Threads {
         /// How many.
@@ -235,6 +240,7 @@ impl Error {
             }
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
+            Error::NoLayers { format } => format!("layers are for .exr files, not for {format}"),
             Error::Threads { threads, message } => format!("can't start {threads} threads ({message})"),
             Error::ReferenceOnGpu => "reference precision is double precision on the CPU".to_owned(),
             Error::NoGpu => "there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver".to_owned(),

@@ -38,6 +38,7 @@ pub mod film;
 pub mod gpu;
 pub mod image;
 pub mod integrator;
+pub mod layers;
 pub mod line;
 pub mod math;
 pub mod memory;

@@ -3,6 +3,7 @@
 //! are used: there these tests take ambient occlusion alone, unless `GALLIVM_PERF=nopt` turns the optimizer off.
 
 use eyerays::cpu;
+use eyerays::device_scene::Feature;
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
@@ -141,6 +142,20 @@ fn surfaces_and_surroundings() {
     let (film, _) = on_cpu(&packed);
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "whitted");
+}
+
+/// Of everything that surfaces may have, however it is traced and whatever light the picture had.
+#[test]
+fn what_the_camera_sees_first() {
+    let Some(gpu) = exact() else { return };
+    let scene = covered();
+    for (feature, spp, method) in
+        [(Feature::Albedo, 3, Method::Auto), (Feature::Normal, 3, Method::Wide), (Feature::Place, 1, Method::Packet)]
+    {
+        let mut packed = pack(&scene, &scene.cameras[0], settings(&scene, (45, 37), spp));
+        packed.packed.show(Some(feature));
+        assert_same(&gpu, &packed, method.into(), &format!("{feature:?}"));
+    }
 }
 
 /// In flight together or one by one, all at once or in parts: a film is kept with what rounding took off.

@@ -13,6 +13,9 @@ pub fn worded(error: &Error) -> String {
         Error::NoTone { format } => {
             return format!("--tone is for .png files, not for {format}; leave it out or write .png");
         }
+        Error::NoLayers { format } => {
+            return format!("--layers is for .exr files, not for {format}; leave it out or write .exr");
+        }
         Error::Threads { .. } => ": ask for fewer",
         Error::ReferenceOnGpu => ": use --device cpu, or --precision exact",
         Error::NoGpu => ", or use --device cpu",

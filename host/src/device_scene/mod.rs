@@ -11,6 +11,7 @@ use eyerays_shader::data::{
 
 mod check;
 mod environment;
+mod feature;
 mod hierarchy;
 mod levels;
 mod lighting;
@@ -21,6 +22,7 @@ mod textures;
 mod view;
 mod words;
 
+pub use feature::Feature;
 pub use hierarchy::hierarchy;
 pub use lighting::Lighting;
 pub use normalisation::Normalisation;
@@ -61,6 +63,7 @@ pub struct DeviceScene {
     effects: Effects,
     background: Background,
     settings: Settings,
+    feature: Option<Feature>,
     normalisation: Normalisation,
     statistics: Statistics,
     build_time: Duration,
@@ -133,6 +136,7 @@ impl DeviceScene {
             effects,
             background: scene.background,
             settings,
+            feature: None,
             normalisation,
             build_time,
             bvh8: OnceLock::new(),
@@ -224,7 +228,23 @@ impl DeviceScene {
 
     /// The effects that the scene asks for.
     pub fn effects(&self) -> Effects {
-        records::asked(self.effects, &self.settings)
+        let effects = records::asked(self.effects, &self.settings);
+        self.feature.map_or(effects, |feature| feature.asked(self.effects).with(effects.0 & Effects::CULLING))
+    }
+
+    /// What its pictures show instead of light, if they do.
+    pub fn feature(&self) -> Option<Feature> {
+        self.feature
+    }
+
+    /// Lets pictures show something else instead of light, or light again.
+    pub fn show(&mut self, feature: Option<Feature>) {
+        self.feature = feature;
+    }
+
+    /// Is a picture made of samples, each of which asks for at most one shadow ray?
+    fn is_sampled(&self) -> bool {
+        self.feature.is_some() || self.settings.transport.integrator.samples()
     }
 
     /// How much of it is rendered.
@@ -281,6 +301,9 @@ impl DeviceScene {
 
     fn transport_bits(&self) -> u32 {
         let Transport { integrator, direct, .. } = self.settings.transport;
+        if let Some(feature) = self.feature {
+            return feature.bits();
+        }
         match integrator {
             Integrator::Whitted => 0,
             Integrator::Ao => Launch::OCCLUSION,
@@ -329,7 +352,7 @@ impl DeviceScene {
             Background::Gradient { horizon, zenith } => (horizon, zenith),
         };
         let lights = self.lights.len() as u32;
-        let Transport { integrator, seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
+        let Transport { seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
         let [least, greatest] = self.found_light().unwrap_or([Vec3::ONE, Vec3::NEG_ONE]);
         let reach = (f64::from(ao_distance) * self.normalisation.scale).min(f32::MAX.into()) as f32;
         Frame {
@@ -340,7 +363,7 @@ impl DeviceScene {
             bounces: self.settings.bounces,
             min_contribution: self.settings.min_contribution,
             lights,
-            shadow_rays: if integrator.samples() { 1 } else { lights },
+            shadow_rays: if self.is_sampled() { 1 } else { lights },
             seed,
             emitters: self.lighting.emitters.len() as u32,
             roulette,

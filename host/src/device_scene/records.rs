@@ -175,11 +175,13 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
         | flag(PhysicalRecord::THIN, p.thin);
     let turns = f64::from(p.anisotropy_rotation).to_radians();
     let turned = |number: f64| flushed_number(number as f32).to_bits();
+    // A conductor's facets do not ask for its base, which is what it looks like.
+    let base = p.conductor.map_or(p.base, |conductor| conductor.reflectance());
     let conductor = p.conductor.unwrap_or(Conductor { eta: Vec3::ZERO, k: Vec3::ZERO });
     let absorption = p.absorption.filter(|_| absorbs(&p));
     let lengths = absorption.map_or(0.0, |a| (1.0 / (f64::from(a.distance) * scale)).clamp(1e-9, 1e9) as f32);
     PhysicalRecord {
-        base: colour(p.base, flags),
+        base: colour(base, flags),
         shape: colour(Vec3::new(p.roughness, p.metallic, p.anisotropy), p.ior.to_bits()),
         dielectric: colour(p.reflectance(), flushed_number(p.specular_weight).to_bits()),
         transmission: colour(p.transmission, lengths.to_bits()),

@@ -228,7 +228,7 @@ impl<'a> Renderer<'a> {
             let read = self.queue.read(&counters, &films, |i, bytes| {
                 let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
                 let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
-                film.develop::<f32>(now[i].region, &records, *samples, &mut rays);
+                film.develop_on_all_threads::<f32>(now[i].region, &records, *samples, &mut rays);
             })?;
             (rays.secondary, device_time) = (read.rays, read.device_time);
             rest = later;

@@ -13,6 +13,7 @@ use super::transfer::{quantise, quantise_to_byte};
 use super::{BitDepth, Encoding, Format, ToneMap};
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::layers::{Layer, Values};
 use crate::math;
 
 /// Encodes a film and writes the file's bytes, at once and in order, so that any writer will do.
@@ -35,6 +36,24 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
         Format::Exr => exr::single(film, scale).map_err(|e| refused(&e))?,
         Format::Hdr => hdr(film, scale).map_err(|e| refused(&e))?,
     };
+    writer.write_all(&bytes).map_err(|e| Error::writing(&e))
+}
+
+/// Encodes a picture with layers of it as an EXR, as [`encode`]: layers of light are exposed as it is, and floats of 16 bits hold
+/// all but lengths and numbers.
+///
+/// # Errors
+/// As [`encode`].
+pub fn encode_layers(
+    film: &Film,
+    layers: &[(Layer, Values)],
+    encoding: &Encoding,
+    mut writer: impl Write,
+) -> Result<()> {
+    film.validate()?;
+    encoding.check(Format::Exr)?;
+    let bytes = exr::layered(film, layers, encoding.scale()?, encoding.half);
+    let bytes = bytes.map_err(|error| Error::new(format!("the layers cannot be encoded as EXR: {error}")))?;
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 

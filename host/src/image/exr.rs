@@ -9,7 +9,9 @@ use exr::image::write::layers::{LayersWriter, WritableLayers};
 use exr::prelude::*;
 use rayon::prelude::*;
 
+use crate::choice::Named;
 use crate::film::Film;
+use crate::layers::{Layer, Values};
 
 /// Blocks of 16 lines that are compressed at once: enough for every core, and few of them in memory.
 const BATCH: usize = 64;
@@ -34,6 +36,37 @@ pub(super) fn exposed(v: f32, scale: f64) -> f32 {
 fn nearest_half(v: f32) -> f16 {
     let most = f16::MAX.to_f32();
     f16::from_f32(if v.is_finite() { v.clamp(-most, most) } else { v })
+}
+
+/// The file's bytes with layers beside the picture, whose channels have the layer's name before a point. Light is exposed, and in
+/// floats of 16 bits if those are asked for; lengths and numbers keep 32 bits.
+pub(super) fn layered(film: &Film, layers: &[(Layer, Values)], scale: f64, is_half: bool) -> Result<Vec<u8>> {
+    let size = Vec2(film.width as usize, film.height as usize);
+    let of = |name: String, values: &Values| match values {
+        Values::Light(film) => three(film, &name, ["R", "G", "B"], scale, is_half),
+        Values::Colours(film) => three(film, &name, ["R", "G", "B"], 1.0, is_half),
+        Values::Vectors(film) => three(film, &name, ["X", "Y", "Z"], 1.0, is_half),
+        Values::Lengths(lengths) => vec![channel(&name, "Z", FlatSamples::F32(lengths.clone()))],
+        Values::Numbers(numbers) => vec![channel(&name, "id", FlatSamples::U32(numbers.clone()))],
+    };
+    let mut channels: SmallVec<[_; 4]> = three(film, "", ["R", "G", "B"], scale, is_half).into();
+    channels.extend(layers.iter().flat_map(|(layer, values)| of(format!("{}.", layer.name()), values)));
+    let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    let mut bytes = Cursor::new(Vec::new());
+    write(&image, &mut bytes)?;
+    Ok(bytes.into_inner())
+}
+
+fn channel(layer: &str, name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {
+    AnyChannel::new(format!("{layer}{name}").as_str(), samples)
+}
+
+fn three(film: &Film, layer: &str, names: [&str; 3], scale: f64, is_half: bool) -> Vec<AnyChannel<FlatSamples>> {
+    let samples = |i: usize| {
+        let values = film.pixels.par_iter().map(|pixel| exposed(pixel[i], scale));
+        if is_half { FlatSamples::F16(values.map(nearest_half).collect()) } else { FlatSamples::F32(values.collect()) }
+    };
+    names.into_iter().enumerate().map(|(i, name)| channel(layer, name, samples(i))).collect()
 }
 
 fn bytes<T>(film: &Film, convert: impl Fn(f32) -> T + Sync) -> Result<Vec<u8>>

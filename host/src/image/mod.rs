@@ -21,7 +21,7 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::math;
 
-pub use encode::encode;
+pub use encode::{encode, encode_layers};
 pub use read::{decode, read};
 pub use texels::{decode_texture, read_texture};
 pub use tone::ToneMap;

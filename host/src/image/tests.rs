@@ -6,6 +6,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::film::Film;
+use crate::layers::{Layer, Values};
 
 const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
 
@@ -39,6 +40,38 @@ fn exr_keeps_every_bit() {
     let film = odd_film();
     let back = round_trip(&film, Format::Exr, &Encoding::default());
     assert!(film.bits_equal(&back), "{back:?}");
+}
+
+#[test]
+fn layers_are_channels_of_their_names_with_numbers_as_they_are() {
+    use ::exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
+    let film = |value: f32| Film::from_pixels(2, 1, vec![[value, 2.0 * value, -value], [value; 3]]).unwrap();
+    let layers = [
+        (Layer::Normal, Values::Vectors(film(0.5))),
+        (Layer::Object, Values::Numbers(vec![0, u32::MAX])),
+        (Layer::Depth, Values::Lengths(vec![f32::INFINITY, 1e-30])),
+        (Layer::Direct, Values::Light(film(0.25))),
+    ];
+    let encoding = Encoding { exposure_ev: 1.0, half: true, ..Encoding::default() };
+    let mut bytes = Vec::new();
+    encode_layers(&film(1.0), &layers, &encoding, &mut bytes).unwrap();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    std::fs::write(file.path(), &bytes).unwrap();
+    let image = read_first_flat_layer_from_file(file.path()).unwrap();
+    let channels: Vec<_> =
+        image.layer_data.channel_data.list.iter().map(|c| (c.name.to_string(), &c.sample_data)).collect();
+    let names: Vec<_> = channels.iter().map(|(name, _)| name.as_str()).collect();
+    let expected =
+        ["B", "G", "R", "depth.Z", "direct.B", "direct.G", "direct.R", "normal.X", "normal.Y", "normal.Z", "object.id"];
+    assert_eq!(names, expected);
+    let of = |name: &str| channels.iter().find(|(own, _)| own == name).unwrap().1.clone();
+    assert_eq!(of("object.id"), FlatSamples::U32(vec![0, u32::MAX]));
+    assert_eq!(of("depth.Z"), FlatSamples::F32(vec![f32::INFINITY, 1e-30]));
+    let halves = |values: [f32; 2]| FlatSamples::F16(values.map(::exr::prelude::f16::from_f32).into());
+    // Light is exposed, other vectors are not.
+    assert_eq!((of("direct.G"), of("normal.Y"), of("R")), (halves([1.0, 0.5]), halves([1.0, 0.5]), halves([2.0, 2.0])));
+    // Who asks for no layer reads the picture.
+    assert_eq!(decode(Cursor::new(&bytes)).unwrap().pixels, [[2.0, 4.0, -2.0], [2.0; 3]]);
 }
 
 #[test]

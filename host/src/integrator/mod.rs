@@ -9,9 +9,12 @@ use crate::scene::Integrator;
 
 /// What the integrator of a scene's settings asks for.
 pub fn needs(packed: &DeviceScene) -> Needs {
+    if packed.feature().is_some() {
+        return sampled::first_hits();
+    }
     match packed.settings().transport.integrator {
         Integrator::Whitted => whitted::whitted(packed),
-        Integrator::Ao => sampled::occlusion(),
+        Integrator::Ao => sampled::first_hits(),
         Integrator::Distributed => sampled::distributed(packed),
         Integrator::Path => sampled::path(packed),
     }

@@ -4,7 +4,7 @@ use super::{Needs, Waves, whitted};
 use crate::device_scene::DeviceScene;
 
 /// Of the camera's rays alone.
-pub fn occlusion() -> Needs {
+pub fn first_hits() -> Needs {
     once(0)
 }
 

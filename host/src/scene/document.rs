@@ -6,6 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::map::Images;
 use super::range::Range;
+use super::studio;
 use super::table::Table;
 use super::{Background, Camera, Environment, Light, Settings, Transport};
 use crate::error::Result;
@@ -81,7 +82,10 @@ fn environment(table: &mut Table, images: &mut Images) -> Result<Option<Environm
         let fault = "[background] has an environment and a gradient; remove the one or the other";
         return Err(table.fault_of("environment", fault));
     }
-    let texture = images.texture(&name).map_err(|error| table.fault_of("environment", error.to_string()))?;
+    let texture = match name.as_str() {
+        studio::NAME => studio::texture(),
+        file => images.texture(file).map_err(|error| table.fault_of("environment", error.to_string()))?,
+    };
     let visible = table.flag("visible")?.unwrap_or(true);
     if visible && table.has("color") {
         let fault = "a color is what the camera sees of an environment that is not visible; set visible to false";

@@ -110,7 +110,7 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
 
 /// The meshes of a scene, with a warning of what else it has.
 fn meshes_of(path: &Path, scene: Gltf) -> Obj {
-    let Gltf { mut obj, lights, cameras } = scene;
+    let Gltf { mut obj, parts: _, lights, cameras } = scene;
     if !lights.is_empty() || !cameras.is_empty() {
         let what = "its lights and cameras are left out: the scene that it is a mesh of has its own";
         obj.warnings.push(format!("{}: {what}", path.display()));

@@ -19,6 +19,7 @@ use super::obj::Obj;
 use super::part::{self, Placed};
 use super::range::Range;
 use super::source::Source;
+use super::studio;
 use super::table::Table;
 use super::{Background, Integrator, Material, Sampler, Scene, Settings, Transport};
 use crate::error::{Error, Result};
@@ -28,8 +29,7 @@ use crate::memory::Room;
 /// warnings what of it is not drawn.
 ///
 /// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky. A glTF scene is drawn by
-/// paths, from its own cameras and by its own lights; without them it is seen as a mesh is, in a grey that lights it from all
-/// sides.
+/// paths, from its own cameras and by its own lights; without them it is seen as a mesh is, in a studio of three lamps.
 ///
 /// # Errors
 /// A path that is no readable `.toml`, `.gltf`, `.glb`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
@@ -62,15 +62,15 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     Ok((framed(path, scene)?, warnings))
 }
 
-/// The light that a glTF scene without any is in, linear RGB: what is white and matt looks a bright grey of 80 % in it, and
-/// what is darker keeps its form.
-const STUDIO: Vec3 = Vec3::splat(0.6);
+/// What the camera sees behind a glTF scene without light, which the studio lights: a bright grey of 80 %.
+const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Gltf { obj, lights, cameras } = gltf::load(path, budget)?;
+    let Gltf { obj, parts, lights, cameras } = gltf::load(path, budget)?;
     let (scene, warnings) = bare(path, obj)?;
     let is_lit = !lights.is_empty() || scene.materials.iter().any(shines);
-    let background = Background::Colour(if is_lit { Vec3::ZERO } else { STUDIO });
+    let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
+    let environment = (!is_lit).then(studio::environment);
     let settings = Settings {
         spp: 64,
         sampler: Sampler::Sobol,
@@ -78,7 +78,7 @@ fn load_gltf(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
         transport: Transport { integrator: Integrator::Path, ..Transport::default() },
         ..Settings::default()
     };
-    let scene = Scene { lights, cameras, background, ambient: Vec3::ZERO, settings, ..scene };
+    let scene = Scene { parts, lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
     Ok((framed(path, scene)?, warnings))
 }
 

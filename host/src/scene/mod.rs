@@ -9,6 +9,7 @@
 mod binary;
 mod budget;
 mod check;
+mod describe;
 mod document;
 mod environment;
 mod extent;
@@ -36,6 +37,7 @@ mod range;
 mod sampler;
 mod shape;
 mod source;
+mod studio;
 mod suggest;
 mod table;
 mod tally;
@@ -48,6 +50,7 @@ mod xyzr;
 mod tests;
 
 pub use binary::{ENDING, Hierarchy, write};
+pub use describe::describe;
 pub use environment::Environment;
 pub use filter::Filter;
 pub use frame::default_camera;

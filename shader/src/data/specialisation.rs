@@ -111,7 +111,18 @@ bits! {
         NEAREST = 12;
         /// They are of the level whose texels are nearest in size to what a ray sees.
         MIPMAPPED = 13;
+        /// Only the colour of what the camera sees first.
+        ALBEDO = 14;
+        /// Only its shading normal.
+        NORMAL = 15;
+        /// Only where and which primitive it is.
+        PLACE = 16;
     }
+}
+
+impl Launch {
+    /// What the camera sees first is asked for, not its light.
+    pub const FEATURE: u32 = Launch::ALBEDO | Launch::NORMAL | Launch::PLACE;
 }
 
 bits! {

@@ -2,6 +2,7 @@
 //! go on. The host's file of the same name has its stages in their order.
 
 mod distributed;
+mod feature;
 mod occlusion;
 mod path;
 mod sampled;

@@ -15,7 +15,7 @@ use crate::stage::{NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
 use super::path::weight;
-use super::{distributed, occlusion, path};
+use super::{distributed, feature, occlusion, path};
 
 /// The records that the stages of a wave exchange.
 pub struct Exchange<'a, R: Scalar> {
@@ -172,7 +172,9 @@ pub fn scatter<R: Scalar>(
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
         let draws = Draws { launch: launch.spec.launch, key, sample: camera::sample(launch.frame, slot) };
         let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), distance: hit.x, draws };
-        if launch.spec.launch.has(Launch::OCCLUSION) {
+        if launch.spec.launch.has(Launch::FEATURE) {
+            feature::at(launch, context, &vertex)
+        } else if launch.spec.launch.has(Launch::OCCLUSION) {
             occlusion::at(launch, &context.shading, &vertex)
         } else if launch.spec.launch.has(Launch::TREE) {
             distributed::at(launch, context, &vertex)
@@ -190,6 +192,9 @@ pub fn scatter<R: Scalar>(
 #[inline(always)]
 fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
     let (effects, frame) = (launch.spec.effects, launch.frame);
+    if launch.spec.launch.has(Launch::FEATURE) {
+        return V3::zero();
+    }
     let seen = background(effects, frame, lighting.environment, path.direction, path.bounces == 0);
     if !effects.has(Effects::ENVIRONMENT) || path.density.eq(R::splat(0.0)) {
         return seen;

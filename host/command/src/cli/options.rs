@@ -191,6 +191,17 @@ impl View {
 
     /// Packs a scene for these options and what traces it.
     pub fn pack(&self, read: Read<'_>, effort: &Effort, choice: &Choice, quiet: bool) -> Result<Loaded> {
+        self.pack_and_keep(read, effort, choice, quiet).map(|(loaded, ..)| loaded)
+    }
+
+    /// The same, with the scene and the camera that it is seen from.
+    pub fn pack_and_keep(
+        &self,
+        read: Read<'_>,
+        effort: &Effort,
+        choice: &Choice,
+        quiet: bool,
+    ) -> Result<(Loaded, Scene, Camera)> {
         let Read { path, scene, time: read_time } = read;
         let settings = self.settings(&scene, effort)?;
         let ignored = settings.transport.integrator.ignored(&scene);
@@ -200,7 +211,8 @@ impl View {
         let start = Instant::now();
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         let view = eyerays::view::View::new(&packed, &camera).map_err(|e| e.of(path))?;
-        Ok(Loaded { packed, view, read_time, build_time: start.elapsed() })
+        let loaded = Loaded { packed, view, read_time, build_time: start.elapsed() };
+        Ok((loaded, scene, camera))
     }
 
     /// The scene's settings with the command line's over them.

@@ -17,6 +17,7 @@ use crate::error::Result;
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::image::{BitDepth, Encoding, ToneMap};
+use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, DeviceWish};
 
 pub(super) const EXAMPLES: &str = "\
@@ -25,11 +26,12 @@ Examples:
   eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
   eyerays render scenes/whitted.toml -o - > whitted.png
   eyerays render scenes/cornell_path.toml --exposure 1 --tone agx
+  eyerays render model.glb -o model.exr --layers albedo,normal,depth
   eyerays render scenes/cornell.toml --settings fast.toml";
 
 #[derive(Args)]
 pub(super) struct Render {
-    /// A scene (.toml), or a bare mesh (.obj) that is framed and lit as it is
+    /// A scene (.toml, .gltf, .glb, .eyerays), or a bare mesh (.obj, .ply), which is framed and lit
     scene: PathBuf,
     /// The picture, .png, .exr or .hdr; - writes PNG to standard output [default: SCENE.png here]
     #[arg(short, long, value_name = "FILE")]
@@ -49,6 +51,9 @@ pub(super) struct Render {
     /// How a PNG shows light brighter than a screen's white
     #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
     tone: ToneMap,
+    /// What an .exr file holds beside the light of each pixel, with commas between
+    #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',')]
+    layers: Vec<Layer>,
     /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
     #[arg(long)]
     half: bool,
@@ -80,6 +85,10 @@ impl Render {
         let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half, tone: self.tone };
         encoding.check(destination.format()?)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
+        let layers = self.layers();
+        if !self.layers.is_empty() {
+            output::check_layers(&destination)?;
+        }
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
@@ -88,7 +97,9 @@ impl Render {
         if self.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
-        let loaded = self.view.pack(read, &effort, &choice, quiet)?;
+        let (mut loaded, scene, camera) = self.view.pack_and_keep(read, &effort, &choice, quiet)?;
+        // Nothing but layers has a use for it, and memory may be short.
+        let kept = (!layers.is_empty()).then_some((scene, camera));
         let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let chosen = ManuallyDrop::new(chosen);
@@ -103,8 +114,15 @@ impl Render {
         };
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
+        let layers = match &kept {
+            Some((scene, camera)) => progress::stage("rendering layers", quiet || self.json, || {
+                layers::render(&chosen, &mut loaded.packed, (scene, camera), &rendering, &layers)
+            })
+            .map_err(|e| e.of(&self.scene))?,
+            None => Vec::new(),
+        };
         let start = Instant::now();
-        progress::stage("writing", quiet, || output::write_picture(&rendering.film, &destination, &encoding))?;
+        progress::stage("writing", quiet, || output::write_layers(&rendering.film, &layers, &destination, &encoding))?;
         let times = Times::new(&loaded, &rendering, start.elapsed());
         let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
         if self.json {
@@ -113,6 +131,17 @@ impl Render {
             console::say(summary);
         }
         Ok(ExitCode::SUCCESS)
+    }
+}
+
+impl Render {
+    /// The layers beside the picture, each once.
+    fn layers(&self) -> Vec<Layer> {
+        let mut layers = self.layers.clone();
+        layers.retain(|&layer| layer != Layer::Colour);
+        layers.sort_unstable();
+        layers.dedup();
+        layers
     }
 }
 

@@ -16,7 +16,8 @@ use std::path::{Path, PathBuf};
 use crate::error::{Error, Result};
 pub use apart::{check_apart, check_own};
 use eyerays::film::Film;
-use eyerays::image::{Encoding, Format, encode};
+use eyerays::image::{Encoding, Format, encode, encode_layers};
+use eyerays::layers::{Layer, Values};
 use stream::{Stdout, blocks_on_open, open_special, write_through};
 use target::Target;
 use temporary::Temporary;
@@ -141,6 +142,34 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result
 pub fn write_picture(film: &Film, destination: &Destination, encoding: &Encoding) -> Result<()> {
     let format = destination.format()?;
     destination.write(|out| Ok(encode(film, format, encoding, out)?))
+}
+
+/// The same with layers beside the picture, as an EXR.
+///
+/// # Errors
+/// Layers for another format, and as [`write_picture`].
+pub fn write_layers(
+    film: &Film,
+    layers: &[(Layer, Values)],
+    destination: &Destination,
+    encoding: &Encoding,
+) -> Result<()> {
+    if layers.is_empty() {
+        return write_picture(film, destination, encoding);
+    }
+    check_layers(destination)?;
+    destination.write(|out| Ok(encode_layers(film, layers, encoding, out)?))
+}
+
+/// Whether a place may hold layers.
+///
+/// # Errors
+/// Its format has none.
+pub fn check_layers(destination: &Destination) -> Result<()> {
+    match destination.format()? {
+        Format::Exr => Ok(()),
+        format => Err(eyerays::error::Error::NoLayers { format }.into()),
+    }
 }
 
 /// An error of a writer in words that say what to do, without the file's name.

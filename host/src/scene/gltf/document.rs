@@ -126,6 +126,7 @@ pub struct LightOf {
 #[derive(Deserialize, Default)]
 #[serde(default)]
 pub struct Mesh {
+    pub name: Option<String>,
     pub primitives: List<Primitive>,
 }
 

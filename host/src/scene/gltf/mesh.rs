@@ -8,7 +8,7 @@ use super::node::Placed;
 use super::notes::Notes;
 use super::primitive::{Mode, Plan, Primitive};
 use crate::scene::budget::Budget;
-use crate::scene::{MAX_PRIMITIVES, Mesh, Unplaced, normal};
+use crate::scene::{MAX_PRIMITIVES, Mesh, Part, Primitives, Unplaced, extent, normal};
 
 /// All that is placed so far.
 pub struct Merge<'f> {
@@ -16,6 +16,7 @@ pub struct Merge<'f> {
     accessors: Accessors<'f>,
     budget: Budget,
     mesh: Mesh,
+    parts: Vec<Part>,
     /// Of what was placed or looked at, so that what draws nothing is not free.
     triangles: usize,
     vertices: usize,
@@ -24,7 +25,7 @@ pub struct Merge<'f> {
 impl<'f> Merge<'f> {
     /// Nothing yet, within the budget.
     pub fn new(document: &'f Document, accessors: Accessors<'f>, budget: Budget) -> Self {
-        Merge { document, accessors, budget, mesh: Mesh::default(), triangles: 0, vertices: 0 }
+        Merge { document, accessors, budget, mesh: Mesh::default(), parts: Vec::new(), triangles: 0, vertices: 0 }
     }
 
     /// Adds the mesh of a number at all the nodes that have it. A mesh is read once, and is gone before the next.
@@ -35,6 +36,7 @@ impl<'f> Merge<'f> {
         let Some(first) = nodes.first() else { return Ok(()) };
         let owner = format!("nodes[{}].mesh", first.number);
         let mesh = pick(&self.document.meshes, number, &owner, "mesh")?;
+        let mut primitives = Vec::new();
         for (part, of) in mesh.primitives.iter().enumerate() {
             let here = format!("meshes[{number}].primitives[{part}]");
             if !of.targets.is_empty() {
@@ -54,9 +56,18 @@ impl<'f> Merge<'f> {
             };
             let plan = Plan::new(of, mode, &self.accessors, &here)?;
             self.count(&plan, nodes.len()).map_err(|fault| format!("{here}: {fault}"))?;
-            let primitive = plan.read(of, &self.accessors, &here)?;
-            for placed in nodes {
-                self.place(&primitive, material, placed).map_err(|fault| format!("{here}: {fault}"))?;
+            primitives.push((plan.read(of, &self.accessors, &here)?, material, here));
+        }
+        for placed in nodes {
+            let (triangle, vertex) = (self.mesh.triangles.len(), self.mesh.positions.len());
+            for (primitive, material, here) in &primitives {
+                self.place(primitive, *material, placed).map_err(|fault| format!("{here}: {fault}"))?;
+            }
+            let triangles = triangle..self.mesh.triangles.len();
+            if !triangles.is_empty() {
+                let bounds = extent::of(self.mesh.positions[vertex..].iter().copied());
+                let name = name(placed, mesh.name.as_deref());
+                self.parts.push(Part { name, primitives: Primitives::Triangles(triangles), bounds });
             }
         }
         Ok(())
@@ -101,10 +112,17 @@ impl<'f> Merge<'f> {
         Ok(())
     }
 
-    /// All of it.
-    pub fn finish(self) -> Mesh {
-        self.mesh
+    /// All of it, and what each node has of it.
+    pub fn finish(self) -> (Mesh, Vec<Part>) {
+        (self.mesh, self.parts)
     }
+}
+
+/// What a node is called: by its own name, its mesh's or its number.
+fn name(placed: &Placed, of_mesh: Option<&str>) -> String {
+    let names = [placed.node.name.as_deref(), of_mesh];
+    let name = names.into_iter().flatten().find(|name| !name.is_empty());
+    name.map_or_else(|| format!("node {}", placed.number), str::to_owned)
 }
 
 /// Adds what more vertices have, and `none` for those that have nothing; nothing as long as none has anything.

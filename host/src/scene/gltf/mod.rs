@@ -34,7 +34,7 @@ use self::picture::Pictures;
 use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
 use super::obj::Obj;
-use super::{Camera, Light, Mesh, Unplaced, file};
+use super::{Camera, Light, Mesh, Part, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// A scene but for its surroundings.
@@ -43,6 +43,8 @@ pub struct Gltf {
     /// All meshes as one in world units, the materials that its triangles index (the first is the default), what was
     /// ignored, and every other file that was read.
     pub obj: Obj,
+    /// What each node has of the mesh.
+    pub parts: Vec<Part>,
     /// In the order of nodes.
     pub lights: Vec<Light>,
     /// Likewise, each with a name of its own.
@@ -79,7 +81,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
         notes.once("skins", "skins are left out: meshes have the shape that they are stored in");
     }
     let buffers = Buffers::read(&document, chunk, folder)?;
-    let mesh = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
     for placed in &nodes {
@@ -89,7 +91,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
     let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
-    Ok(Gltf { obj, lights, cameras: cameras.all })
+    Ok(Gltf { obj, parts, lights, cameras: cameras.all })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
@@ -115,7 +117,7 @@ fn merged(
     nodes: &[Placed],
     budget: Budget,
     notes: &mut Notes,
-) -> Unplaced<Mesh> {
+) -> Unplaced<(Mesh, Vec<Part>)> {
     let mut by_mesh: BTreeMap<usize, Vec<&Placed>> = BTreeMap::new();
     for placed in nodes {
         if let Some(mesh) = placed.node.mesh {
@@ -126,11 +128,11 @@ fn merged(
     for (mesh, nodes) in by_mesh {
         merge.add(mesh, &nodes, notes)?;
     }
-    let mesh = merge.finish();
+    let (mesh, parts) = merge.finish();
     if mesh.triangles.is_empty() {
         return Err("there is no triangle in its scene; does a node of it have a mesh?".into());
     }
-    Ok(mesh)
+    Ok((mesh, parts))
 }
 
 /// All materials under the numbers that triangles have, read if any has it, and the files of their pictures.

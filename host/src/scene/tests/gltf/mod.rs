@@ -12,7 +12,7 @@ use crate::scene::gltf::Gltf;
 use crate::scene::{Alpha, Background, Integrator, Light, Wrap};
 
 #[test]
-fn a_triangle_is_a_scene_in_grey_light_and_a_mesh_of_a_scene() {
+fn a_triangle_is_a_scene_in_a_studio_and_a_mesh_of_a_scene() {
     let mut model = Model::triangle();
     let toml = b"[[mesh]]\nfile = \"a.glb\"\ntranslate = [0, 0, 2]\n[render]\nsize = [8, 8]\n";
     let files: [(&str, &[u8]); 3] = [("a.gltf", &model.gltf()), ("a.glb", &model.glb()), ("a.toml", toml)];
@@ -22,6 +22,7 @@ fn a_triangle_is_a_scene_in_grey_light_and_a_mesh_of_a_scene() {
     assert_eq!((&scene.mesh.triangles[..], warnings.len()), (&[[0, 1, 2]][..], 0));
     assert_eq!((scene.lights.len(), scene.cameras.len(), scene.settings.spp), (0, 1, 64));
     assert_eq!(scene.background, Background::Colour(Vec3::splat(0.6)));
+    assert_eq!(scene.environment.as_ref().map(|environment| environment.visible), Some(false));
     assert_eq!(scene.settings.transport.integrator, Integrator::Path);
     let physical = scene.materials[0].physical.unwrap();
     assert_eq!((physical.base, physical.metallic, physical.roughness), (Vec3::ONE, 1.0, 1.0));

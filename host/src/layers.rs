@@ -1,0 +1,180 @@
+//! A picture in layers: beside its light what the camera sees, for those who denoise pictures or put them together.
+
+use crate::choice::choices;
+use crate::device_scene::{DeviceScene, Feature};
+use crate::error::Result;
+use crate::film::Film;
+use crate::render::{Backend, Rendering};
+use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
+use crate::view::View;
+
+choices! {
+    /// What a picture may hold beside the light of each pixel.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Layer {
+        /// All light: the picture itself, which is always there
+        Colour = "colour",
+        /// The share of white light that surfaces send on, by their colours and textures
+        Albedo = "albedo",
+        /// Shading normals in world axes, on the viewer's side
+        Normal = "normal",
+        /// How far in front of the camera's plane the middle of the pixel is, in the scene's units; infinite for nothing
+        Depth = "depth",
+        /// The number of the mesh there, as check and info count them; 0 for nothing
+        Object = "object",
+        /// The number of the material there, likewise
+        Material = "material",
+        /// Light that was scattered once at most
+        Direct = "direct",
+        /// Light that was scattered more often
+        Indirect = "indirect",
+    }
+}
+
+/// The pixels of a layer, row by row from the top left.
+#[derive(Debug, Clone)]
+pub enum Values {
+    /// Light, linear RGB.
+    Light(Film),
+    /// Shares of light, linear RGB.
+    Colours(Film),
+    /// Means of vectors.
+    Vectors(Film),
+    /// Lengths.
+    Lengths(Vec<f32>),
+    /// Numbers, from 1.
+    Numbers(Vec<u32>),
+}
+
+/// Renders the layers beside a picture, each with as many samples as the picture got, and with its numbers drawn for the same
+/// places. The scene's settings are left as they were.
+///
+/// # Errors
+/// As [`Backend::render`].
+pub fn render(
+    backend: &Backend,
+    packed: &mut DeviceScene,
+    (scene, camera): (&Scene, &Camera),
+    picture: &Rendering,
+    layers: &[Layer],
+) -> Result<Vec<(Layer, Values)>> {
+    let settings = *packed.settings();
+    let of_picture = Settings { spp: picture.samples, ..settings };
+    let mut studio = Studio { backend, packed, camera, settings: of_picture, direct: None, places: None };
+    let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
+    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, &picture.film)?))).collect();
+    packed.show(None);
+    packed.set(settings)?;
+    rendered
+}
+
+/// What all layers are rendered with, and what several of them take.
+struct Studio<'a> {
+    backend: &'a Backend,
+    packed: &'a mut DeviceScene,
+    camera: &'a Camera,
+    /// Of the picture.
+    settings: Settings,
+    direct: Option<Film>,
+    places: Option<Vec<Place>>,
+}
+
+/// What is seen at the middle of a pixel, if anything is.
+#[derive(Clone, Copy)]
+struct Place {
+    /// In the scene's units.
+    depth: f32,
+    /// The primitive's number.
+    primitive: Option<usize>,
+}
+
+impl Studio<'_> {
+    fn layer(&mut self, layer: Layer, scene: &Scene, picture: &Film) -> Result<Values> {
+        Ok(match layer {
+            Layer::Colour => Values::Light(picture.clone()),
+            Layer::Albedo => Values::Colours(self.film(Some(Feature::Albedo), self.settings)?),
+            Layer::Normal => Values::Vectors(self.film(Some(Feature::Normal), self.settings)?),
+            Layer::Direct => Values::Light(self.direct()?.clone()),
+            Layer::Indirect => Values::Light(less(picture, self.direct()?)?),
+            Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
+            Layer::Object => {
+                let objects = Objects::new(scene);
+                self.numbers(|primitive| objects.of(primitive))?
+            }
+            Layer::Material => self.numbers(|primitive| material(scene, primitive) + 1)?,
+        })
+    }
+
+    fn numbers(&mut self, of: impl Fn(usize) -> u32) -> Result<Values> {
+        let numbers = self.places()?.iter().map(|place| place.primitive.map_or(0, &of));
+        Ok(Values::Numbers(numbers.collect()))
+    }
+
+    fn direct(&mut self) -> Result<&Film> {
+        if self.direct.is_none() {
+            self.direct = Some(self.film(None, Settings { bounces: 0, ..self.settings })?);
+        }
+        Ok(self.direct.as_ref().expect("it was just made"))
+    }
+
+    fn places(&mut self) -> Result<&[Place]> {
+        if self.places.is_none() {
+            let middle = Settings { spp: 1, sampler: Sampler::Regular, ..self.settings };
+            let scale = self.packed.normalisation().scale;
+            let place = |[depth, low, high]: [f32; 3]| {
+                let primitive = (low as usize + ((high as usize) << 16)).checked_sub(1);
+                let depth = if primitive.is_some() { (f64::from(depth) / scale) as f32 } else { f32::INFINITY };
+                Place { depth, primitive }
+            };
+            self.places = Some(self.film(Some(Feature::Place), middle)?.pixels.into_iter().map(place).collect());
+        }
+        Ok(self.places.as_deref().expect("they were just made"))
+    }
+
+    fn film(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Film> {
+        self.packed.show(feature);
+        self.packed.set(settings)?;
+        let view = View::new(self.packed, self.camera)?;
+        Ok(self.backend.render(self.packed, &view, 1, &|_| ())?.film)
+    }
+}
+
+/// The light that a picture has and another has not. What rounding leaves below zero is none.
+fn less(picture: &Film, other: &Film) -> Result<Film> {
+    let less = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|channel| (a[channel] - b[channel]).max(0.0));
+    let pixels = picture.pixels.iter().zip(&other.pixels).map(less).collect();
+    Film::from_pixels(picture.width, picture.height, pixels)
+}
+
+/// The numbers of the scene's parts by where their primitives end.
+struct Objects(Vec<(usize, u32)>);
+
+impl Objects {
+    fn new(scene: &Scene) -> Self {
+        let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
+        let end = |primitives: &Primitives| match primitives {
+            Primitives::Triangles(range) => range.end,
+            Primitives::Spheres(range) => triangles + range.end,
+            Primitives::Disks(range) => triangles + spheres + range.end,
+        };
+        let mut ends: Vec<_> =
+            scene.parts.iter().zip(1..).map(|(part, number)| (end(&part.primitives), number)).collect();
+        ends.sort_unstable();
+        Objects(ends)
+    }
+
+    fn of(&self, primitive: usize) -> u32 {
+        let after = self.0.partition_point(|&(end, _)| end <= primitive);
+        self.0.get(after).map_or(0, |&(_, number)| number)
+    }
+}
+
+/// The number of a primitive's material, from 0.
+fn material(scene: &Scene, primitive: usize) -> u32 {
+    let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
+    if let Some(&material) = scene.mesh.materials.get(primitive) {
+        return material;
+    }
+    let round = primitive - triangles;
+    scene.spheres.get(round).map_or_else(|| scene.disks[round - spheres].material, |sphere| sphere.material)
+}

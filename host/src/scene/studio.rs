@@ -1,0 +1,43 @@
+//! Surroundings of what comes without light: a grey room with three lamps, so that even a mirror has a form.
+
+use std::sync::{Arc, LazyLock};
+
+use super::{Environment, Texels, Texture};
+
+/// Its name where a scene file asks for an environment.
+pub const NAME: &str = "studio";
+
+const WIDTH: u32 = 64;
+const HEIGHT: u32 = 32;
+/// What a ray meets straight up, at the height of the eye and straight down; between them light is mixed by the angle.
+const ROOM: [f32; 3] = [0.5, 0.28, 0.18];
+/// Columns and rows of each lamp, and its light: the key to the left of who looks along the negative z axis, a fill to the right, and
+/// a rim behind what is looked at. A matt white surface that faces up sends 0.93 of a screen's white, one that faces that eye 0.65.
+const LAMPS: [([u32; 2], [u32; 2], f32); 3] =
+    [([2, 10], [5, 11], 5.0), ([49, 57], [8, 16], 1.5), ([32, 40], [3, 7], 4.0)];
+
+static TEXTURE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
+    let texels = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| [radiance(column, row); 3])).collect();
+    Arc::new(Texture { name: NAME.into(), width: WIDTH, height: HEIGHT, texels: Texels::Floats(texels) })
+});
+
+/// Its picture, one for all who ask.
+pub fn texture() -> Arc<Texture> {
+    TEXTURE.clone()
+}
+
+/// The studio, which the camera does not see.
+pub fn environment() -> Environment {
+    Environment { texture: texture(), rotation: 0.0, scale: 1.0, visible: false }
+}
+
+fn radiance(column: u32, row: u32) -> f32 {
+    let holds = |[from, to]: [u32; 2], place| (from..to).contains(&place);
+    let lamp = LAMPS.iter().find(|(columns, rows, _)| holds(*columns, column) && holds(*rows, row));
+    if let Some((.., light)) = lamp {
+        return *light;
+    }
+    let down = 2.0 * (row as f32 + 0.5) / HEIGHT as f32;
+    let [up, level, below] = ROOM;
+    if down < 1.0 { up + (level - up) * down } else { level + (below - level) * (down - 1.0) }
+}

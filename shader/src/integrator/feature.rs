@@ -1,0 +1,64 @@
+//! What the camera sees first, instead of light: for those who denoise a picture, or put pictures together.
+
+use super::sampled::{ScatterContext, Scattered, Vertex};
+use crate::buffer::read;
+use crate::data::{Effects, Launch, Physical, numbers};
+use crate::material::{Seen, Surface};
+use crate::real::{FAINT, SMALL, Scalar, V3};
+use crate::scene::LaunchContext;
+use crate::stage::ShadowRay;
+use crate::texture::Covering;
+
+/// The feature that a launch asks for, and no further ray.
+#[inline(always)]
+pub(super) fn at<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+) -> Scattered<R> {
+    let seen = vertex.met(launch);
+    let feature = if launch.spec.launch.has(Launch::PLACE) {
+        place(launch, &seen)
+    } else {
+        let covering = seen.covering(launch, &context.shading, false);
+        let surface = Surface::new(launch.spec.effects, &context.shading, &seen, &covering);
+        if launch.spec.launch.has(Launch::NORMAL) {
+            surface.normal
+        } else {
+            albedo(launch.spec.effects, context.physicals, (&seen, &surface), &covering)
+        }
+    };
+    Scattered::once(feature.map(|c| c.flush(FAINT)), ShadowRay::none(), vertex.path, false)
+}
+
+/// How far in front of the camera's plane a place is, and one more than its primitive's number: what is left of it over 2^16, and
+/// how often that fits.
+#[inline(always)]
+fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>) -> V3<R> {
+    let lens = &launch.frame.lens;
+    let vector = |record| V3::<R>::splat(numbers(record));
+    let from = (seen.interaction.position - vector(lens.eye)).map(|c| c.flush(SMALL));
+    let number = seen.primitive.number() + 1;
+    let half = |number: u32| R::splat(number as f32);
+    V3::new(from.dot(vector(lens.forward)), half(number & 0xffff), half(number >> 16))
+}
+
+/// The share of white light from everywhere that a surface sends on, in linear RGB: a matt surface's colour, what metal reflects, and
+/// what glass lets pass.
+#[inline(always)]
+fn albedo<R: Scalar>(
+    effects: Effects,
+    physicals: &[Physical],
+    (seen, surface): (&Seen<R>, &Surface<R>),
+    covering: &Covering<R>,
+) -> V3<R> {
+    if effects.has(Effects::PHYSICAL) {
+        let material = read(physicals, seen.primitive.material());
+        if material.has(Physical::IS_PHYSICAL) {
+            return V3::splat(numbers(material.base)).times(covering.base);
+        }
+    }
+    let is_glass = !surface.ior.eq(R::splat(0.0));
+    let sum = surface.diffuse + V3::select(is_glass, surface.transmission, surface.reflection);
+    sum.map(|c| c.min(R::splat(1.0)))
+}

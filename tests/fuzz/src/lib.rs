@@ -1,0 +1,61 @@
+//! What the targets have in common: a file of some bytes is a scene, or is refused in a line.
+//!
+//! ```text
+//! cargo install cargo-fuzz
+//! cd tests/fuzz && cargo +nightly fuzz run gltf --fuzz-dir . seeds/gltf -- -max_total_time=3600 -max_len=4096
+//! ```
+
+use std::fs;
+use std::path::PathBuf;
+use std::sync::OnceLock;
+
+use eyerays::device_scene::DeviceScene;
+use eyerays::error::Error;
+use eyerays::quality::Bvh;
+use eyerays::scene::{self, Settings};
+
+/// A scene of more is not packed: that is tried by other tests, and takes long.
+const MOST_PRIMITIVES: usize = 1000;
+
+/// Lets panics that a reader catches pass in silence. Others still end the fuzzer, which catches them itself.
+pub fn start() {
+    std::panic::set_hook(Box::new(|_| ()));
+}
+
+/// Reads a file of that name with these bytes, and packs what it holds.
+pub fn read(name: &str, bytes: &[u8]) {
+    match scene::load(&place(name, bytes)) {
+        Ok((scene, _)) if scene.primitives() <= MOST_PRIMITIVES => {
+            let settings = Settings { size: (8, 8), ..scene.settings };
+            if let Err(error) = DeviceScene::new(&scene, settings, Bvh::Fast.quality()) {
+                check_line(&error);
+            }
+        }
+        Ok(_) => (),
+        Err(error) => check_line(&error),
+    }
+}
+
+/// Keeps a file of that name with these bytes.
+pub fn place(name: &str, bytes: &[u8]) -> PathBuf {
+    let path = folder().join(name);
+    fs::write(&path, bytes).expect("there is room for a file");
+    path
+}
+
+/// What is refused is refused in one line.
+pub fn check_line(error: &Error) {
+    let line = error.to_string();
+    assert!(!line.is_empty() && !line.contains('\n'), "{line:?} is no line");
+}
+
+/// This process' folder for files, emptied by the next process of its number.
+fn folder() -> &'static PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    FOLDER.get_or_init(|| {
+        let folder = std::env::temp_dir().join(format!("eyerays-fuzz-{}", std::process::id()));
+        fs::remove_dir_all(&folder).ok();
+        fs::create_dir_all(&folder).expect("there is a folder for temporary files");
+        folder
+    })
+}

@@ -1,0 +1,175 @@
+//! The layers of a picture hold what other ways to ask say.
+
+use eyerays::batch::{Batch, Ray};
+use eyerays::cpu;
+use eyerays::device_scene::DeviceScene;
+use eyerays::film::Film;
+use eyerays::layers::{self, Layer, Values};
+use eyerays::method::Method;
+use eyerays::quality::Bvh;
+use eyerays::render::{Backend, Choice, DeviceWish};
+use eyerays::scene::{Disk, Part, Primitives, Sampler, Scene, Settings};
+use eyerays::stream::Question;
+use eyerays::view::View;
+use eyerays_tests::covered::covered;
+use eyerays_tests::shipped;
+use glam::Vec3;
+
+const SIZE: (u32, u32) = (48, 36);
+
+/// The picture of a scene on the CPU, and all its layers in their order.
+fn layered(scene: &Scene, spp: u32) -> (Film, Vec<(Layer, Values)>) {
+    let settings = Settings { size: SIZE, spp, sampler: Sampler::Sobol, ..scene.settings };
+    let mut packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
+    let choice = Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() };
+    let backend = Backend::new(&choice).unwrap();
+    let view = View::new(&packed, &scene.cameras[0]).unwrap();
+    let picture = backend.render(&packed, &view, 1, &|_| ()).unwrap();
+    let all = [
+        Layer::Colour,
+        Layer::Albedo,
+        Layer::Normal,
+        Layer::Depth,
+        Layer::Object,
+        Layer::Material,
+        Layer::Direct,
+        Layer::Indirect,
+    ];
+    let layers = layers::render(&backend, &mut packed, (scene, &scene.cameras[0]), &picture, &all).unwrap();
+    let again = backend.render(&packed, &view, 1, &|_| ()).unwrap();
+    assert!(again.film.bits_equal(&picture.film), "layers change the scene that they are of");
+    (picture.film, layers)
+}
+
+fn film(layers: &[(Layer, Values)], wanted: Layer) -> &Film {
+    let (_, values) = layers.iter().find(|(layer, _)| *layer == wanted).expect("it was asked for");
+    match values {
+        Values::Light(film) | Values::Colours(film) | Values::Vectors(film) => film,
+        Values::Lengths(_) | Values::Numbers(_) => panic!("{wanted:?} is no film"),
+    }
+}
+
+fn numbers(layers: &[(Layer, Values)], wanted: Layer) -> &[u32] {
+    match layers.iter().find(|(layer, _)| *layer == wanted) {
+        Some((_, Values::Numbers(numbers))) => numbers,
+        other => panic!("{wanted:?} is {other:?}"),
+    }
+}
+
+fn depths(layers: &[(Layer, Values)]) -> &[f32] {
+    match layers.iter().find(|(layer, _)| *layer == Layer::Depth) {
+        Some((_, Values::Lengths(depths))) => depths,
+        other => panic!("depth is {other:?}"),
+    }
+}
+
+/// Rays through the middles of the first camera's pixels, whose lengths are those of one that goes a unit forward.
+fn rays(scene: &Scene) -> Vec<(Ray, f64)> {
+    let camera = &scene.cameras[0];
+    let (eye, target, up) = (camera.eye.as_dvec3(), camera.target.as_dvec3(), camera.up.as_dvec3());
+    let forward = (target - eye).normalize();
+    let right = forward.cross(up).normalize();
+    let up = right.cross(forward);
+    let half = (f64::from(camera.fov).to_radians() / 2.0).tan();
+    let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
+    let place = |x: u32, y: u32| {
+        let across = (f64::from(2 * x + 1) - width) / height * half;
+        let down = (f64::from(2 * y + 1) / height - 1.0) * half;
+        let direction = forward + right * across - up * down;
+        (Ray::new(camera.eye, direction.as_vec3()), 1.0 / direction.length())
+    };
+    (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| place(x, y))).collect()
+}
+
+/// The number of the part that has a primitive.
+fn part(scene: &Scene, primitive: usize) -> u32 {
+    let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
+    let holds = |primitives: &Primitives| match primitives {
+        Primitives::Triangles(range) => range.contains(&primitive),
+        Primitives::Spheres(range) => primitive.checked_sub(triangles).is_some_and(|own| range.contains(&own)),
+        Primitives::Disks(range) => primitive.checked_sub(triangles + spheres).is_some_and(|own| range.contains(&own)),
+    };
+    1 + scene.parts.iter().position(|part| holds(&part.primitives)).expect("all primitives are of parts") as u32
+}
+
+#[test]
+fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
+    let mut scene = shipped("bleeding");
+    let camera = &scene.cameras[0];
+    let center = camera.eye + 0.3 * (camera.target - camera.eye) + 0.2 * Vec3::Y;
+    let normal = (camera.eye - center).normalize();
+    scene.disks.push(Disk { center, normal, radius: 0.1, material: 1 });
+    let bounds = [center - 0.1, center + 0.1];
+    scene.parts.push(Part { name: "disk".into(), primitives: Primitives::Disks(0..1), bounds });
+    assert!(!scene.spheres.is_empty() && !scene.mesh.triangles.is_empty());
+    let (_, layers) = layered(&scene, 1);
+    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+    let (rays, forward): (Vec<_>, Vec<_>) = rays(&scene).into_iter().unzip();
+    let batch = Batch::new(&packed, &rays);
+    let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
+    let (objects, materials) = (numbers(&layers, Layer::Object), numbers(&layers, Layer::Material));
+    let (mut seen, mut others) = (std::collections::BTreeSet::new(), 0);
+    for (i, hit) in batch.hits(&packed, &answers).into_iter().enumerate() {
+        let (depth, expected) = (f64::from(depths(&layers)[i]), hit.map(|hit| part(&scene, hit.primitive as usize)));
+        if objects[i] != expected.unwrap_or(0) {
+            // At an edge the direction's last bit decides.
+            others += 1;
+            continue;
+        }
+        assert_eq!(depth.is_infinite(), expected.is_none(), "pixel {i}");
+        assert_eq!(materials[i] == 0, expected.is_none(), "pixel {i}");
+        let Some(hit) = hit else { continue };
+        seen.insert(objects[i]);
+        let far = hit.distance * forward[i];
+        assert!((depth - far).abs() <= 1e-4 * far, "pixel {i}: {depth} and {far}");
+        let triangle = scene.mesh.materials.get(hit.primitive as usize);
+        assert!(triangle.is_none_or(|material| materials[i] == material + 1), "pixel {i}");
+    }
+    let disk = scene.parts.len() as u32;
+    assert!(others <= 4 && seen.len() > 5 && seen.contains(&disk), "{others} other pixels, {seen:?}");
+}
+
+#[test]
+fn direct_and_indirect_light_are_all_of_it() {
+    for scene in [shipped("bleeding"), covered()] {
+        let mut scene = scene;
+        scene.settings.transport.integrator = eyerays::scene::Integrator::Path;
+        scene.settings.bounces = 4;
+        let (picture, layers) = layered(&scene, 4);
+        let (direct, indirect) = (film(&layers, Layer::Direct), film(&layers, Layer::Indirect));
+        assert!(indirect.pixels.iter().filter(|pixel| pixel.iter().any(|&c| c > 0.0)).count() > 100);
+        for (i, pixel) in picture.pixels.iter().enumerate() {
+            for (channel, &light) in pixel.iter().enumerate() {
+                let sum = direct.pixels[i][channel] + indirect.pixels[i][channel];
+                assert!((sum - light).abs() <= 1e-5 * light.max(1e-3), "pixel {i}: {sum} and {light}");
+            }
+        }
+        scene.settings.bounces = 0;
+        let (_, layers) = layered(&scene, 4);
+        assert!(film(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+    }
+}
+
+#[test]
+fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
+    let scene = shipped("bleeding");
+    let (_, layers) = layered(&scene, 1);
+    let (albedo, normal) = (film(&layers, Layer::Albedo), film(&layers, Layer::Normal));
+    let forward = (scene.cameras[0].target - scene.cameras[0].eye).normalize();
+    let materials = numbers(&layers, Layer::Material);
+    let mut matt = 0;
+    for (i, &number) in materials.iter().enumerate() {
+        let width = SIZE.0 as usize;
+        let around = [i.saturating_sub(1), i + 1, i.saturating_sub(width), i + width];
+        // The one sample of a pixel at an edge may see something else than its middle.
+        if number == 0 || !around.iter().all(|&other| materials.get(other) == Some(&number)) {
+            continue;
+        }
+        let [colour, vector] = [albedo, normal].map(|film| Vec3::from(film.pixels[i]));
+        assert!((vector.length() - 1.0).abs() < 1e-5, "pixel {i}: {vector}");
+        assert!(vector.dot(forward) < 0.5, "pixel {i}: {vector} faces away");
+        assert_eq!(colour, scene.materials[number as usize - 1].diffuse, "pixel {i}");
+        matt += 1;
+    }
+    assert!(matt > 500, "{matt}");
+}

@@ -9,7 +9,7 @@ use serde_json::json;
 use self::model::{F32, Model, U16, data, floats, picture, shorts};
 use super::Folder;
 use crate::scene::gltf::Gltf;
-use crate::scene::{Alpha, Background, Integrator, Light, Wrap};
+use crate::scene::{Alpha, Background, Integrator, Light, Primitives, Wrap};
 
 #[test]
 fn a_triangle_is_a_scene_in_a_studio_and_a_mesh_of_a_scene() {
@@ -208,7 +208,7 @@ fn lights_and_cameras_stand_where_their_nodes_are() {
         { "rotation": [0, 1, 0, 0], "extensions": carries(3) },
         { "camera": 1 },
     ]);
-    let Gltf { obj, lights, cameras } = model.load();
+    let Gltf { obj, lights, cameras, .. } = model.load();
     let position = Vec3::new(1.0, 2.0, 3.0);
     assert_eq!(lights.len(), 3);
     assert_eq!(lights[0], Light::Point { position, colour: Vec3::new(3.0, 1.5, 0.0) });
@@ -219,6 +219,23 @@ fn lights_and_cameras_stand_where_their_nodes_are() {
     assert_eq!(cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>(), ["front", "front 2"]);
     assert_eq!((cameras[0].eye, cameras[0].fov, cameras[0].up), (position, 45.0, Vec3::Y));
     assert_eq!(obj.warnings, ["a.gltf: orthographic cameras are left out: only those with perspective are read"]);
+}
+
+#[test]
+fn every_node_with_a_mesh_is_a_part_of_its_name() {
+    let mut model = Model::triangle();
+    let primitive = model.primitive().clone();
+    model.json["meshes"] = json!([{ "name": "tile", "primitives": [primitive, primitive] }]);
+    model.json["nodes"] = json!([
+        { "mesh": 0, "name": "left" }, { "translation": [2, 0, 0], "mesh": 0 }, { "name": "empty" },
+    ]);
+    model.json["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
+    let Gltf { obj, parts, .. } = model.load();
+    let told: Vec<_> = parts.iter().map(|part| (part.name.as_str(), part.primitives.clone())).collect();
+    assert_eq!(told, [("left", Primitives::Triangles(0..2)), ("tile", Primitives::Triangles(2..4))]);
+    assert_eq!(parts[1].bounds, [2.0 * Vec3::X, 3.0 * Vec3::X + Vec3::Y]);
+    let corner = |triangle: usize| obj.mesh.positions[obj.mesh.triangles[triangle][0] as usize].x;
+    assert_eq!([0, 1, 2, 3].map(corner), [0.0, 0.0, 2.0, 2.0]);
 }
 
 #[test]

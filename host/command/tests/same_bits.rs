@@ -23,22 +23,34 @@ fn docs(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs").join(name)
 }
 
+/// `write` makes the pictures and their hashes anew, instead of comparing them.
+const PICTURES: &str = "EYERAYS_PICTURES";
+
 #[test]
-fn the_readmes_pictures_are_what_the_program_renders() {
-    let pictures: BTreeMap<String, Picture> =
-        toml::from_str(&fs::read_to_string(docs("pictures.toml")).unwrap()).unwrap();
-    let readme = fs::read_to_string(docs("../README.md")).unwrap();
-    let shown = |name: &str| readme.contains(&format!("](docs/{name})"));
-    assert!(pictures.len() == 8 && pictures.keys().all(|name| shown(name)));
-    let place = Place::new(&[]);
+fn pictures_of_the_readme_and_the_gallery_are_what_the_program_renders() {
+    let text = fs::read_to_string(docs("pictures.toml")).unwrap();
+    let pictures: BTreeMap<String, Picture> = toml::from_str(&text).unwrap();
+    let [readme, gallery] = ["../README.md", "gallery.md"].map(|page| fs::read_to_string(docs(page)).unwrap());
+    let is_shown = |name: &str| readme.contains(&format!("](docs/{name})")) || gallery.contains(&format!("]({name})"));
+    assert!(pictures.len() == 13 && pictures.keys().all(|name| is_shown(name)));
+    let writes = std::env::var(PICTURES).is_ok_and(|value| value == "write");
+    let (place, mut renewed) = (Place::new(&[]), text.clone());
     for (name, Picture { scene, options, film_hash }) in &pictures {
         let scene = docs("..").join(scene);
         let mut arguments = vec!["render".into(), scene.into_os_string(), "-o".into(), name.into(), "--json".into()];
         arguments.extend(options.iter().map(Into::into));
-        let found = &place.succeed(&arguments).json()["film_hash"];
-        assert_eq!(found, film_hash, "{name}: another film; if it should be, make docs/{name} and its hash again");
+        let found = place.succeed(&arguments).json()["film_hash"].as_str().expect("a text").to_owned();
+        if writes {
+            fs::copy(place.path(name), docs(name)).unwrap();
+            renewed = renewed.replace(film_hash, &found);
+            continue;
+        }
+        assert_eq!(found, *film_hash, "{name}: another film; if it should be, {PICTURES}=write makes it again");
         let [now, then] = [place.path(name), docs(name)].map(|path| image::read(&path).unwrap());
-        assert!(now.bits_equal(&then), "docs/{name} is another picture; make it again");
+        assert!(now.bits_equal(&then), "docs/{name} is another picture; {PICTURES}=write makes it again");
+    }
+    if renewed != text {
+        fs::write(docs("pictures.toml"), renewed).unwrap();
     }
 }
 

@@ -1,4 +1,4 @@
-//! Where the meshes of a scene lie: by these figures its author places cameras, lights and further meshes.
+//! Where the meshes of a scene lie, and what they are made of: by these figures its author places cameras, lights and further meshes.
 
 use std::fmt;
 
@@ -9,8 +9,8 @@ use super::plural;
 use crate::error::printable;
 use eyerays::scene::{Camera, Scene, default_camera};
 
-/// The most meshes that are told one by one as text.
-const MOST_MESHES: usize = 50;
+/// The most meshes and the most materials that are told one by one as text.
+const MOST: usize = 50;
 
 /// The bounds of a scene and of each of its meshes in world units, and the camera it would have if it named none.
 pub(super) struct Outline<'a> {
@@ -40,9 +40,11 @@ impl<'a> Outline<'a> {
         let camera = self.camera.as_ref().map(
             |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.fov }),
         );
+        let materials = self.scene.materials.iter().map(|material| &material.name);
         json!({
             "bounds": bounds(self.scene.bounds()),
             "default_camera": camera,
+            "materials": materials.collect::<Vec<_>>(),
             "meshes": meshes.collect::<Vec<_>>(),
         })
     }
@@ -57,14 +59,24 @@ impl fmt::Display for Outline<'_> {
             writeln!(out, "default camera: eye = {eye:?}, target = {target:?}, fov = {fov:?}")?;
         }
         let parts = &self.scene.parts;
-        for (number, part) in parts.iter().enumerate().take(MOST_MESHES) {
+        for (number, part) in parts.iter().enumerate().take(MOST) {
             let primitives = plural(part.primitives.count(), part.primitives.noun());
             let name = printable(&part.name);
             writeln!(out, "mesh {}: {name}, {primitives}, {}", number + 1, range(part.bounds))?;
         }
-        match parts.len().saturating_sub(MOST_MESHES) {
-            0 => Ok(()),
-            more => writeln!(out, "and {more} more, which eyerays info --json has"),
+        more(out, parts.len())?;
+        let materials = &self.scene.materials;
+        for (number, material) in materials.iter().enumerate().take(MOST) {
+            writeln!(out, "material {}: {}", number + 1, printable(&material.name))?;
         }
+        more(out, materials.len())
+    }
+}
+
+/// Says how many of a list are not told.
+fn more(out: &mut fmt::Formatter<'_>, count: usize) -> fmt::Result {
+    match count.saturating_sub(MOST) {
+        0 => Ok(()),
+        more => writeln!(out, "and {more} more, which eyerays info --json has"),
     }
 }

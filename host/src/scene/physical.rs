@@ -22,7 +22,7 @@ pub struct Physical {
     pub anisotropy_rotation: f32,
     /// How strongly what is no metal reflects, in [0, 1] (KHR_materials_specular).
     pub specular_weight: f32,
-    /// The colour of that reflection at normal incidence.
+    /// What that reflection at normal incidence is multiplied with, linear RGB of at least 0; it reflects all of the light at most.
     pub specular_tint: Vec3,
     /// The share of the base's light that passes instead of being scattered, of what is no metal.
     pub transmission: Vec3,
@@ -125,7 +125,7 @@ impl Fields {
             anisotropy: table.number("anisotropy", Range::SHARE)?,
             anisotropy_rotation: table.number("anisotropy_rotation", Range::ANY)?,
             specular_weight: table.number("specular_weight", Range::SHARE)?,
-            specular_tint: table.triple("specular_tint", Range::SHARE)?,
+            specular_tint: table.triple("specular_tint", Range::AMOUNT)?,
             thin: table.flag("thin")?,
             absorption: table.table("absorption")?.map(absorption).transpose()?,
             conductor: table.table("conductor")?.map(conductor).transpose()?,

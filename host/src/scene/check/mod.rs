@@ -90,8 +90,9 @@ fn material(material: &Material) -> Unplaced<()> {
 }
 
 fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
-    let shares = [("base_color", of.base), ("specular_tint", of.specular_tint), ("transmission", of.transmission)];
+    let shares = [("base_color", of.base), ("transmission", of.transmission)];
     shares.into_iter().try_for_each(|(key, share)| owner.colour(key, share, Range::SHARE))?;
+    owner.colour("specular_tint", of.specular_tint, Range::AMOUNT)?;
     let numbers = [
         ("metallic", of.metallic),
         ("roughness", of.roughness),

@@ -124,7 +124,9 @@ impl Reader<'_, '_, '_> {
         self.fields.physical.specular_weight =
             Some(self.share(of.specular_factor.unwrap_or(1.0), &key("specularFactor"))?);
         let tint = of.specular_color_factor.unwrap_or([1.0; 3]);
-        self.fields.physical.specular_tint = Some(self.colour(tint, &key("specularColorFactor"))?);
+        let of_tint = key("specularColorFactor");
+        let [red, green, blue] = tint.map(|number| self.number(number, &of_tint, Range::AMOUNT));
+        self.fields.physical.specular_tint = Some(Vec3::new(red?, green?, blue?));
         self.fields.maps.specular_weight = self.map(of.specular_texture.as_ref(), &key("specularTexture"))?;
         self.fields.maps.specular_tint = self.map(of.specular_color_texture.as_ref(), &key("specularColorTexture"))?;
         Ok(())

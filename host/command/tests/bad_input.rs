@@ -295,6 +295,8 @@ fn options_that_contradict_each_other() {
         (&["--half"], &["--half", ".exr"]),
         (&["--tone", "agx", "-o", "a.exr"], &["--tone", "EXR", ".png"]),
         (&["--tone", "neutral", "-o", "a.hdr"], &["--tone", "HDR", ".png"]),
+        (&["--layers", "depth", "-o", "a.png"], &["--layers", "PNG", ".exr"]),
+        (&["--layers", "colour", "-o", "-"], &["--layers", "PNG", ".exr"]),
     ] {
         place.refuse(&[&["render", "scene.toml"], options].concat(), wants);
     }

@@ -193,6 +193,25 @@ fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
 }
 
 #[test]
+fn layers_lie_beside_the_picture_in_one_file() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = |output: &str, more: &[&str]| {
+        let quick = ["render", "scene.toml", "--device", "cpu", "--samples", "2", "-o", output];
+        place.succeed(&[&quick, more].concat());
+        fs::read(place.path(output)).unwrap()
+    };
+    render("plain.exr", &[]);
+    let bytes = render("layers.exr", &["--layers", "depth,normal,object,colour,depth"]);
+    // A header names its channels, each with a zero byte.
+    let has = |name: &str| bytes.windows(name.len()).any(|window| window == name.as_bytes());
+    assert!(["depth.Z\0", "normal.X\0", "object.id\0", "R\0"].into_iter().all(has));
+    assert!(!has("albedo.R\0"));
+    let [plain, layered] = ["plain.exr", "layers.exr"].map(|name| image::read(&place.path(name)).unwrap());
+    assert!(plain.bits_equal(&layered));
+    assert_eq!(bytes, render("again.exr", &["--layers", "normal,object,depth", "--threads", "1"]));
+}
+
+#[test]
 fn diff_returns_what_it_found() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {

@@ -10,7 +10,7 @@ use crate::stage::{Segment, ShadowRay};
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let seen = vertex.met(launch);
-    let (interaction, covering) = (&seen.interaction, seen.covering(launch, shading, false));
+    let (interaction, covering) = (seen.interaction, seen.covering(launch, shading, false));
     let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));

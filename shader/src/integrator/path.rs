@@ -37,7 +37,8 @@ pub(super) fn at<R: Scalar>(
         let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
         return scattered(launch, lighting, vertex, (&seen, &closure), light);
     }
-    let lobes = Lobes::new(effects, &surface, &seen.interaction, path.direction);
+    let interaction = seen.interaction;
+    let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
     scattered(launch, lighting, vertex, (&seen, &lobes), light)
 }
 
@@ -62,13 +63,13 @@ fn scattered<R: Scalar>(
     (seen, closure): (&Seen<R>, &impl Closure<R>),
     light: V3<R>,
 ) -> Scattered<R> {
-    let interaction = &seen.interaction;
+    let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let shadow = sampled_light(launch, lighting, vertex, (interaction, closure), decisions.x);
+    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure), decisions.x);
     let draws = (decisions.y, decisions.w);
-    let sample = closure.sample(interaction, draws, || vertex.draws.set(bounces + 1));
-    let next = vertex.on((interaction, sample.origin), sample.direction, sample.factor, sample.density);
+    let sample = closure.sample(&interaction, draws, || vertex.draws.set(bounces + 1));
+    let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let next = if launch.spec.launch.has(Launch::MIPMAPPED) {
         let Cone { width, spread } = seen.cone.scattered(sample.density);
         PathState { beside: (width, spread), ..next }
@@ -108,13 +109,14 @@ fn emitted<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    Seen { primitive, interaction, .. }: &Seen<R>,
+    seen: &Seen<R>,
     covering: &Covering<R>,
 ) -> V3<R> {
     let effects = launch.spec.effects;
     if !effects.has(Effects::EMISSIVE) {
         return V3::zero();
     }
+    let Seen { primitive, interaction, .. } = *seen;
     let emission = read(lighting.emissions, primitive.material());
     if emission.radiance.w == 0 || !emission.shines(interaction.front) {
         return V3::zero();
@@ -128,7 +130,7 @@ fn emitted<R: Scalar>(
     if own.eq(R::splat(0.0)) {
         return radiance;
     }
-    let other = Density::of_hit(effects, (primitive, &emission), interaction, vertex.path.origin);
+    let other = Density::of_hit(effects, (&primitive, &emission), &interaction, vertex.path.origin);
     (radiance * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own * other.under)).map(|c| c.flush(FAINT))
 }
 

@@ -88,12 +88,13 @@ impl<R: Scalar> Surface<R> {
     /// The surface of what a ray has met, with what covers it.
     #[inline(always)]
     pub fn new(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
-        let Seen { index, primitive, interaction, direction, .. } = seen;
+        // A copy: rust-gpu keeps in memory what a pointer leads into.
+        let Seen { index, primitive, interaction, direction, .. } = *seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal = if effects.has(Effects::SMOOTH) {
-            interpolated(shading, *index, *direction, interaction)
+            interpolated(shading, index, direction, &interaction)
         } else {
             interaction.normal
         };
@@ -104,7 +105,7 @@ impl<R: Scalar> Surface<R> {
         };
         let other = effects.has(Effects::CHECKER)
             && material.checker.w != 0
-            && odd_cell(interaction, number(material.checker.w));
+            && odd_cell(&interaction, number(material.checker.w));
         Surface {
             normal,
             ambient: covered(

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo install cargo-fuzz
-//! cd tests/fuzz && cargo +nightly fuzz run gltf --fuzz-dir . seeds/gltf -- -max_total_time=3600 -max_len=4096
+//! cd tests/fuzz && mkdir -p corpus/gltf && cargo +nightly fuzz run gltf --fuzz-dir . corpus/gltf seeds/gltf -- -max_total_time=3600 -max_len=16384
 //! ```
 
 use std::fs;

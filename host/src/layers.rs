@@ -46,6 +46,17 @@ pub enum Values {
     Numbers(Vec<u32>),
 }
 
+impl Values {
+    /// How many pixels there are.
+    pub fn pixels(&self) -> usize {
+        match self {
+            Values::Light(film) | Values::Colours(film) | Values::Vectors(film) => film.pixels.len(),
+            Values::Lengths(lengths) => lengths.len(),
+            Values::Numbers(numbers) => numbers.len(),
+        }
+    }
+}
+
 /// Renders the layers beside a picture, each with as many samples as the picture got, and with its numbers drawn for the same
 /// places. The scene's settings are left as they were.
 ///

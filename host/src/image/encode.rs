@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::exr::{self, exposed};
 use super::transfer::{quantise, quantise_to_byte};
 use super::{BitDepth, Encoding, Format, ToneMap};
+use crate::choice::Named;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::layers::{Layer, Values};
@@ -43,7 +44,7 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
 /// all but lengths and numbers.
 ///
 /// # Errors
-/// As [`encode`].
+/// As [`encode`], and a layer of another number of pixels.
 pub fn encode_layers(
     film: &Film,
     layers: &[(Layer, Values)],
@@ -52,6 +53,12 @@ pub fn encode_layers(
 ) -> Result<()> {
     film.validate()?;
     encoding.check(Format::Exr)?;
+    if let Some((layer, _)) = layers.iter().find(|(_, values)| values.pixels() != film.pixels.len()) {
+        return Err(Error::new(format!(
+            "the layer {} has other pixels than the picture; render it again",
+            layer.name()
+        )));
+    }
     let bytes = exr::layered(film, layers, encoding.scale()?, encoding.half);
     let bytes = bytes.map_err(|error| Error::new(format!("the layers cannot be encoded as EXR: {error}")))?;
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))

@@ -70,6 +70,9 @@ fn layers_are_channels_of_their_names_with_numbers_as_they_are() {
     let halves = |values: [f32; 2]| FlatSamples::F16(values.map(::exr::prelude::f16::from_f32).into());
     // Light is exposed, other vectors are not.
     assert_eq!((of("direct.G"), of("normal.Y"), of("R")), (halves([1.0, 0.5]), halves([1.0, 0.5]), halves([2.0, 2.0])));
+    let short = [(Layer::Depth, Values::Lengths(vec![1.0]))];
+    let error = encode_layers(&film(1.0), &short, &encoding, &mut Vec::new()).unwrap_err();
+    assert_eq!(error.to_string(), "the layer depth has other pixels than the picture; render it again");
     // Who asks for no layer reads the picture.
     assert_eq!(decode(Cursor::new(&bytes)).unwrap().pixels, [[2.0, 4.0, -2.0], [2.0; 3]]);
 }

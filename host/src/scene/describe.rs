@@ -1,5 +1,6 @@
 //! A scene as the text of a scene file that takes its surfaces from another file.
 
+use std::collections::HashMap;
 use std::fmt::{Debug, Write};
 
 use glam::Vec3;
@@ -30,11 +31,11 @@ pub fn describe(scene: &Scene, mesh: &str) -> String {
         text.list("light");
         self::light(&mut text, light);
     }
-    for material in &scene.materials {
-        if scene.materials.iter().filter(|other| other.name == material.name).count() == 1 {
-            text.list("material");
-            self::material(&mut text, material);
-        }
+    let mut names: HashMap<&str, u32> = HashMap::new();
+    scene.materials.iter().for_each(|material| *names.entry(&material.name).or_default() += 1);
+    for material in scene.materials.iter().filter(|material| names[material.name.as_str()] == 1) {
+        text.list("material");
+        self::material(&mut text, material);
     }
     text.list("mesh");
     text.key("file", quoted(mesh));

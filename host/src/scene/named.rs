@@ -41,11 +41,12 @@ enum Shape {
     Box,
 }
 
-/// Reads the keys of a table that has a `shape`: its word, and what it is before it is moved.
+/// Reads the keys of a table that has a `shape`: its word, and what it is before it is moved. Where it may be covered by a texture, a
+/// box is one of sides that have texture coordinates.
 ///
 /// # Errors
 /// An unknown word, a number that is missing or out of range, or more triangles than the budget has room for.
-pub fn read(table: &mut Table, wish: &Wish, budget: Budget) -> Result<(&'static str, Geometry)> {
+pub fn read(table: &mut Table, wish: &Wish, budget: Budget, is_covered: bool) -> Result<(&'static str, Geometry)> {
     let words = [("sphere", Shape::Sphere), ("disk", Shape::Disk), ("quad", Shape::Quad), ("box", Shape::Box)];
     let shape = table.word("shape", &words)?;
     match table.need("shape", shape)? {
@@ -74,7 +75,10 @@ pub fn read(table: &mut Table, wish: &Wish, budget: Budget) -> Result<(&'static 
                 let fault = "the box's max is not above its min on every axis; swap them";
                 return Err(table.fault_of("max", fault));
             }
-            Ok(("box", Geometry::Mesh(shape::cuboid(min, max))))
+            // Sides that share their corners can have smooth edges.
+            let of_sides = is_covered && wish.smooth != Some(true);
+            let make = if of_sides { shape::covered_cuboid } else { shape::cuboid };
+            Ok(("box", Geometry::Mesh(make(min, max))))
         }
     }
 }

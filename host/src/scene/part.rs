@@ -64,7 +64,7 @@ fn source(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, wish, files),
         (false, true) => {
-            let (word, geometry) = named::read(table, wish, files.budget)?;
+            let (word, geometry) = named::read(table, wish, files.budget, files.is_covered)?;
             Ok((word.into(), geometry, plain()))
         }
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),

@@ -44,13 +44,20 @@ pub fn disk(disk: &Disk, triangles: u32) -> Mesh {
     Mesh { positions: std::iter::once(disk.center).chain(rim).collect(), ..flat(fan.collect()) }
 }
 
+/// Texture coordinates of a quad's corners: a picture stands upright where the first corner is its lower left.
+const UPRIGHT: [Vec2; 4] = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::new(1.0, 0.0), Vec2::ZERO];
+
 /// A parallelogram or any flat convex quadrilateral, from its corners counter-clockwise.
 pub fn quad(corners: [Vec3; 4]) -> Mesh {
-    // The picture stands upright where the first corner is its lower left.
-    let coordinates = [Vec2::new(0.0, 1.0), Vec2::ONE, Vec2::new(1.0, 0.0), Vec2::ZERO];
-    let coordinates = [coordinates.to_vec(), Vec::new()];
+    let coordinates = [UPRIGHT.to_vec(), Vec::new()];
     Mesh { positions: corners.to_vec(), coordinates, ..flat(vec![[0, 1, 2], [0, 2, 3]]) }
 }
+
+/// The corners of each side of a box: bit 0 of a corner's number is x, bit 1 is y, bit 2 is z.
+const SIDES: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+/// Which of [`UPRIGHT`] is the first corner's, so that pictures are upright on the four sides around, and their lower edges in front on
+/// top.
+const TURNS: [usize; 6] = [0, 1, 0, 3, 1, 0];
 
 /// A box along the axes from its least to its greatest corner, seen from outside.
 pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
@@ -58,10 +65,19 @@ pub fn cuboid(min: Vec3, max: Vec3) -> Mesh {
         let side = |axis: usize| [min[axis], max[axis]][(bits >> axis & 1) as usize];
         Vec3::new(side(0), side(1), side(2))
     };
-    // Bit 0 of a corner's number is x, bit 1 is y, bit 2 is z.
-    const SIDES: [[u32; 4]; 6] = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
     let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
     Mesh { positions: (0..8).map(corner).collect(), ..flat(SIDES.into_iter().flat_map(halves).collect()) }
+}
+
+/// The same whose sides have corners and texture coordinates of their own.
+pub fn covered_cuboid(min: Vec3, max: Vec3) -> Mesh {
+    let shared = cuboid(min, max);
+    let positions = SIDES.as_flattened().iter().map(|&corner| shared.positions[corner as usize]);
+    let coordinates = TURNS.iter().flat_map(|turn| (0..4).map(move |corner| UPRIGHT[(corner + turn) % 4]));
+    let triangles =
+        (0..SIDES.len() as u32).flat_map(|side| [[0, 1, 2], [0, 2, 3]].map(|half| half.map(|k| 4 * side + k)));
+    let coordinates = [coordinates.collect(), Vec::new()];
+    Mesh { positions: positions.collect(), coordinates, ..flat(triangles.collect()) }
 }
 
 /// Triangles of one material.

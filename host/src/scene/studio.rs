@@ -12,7 +12,7 @@ const HEIGHT: u32 = 32;
 /// What a ray meets straight up, at the height of the eye and straight down; between them light is mixed by the angle.
 const ROOM: [f32; 3] = [0.5, 0.28, 0.18];
 /// Columns and rows of each lamp, and its light: the key to the left of who looks along the negative z axis, a fill to the right, and
-/// a rim behind what is looked at. A matt white surface that faces up sends 0.93 of a screen's white, one that faces that eye 0.65.
+/// a rim behind what is looked at. A matt white surface that faces up sends 0.93 of a screen's white, one that faces that eye 0.66.
 const LAMPS: [([u32; 2], [u32; 2], f32); 3] =
     [([2, 10], [5, 11], 5.0), ([49, 57], [8, 16], 1.5), ([32, 40], [3, 7], 4.0)];
 
@@ -40,4 +40,34 @@ fn radiance(column: u32, row: u32) -> f32 {
     let down = 2.0 * (row as f32 + 0.5) / HEIGHT as f32;
     let [up, level, below] = ROOM;
     if down < 1.0 { up + (level - up) * down } else { level + (below - level) * (down - 1.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+
+    use glam::DVec3;
+
+    use super::*;
+
+    /// What a matt white surface sends that faces a direction.
+    fn sent(normal: DVec3) -> f64 {
+        let (columns, rows) = (f64::from(WIDTH), f64::from(HEIGHT));
+        let part = |column: u32, row: u32| {
+            let (angle, height) =
+                ((f64::from(column) + 0.5) / columns * TAU - PI, PI / 2.0 - (f64::from(row) + 0.5) / rows * PI);
+            let direction = DVec3::new(angle.sin() * height.cos(), height.sin(), -angle.cos() * height.cos());
+            let solid_angle = TAU / columns * (PI / rows) * height.cos();
+            f64::from(radiance(column, row)) * direction.dot(normal).max(0.0) * solid_angle / PI
+        };
+        (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| part(column, row))).sum()
+    }
+
+    #[test]
+    fn what_faces_up_is_nearly_a_screens_white_and_no_side_is_dark() {
+        assert!((sent(DVec3::Y) - 0.93).abs() < 0.01, "{}", sent(DVec3::Y));
+        assert!((sent(DVec3::Z) - 0.66).abs() < 0.01, "{}", sent(DVec3::Z));
+        let sides = [DVec3::X, DVec3::NEG_X, DVec3::NEG_Z, DVec3::NEG_Y].map(sent);
+        assert!(sides.iter().all(|&light| (0.2..0.6).contains(&light)), "{sides:?}");
+    }
 }

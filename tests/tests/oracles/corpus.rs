@@ -50,9 +50,12 @@ fn tessellated(name: &str) -> Scene {
     let folder = tempfile::tempdir().expect("a temporary folder");
     for file in std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).expect("the scenes") {
         let file = file.expect("an entry");
-        let text = std::fs::read_to_string(file.path()).expect("a text");
-        let text = text.replace("shape = \"sphere\"", "shape = \"sphere\"\ntessellate = 4");
-        std::fs::write(folder.path().join(file.file_name()), text).expect("a copy");
+        // Textures are no text.
+        let bytes = match String::from_utf8(std::fs::read(file.path()).expect("a file")) {
+            Ok(text) => text.replace("shape = \"sphere\"", "shape = \"sphere\"\ntessellate = 4").into_bytes(),
+            Err(other) => other.into_bytes(),
+        };
+        std::fs::write(folder.path().join(file.file_name()), bytes).expect("a copy");
     }
     scene::load(&folder.path().join(name).with_extension("toml")).unwrap().0
 }

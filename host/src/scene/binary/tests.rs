@@ -95,9 +95,16 @@ fn packed(scene: &Scene) -> Result<DeviceScene> {
 fn every_scene_is_the_same_in_either_form() {
     let shipped = std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes")).unwrap();
     let names = shipped.map(|entry| format!("../scenes/{}", entry.unwrap().file_name().display()));
+    let is_picture = |name: &String| name.ends_with(".png") || name.ends_with(".hdr");
+    let names = names.filter(|name| !is_picture(name));
     for name in names.chain(["src/scene/example.toml".into(), "src/scene/pyramid.obj".into()]) {
         let scene = text(&name);
-        assert_eq!(read(&binary(&scene)), Ok(scene), "{name}");
+        let bytes = binary(&scene);
+        let back = read(&bytes).expect("a scene");
+        assert!(binary(&back) == bytes, "{name}");
+        // Pictures are the same only where they are one.
+        let has_pictures = scene.environment.is_some() || scene.materials.iter().any(|m| m.maps.all().next().is_some());
+        assert!(has_pictures || back == scene, "{name}");
     }
 }
 

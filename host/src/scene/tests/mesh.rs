@@ -79,6 +79,24 @@ fn a_box_is_closed_and_outward() {
 }
 
 #[test]
+fn a_box_for_textures_has_the_triangles_of_another_and_pictures_upright() {
+    let (least, greatest) = (Vec3::new(-1.0, 0.0, 2.0), Vec3::new(1.0, 3.0, 4.0));
+    let [shared, covered] = [shape::cuboid(least, greatest), shape::covered_cuboid(least, greatest)];
+    let places = |mesh: &Mesh| mesh.triangles.iter().map(|&triangle| corners(mesh, triangle)).collect::<Vec<_>>();
+    assert_eq!(places(&covered), places(&shared));
+    for (triangle, places) in covered.triangles.iter().zip(places(&covered)) {
+        let [a, b, c] = triangle.map(|vertex| covered.coordinates[0][vertex as usize]);
+        let outward = (places[1] - places[0]).cross(places[2] - places[0]);
+        // Rows are counted downward, so that what is not mirrored turns the other way.
+        assert!((b - a).perp_dot(c - a) < 0.0, "a picture is mirrored");
+        if outward.y == 0.0 {
+            let tops = [a, b, c].map(|coordinate| coordinate.y == 0.0);
+            assert_eq!(tops, places.map(|place| place.y == greatest.y), "a picture is not upright");
+        }
+    }
+}
+
+#[test]
 fn a_quad_faces_the_side_that_its_corners_turn_around() {
     let quad = shape::quad([Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]);
     for &triangle in &quad.triangles {

@@ -83,9 +83,11 @@ fn check_and_info_tell_where_the_meshes_are_and_the_default_camera() {
     let place = Place::new(&[("scene.toml", &format!("{SCENE}center = [0, 2, 0]\n")), ("mesh.obj", TRIANGLE)]);
     let text = place.succeed(&["check", "scene.toml"]);
     let lines: Vec<&str> = text.text().lines().collect();
-    let [_, bounds, camera, mesh] = lines[..] else { panic!("{lines:?}") };
+    let [_, bounds, camera, mesh, material] = lines[..] else { panic!("{lines:?}") };
+    assert_eq!(material, "material 1: default");
     let json = place.succeed(&["info", "scene.toml", "--bvh", "fast", "--json"]).json();
     assert_eq!(json["meshes"][0]["triangles"], 80);
+    assert_eq!(json["materials"][0], "default");
     let [least, greatest] = [0, 1].map(|corner| json["bounds"][corner][1].as_f64().unwrap());
     assert!((least - 1.0).abs() < 0.1 && (greatest - 3.0).abs() < 0.1, "{json}");
     assert!(bounds.starts_with("bounds: [") && bounds.contains("] to ["), "{bounds}");

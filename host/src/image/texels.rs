@@ -51,3 +51,67 @@ fn texels(image: DynamicImage) -> Texels {
         _ => Texels::Bytes(image.into_rgba8().pixels().map(|pixel| pixel.0).collect()),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use image::RgbImage;
+    use proptest::prelude::*;
+    use proptest::sample::Index;
+
+    use super::*;
+
+    const KINDS: [ImageFormat; 4] = [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::OpenExr, ImageFormat::Hdr];
+
+    /// A picture of 9 x 7 texels, no two of which are the same.
+    fn file(kind: ImageFormat) -> Vec<u8> {
+        let picture = DynamicImage::from(RgbImage::from_fn(9, 7, |x, y| image::Rgb([25 * x as u8, 30 * y as u8, 128])));
+        let is_light = matches!(kind, ImageFormat::OpenExr | ImageFormat::Hdr);
+        let picture = if is_light { picture.into_rgb32f().into() } else { picture };
+        let mut bytes = Cursor::new(Vec::new());
+        picture.write_to(&mut bytes, kind).unwrap();
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn a_texture_of_every_kind_is_read() {
+        for kind in KINDS {
+            let texture = decode_texture("a", Cursor::new(file(kind))).unwrap();
+            assert_eq!((texture.width, texture.height), (9, 7), "{kind:?}");
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 10_000, ..ProptestConfig::default() })]
+
+        #[test]
+        fn a_damaged_texture_is_refused_in_a_line_or_whole(
+            kind in prop::sample::select(KINDS.to_vec()),
+            changes in prop::collection::vec((any::<Index>(), any::<u8>()), 1..6),
+            cut in prop::option::weighted(0.2, any::<Index>()),
+        ) {
+            let mut bytes = file(kind);
+            for (at, byte) in changes {
+                let at = at.index(bytes.len());
+                bytes[at] = byte;
+            }
+            if let Some(cut) = cut {
+                bytes.truncate(cut.index(bytes.len()));
+            }
+            match decode_texture("a", Cursor::new(bytes)) {
+                Ok(Texture { width, height, texels, .. }) => {
+                    let count = match texels {
+                        Texels::Bytes(texels) => texels.len(),
+                        Texels::Floats(texels) => {
+                            prop_assert!(texels.iter().flatten().all(|light| light.is_finite() && *light >= 0.0));
+                            texels.len()
+                        }
+                    };
+                    prop_assert_eq!(count, (width * height) as usize);
+                }
+                Err(error) => prop_assert!(!error.to_string().contains('\n'), "{}", error),
+            }
+        }
+    }
+}

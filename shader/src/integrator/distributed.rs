@@ -24,11 +24,11 @@ pub(super) fn at<R: Scalar>(
     let (path, effects) = (vertex.path, launch.spec.effects);
     let ScatterContext { shading, lighting, physicals } = context;
     let seen = vertex.met(launch);
-    let (primitive, interaction) = (seen.primitive, seen.interaction);
+    let interaction = seen.interaction;
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, primitive.material());
+        let material = read(physicals, seen.material());
         let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
         let shadow = light_by_closure(launch, lighting, vertex, (&interaction, &closure));
@@ -56,7 +56,7 @@ fn shining<R: Scalar>(
 ) -> V3<R> {
     let mut light = surface.ambient;
     if effects.has(Effects::EMISSIVE) {
-        let emission = read(lighting.emissions, seen.primitive.material());
+        let emission = read(lighting.emissions, seen.material());
         if emission.shines(seen.interaction.front) {
             let radiance = V3::splat(numbers(emission.radiance));
             let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };

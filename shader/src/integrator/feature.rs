@@ -37,8 +37,9 @@ pub(super) fn at<R: Scalar>(
 fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>) -> V3<R> {
     let lens = &launch.frame.lens;
     let vector = |record| V3::<R>::splat(numbers(record));
-    let from = (seen.interaction.position - vector(lens.eye)).map(|c| c.flush(SMALL));
-    let number = seen.primitive.number() + 1;
+    let Seen { primitive, interaction, .. } = *seen;
+    let from = (interaction.position - vector(lens.eye)).map(|c| c.flush(SMALL));
+    let number = primitive.number() + 1;
     let half = |number: u32| R::splat(number as f32);
     V3::new(from.dot(vector(lens.forward)), half(number & 0xffff), half(number >> 16))
 }
@@ -53,7 +54,7 @@ fn albedo<R: Scalar>(
     covering: &Covering<R>,
 ) -> V3<R> {
     if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, seen.primitive.material());
+        let material = read(physicals, seen.material());
         if material.has(Physical::IS_PHYSICAL) {
             return V3::splat(numbers(material.base)).times(covering.base);
         }

@@ -32,14 +32,15 @@ pub(super) fn at<R: Scalar>(
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
     let surface = Surface::new(effects, shading, &seen, &covering);
-    if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, seen.primitive.material());
-        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
-        return scattered(launch, lighting, vertex, (&seen, &closure), light);
-    }
     let interaction = seen.interaction;
-    let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    scattered(launch, lighting, vertex, (&seen, &lobes), light)
+    let origin = interaction.offset_ray_origin(interaction.normal);
+    if effects.has(Effects::PHYSICAL) {
+        let material = read(physicals, seen.material());
+        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
+        return scattered(launch, lighting, vertex, (&seen, &closure, origin), light);
+    }
+    let lobes = Lobes::new(effects, &surface, (&interaction, origin), path.direction);
+    scattered(launch, lighting, vertex, (&seen, &lobes, origin), light)
 }
 
 /// What of a path has come through the body whose inside it hits.
@@ -48,25 +49,25 @@ fn arrived<R: Scalar>(effects: Effects, physicals: &[Physical], vertex: &Vertex<
     if !effects.has(Effects::ABSORBING) || seen.interaction.front {
         return *vertex;
     }
-    let material = read(physicals, seen.primitive.material());
+    let material = read(physicals, seen.material());
     let left = transmittance(&material, vertex.distance);
     let weight = vertex.path.weight.times(left).map(|c| c.flush(FAINT));
     Vertex { path: PathState { weight, ..vertex.path }, ..*vertex }
 }
 
-/// The light of one light, and the next ray, by a surface's closure.
+/// The light of one light, and the next ray, by a surface's closure. Rays start at `origin` on the viewer's side.
 #[inline(always)]
 fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (seen, closure): (&Seen<R>, &impl Closure<R>),
+    (seen, closure, origin): (&Seen<R>, &impl Closure<R>, V3<R>),
     light: V3<R>,
 ) -> Scattered<R> {
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure), decisions.x);
+    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, origin), decisions.x);
     let draws = (decisions.y, decisions.w);
     let sample = closure.sample(&interaction, draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
@@ -74,7 +75,7 @@ fn scattered<R: Scalar>(
         let Cone { width, spread } = seen.cone.scattered(sample.density);
         PathState { beside: (width, spread), ..next }
     } else {
-        next
+        PathState { beside: (R::splat(0.0), R::splat(0.0)), ..next }
     };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
@@ -140,7 +141,7 @@ fn sampled_light<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, closure): (&SurfaceInteraction<R>, &impl Closure<R>),
+    (interaction, closure, origin): (&SurfaceInteraction<R>, &impl Closure<R>, V3<R>),
     choice: u32,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
@@ -148,12 +149,8 @@ fn sampled_light<R: Scalar>(
         return ShadowRay::none();
     }
     let places = vertex.draws.set(vertex.path.bounces);
-    let origin = interaction.offset_ray_origin(interaction.normal);
     let sample = EmitterSample::new(launch, lighting, origin, choice, (places.z, places.w));
     let Scattering { value, density } = closure.eval(interaction, sample.direction);
-    if !zero.lt(value.greatest()) {
-        return ShadowRay::none();
-    }
     let mut light = value.times(sample.light).map(|c| c.flush(FAINT));
     if !sample.density.over.eq(zero) {
         let own = density * sample.density.under;

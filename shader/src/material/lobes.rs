@@ -28,11 +28,15 @@ pub struct Lobes<R: Real> {
 }
 
 impl<R: Scalar> Lobes<R> {
-    /// Of a surface that is seen along `direction`.
+    /// Of a surface that is seen along `direction`, on whose side rays start at `origin`.
     #[inline(always)]
-    pub fn new(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Self {
+    pub fn new(
+        effects: Effects,
+        surface: &Surface<R>,
+        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
+        direction: V3<R>,
+    ) -> Self {
         let (colour, normal) = (surface.diffuse, surface.normal);
-        let origin = interaction.offset_ray_origin(interaction.normal);
         let zero = R::splat(0.0);
         let none = Specular {
             mirrored: direction,

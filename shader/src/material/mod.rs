@@ -66,20 +66,28 @@ pub struct Seen<R: Real> {
     pub cone: Cone<R>,
 }
 
+// By copies: rust-gpu keeps in memory whatever a pointer leads into.
 impl<R: Scalar> Seen<R> {
+    /// The material's index.
+    #[inline(always)]
+    pub fn material(&self) -> u32 {
+        let Seen { primitive, .. } = *self;
+        primitive.material()
+    }
+
     /// What its textures say, or that of emission alone. Nothing but white in a scene without.
     #[inline(always)]
     pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, emits_only: bool) -> Covering<R> {
         let (effects, launched) = (launch.spec.effects, launch.spec.launch);
-        let weights = self.interaction.coordinates;
-        let place = Place { index: self.index, weights, count: launch.frame.vertices };
+        let Seen { index, primitive, interaction, direction, cone } = *self;
+        let place = Place { index, weights: interaction.coordinates, count: launch.frame.vertices };
         let mut footprint = R::splat(0.0);
         if effects.has(Effects::TEXTURED) && launched.has(Launch::MIPMAPPED) {
-            let facing = (self.interaction.normal, self.direction);
-            footprint = self.cone.footprint(&shading.textures, &place, &self.primitive, facing);
+            let facing = (interaction.normal, direction);
+            footprint = cone.footprint(&shading.textures, &place, &primitive, facing);
         }
         let maps = if emits_only { (Maps::EMISSION, Maps::EMISSION + 1) } else { (0, Maps::COUNT) };
-        let own = || read(shading.maps, self.primitive.material());
+        let own = || read(shading.maps, primitive.material());
         Covering::new((effects, launched), &shading.textures, own, &place, footprint, maps)
     }
 }
@@ -88,7 +96,6 @@ impl<R: Scalar> Surface<R> {
     /// The surface of what a ray has met, with what covers it.
     #[inline(always)]
     pub fn new(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
-        // A copy: rust-gpu keeps in memory what a pointer leads into.
         let Seen { index, primitive, interaction, direction, .. } = *seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));

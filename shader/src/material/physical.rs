@@ -75,17 +75,18 @@ pub fn closure<R: Scalar>(
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
 ) -> Bsdf<R> {
+    let Seen { interaction, direction, .. } = *seen;
     let mut axes = axes(effects, shading, seen, surface.normal);
     let layers = if material.has(Physical::IS_PHYSICAL) {
         let at = Parameters::new(material, covering);
         if effects.has(Effects::ANISOTROPIC) {
             axes = at.turned(axes);
         }
-        physical(effects, material, &at, &seen.interaction)
+        physical(effects, material, &at, &interaction)
     } else {
-        whitted(effects, surface, &seen.interaction)
+        whitted(effects, surface, &interaction)
     };
-    Bsdf::new(effects, axes, seen.direction, layers)
+    Bsdf::new(effects, axes, direction, layers)
 }
 
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.

@@ -105,12 +105,13 @@ impl<R: Scalar> ShadowRay<R> {
         R::splat(0.0).lt(self.light.greatest())
     }
 
-    /// Keeps a slot's ray.
+    /// Keeps a slot's ray. One that asks for nothing arrives, with no light: not even with what infinite light leaves of none.
     #[inline(always)]
     pub fn store(&self, slots: u32, slot: u32, segments: &mut [R::Record]) {
-        let limit = if self.asks() { self.segment.limit } else { R::splat(NOWHERE) };
+        let asks = self.asks();
+        let limit = if asks { self.segment.limit } else { R::splat(NOWHERE) };
         Segment { limit, ..self.segment }.store(slots, slot, segments);
-        write(segments, 2 * slots + slot, R::store(self.light, 0));
+        write(segments, 2 * slots + slot, R::store(V3::select(asks, self.light, V3::zero()), 0));
     }
 
     /// The light of a slot's ray that nothing was in the way of, else zero.
@@ -118,5 +119,28 @@ impl<R: Scalar> ShadowRay<R> {
     pub fn arrived(slots: u32, slot: u32, shadows: &[u32], segments: &[R::Record]) -> V3<R> {
         let light = R::load(read(segments, 2 * slots + slot)).0;
         if read(shadows, slot) == REACHED { light } else { V3::zero() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    fn arrives(light: V3<f32>) -> V3<f32> {
+        let mut segments = [Default::default(); SHADOW_RECORDS as usize];
+        ShadowRay { light, ..ShadowRay::none() }.store(1, 0, &mut segments);
+        ShadowRay::arrived(1, 0, &[REACHED], &segments)
+    }
+
+    #[test]
+    fn a_shadow_ray_that_asks_for_nothing_brings_nothing() {
+        let light = V3::splat(Vec3::new(1.0, 2.0, 3.0));
+        assert_eq!(arrives(light), light);
+        for none in [0.0, f32::NAN] {
+            assert_eq!(arrives(V3::new(none, 0.0, 0.0)), V3::zero());
+            assert_eq!(arrives(V3::new(0.0, none, 0.0)), V3::zero());
+            assert_eq!(arrives(V3::new(none, none, none)), V3::zero());
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use super::{Place, Textures};
 use crate::buffer::read;
-use crate::data::{Primitive, TexCoords};
+use crate::data::{Launch, Primitive, TexCoords};
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 
 /// How wide a ray is where it starts, and how much wider it becomes on a unit of its way.
@@ -16,9 +16,12 @@ pub struct Cone<R: Real> {
 }
 
 impl<R: Scalar> Cone<R> {
-    /// Where it has gone so far.
+    /// Where it has gone so far; as it was where no texture asks for that.
     #[inline(always)]
-    pub fn after(self, distance: R) -> Self {
+    pub fn after(self, launch: Launch, distance: R) -> Self {
+        if !launch.has(Launch::MIPMAPPED) {
+            return self;
+        }
         Cone { width: (self.width + self.spread * distance).flush(SMALL), spread: self.spread }
     }
 
@@ -91,7 +94,7 @@ mod tests {
 
     #[test]
     fn rays_widen_on_their_way_and_where_they_are_scattered() {
-        let cone = Cone { width: 0.0, spread: 0.001f64 }.after(2.0);
+        let cone = Cone { width: 0.0, spread: 0.001f64 }.after(Launch(Launch::MIPMAPPED), 2.0);
         assert!((cone.width - 0.002).abs() < 1e-12);
         assert_eq!(cone.scattered(0.0).spread, 0.001, "a mirror keeps it");
         assert_eq!(cone.scattered(100.0).spread, 0.05);

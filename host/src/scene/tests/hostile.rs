@@ -43,6 +43,8 @@ fn changed() -> impl Strategy<Value = Vec<u8>> {
 }
 
 proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, ..ProptestConfig::default() })]
+
     #[test]
     fn a_mesh_is_refused_or_whole(bytes in text()) {
         if let Ok(obj) = obj::parse(Path::new("/nowhere/a.obj"), &bytes[..], budget(1 << 20)) {

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
+use crate::error::Result;
 use crate::scene::Mesh;
 use crate::scene::gltf::{self, Gltf};
 use crate::scene::tests::budget;
@@ -32,6 +33,42 @@ impl Model {
     pub fn empty() -> Self {
         let json = json!({ "asset": { "version": "2.0" }, "accessors": [], "bufferViews": [] });
         Model { json, bytes: Vec::new() }
+    }
+
+    /// A file with something of everything.
+    pub fn everything() -> Self {
+        let mut model = Model::triangle();
+        let normal = model.accessor("VEC3", F32, 3, &floats(&[[0.0, 0.0, 1.0]; 3].concat()));
+        let tangent = model.accessor("VEC4", F32, 3, &floats(&[[1.0, 0.0, 0.0, 1.0]; 3].concat()));
+        let coordinates = model.accessor("VEC2", 5121, 3, &[0, 0, 1, 0, 0, 1]);
+        let indices = model.accessor("SCALAR", U16, 4, &shorts(&[0, 1, 2, 0]));
+        let (places, values) = (model.view(&shorts(&[1])), model.view(&floats(&[2.0, 0.0, 0.0])));
+        model.json["accessors"][0]["sparse"] = json!({
+            "count": 1, "indices": { "bufferView": places, "componentType": U16 }, "values": { "bufferView": values }
+        });
+        let attributes = json!({ "POSITION": 0, "NORMAL": normal, "TANGENT": tangent, "TEXCOORD_0": coordinates });
+        model.json["meshes"][0]["primitives"] = json!([
+            { "attributes": attributes, "indices": indices, "mode": 5, "material": 0 },
+            { "attributes": { "POSITION": 0 } },
+        ]);
+        model.json["images"] = json!([{ "uri": data(&picture()) }]);
+        model.json["textures"] = json!([{ "source": 0, "sampler": 0 }]);
+        model.json["samplers"] = json!([{ "magFilter": 9728 }]);
+        model.json["materials"] = json!([{
+            "pbrMetallicRoughness": { "baseColorFactor": [1, 0.5, 0.25, 1], "baseColorTexture": { "index": 0 } },
+            "normalTexture": { "index": 0, "extensions": { "KHR_texture_transform": { "rotation": 1, "scale": [2, 3] } } },
+            "emissiveFactor": [1, 0, 0],
+            "extensions": { "KHR_materials_ior": { "ior": 1.4 }, "KHR_materials_transmission": { "transmissionFactor": 0.5 } },
+        }]);
+        model.json["cameras"] = json!([{ "perspective": { "yfov": 1 } }]);
+        let spot = json!({ "outerConeAngle": 0.5, "innerConeAngle": 0.25 });
+        model.json["extensions"] =
+            json!({ "KHR_lights_punctual": { "lights": [{ "type": "spot", "intensity": 2, "spot": spot }] } });
+        model.json["nodes"] = json!([
+            { "mesh": 0, "children": [1], "rotation": [0, 0, 0, 1], "scale": [1, -2, 1] },
+            { "mesh": 0, "camera": 0, "translation": [0, 0, 3], "extensions": { "KHR_lights_punctual": { "light": 0 } } },
+        ]);
+        model
     }
 
     /// Adds bytes, and returns the number of their view.
@@ -78,8 +115,8 @@ impl Model {
     }
 
     pub fn load(&self) -> Gltf {
-        let scene = parse(&self.gltf());
-        assert_eq!(parse(&self.glb()).obj.mesh, scene.obj.mesh, "the binary file differs");
+        let scene = parse(&self.gltf()).unwrap();
+        assert_eq!(parse(&self.glb()).unwrap().obj.mesh, scene.obj.mesh, "the binary file differs");
         scene
     }
 
@@ -88,8 +125,9 @@ impl Model {
     }
 }
 
-fn parse(bytes: &[u8]) -> Gltf {
-    gltf::parse(Path::new("a.gltf"), bytes, budget(1 << 24)).unwrap()
+/// Reads a file that names no others.
+pub fn parse(bytes: &[u8]) -> Result<Gltf> {
+    gltf::parse(Path::new("/nowhere/a.glb"), bytes, budget(1 << 24))
 }
 
 pub fn floats(numbers: &[f32]) -> Vec<u8> {

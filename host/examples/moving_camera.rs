@@ -1,4 +1,4 @@
-//! A camera that moves over a scene which is uploaded once: `moving_camera SCENE.toml [FRAMES] [SIZE]`.
+//! A camera that moves over a scene which is uploaded once: `moving_camera SCENE.toml [FRAMES] [WIDTH] [HEIGHT]`.
 
 use std::error::Error;
 use std::path::PathBuf;
@@ -17,7 +17,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let shipped = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell.toml"));
     let file = arguments.next().map_or(shipped, PathBuf::from);
     let frames: u32 = arguments.next().map_or(Ok(10), |frames| frames.parse())?;
-    let size: u32 = arguments.next().map_or(Ok(256), |size| size.parse())?;
+    let width: u32 = arguments.next().map_or(Ok(256), |width| width.parse())?;
+    let height: u32 = arguments.next().map_or(Ok(width), |height| height.parse())?;
 
     let (scene, warnings) = scene::load(&file)?;
     warnings.iter().for_each(|warning| println!("{warning}"));
@@ -28,7 +29,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default())?;
 
-    let view = |frame| View::of(&packed, &turned(&scene.cameras[0], frame as f32 / frames as f32), (size, size), 1);
+    let view = |frame| View::of(&packed, &turned(&scene.cameras[0], frame as f32 / frames as f32), (width, height), 1);
     // A first frame takes memory; the others only send what a view says.
     renderer.render(&view(0)?, &|_| ())?;
     let start = Instant::now();
@@ -37,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         renderer.add(1, &|_| ())?;
     }
     let last = renderer.film()?;
-    println!("{frames} frames of {size}x{size} in {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
+    println!("{frames} frames of {width}x{height} in {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
     println!("checksum of the last: {}", last.film.hash());
 
     // Once more, asking the device after every frame what it took.

@@ -32,15 +32,14 @@ pub(super) fn at<R: Scalar>(
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
     let surface = Surface::new(effects, shading, &seen, &covering);
-    let interaction = seen.interaction;
-    let origin = interaction.offset_ray_origin(interaction.normal);
     if effects.has(Effects::PHYSICAL) {
         let material = read(physicals, seen.material());
         let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
-        return scattered(launch, lighting, vertex, (&seen, &closure, origin), light);
+        return scattered(launch, lighting, vertex, (&seen, &closure), light);
     }
-    let lobes = Lobes::new(effects, &surface, (&interaction, origin), path.direction);
-    scattered(launch, lighting, vertex, (&seen, &lobes, origin), light)
+    let interaction = seen.interaction;
+    let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
+    scattered(launch, lighting, vertex, (&seen, &lobes), light)
 }
 
 /// What of a path has come through the body whose inside it hits.
@@ -55,21 +54,22 @@ fn arrived<R: Scalar>(effects: Effects, physicals: &[Physical], vertex: &Vertex<
     Vertex { path: PathState { weight, ..vertex.path }, ..*vertex }
 }
 
-/// The light of one light, and the next ray, by a surface's closure. Rays start at `origin` on the viewer's side.
+/// The light of one light, and the next ray, by a surface's closure.
 #[inline(always)]
 fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (seen, closure, origin): (&Seen<R>, &impl Closure<R>, V3<R>),
+    (seen, closure): (&Seen<R>, &impl Closure<R>),
     light: V3<R>,
 ) -> Scattered<R> {
     let interaction = seen.interaction;
+    let origin = interaction.offset_ray_origin(interaction.normal);
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
     let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, origin), decisions.x);
     let draws = (decisions.y, decisions.w);
-    let sample = closure.sample(&interaction, draws, || vertex.draws.set(bounces + 1));
+    let sample = closure.sample((&interaction, origin), draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let next = if launch.spec.launch.has(Launch::MIPMAPPED) {
         let Cone { width, spread } = seen.cone.scattered(sample.density);

@@ -337,7 +337,7 @@ impl<R: Scalar> Closure<R> for Bsdf<R> {
     #[inline(always)]
     fn sample(
         &self,
-        interaction: &SurfaceInteraction<R>,
+        (interaction, _): (&SurfaceInteraction<R>, V3<R>),
         (part, way): (u32, u32),
         pair: impl FnOnce() -> UVec4,
     ) -> ClosureSample<R> {

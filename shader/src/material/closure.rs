@@ -34,11 +34,12 @@ pub trait Closure<R: Scalar> {
     /// How it scatters light from a unit direction, towards the light; of mirrors and lenses nothing.
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R>;
 
-    /// A direction in which the path goes on. The first of the draws chooses a part of the surface and the second what its facets
-    /// do; `pair` gives two more, if they are asked for, that choose the direction.
+    /// A direction in which the path goes on, from an interaction with the place where rays start on the viewer's side. The first of
+    /// the draws chooses a part of the surface and the second what its facets do; `pair` gives two more, if they are asked for,
+    /// that choose the direction.
     fn sample(
         &self,
-        interaction: &SurfaceInteraction<R>,
+        at: (&SurfaceInteraction<R>, V3<R>),
         draws: (u32, u32),
         pair: impl FnOnce() -> UVec4,
     ) -> ClosureSample<R>;

@@ -23,19 +23,12 @@ pub struct Lobes<R: Real> {
     colour: V3<R>,
     /// The shading normal.
     normal: V3<R>,
-    /// Where rays start on the viewer's side.
-    origin: V3<R>,
 }
 
 impl<R: Scalar> Lobes<R> {
-    /// Of a surface that is seen along `direction`, on whose side rays start at `origin`.
+    /// Of a surface that is seen along `direction`.
     #[inline(always)]
-    pub fn new(
-        effects: Effects,
-        surface: &Surface<R>,
-        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
-        direction: V3<R>,
-    ) -> Self {
+    pub fn new(effects: Effects, surface: &Surface<R>, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Self {
         let (colour, normal) = (surface.diffuse, surface.normal);
         let zero = R::splat(0.0);
         let none = Specular {
@@ -46,7 +39,7 @@ impl<R: Scalar> Lobes<R> {
             passes: false,
             is_lens: false,
         };
-        let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none, colour, normal, origin };
+        let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none, colour, normal };
         if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
             return diffuse_only;
         }
@@ -67,7 +60,7 @@ impl<R: Scalar> Lobes<R> {
         let mirror = (specular.mirror * over(reflected)).map(|c| c.flush(FAINT));
         let lens = (specular.lens * over((rest - reflected).max(1))).map(|c| c.flush(FAINT));
         let specular = Specular { mirror, lens, ..specular };
-        Lobes { diffuse, reflected: diffuse + reflected, specular, colour, normal, origin }
+        Lobes { diffuse, reflected: diffuse + reflected, specular, colour, normal }
     }
 
     /// How likely the diffuse part is chosen.
@@ -97,7 +90,7 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
     #[inline(always)]
     fn sample(
         &self,
-        interaction: &SurfaceInteraction<R>,
+        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
         (part, _): (u32, u32),
         pair: impl FnOnce() -> UVec4,
     ) -> ClosureSample<R> {
@@ -109,7 +102,7 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
             // About an interpolated normal a direction may lie below the surface.
             let factor = V3::select(interaction.faces(direction), self.colour * probability.reciprocal(), V3::zero());
             let density = probability * cosine * R::splat(INVERSE_PI);
-            return ClosureSample { direction, factor, density, origin: self.origin };
+            return ClosureSample { direction, factor, density, origin };
         }
         let passes = step >= self.reflected;
         let direction = V3::select(passes, self.specular.refracted, self.specular.mirrored);

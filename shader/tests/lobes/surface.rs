@@ -81,7 +81,7 @@ impl Seen {
     pub fn sample(&self, run: u32, number: u32) -> ClosureSample<f64> {
         let [a, b, c] = hash([run, number, 1]);
         let [c, d, _] = hash([a, b, c]);
-        self.closure.sample(&self.interaction, (a, b), || UVec4::new(c, d, 0, 0))
+        self.closure.sample((&self.interaction, V3::zero()), (a, b), || UVec4::new(c, d, 0, 0))
     }
 }
 

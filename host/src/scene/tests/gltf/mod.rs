@@ -219,7 +219,10 @@ fn lights_and_cameras_stand_where_their_nodes_are() {
     assert!(matches!(lights[2], Light::Directional { direction, .. } if direction.abs_diff_eq(Vec3::Z, 1e-6)));
     assert_eq!(cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>(), ["front", "front 2"]);
     assert_eq!((cameras[0].eye, cameras[0].fov, cameras[0].up), (position, 45.0, Vec3::Y));
-    assert_eq!(obj.warnings, ["/nowhere/a.glb: orthographic cameras are left out: only those with perspective are read"]);
+    assert_eq!(
+        obj.warnings,
+        ["/nowhere/a.glb: orthographic cameras are left out: only those with perspective are read"]
+    );
 }
 
 #[test]

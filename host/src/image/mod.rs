@@ -140,4 +140,6 @@ impl Encoding {
 }
 
 #[cfg(test)]
+mod hostile;
+#[cfg(test)]
 mod tests;

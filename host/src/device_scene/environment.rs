@@ -7,17 +7,30 @@ use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::normalisation::flushed_number;
+use crate::error::{Error, Result};
 use crate::image::byte_to_linear;
 use crate::math;
+use crate::memory::Room;
 use crate::scene::{Environment, Texels};
 
+/// Bytes that a texel takes while the words are made: its words, its light and its weight.
+const BYTES_PER_TEXEL: u64 = 16 + 12 + 8;
+
 /// Its words, and its light over all directions: the mean of the channels.
-pub(super) fn words(environment: &Environment) -> (Vec<u32>, f64) {
+///
+/// # Errors
+/// There is no memory for them.
+pub(super) fn words(environment: &Environment, room: Room) -> Result<(Vec<u32>, f64)> {
     let (width, height) = (environment.texture.width, environment.texture.height);
+    let count = width as usize * height as usize;
+    let fits = room.check(count as u64 * BYTES_PER_TEXEL);
+    fits.map_err(|why| Error::new(format!("the environment's {width}x{height} texels {why}; use a smaller picture")))?;
     let light = light(environment);
     let weights = weights(&light, width as usize, height as usize);
     let turned = f64::from(environment.rotation).to_radians();
-    let mut words = vec![0; HEADER as usize];
+    let edges = 0..=height.div_ceil(2) + 1;
+    let mut words = Vec::with_capacity(HEADER as usize + 4 * count + height as usize + edges.clone().count());
+    words.resize(HEADER as usize, 0);
     let bits = |x: f64| flushed_number(x as f32).to_bits();
     words[..5].copy_from_slice(&[
         width,
@@ -30,9 +43,8 @@ pub(super) fn words(environment: &Environment) -> (Vec<u32>, f64) {
     let rows: Vec<f64> = weights.par_chunks(width as usize).map(|row| row.iter().sum()).collect();
     words.extend(draws(&rows));
     words.extend(weights.chunks(width as usize).flat_map(draws));
-    let edges = 0..=height.div_ceil(2) + 1;
     words.extend(edges.map(|edge| bits(below_pole(f64::from(edge.min(height)) / f64::from(height)))));
-    (words, rows.iter().sum())
+    Ok((words, rows.iter().sum()))
 }
 
 /// One less the cosine of a share of half a turn.
@@ -99,7 +111,21 @@ fn draws(weights: &[f64]) -> Vec<u32> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
     use super::*;
+    use crate::scene::Texture;
+
+    #[test]
+    fn an_environment_that_there_is_no_memory_for_is_refused_before_its_words_are_made() {
+        let texels = Texels::Floats(vec![[1.0; 3]; 64 * 32]);
+        let texture = Arc::new(Texture { name: "grey".into(), width: 64, height: 32, texels });
+        let environment = Environment { texture, rotation: 0.0, scale: 1.0, visible: true };
+        let words = |bytes| words(&environment, Room { bytes, limit: "this test" });
+        let all = words(1 << 20).unwrap().0;
+        assert_eq!(all.len(), all.capacity());
+        assert!(words(1 << 10).unwrap_err().message().starts_with("the environment's 64x32 texels take about"));
+    }
 
     #[test]
     fn draws_are_as_many_as_weights_say_and_none_is_without() {

@@ -5,24 +5,66 @@ use rayon::prelude::*;
 use crate::image::{byte_to_linear, quantise_to_byte};
 use crate::scene::{Texels, Texture};
 
-/// Adds the words of all levels, the finest first, and returns how many levels there are. Colours of 8 bits are sRGB.
-pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) -> u32 {
-    let mut level = Level::of(texture, is_colour);
-    let is_float = matches!(texture.texels, Texels::Floats(_));
-    let mut count = 1;
-    finest(texture, words);
-    while level.width > 1 || level.height > 1 {
-        level = level.halved();
-        for texel in &level.texels {
-            if is_float {
-                words.extend(texel[..3].iter().map(|x| x.to_bits()));
-            } else {
-                words.push(u32::from_le_bytes(encoded(*texel, is_colour)));
-            }
-        }
-        count += 1;
+/// Bytes that [`append`] takes for a while, by texel of the finest level: four floats for each of the next two levels' texels.
+pub(super) const BYTES_PER_TEXEL: u64 = 5;
+
+/// The levels of a texture, and the words of them all.
+pub(super) fn size(texture: &Texture) -> (u32, u64) {
+    let (mut width, mut height) = (texture.width, texture.height);
+    let (mut levels, mut texels) = (1, u64::from(width) * u64::from(height));
+    while width > 1 || height > 1 {
+        (width, height) = (half(width), half(height));
+        levels += 1;
+        texels += u64::from(width) * u64::from(height);
     }
-    count
+    (levels, texels * if is_float(texture) { 3 } else { 1 })
+}
+
+/// Adds the words of all levels, the finest first. Colours of 8 bits are sRGB.
+pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) {
+    finest(texture, words);
+    let (width, height) = (texture.width, texture.height);
+    if width == 1 && height == 1 {
+        return;
+    }
+    let mut level = first_half(texture, is_colour);
+    loop {
+        if is_float(texture) {
+            words.par_extend(level.texels.par_iter().flat_map_iter(|texel| texel[..3].iter().map(|x| x.to_bits())));
+        } else {
+            words.par_extend(level.texels.par_iter().map(|texel| u32::from_le_bytes(encoded(*texel, is_colour))));
+        }
+        if level.width == 1 && level.height == 1 {
+            return;
+        }
+        level = Level::halved(level.width, level.height, |i| level.texels[i]);
+    }
+}
+
+fn is_float(texture: &Texture) -> bool {
+    matches!(texture.texels, Texels::Floats(_))
+}
+
+/// A side of the next level.
+fn half(side: u32) -> u32 {
+    (side / 2).max(1)
+}
+
+/// The level after the finest, of which no copy is made.
+fn first_half(texture: &Texture, is_colour: bool) -> Level {
+    let share = |byte: u8| f32::from(byte) / 255.0;
+    let colour = |byte: u8| if is_colour { byte_to_linear(byte) } else { share(byte) };
+    let (width, height) = (texture.width, texture.height);
+    match &texture.texels {
+        Texels::Bytes(bytes) => Level::halved(width, height, |i| {
+            let [r, g, b, a] = bytes[i];
+            [colour(r), colour(g), colour(b), share(a)]
+        }),
+        Texels::Floats(floats) => Level::halved(width, height, |i| {
+            let [r, g, b] = floats[i];
+            [r, g, b, 1.0]
+        }),
+    }
 }
 
 /// The finest level as it is.
@@ -41,49 +83,38 @@ fn encoded([r, g, b, a]: [f32; 4], is_colour: bool) -> [u8; 4] {
 
 /// Linear RGB and opacity of each texel.
 struct Level {
-    width: usize,
-    height: usize,
+    width: u32,
+    height: u32,
     texels: Vec<[f32; 4]>,
 }
 
 impl Level {
-    fn of(texture: &Texture, is_colour: bool) -> Level {
-        let share = |byte: u8| f32::from(byte) / 255.0;
-        let colour = |byte: u8| if is_colour { byte_to_linear(byte) } else { share(byte) };
-        let texels = match &texture.texels {
-            Texels::Bytes(bytes) => {
-                let texel = |&[r, g, b, a]: &[u8; 4]| [colour(r), colour(g), colour(b), share(a)];
-                bytes.par_iter().map(texel).collect()
+    /// Half as wide and high as a level of this size, rounded down; each texel is the mean of what it covers, parts of texels
+    /// included.
+    fn halved(finer_width: u32, finer_height: u32, finer: impl Fn(usize) -> [f32; 4] + Sync) -> Level {
+        let (width, height) = (half(finer_width), half(finer_height));
+        let columns: Vec<Span> = (0..width).map(|i| Span::of(i, width, finer_width)).collect();
+        let mut texels = vec![[0.0; 4]; width as usize * height as usize];
+        texels.par_chunks_mut(width as usize).zip(0..height).for_each(|(row, y)| {
+            let rows = Span::of(y, height, finer_height);
+            for (texel, columns) in row.iter_mut().zip(&columns) {
+                *texel = mean(columns, &rows, |x, y| finer(y * finer_width as usize + x));
             }
-            Texels::Floats(floats) => floats.par_iter().map(|&[r, g, b]| [r, g, b, 1.0]).collect(),
-        };
-        Level { width: texture.width as usize, height: texture.height as usize, texels }
-    }
-
-    /// Half as wide and high, rounded down; each texel is the mean of what it covers, parts of texels included.
-    fn halved(&self) -> Level {
-        let (width, height) = ((self.width / 2).max(1), (self.height / 2).max(1));
-        let columns: Vec<Span> = (0..width).map(|i| Span::of(i, width, self.width)).collect();
-        let row = |y: usize| {
-            let rows = Span::of(y, height, self.height);
-            let texel = |columns: &Span| self.mean(columns, &rows);
-            columns.iter().map(texel).collect::<Vec<_>>()
-        };
-        let texels = (0..height).into_par_iter().flat_map_iter(row).collect();
+        });
         Level { width, height, texels }
     }
+}
 
-    fn mean(&self, columns: &Span, rows: &Span) -> [f32; 4] {
-        let mut sum = [0.0f64; 4];
-        for (y, down) in rows.weights() {
-            for (x, across) in columns.weights() {
-                for (sum, value) in sum.iter_mut().zip(self.texels[y * self.width + x]) {
-                    *sum += f64::from(value) * down * across;
-                }
+fn mean(columns: &Span, rows: &Span, texel: impl Fn(usize, usize) -> [f32; 4]) -> [f32; 4] {
+    let mut sum = [0.0f64; 4];
+    for (y, down) in rows.weights() {
+        for (x, across) in columns.weights() {
+            for (sum, value) in sum.iter_mut().zip(texel(x, y)) {
+                *sum += f64::from(value) * down * across;
             }
         }
-        sum.map(|x| x as f32)
     }
+    sum.map(|x| x as f32)
 }
 
 /// The texels that one of a coarser level covers along an axis.
@@ -94,9 +125,9 @@ struct Span {
 
 impl Span {
     /// Of texel `i` of `count`, where the finer level has `finer`, at most three times as many and one more.
-    fn of(i: usize, count: usize, finer: usize) -> Span {
-        let size = finer as f64 / count as f64;
-        let (start, end) = (i as f64 * size, (i + 1) as f64 * size);
+    fn of(i: u32, count: u32, finer: u32) -> Span {
+        let size = f64::from(finer) / f64::from(count);
+        let (start, end) = (f64::from(i) * size, f64::from(i + 1) * size);
         let first = start as usize;
         let weight = |k: usize| {
             let texel = (first + k) as f64;
@@ -129,8 +160,8 @@ mod tests {
         for (width, height) in [(1, 1), (2, 2), (8, 4), (3, 3), (7, 5), (1, 9), (100, 3)] {
             let picture = texture(width, height, |x, y| [x as f32, (y * y) as f32, 1.0]);
             let mut words = Vec::new();
-            let levels = append(&picture, true, &mut words);
-            assert_eq!(levels, 1 + width.max(height).ilog2());
+            append(&picture, true, &mut words);
+            assert_eq!(size(&picture), (1 + width.max(height).ilog2(), words.len() as u64));
             let last: Vec<f32> = words[words.len() - 3..].iter().map(|&word| f32::from_bits(word)).collect();
             let mean = |of: &dyn Fn(u32) -> f64, count: u32| (0..count).map(of).sum::<f64>() / f64::from(count);
             let want = [mean(&|x| f64::from(x), width), mean(&|y| f64::from(y * y), height), 1.0];
@@ -147,7 +178,8 @@ mod tests {
         let picture = Texture { name: "test".into(), width: 2, height: 1, texels };
         for (is_colour, want) in [(true, 188), (false, 128)] {
             let mut words = Vec::new();
-            assert_eq!(append(&picture, is_colour, &mut words), 2);
+            append(&picture, is_colour, &mut words);
+            assert_eq!(words.len(), 3);
             assert_eq!(words[2].to_le_bytes(), [want, want, want, 128]);
         }
     }

@@ -36,6 +36,7 @@ use hierarchy::{centred, gathered, kept_or_built, refused};
 use lighting::Lamps;
 
 use crate::error::{Error, Result};
+use crate::memory::Room;
 use crate::method::{Method, Traversal};
 use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
 
@@ -115,7 +116,8 @@ impl DeviceScene {
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation)?;
         let textures = Textures::new(scene, effects, &bvh.order)?;
-        let (environment, far_light) = scene.environment.as_ref().map(environment::words).unwrap_or_default();
+        let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
+        let (environment, far_light) = far.unwrap_or_default();
         let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
         Ok(DeviceScene {

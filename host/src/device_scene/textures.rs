@@ -11,6 +11,7 @@ use super::records::by_slot;
 use super::tangents;
 use crate::error::{Error, Result};
 use crate::image::byte_to_linear;
+use crate::memory::Room;
 use crate::scene::{Alpha, Map, Material, Scene, Texels, Texture, Wrap};
 
 /// What covers the surfaces of a scene; each empty unless it has a use for it.
@@ -38,11 +39,10 @@ impl Textures {
     /// Those of a scene whose primitives have an order.
     ///
     /// # Errors
-    /// More texels than kernels count.
+    /// More texels than kernels count, or than there is memory for.
     pub(super) fn new(scene: &Scene, effects: Effects, order: &[u32]) -> Result<Textures> {
         let mut pack = Pack::default();
         if effects.has(Effects::TEXTURED) {
-            pack.texels.extend((0..=u8::MAX).map(|byte| byte_to_linear(byte).to_bits()));
             pack.maps = scene.materials.iter().map(|material| pack.maps(material)).collect::<Result<_>>()?;
         }
         let mut opacities = Vec::new();
@@ -63,7 +63,9 @@ impl Textures {
             if is_coloured { by_slot(scene, order, |_, corners| colours(scene, corners)) } else { Vec::new() };
         let has_tangents = effects.has(Effects::TANGENTS);
         let tangents = if has_tangents { tangents::tangents(scene, order) } else { Vec::new() };
-        let Pack { maps, textures, texels, means, .. } = pack;
+        let (texels, means) =
+            if effects.has(Effects::TEXTURED) { pack.texels(Room::now())? } else { Default::default() };
+        let Pack { maps, textures, .. } = pack;
         Ok(Textures { maps, textures, texels, coordinates, colours, tangents, opacities, means })
     }
 
@@ -92,25 +94,34 @@ fn colours(scene: &Scene, corners: [u32; 3]) -> Colours {
     Colours { a, b, c }
 }
 
-/// Pictures and maps so far.
-#[derive(Default)]
+/// Maps so far, and the pictures that they lay.
 struct Pack {
     maps: Vec<MapsRecord>,
     textures: Vec<TextureMap>,
-    texels: Vec<u32>,
-    means: Vec<Vec3>,
-    /// By the picture and whether it is a colour.
-    placed: Vec<(Arc<Texture>, bool, Placed)>,
+    /// Which picture each of them lays.
+    laid: Vec<usize>,
+    pictures: Vec<Picture>,
+    /// Where the next picture's words begin: after the table of sRGB and the pictures before.
+    end: u64,
 }
 
-/// Where the texels of a picture are.
-#[derive(Clone, Copy)]
-struct Placed {
+/// A picture and its levels among the words of all.
+struct Picture {
+    texture: Arc<Texture>,
+    is_colour: bool,
     start: u32,
     levels: u32,
-    /// The coarsest level.
-    mean: Vec3,
 }
+
+impl Default for Pack {
+    fn default() -> Self {
+        let (maps, textures, laid, pictures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        Pack { maps, textures, laid, pictures, end: TABLE }
+    }
+}
+
+/// Words of the table from which linear light of sRGB's bytes is taken.
+const TABLE: u64 = 1 << u8::BITS;
 
 impl Pack {
     fn maps(&mut self, material: &Material) -> Result<MapsRecord> {
@@ -147,7 +158,8 @@ impl Pack {
     /// The number of a map plus one; 0 for none.
     fn map(&mut self, map: Option<&Map>, is_colour: bool, factor: f32) -> Result<u32> {
         let Some(map) = map else { return Ok(0) };
-        let Placed { start, levels, mean } = self.place(&map.texture, is_colour)?;
+        let laid = self.place(&map.texture, is_colour)?;
+        let Picture { start, levels, .. } = self.pictures[laid];
         let placement = &map.placement;
         let wrap = |wrap| match wrap {
             Wrap::Repeat => TextureMap::REPEAT,
@@ -175,24 +187,42 @@ impl Pack {
         let found = self.textures.iter().position(|other| *other == record);
         let number = found.unwrap_or_else(|| {
             self.textures.push(record);
-            self.means.push(mean);
+            self.laid.push(laid);
             self.textures.len() - 1
         });
         Ok(number as u32 + 1)
     }
 
-    fn place(&mut self, texture: &Arc<Texture>, is_colour: bool) -> Result<Placed> {
-        let same = |(other, colour, _): &&(Arc<Texture>, bool, _)| Arc::ptr_eq(other, texture) && *colour == is_colour;
-        if let Some((.., place)) = self.placed.iter().find(same) {
-            return Ok(*place);
+    /// The number of a picture, which gets a place when it is first asked for.
+    fn place(&mut self, texture: &Arc<Texture>, is_colour: bool) -> Result<usize> {
+        let same = |other: &Picture| Arc::ptr_eq(&other.texture, texture) && other.is_colour == is_colour;
+        if let Some(found) = self.pictures.iter().position(same) {
+            return Ok(found);
         }
-        let start = self.texels.len();
-        let levels = levels::append(texture, is_colour, &mut self.texels);
+        let (levels, words) = levels::size(texture);
         let full = || Error::new(format!("the texture {:?} is one too many; use smaller ones", texture.name));
-        u32::try_from(self.texels.len()).map_err(|_| full())?;
-        let place = Placed { start: start as u32, levels, mean: last(texture, &self.texels) };
-        self.placed.push((texture.clone(), is_colour, place));
-        Ok(place)
+        let end = self.end + words;
+        // Kernels count words in 32 bits.
+        u32::try_from(end).map_err(|_| full())?;
+        self.pictures.push(Picture { texture: texture.clone(), is_colour, start: self.end as u32, levels });
+        self.end = end;
+        Ok(self.pictures.len() - 1)
+    }
+
+    /// The words of all pictures, and the mean of each map's light.
+    fn texels(&self, room: Room) -> Result<(Vec<u32>, Vec<Vec3>)> {
+        let texels = |picture: &Picture| u64::from(picture.texture.width) * u64::from(picture.texture.height);
+        let largest = self.pictures.iter().map(texels).max().unwrap_or(0);
+        let fits = room.check(self.end * 4 + largest * levels::BYTES_PER_TEXEL);
+        fits.map_err(|why| Error::new(format!("the textures' levels {why}; use smaller ones")))?;
+        let mut words = Vec::with_capacity(self.end as usize);
+        words.extend((0..=u8::MAX).map(|byte| byte_to_linear(byte).to_bits()));
+        let mut append = |Picture { texture, is_colour, .. }: &Picture| {
+            levels::append(texture, *is_colour, &mut words);
+            last(texture, &words)
+        };
+        let means: Vec<Vec3> = self.pictures.iter().map(&mut append).collect();
+        Ok((words, self.laid.iter().map(|&picture| means[picture]).collect()))
     }
 }
 
@@ -205,5 +235,26 @@ fn last(texture: &Texture, words: &[u32]) -> Vec3 {
             Vec3::from_array([r, g, b].map(byte_to_linear))
         }
         _ => Vec3::ZERO,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two pictures of a million texels: with their levels 11 MB, and 5 MB while those of one are made.
+    #[test]
+    fn levels_that_there_is_no_memory_for_are_refused_before_they_are_made() {
+        let mut pack = Pack::default();
+        for name in ["a", "b"] {
+            let texels = Texels::Bytes(vec![[7; 4]; 1 << 20]);
+            pack.place(&Arc::new(Texture { name: name.into(), width: 1 << 10, height: 1 << 10, texels }), true)
+                .unwrap();
+        }
+        let texels = |bytes| pack.texels(Room { bytes, limit: "this test" });
+        let (words, _) = texels(17 << 20).unwrap();
+        assert_eq!((words.len(), words.capacity()), (pack.end as usize, pack.end as usize));
+        let refused = texels(15 << 20).unwrap_err().message();
+        assert!(refused.starts_with("the textures' levels take about 16 MB of memory, and this test"), "{refused}");
     }
 }

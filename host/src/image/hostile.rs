@@ -163,8 +163,31 @@ fn texture_file(kind: ImageFormat) -> Vec<u8> {
 #[test]
 fn a_texture_of_every_kind_is_read() {
     for kind in KINDS {
-        let texture = decode_texture("a", Cursor::new(texture_file(kind))).unwrap();
+        let texture = decode_texture("a", Cursor::new(texture_file(kind)), &mut TextureBudget::default()).unwrap();
         assert_eq!((texture.width, texture.height), (9, 7), "{kind:?}");
+    }
+}
+
+#[test]
+fn a_picture_of_another_kind_is_named_with_the_kinds_that_are_read() {
+    let says =
+        |bytes: &[u8]| decode_texture("a", Cursor::new(bytes), &mut TextureBudget::default()).unwrap_err().message();
+    let named = |name: &str| format!("is a {name} image, which is not read; convert it to PNG, JPEG, EXR or HDR");
+    assert_eq!(says(b"RIFF\x10\0\0\0WEBPVP8 "), named("WebP"));
+    assert_eq!(says(b"\xABKTX 20\xBB\r\n\x1A\n"), named("KTX"));
+    assert_eq!(says(b"GIF89a"), "is not a PNG, JPEG, EXR or HDR image; convert it to one of these");
+}
+
+#[test]
+fn pictures_have_a_budget_that_is_asked_before_they_are_decoded() {
+    let texel = |kind| if matches!(kind, ImageFormat::Png | ImageFormat::Jpeg) { 4 } else { 12 };
+    for kind in KINDS {
+        let file = texture_file(kind);
+        let mut budget = TextureBudget::of(2 * 9 * 7 * texel(kind) - 1);
+        assert!(decode_texture("a", Cursor::new(&file), &mut budget).is_ok(), "{kind:?}");
+        // Cut off after its header.
+        let refused = decode_texture("a", Cursor::new(&file[..file.len() - 1]), &mut budget).unwrap_err().message();
+        assert!(refused.starts_with("has 9x7 texels, more than"), "{kind:?}: {refused}");
     }
 }
 
@@ -179,7 +202,7 @@ proptest! {
     ) {
         let mut bytes = texture_file(kind);
         damage(&mut bytes, &changes, cut);
-        match decode_texture("a", Cursor::new(bytes)) {
+        match decode_texture("a", Cursor::new(bytes), &mut TextureBudget::default()) {
             Ok(Texture { width, height, texels, .. }) => {
                 let count = match texels {
                     Texels::Bytes(texels) => texels.len(),

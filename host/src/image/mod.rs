@@ -23,7 +23,7 @@ use crate::math;
 
 pub use encode::{encode, encode_layers};
 pub use read::{decode, read};
-pub use texels::{decode_texture, read_texture};
+pub use texels::{TextureBudget, decode_texture, read_texture};
 pub use tone::ToneMap;
 pub(crate) use transfer::byte_to_linear;
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};

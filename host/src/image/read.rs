@@ -5,7 +5,9 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use image::{DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Primitive, Rgb};
+use image::{
+    ColorType, DynamicImage, ImageBuffer, ImageDecoder, ImageError, ImageFormat, ImageReader, Limits, Primitive, Rgb,
+};
 
 use super::bounded::{Allowance, Bounded};
 use super::transfer::{byte_to_linear, linear_table};
@@ -48,10 +50,8 @@ pub(super) fn open(path: &Path) -> Result<File> {
 pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
     distrusting(|| {
         let kinds = Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Film::MAX_PIXELS };
-        let (width, height, decoded) = pixels_of(reader, &kinds, |width, height| {
-            Film::check_size(width, height)?;
-            room(width, height, MEMORY_PER_PIXEL)
-        })?;
+        let check = |Size { width, height, .. }| Film::check_size(width, height).map(drop);
+        let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, check)?;
         Film::from_pixels(width, height, linear_pixels(decoded))
     })
 }
@@ -64,7 +64,7 @@ pub(super) fn distrusting<T>(decode: impl FnOnce() -> Result<T>) -> Result<T> {
 /// The most bytes that are read before the size of an image is known: its header, and what describes it.
 const MOST_HEADER: u64 = 16 << 20;
 /// What decoding takes: two buffers of four floats.
-pub(super) const MEMORY_PER_PIXEL: u64 = 32;
+const MEMORY_PER_PIXEL: u64 = 32;
 
 /// The most bytes that a pixel may have in a file, if the format is one of ours.
 pub(super) fn most_per_pixel(format: ImageFormat) -> Option<u64> {
@@ -87,19 +87,28 @@ pub(super) struct Kinds {
     pub most_pixels: u64,
 }
 
-/// Decodes an image whose size `check` accepts, reading no more of it than its size accounts for.
+/// What is known of an image before it is decoded.
+#[derive(Clone, Copy)]
+pub(super) struct Size {
+    pub width: u32,
+    pub height: u32,
+    /// Are its values floats?
+    pub is_float: bool,
+}
+
+/// Decodes an image whose size `check` accepts and that there is memory for, reading no more of it than its size accounts for.
 pub(super) fn pixels_of(
     reader: impl BufRead + Seek,
     kinds: &Kinds,
-    check: impl FnOnce(u32, u32) -> Result<()>,
-) -> Result<(u32, u32, DynamicImage)> {
+    check: impl FnOnce(Size) -> Result<()>,
+) -> Result<(Size, DynamicImage)> {
     let allowance = Allowance::new(MOST_HEADER);
     let reader = Bounded::new(reader, allowance.clone());
     let unreadable = |e: io::Error| Error::new(read_error(&e));
     let reader = ImageReader::new(reader).with_guessed_format().map_err(unreadable)?;
     let kind = reader.format().and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
     let Some((format, most_per_pixel)) = kind else {
-        return Err(Error::new(format!("is not a {} image", kinds.names)));
+        return Err(Error::new(not_read(reader.into_inner(), kinds.names).map_err(unreadable)?));
     };
     let mut reader = reader.into_inner();
     if format == ImageFormat::OpenExr {
@@ -113,13 +122,27 @@ pub(super) fn pixels_of(
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(decode_error)?;
     let (width, height) = decoder.dimensions();
-    check(width, height)?;
+    let is_float = matches!(decoder.color_type(), ColorType::Rgb32F | ColorType::Rgba32F);
+    let size = Size { width, height, is_float };
+    check(size)?;
+    room(width, height, MEMORY_PER_PIXEL)?;
     allowance.add(u64::from(width) * u64::from(height) * most_per_pixel);
-    Ok((width, height, DynamicImage::from_decoder(decoder).map_err(decode_error)?))
+    Ok((size, DynamicImage::from_decoder(decoder).map_err(decode_error)?))
+}
+
+/// What is said of an image that begins as none of the `names` does.
+fn not_read(mut reader: impl BufRead, names: &str) -> io::Result<String> {
+    let start = reader.fill_buf()?;
+    let is_webp = start.starts_with(b"RIFF") && start.get(8..12) == Some(b"WEBP");
+    let others = [(is_webp, "WebP"), (start.starts_with(b"\xABKTX"), "KTX"), (start.starts_with(b"DDS "), "DDS")];
+    Ok(match others.into_iter().find(|(is_it, _)| *is_it) {
+        Some((_, name)) => format!("is a {name} image, which is not read; convert it to {names}"),
+        None => format!("is not a {names} image; convert it to one of these"),
+    })
 }
 
 /// Refuses pixels of so many bytes each that there is no memory for.
-pub(super) fn room(width: u32, height: u32, each: u64) -> Result<()> {
+fn room(width: u32, height: u32, each: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * each;
     Room::now().check(bytes).map_err(|why| {
         Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))

@@ -5,31 +5,64 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
 
-use super::read::{Kinds, MEMORY_PER_PIXEL, distrusting, most_per_pixel, open, pixels_of, room};
-use crate::error::Result;
+use super::read::{Kinds, Size, distrusting, most_per_pixel, open, pixels_of};
+use crate::error::{Error, Result};
 use crate::scene::{Texels, Texture};
+
+/// What the pictures of a file may take, and what those before have left of it.
+#[derive(Debug, Clone)]
+pub struct TextureBudget(u64);
+
+impl TextureBudget {
+    /// Bytes of the texels of all pictures: 4 each, or 12 of floats.
+    pub const MOST: u64 = 1 << 31;
+
+    /// So many bytes, for tests.
+    #[cfg(test)]
+    pub(super) fn of(bytes: u64) -> Self {
+        TextureBudget(bytes)
+    }
+
+    /// Takes a picture's share.
+    fn take(&mut self, Size { width, height, is_float }: Size) -> Result<()> {
+        let bytes = u64::from(width) * u64::from(height) * if is_float { 12 } else { 4 };
+        self.0 = self.0.checked_sub(bytes).ok_or_else(|| {
+            let most = Self::MOST;
+            let fault = format!("has {width}x{height} texels, more than the pictures before it leave of {most} bytes");
+            Error::new(fault + "; make them smaller")
+        })?;
+        Ok(())
+    }
+}
+
+impl Default for TextureBudget {
+    fn default() -> Self {
+        TextureBudget(Self::MOST)
+    }
+}
 
 /// Reads a PNG, JPEG, EXR or HDR file, whatever its name says it is, as [`decode_texture`].
 ///
 /// # Errors
 /// What is missing, unreadable, empty or not a regular file, and those of [`decode_texture`]. They name the file.
-pub fn read_texture(path: &Path) -> Result<Texture> {
+pub fn read_texture(path: &Path, budget: &mut TextureBudget) -> Result<Texture> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    decode_texture(&name, BufReader::new(open(path)?)).map_err(|error| error.of(path))
+    decode_texture(&name, BufReader::new(open(path)?), budget).map_err(|error| error.of(path))
 }
 
 /// Decodes a PNG, JPEG, EXR or HDR file, told apart by their first bytes. Of the first two the values stay what they are, in 8 bits;
 /// light that is below 0 or NaN becomes 0, and infinite light the greatest number.
 ///
 /// # Errors
-/// What is none of these, damaged, truncated, or larger than a texture may be. They name no file.
-pub fn decode_texture(name: &str, reader: impl BufRead + Seek) -> Result<Texture> {
+/// What is none of these, damaged, truncated, larger than a texture may be, or more than the budget or memory has room for. They
+/// name no file.
+pub fn decode_texture(name: &str, reader: impl BufRead + Seek, budget: &mut TextureBudget) -> Result<Texture> {
     const MOST: u64 = Texture::MOST_SIDE as u64;
     distrusting(|| {
         let kinds = Kinds { names: "PNG, JPEG, EXR or HDR", most_per_pixel: most_per_texel, most_pixels: MOST * MOST };
-        let (width, height, decoded) = pixels_of(reader, &kinds, |width, height| {
-            Texture::check_size(width, height)?;
-            room(width, height, MEMORY_PER_PIXEL)
+        let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, |size| {
+            Texture::check_size(size.width, size.height)?;
+            budget.take(size)
         })?;
         Ok(Texture { name: name.to_owned(), width, height, texels: texels(decoded) })
     })

@@ -33,7 +33,11 @@ impl Budget {
     /// # Errors
     /// How many triangles there would be, and what they would take of what there is.
     pub fn check(&self, triangles: usize, vertices: usize) -> Unplaced<()> {
-        let all = Budget { triangles: self.triangles + triangles, vertices: self.vertices + vertices, ..*self };
+        let all = Budget {
+            triangles: self.triangles.saturating_add(triangles),
+            vertices: self.vertices.saturating_add(vertices),
+            ..*self
+        };
         let Budget { triangles, vertices, .. } = all;
         all.fits().map_err(|why| format!("{triangles} triangles with {vertices} vertices {why}; use fewer"))
     }
@@ -43,7 +47,7 @@ impl Budget {
     /// # Errors
     /// How many of them there would be, and what they would take of what there is.
     pub fn check_round(&self, count: usize) -> Unplaced<()> {
-        let all = Budget { round: self.round + count, ..*self };
+        let all = Budget { round: self.round.saturating_add(count), ..*self };
         all.fits().map_err(|why| format!("{} spheres and disks {why}; use fewer", all.round))
     }
 
@@ -57,11 +61,12 @@ impl Budget {
     }
 
     fn fits(&self) -> Unplaced<()> {
-        let primitives = self.triangles + self.round;
+        let primitives = self.triangles.saturating_add(self.round);
         if primitives > MAX_PRIMITIVES {
             return Err(format!("are more than the {MAX_PRIMITIVES} primitives that a scene may have"));
         }
-        self.room.check(PRIMITIVE * primitives as u64 + VERTEX * self.vertices as u64)
+        let vertices = VERTEX.saturating_mul(self.vertices as u64);
+        self.room.check((PRIMITIVE * primitives as u64).saturating_add(vertices))
     }
 
     /// Counts what is placed.

@@ -10,11 +10,12 @@ use super::range::Range;
 use super::table::Table;
 use super::texture::{Map, Maps, Placement, Texture, Wrap};
 use crate::error::Result;
-use crate::image::read_texture;
+use crate::image::{TextureBudget, read_texture};
 
 /// Pictures already read, since materials share them.
 pub struct Images {
     folder: PathBuf,
+    budget: TextureBudget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
 }
@@ -22,7 +23,12 @@ pub struct Images {
 impl Images {
     /// The pictures that a file in `folder` names, and those that its meshes do.
     pub fn new(folder: &Path) -> Self {
-        Images { folder: folder.to_owned(), textures: HashMap::new(), opacities: HashMap::new() }
+        Images {
+            folder: folder.to_owned(),
+            budget: TextureBudget::default(),
+            textures: HashMap::new(),
+            opacities: HashMap::new(),
+        }
     }
 
     /// The picture of a name, relative to the folder.
@@ -41,7 +47,7 @@ impl Images {
         if let Some(texture) = self.textures.get(path) {
             return Ok(texture.clone());
         }
-        let texture = Arc::new(read_texture(path)?);
+        let texture = Arc::new(read_texture(path, &mut self.budget)?);
         self.textures.insert(path.to_owned(), texture.clone());
         Ok(texture)
     }

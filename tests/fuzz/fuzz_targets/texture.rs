@@ -3,10 +3,11 @@
 
 use std::io::Cursor;
 
+use eyerays::image::{TextureBudget, decode_texture};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(init: eyerays_fuzz::start(), |bytes: &[u8]| {
-    if let Err(error) = eyerays::image::decode_texture("texture", Cursor::new(bytes)) {
+    if let Err(error) = decode_texture("texture", Cursor::new(bytes), &mut TextureBudget::default()) {
         eyerays_fuzz::check_line(&error);
     }
 });

@@ -12,11 +12,8 @@ use super::document::{Document, Image, Sampler, pick};
 use super::notes::Notes;
 use super::shading::{Info, Transform};
 use super::uri::{self, Target};
-use crate::image::{decode_texture, read_texture};
+use crate::image::{TextureBudget, decode_texture, read_texture};
 use crate::scene::{Map, Placement, Texture, Unplaced, Wrap};
-
-/// The most texels of all pictures of a file: 2 GiB.
-const MOST_TEXELS: u64 = 1 << 29;
 
 /// The pictures that materials take, each decoded once.
 pub struct Pictures<'f> {
@@ -24,7 +21,7 @@ pub struct Pictures<'f> {
     buffers: &'f Buffers<'f>,
     folder: &'f Path,
     decoded: HashMap<usize, Arc<Texture>>,
-    texels: u64,
+    budget: TextureBudget,
     /// The files that were read for them.
     pub paths: Vec<PathBuf>,
 }
@@ -32,7 +29,14 @@ pub struct Pictures<'f> {
 impl<'f> Pictures<'f> {
     /// Those of a document in `folder`.
     pub fn new(document: &'f Document, buffers: &'f Buffers<'f>, folder: &'f Path) -> Self {
-        Pictures { document, buffers, folder, decoded: HashMap::new(), texels: 0, paths: Vec::new() }
+        Pictures {
+            document,
+            buffers,
+            folder,
+            decoded: HashMap::new(),
+            budget: TextureBudget::default(),
+            paths: Vec::new(),
+        }
     }
 
     /// A texture as a material takes it; `owner` is the JSON path of where it does. None if there is no picture that is read.
@@ -59,14 +63,7 @@ impl<'f> Pictures<'f> {
             return Ok(texture.clone());
         }
         let image = pick(&self.document.images, number, owner, "image")?;
-        let texture = self.decode(image, number)?;
-        self.texels += u64::from(texture.width) * u64::from(texture.height);
-        if self.texels > MOST_TEXELS {
-            return Err(format!(
-                "images[{number}]: all pictures together have more than {MOST_TEXELS} texels; make them smaller"
-            ));
-        }
-        let texture = Arc::new(texture);
+        let texture = Arc::new(self.decode(image, number)?);
         self.decoded.insert(number, texture.clone());
         Ok(texture)
     }
@@ -74,8 +71,9 @@ impl<'f> Pictures<'f> {
     fn decode(&mut self, image: &Image, number: usize) -> Unplaced<Texture> {
         let here = format!("images[{number}]");
         let name = image.name.as_deref().filter(|name| !name.is_empty()).unwrap_or(&here);
-        let of_bytes = |bytes: &[u8], key| {
-            decode_texture(name, Cursor::new(bytes))
+        let budget = &mut self.budget;
+        let mut of_bytes = |bytes: &[u8], key| {
+            decode_texture(name, Cursor::new(bytes), budget)
                 .map_err(|error| format!("{here}.{key}: the image {}", error.message()))
         };
         if let Some(view) = image.buffer_view {
@@ -88,7 +86,7 @@ impl<'f> Pictures<'f> {
         match uri::follow(uri, self.folder).map_err(|fault| format!("{here}.uri: {fault}"))? {
             Target::Bytes(bytes) => of_bytes(&bytes, "uri"),
             Target::File(path) => {
-                let texture = read_texture(&path).map_err(|error| format!("{here}.uri: {error}"))?;
+                let texture = read_texture(&path, &mut self.budget).map_err(|error| format!("{here}.uri: {error}"))?;
                 self.paths.push(path);
                 Ok(texture)
             }

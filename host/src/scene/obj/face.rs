@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::super::polygon::{Cut, cut};
+use super::super::polygon::{Cut, Effort};
 use super::super::tally::Tally;
 use super::super::{Unplaced, lines};
 use super::block::Before;
@@ -78,7 +78,7 @@ impl Faces {
     }
 
     /// Cuts all into triangles, given the positions up to the end of the block.
-    pub fn cut(&mut self, positions: &[Vec3]) {
+    pub fn cut(&mut self, positions: &[Vec3], effort: &Effort) {
         self.triangles.reserve(self.corners.len() - 2 * self.faces.len());
         let (mut first, mut places): (usize, Vec<DVec3>) = (0, Vec::new());
         for face in &mut self.faces {
@@ -89,7 +89,7 @@ impl Faces {
             } else {
                 places.clear();
                 places.extend(corners.iter().map(|corner| positions[corner.position as usize - 1].as_dvec3()));
-                match cut(&places) {
+                match effort.cut(&places) {
                     Cut::Fan => {
                         let edges = corners[1..].windows(2);
                         self.triangles.extend(edges.map(|edge| [corners[0], edge[0], edge[1]]));

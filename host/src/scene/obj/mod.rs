@@ -24,6 +24,7 @@ use super::budget::Budget;
 use super::lines::MOST_LINE;
 use super::map::Images;
 use super::material::Fields;
+use super::polygon::Effort;
 use super::{Mesh, file};
 use crate::error::{Error, Result};
 
@@ -90,6 +91,7 @@ struct Found<'p> {
     materials: Vec<u32>,
     /// That of the next faces.
     material: u32,
+    effort: Effort,
     libraries: Libraries<'p>,
     notes: Notes,
 }
@@ -107,6 +109,7 @@ impl<'p> Found<'p> {
             corners: Corners::default(),
             materials: Vec::new(),
             material: 0,
+            effort: Effort::default(),
             libraries: Libraries::new(path, images),
             notes: Notes::default(),
         }
@@ -132,7 +135,8 @@ impl<'p> Found<'p> {
             self.normals.extend_from_slice(&block.normals);
             self.coordinates.extend_from_slice(&block.coordinates);
         }
-        blocks.par_iter_mut().for_each(|block| block.faces.cut(&self.positions));
+        blocks.par_iter_mut().for_each(|block| block.faces.cut(&self.positions, &self.effort));
+        self.effort.check().map_err(|fault| Error::file(self.path, fault))?;
         for ((block, text), before) in blocks.into_iter().zip(texts).zip(before) {
             self.add(block, text, before)?;
         }

@@ -3,6 +3,7 @@
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
 use crate::image::byte_to_linear;
+use crate::scene::Unplaced;
 
 /// Names of texture coordinates.
 const COORDINATES: [[&str; 2]; 3] = [["s", "t"], ["u", "v"], ["texture_u", "texture_v"]];
@@ -35,9 +36,10 @@ impl Has {
         }
     }
 
-    /// Does an element have all of these properties?
+    /// Does an element have all of these properties, as single numbers?
     pub fn all(element: &ElementDef, names: &[&str]) -> bool {
-        names.iter().all(|&name| element.properties.contains_key(name))
+        let kind = |name: &&str| element.properties.get(*name).map(|property| &property.data_type);
+        names.iter().all(|name| matches!(kind(name), Some(PropertyType::Scalar(_))))
     }
 }
 
@@ -72,10 +74,8 @@ impl PropertyAccess for Vertex {
             "alpha" => return put(&mut self.colour[3], &value, |byte| f32::from(byte) / 255.0),
             _ => return PropertyAccessResult::Ignored,
         };
-        match value.to_f32_lossy() {
-            Some(number) => *to = number,
-            None => return PropertyAccessResult::UnsupportedType,
-        }
+        let Some(number) = value.to_f32_lossy() else { return PropertyAccessResult::Ignored };
+        *to = number;
         PropertyAccessResult::Set
     }
 }
@@ -102,8 +102,22 @@ pub(super) struct Corners(pub Vec<i64>);
 
 impl Corners {
     /// Is this the list's name? Both are in use.
-    pub fn is(name: &str) -> bool {
+    fn is(name: &str) -> bool {
         matches!(name, "vertex_indices" | "vertex_index")
+    }
+
+    /// Refuses an element without such a list.
+    ///
+    /// # Errors
+    /// There is none, or one of what numbers no vertices.
+    pub fn check(element: &ElementDef) -> Unplaced<()> {
+        let property = element.properties.iter().find(|(name, _)| Corners::is(name));
+        match property.map(|(_, property)| &property.data_type) {
+            Some(PropertyType::List(_, ScalarType::Float | ScalarType::Double) | PropertyType::Scalar(_)) | None => {
+                Err(format!("its {} have no list vertex_indices of whole numbers; is it a mesh?", element.name))
+            }
+            Some(PropertyType::List(..)) => Ok(()),
+        }
     }
 }
 

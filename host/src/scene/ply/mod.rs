@@ -1,19 +1,22 @@
 //! Meshes in the Polygon File Format, as text or binary numbers of either order.
 
 mod element;
+mod fault;
+mod header;
+mod records;
 
-use std::io::{self, BufRead, BufReader, Read};
+use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
-use ply_rs_bw::parser::{ParseError, Parser, Reader};
-use ply_rs_bw::ply::{ElementDef, Header};
+use ply_rs_bw::ply::ElementDef;
 
 use self::element::{Corners, Has, Ignored, Vertex};
+use self::fault::Checked;
+use self::records::Records;
 use super::budget::Budget;
-use super::lines::MOST_LINE;
 use super::normal::unit;
-use super::polygon::{Cut, cut};
+use super::polygon::{Cut, Effort};
 use super::{Mesh, Unplaced, file};
 use crate::error::{Error, Result};
 
@@ -36,9 +39,8 @@ pub fn load(path: &Path, budget: Budget) -> Result<Ply> {
 
 /// The mesh in these bytes.
 pub(super) fn parse(path: &Path, source: impl Read, budget: Budget) -> Result<Ply> {
-    let mut reader = Reader::new(Bounded { inner: BufReader::new(source), since: 0 });
     let mut found = Found::new(budget);
-    found.read(&mut reader).map_err(|fault| fault.of(path))?;
+    found.read(BufReader::new(source)).map_err(|fault| fault.of(path))?;
     let warnings = found.warnings.iter().map(|warning| Error::file(path, warning.as_str()).to_string()).collect();
     let mesh = found.mesh().map_err(|fault| Error::file(path, fault))?;
     Ok(Ply { mesh, warnings })
@@ -50,6 +52,7 @@ struct Found {
     vertices: Vec<Vertex>,
     has: Has,
     triangles: Vec<[u32; 3]>,
+    effort: Effort,
     /// Faces that no triangles fill.
     crossing: usize,
     warnings: Vec<String>,
@@ -58,29 +61,29 @@ struct Found {
 impl Found {
     fn new(budget: Budget) -> Self {
         let (vertices, triangles, warnings) = (Vec::new(), Vec::new(), Vec::new());
-        Found { budget, vertices, has: Has::default(), triangles, crossing: 0, warnings }
+        let (has, effort) = (Has::default(), Effort::default());
+        Found { budget, vertices, has, triangles, effort, crossing: 0, warnings }
     }
 
-    fn read(&mut self, reader: &mut Reader<impl BufRead>) -> Checked<()> {
-        let header = Parser::<Vertex>::new().read_header(reader)?;
+    fn read(&mut self, mut reader: impl BufRead) -> Checked<()> {
+        let (header, lines) = header::read(&mut reader)?;
         let count = |name: &str| header.elements.get(name).map_or(0, |element| element.count);
         // What a header claims is refused before there is room for it.
-        self.budget.check(count("face"), count("vertex"))?;
+        self.budget.check(count("face").saturating_add(count("tristrips")), count("vertex"))?;
+        let mut records = Records::new(reader, header.encoding, lines);
         for (name, element) in &header.elements {
             match name.as_str() {
-                "vertex" => self.read_vertices(reader, element, &header)?,
+                "vertex" => self.read_vertices(&mut records, element)?,
                 "face" => {
-                    for (number, list) in lists(reader, element, &header)?.into_iter().enumerate() {
-                        self.add_face(number, &list.0)?;
-                    }
+                    Corners::check(element)?;
+                    records.each(element, |number, list: Corners| Ok(self.add_face(number, &list.0)?))?;
                 }
                 "tristrips" => {
-                    for (number, list) in lists(reader, element, &header)?.into_iter().enumerate() {
-                        self.add_strips(number, &list.0)?;
-                    }
+                    Corners::check(element)?;
+                    records.each(element, |number, list: Corners| Ok(self.add_strips(number, &list.0)?))?;
                 }
                 other => {
-                    Parser::<Ignored>::new().read_payload_for_element(reader, element, &header)?;
+                    records.each(element, |_, _: Ignored| Ok(()))?;
                     self.warnings.push(format!("the element {other:?} is ignored: only polygons are read"));
                 }
             }
@@ -93,21 +96,18 @@ impl Found {
         Ok(())
     }
 
-    fn read_vertices(
-        &mut self,
-        reader: &mut Reader<impl BufRead>,
-        element: &ElementDef,
-        header: &Header,
-    ) -> Checked<()> {
-        if !Has::all(element, &["x", "y", "z"]) {
-            return Err("its vertices have no x, y and z; is it a mesh?".into());
-        }
+    fn read_vertices(&mut self, records: &mut Records<impl BufRead>, element: &ElementDef) -> Checked<()> {
         self.has = Has::of(element);
+        if !Has::all(element, &["x", "y", "z"]) {
+            return Err("its vertices have no numbers x, y and z; is it a mesh?".into());
+        }
         if self.has.foreign_colours {
             self.warnings.push("the vertices' colours are ignored: make them uchar, or float between 0 and 1".into());
         }
-        self.vertices = Parser::new().read_payload_for_element(reader, element, header)?;
-        Ok(())
+        records.each(element, |_, vertex| {
+            self.vertices.push(vertex);
+            Ok(())
+        })
     }
 
     fn add_face(&mut self, number: usize, corners: &[i64]) -> Unplaced<()> {
@@ -117,11 +117,12 @@ impl Found {
         }
         let corners = corners.iter().map(|&corner| self.vertex(corner, what)).collect::<Unplaced<Vec<u32>>>()?;
         let place = |&corner: &u32| DVec3::from(self.vertices[corner as usize].position.map(f64::from));
-        match cut(&corners.iter().map(place).collect::<Vec<_>>()) {
+        match self.effort.cut(&corners.iter().map(place).collect::<Vec<_>>()) {
             Cut::Fan => self.triangles.extend(corners[1..].windows(2).map(|edge| [corners[0], edge[0], edge[1]])),
             Cut::Triangles(all) => self.triangles.extend(all.iter().map(|t| t.map(|corner| corners[corner as usize]))),
             Cut::Impossible => self.crossing += 1,
         }
+        self.effort.check()?;
         self.budget.check(self.triangles.len(), self.vertices.len())
     }
 
@@ -198,85 +199,4 @@ fn append(mesh: &mut Mesh, vertex: &Vertex, has: Has) -> Unplaced<()> {
         mesh.colours.push(colour.into());
     }
     Ok(())
-}
-
-/// The lists of corners of an element.
-fn lists(reader: &mut Reader<impl BufRead>, element: &ElementDef, header: &Header) -> Checked<Vec<Corners>> {
-    if !element.properties.keys().any(|name| Corners::is(name)) {
-        return Err(format!("the element {:?} has no list vertex_indices; is it a mesh?", element.name).into());
-    }
-    Ok(Parser::new().read_payload_for_element(reader, element, header)?)
-}
-
-/// What is wrong with a file, and on which line if the parser knows.
-struct Fault {
-    line: Option<usize>,
-    text: String,
-}
-
-impl From<String> for Fault {
-    fn from(text: String) -> Self {
-        Fault { line: None, text }
-    }
-}
-
-impl From<&str> for Fault {
-    fn from(text: &str) -> Self {
-        text.to_owned().into()
-    }
-}
-
-impl From<ParseError> for Fault {
-    fn from(error: ParseError) -> Self {
-        let line = error.line();
-        // It names the line itself, and has lines of its own.
-        let text = error.to_string();
-        let text = line.and_then(|line| text.strip_prefix(&format!("Line {line}: "))).unwrap_or(&text);
-        let words: Vec<&str> = text.split_whitespace().collect();
-        let text = words.join(" ");
-        let remedy = "was it written to the end, and by a program that knows the format?";
-        Fault { line, text: format!("{}; {remedy}", text.trim_end_matches('.')) }
-    }
-}
-
-impl Fault {
-    fn of(self, path: &Path) -> Error {
-        match self.line {
-            Some(line) => Error::line(path, line, self.text),
-            None => Error::file(path, self.text),
-        }
-    }
-}
-
-type Checked<T> = std::result::Result<T, Fault>;
-
-/// Text of which no line is too long: a line is read whole.
-struct Bounded<R> {
-    inner: R,
-    /// Bytes since the last end of a line.
-    since: usize,
-}
-
-impl<R: BufRead> Read for Bounded<R> {
-    fn read(&mut self, to: &mut [u8]) -> io::Result<usize> {
-        // Binary numbers have no lines.
-        self.since = 0;
-        self.inner.read(to)
-    }
-}
-
-impl<R: BufRead> BufRead for Bounded<R> {
-    fn fill_buf(&mut self) -> io::Result<&[u8]> {
-        if self.since > MOST_LINE {
-            return Err(io::Error::other(format!("a line has more than {MOST_LINE} bytes")));
-        }
-        self.inner.fill_buf()
-    }
-
-    fn consume(&mut self, amount: usize) {
-        // What was filled last and is now taken ends where a line does, or is all there was.
-        let text = self.inner.fill_buf().unwrap_or_default();
-        self.since = if text[..amount.min(text.len())].ends_with(b"\n") { 0 } else { self.since + amount };
-        self.inner.consume(amount);
-    }
 }

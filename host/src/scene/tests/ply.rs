@@ -146,20 +146,29 @@ fn what_makes_no_sense_is_refused_in_a_line() {
     let height = header("binary_little_endian").len() + 5 * 13 + 4;
     nowhere[height..height + 4].copy_from_slice(&f32::NAN.to_le_bytes());
     for (bytes, why) in [
-        (b"ply\n".to_vec(), "was it written to the end"),
-        (b"solid thing\n".to_vec(), "was it written to the end"),
+        (b"ply\n".to_vec(), "ends within its header; write it again"),
+        (b"solid thing\n".to_vec(), "is no PLY file: its first line is not \"ply\""),
+        (spoiled("property float y", "propperty float y"), "\"propperty float y\" makes no sense here in a header"),
+        (spoiled("property float y", "property float x"), "a second property \"x\"; remove one"),
+        (spoiled("element face 5", "element vertex 5"), "a second element \"vertex\"; remove one"),
+        (spoiled("format ascii 1.0\n", ""), "its header has no line \"format ascii 1.0\""),
+        (spoiled("made by hand", &"x".repeat(1 << 20)), "its header has more than 1048576 bytes"),
         (spoiled("4 0 1 2 3", "4 0 1 2 9"), "face 0 names vertex 9, but 6 precede it"),
         (spoiled("4 0 1 2 3", "4 0 1 2 -3"), "face 0 names vertex -3"),
         (spoiled("3 0 5 1", "2 0 5"), "face 1 has 2 corners"),
         (nowhere, "vertex 5, counted from 0, is at [1.0, NaN, 1.0]"),
-        (spoiled("1 1.5 1 7", "1 1.5 x 7"), "Couldn't read element line"),
+        (spoiled("1 1.5 1 7", "1 1.5 x 7"), "is not the x y z quality of a vertex; correct the line"),
         (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
-        (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "was it written to the end"),
-        (spoiled("float z", "float w"), "have no x, y and z"),
+        (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "ends within vertex 4 of 6"),
+        (spoiled("element face 5", "element tristrips 1000000000"), "take about"),
+        (spoiled("float z", "float w"), "have no numbers x, y and z"),
+        (spoiled("float z", "list uchar float z"), "have no numbers x, y and z"),
+        (spoiled("list uchar int vertex", "list uchar float vertex"), "have no list vertex_indices of whole numbers"),
+        (spoiled("list uchar int vertex", "int vertex"), "have no list vertex_indices of whole numbers"),
         (covered.replace(" 7\n", " 0 1e39\n").into_bytes(), "vertex 0, counted from 0, has the texture coordinates"),
-        (spoiled("vertex_indices", "corners"), "has no list vertex_indices"),
+        (spoiled("vertex_indices", "corners"), "have no list vertex_indices"),
         (spoiled("float x", "int8 x"), ""),
-        (little()[..little().len() - 3].to_vec(), "was it written to the end"),
+        (little()[..little().len() - 3].to_vec(), "ends within face 4 of 5, counted from 0"),
     ] {
         match ply::parse(Path::new("a.ply"), &bytes[..], budget(1 << 20)) {
             Ok(ply) => assert!(why.is_empty(), "{ply:?}"),
@@ -172,6 +181,57 @@ fn what_makes_no_sense_is_refused_in_a_line() {
     let none = [header("ascii").replace("face 5", "face 0").into_bytes(), b"0 0 0 1\n".repeat(6)].concat();
     let error = ply::parse(Path::new("a.ply"), &none[..], budget(1 << 20)).unwrap_err();
     assert_refused(&error, "a.ply", None, "there is no face in it");
+}
+
+/// Any number of records without properties takes no byte, and so no time.
+#[test]
+fn an_element_of_nothing_is_passed_over() {
+    let nothing = |format| header(format).replace("element face", "element nothing 1000000000000000\nelement face");
+    let numbers = little().split_off(header("binary_little_endian").len());
+    let ply = read(&[nothing("binary_little_endian").into_bytes(), numbers].concat());
+    assert_eq!(ply.mesh, read(&little()).mesh);
+    let text = as_text().split_off(header("ascii").len());
+    let text = [nothing("ascii").into_bytes(), text].concat();
+    let error = ply::parse(Path::new("a.ply"), &text[..], budget(1 << 20)).unwrap_err();
+    assert_refused(&error, "a.ply", None, "ends within nothing 5 of 1000000000000000");
+}
+
+#[test]
+fn a_fault_of_text_is_on_its_line_and_one_of_numbers_on_none() {
+    let line = |bytes: &[u8]| {
+        let error = ply::parse(Path::new("a.ply"), bytes, budget(1 << 20)).unwrap_err();
+        error.place().and_then(|(_, line)| line)
+    };
+    let text = String::from_utf8(as_text()).unwrap();
+    assert_eq!(line(text.replace("1 1.5 1 7", "1 1.5 1").as_bytes()), Some(11 + 6));
+    assert_eq!(line(text.replace("3 3 5 0", "3 3 5").as_bytes()), Some(11 + 6 + 5));
+    assert_eq!(line(text.replace("float y", "flat y").as_bytes()), Some(6));
+    assert_eq!(line(&little()[..little().len() - 3]), None);
+}
+
+#[test]
+fn comments_need_not_be_utf8() {
+    let mut latin = as_text();
+    let at = latin.windows(4).position(|bytes| bytes == b"hand").unwrap();
+    latin[at] = 0xE9;
+    assert_eq!(read(&latin).mesh, read(&as_text()).mesh);
+}
+
+/// As many corners as a line of text holds, and more than can be cut in a minute.
+#[test]
+fn a_face_of_very_many_corners_is_refused() {
+    let count = 200_000u32;
+    let corners: Vec<u32> = (0..count).map(|i| i.wrapping_mul(2_654_435_761) % count).collect();
+    let mut bytes = format!(
+        "ply\nformat binary_little_endian 1.0\nelement vertex {count}\nproperty float x\nproperty float y\n\
+         property float z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    let at = |i: u32| [i % 449, i / 449, 0].map(|x| (x as f32).to_le_bytes());
+    (0..count).for_each(|i| bytes.extend(at(i).as_flattened()));
+    bytes.extend([count].iter().chain(&corners).flat_map(|number| number.to_le_bytes()));
+    let error = ply::parse(Path::new("a.ply"), &bytes[..], budget(1 << 30)).unwrap_err();
+    assert_refused(&error, "a.ply", None, "its faces have too many corners to be cut into triangles");
 }
 
 #[test]

@@ -160,7 +160,7 @@ fn what_makes_no_sense_is_refused_in_a_line() {
         (spoiled("1 1.5 1 7", "1 1.5 x 7"), "is not the x y z quality of a vertex; correct the line"),
         (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
         (spoiled("element face 5", "element face 0").split_at(230).0.to_vec(), "ends within vertex 4 of 6"),
-        (spoiled("element face 5", "element tristrips 1000000000"), "take about"),
+        (spoiled("element face 5", "element tristrips 1000000000"), "1000000000 triangles with 6 vertices"),
         (spoiled("float z", "float w"), "have no numbers x, y and z"),
         (spoiled("float z", "list uchar float z"), "have no numbers x, y and z"),
         (spoiled("list uchar int vertex", "list uchar float vertex"), "have no list vertex_indices of whole numbers"),

@@ -66,7 +66,28 @@ fn a_model_becomes_a_scene_file_that_renders_to_the_same_picture() {
     std::fs::write(place.path("mesh.obj"), program::TRIANGLE).unwrap();
     place.succeed(&["convert", "mesh.obj", "scenes/mesh.toml"]);
     assert_eq!(film("scenes/mesh.toml"), film("mesh.obj"));
+    let text = std::fs::read_to_string(place.path("scenes/mesh.toml")).unwrap();
+    assert!(text.contains("file = \"../mesh.obj\""), "both may be moved together: {text}");
+    // And one that nothing lights but what shines.
+    std::fs::write(place.path("lamp.gltf"), LAMP).unwrap();
+    place.succeed(&["convert", "lamp.gltf", "lamp.toml"]);
+    assert_eq!(film("lamp.toml"), film("lamp.gltf"));
+    let text = std::fs::read_to_string(place.path("lamp.toml")).unwrap();
+    assert!(text.contains("# Several of its materials are called \"matt\""), "{text}");
 }
+
+/// A triangle that shines before two others, whose materials share a name.
+const LAMP: &str = r#"{ "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+"meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 },
+{ "attributes": { "POSITION": 1 }, "material": 1 }, { "attributes": { "POSITION": 1 }, "indices": 2, "material": 2 }] }],
+"materials": [{ "name": "lamp", "emissiveFactor": [1, 1, 1] }, { "name": "matt" },
+{ "name": "matt", "pbrMetallicRoughness": { "metallicFactor": 0 } }],
+"accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+{ "bufferView": 1, "componentType": 5126, "count": 3, "type": "VEC3" },
+{ "bufferView": 2, "componentType": 5121, "count": 3, "type": "SCALAR" }],
+"bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 36 },
+{ "buffer": 0, "byteOffset": 72, "byteLength": 3 }],
+"buffers": [{ "byteLength": 75, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIC/AACAPwAAAAAAAIC/AAAAAAAAgD8AAIC/AgEA" }] }"#;
 
 #[test]
 fn a_scene_file_is_neither_made_of_another_nor_replaced() {

@@ -19,6 +19,10 @@ pub fn describe(scene: &Scene, mesh: &str) -> String {
     if scene.ambient != Vec3::ZERO {
         text.key("ambient", triple(scene.ambient));
     }
+    if scene.lights.is_empty() && scene.environment.is_none() {
+        text.line("# No lights are added: what shines is enough.");
+        text.key("light", "[]");
+    }
     text.table("render");
     settings(&mut text, &scene.settings);
     text.table("background");
@@ -39,6 +43,11 @@ pub fn describe(scene: &Scene, mesh: &str) -> String {
     }
     text.list("mesh");
     text.key("file", quoted(mesh));
+    let mut shared: Vec<&str> = names.into_iter().filter(|(_, count)| *count > 1).map(|(name, _)| name).collect();
+    shared.sort_unstable();
+    for name in shared {
+        text.line(&format!("# Several of its materials are called {}, so none of them is above.", quoted(name)));
+    }
     text.0
 }
 

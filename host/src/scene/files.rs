@@ -14,6 +14,13 @@ use super::table::Table;
 use super::{Sphere, file, part, xyzr};
 use crate::error::Result;
 
+/// What a scene file has of which its meshes may have others.
+#[derive(Default, Clone, Copy)]
+pub struct Own {
+    pub lights: bool,
+    pub cameras: bool,
+}
+
 /// Files already read, since a scene may place one many times, and what is left of the memory for others.
 pub struct Files<'p> {
     folder: &'p Path,
@@ -23,6 +30,8 @@ pub struct Files<'p> {
     pub images: Images,
     /// Do materials of the scene file cover meshes with textures?
     pub is_covered: bool,
+    /// Has the scene file lights of its own, and cameras?
+    pub has: Own,
     meshes: HashMap<PathBuf, Obj>,
     spheres: HashMap<PathBuf, Vec<Sphere>>,
     /// What was ignored in them.
@@ -39,6 +48,7 @@ impl<'p> Files<'p> {
             budget,
             images: Images::new(folder),
             is_covered: false,
+            has: Own::default(),
             meshes: HashMap::new(),
             spheres: HashMap::new(),
             warnings: Vec::new(),
@@ -64,7 +74,10 @@ impl<'p> Files<'p> {
     /// Those of [`read_mesh`].
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
-            let mut obj = read_mesh(path, self.budget, &mut self.images, self.is_covered)?;
+            let mut obj = match is_gltf(path) {
+                true => meshes_of(path, gltf::load(path, self.budget)?, self.has),
+                false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
+            };
             self.warnings.append(&mut obj.warnings);
             self.paths.push(path.to_owned());
             self.paths.append(&mut obj.libraries);
@@ -87,15 +100,12 @@ impl<'p> Files<'p> {
     }
 }
 
-/// Reads a Wavefront mesh or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices, or the
-/// meshes of a glTF scene; the other arguments are those of [`obj::load`].
+/// Reads a Wavefront mesh or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other
+/// arguments are those of [`obj::load`].
 ///
 /// # Errors
-/// Those of [`obj::load`], [`ply::load`] and [`gltf::load`].
+/// Those of [`obj::load`] and [`ply::load`].
 pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
-    if is_gltf(path) {
-        return gltf::load(path, budget).map(|scene| meshes_of(path, scene));
-    }
     if !is(path, "ply") {
         return obj::load(path, budget, images, is_covered);
     }
@@ -108,13 +118,17 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
     Ok(Obj { mesh, materials, warnings, libraries: Vec::new() })
 }
 
-/// The meshes of a scene, with a warning of what else it has.
-fn meshes_of(path: &Path, scene: Gltf) -> Obj {
+/// The meshes of a scene, with a warning of what else it has and the scene file has not.
+fn meshes_of(path: &Path, scene: Gltf, own: Own) -> Obj {
     let Gltf { mut obj, parts: _, lights, cameras } = scene;
-    if !lights.is_empty() || !cameras.is_empty() {
-        let what = "its lights and cameras are left out: the scene that it is a mesh of has its own";
-        obj.warnings.push(format!("{}: {what}", path.display()));
-    }
+    let what = match (!lights.is_empty() && !own.lights, !cameras.is_empty() && !own.cameras) {
+        (true, true) => "lights and cameras",
+        (true, false) => "lights",
+        (false, true) => "cameras",
+        (false, false) => return obj,
+    };
+    let why = "a mesh brings none into a scene file: \"eyerays convert\" writes one that has them";
+    obj.warnings.push(format!("{}: its {what} are left out, {why}", path.display()));
     obj
 }
 

@@ -8,7 +8,7 @@ use super::binary;
 use super::budget::Budget;
 use super::document;
 use super::file;
-use super::files::{Files, is, is_gltf, read_mesh};
+use super::files::{Files, Own, is, is_gltf, read_mesh};
 use super::frame;
 use super::geometry::Geometry;
 use super::gltf::{self, Gltf};
@@ -152,6 +152,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
     let mut files = Files::new(file::folder(path), budget);
+    files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
     let ambient = table.triple("ambient", Range::AMOUNT)?;
@@ -185,6 +186,10 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         settings,
         hierarchy: None,
     };
+    for material in &scene.materials {
+        let idle = material.physical.and_then(|physical| physical.idle());
+        warnings.extend(idle.map(|idle| format!("{}: material {:?}: {idle}", path.display(), material.name)));
+    }
     Ok((framed(path, scene)?, warnings))
 }
 

@@ -85,7 +85,8 @@ impl Fields {
 
     /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse. Of one by microfacets the thesis'
     /// model keeps what it can.
-    pub fn finish(self, name: &str) -> Material {
+    pub fn finish(mut self, name: &str) -> Material {
+        self.take_pictures();
         let ior = self.ior.unwrap_or(GLASS);
         let physical = self.physical.finish(self.diffuse, self.transmission, ior);
         let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
@@ -109,6 +110,33 @@ impl Fields {
             alpha: self.alpha.unwrap_or(alpha),
             opacity: self.opacity.unwrap_or(1.0),
             maps: self.maps,
+        }
+    }
+
+    /// A picture whose factor nobody says is taken as it is.
+    fn take_pictures(&mut self) {
+        let Fields { transmission, emission, physical, maps, .. } = self;
+        if maps.emission.is_some() {
+            emission.get_or_insert(Vec3::ONE);
+        }
+        if maps.transmission.is_some() {
+            transmission.get_or_insert(Vec3::ONE);
+            // The thesis' model has no such picture.
+            physical.thin.get_or_insert(false);
+        }
+        if maps.specular_tint.is_some() {
+            physical.specular_tint.get_or_insert(Vec3::ONE);
+        }
+        let numbers = [
+            (&maps.metallic_roughness, &mut physical.metallic),
+            (&maps.metallic_roughness, &mut physical.roughness),
+            (&maps.specular_weight, &mut physical.specular_weight),
+            (&maps.anisotropy, &mut physical.anisotropy),
+        ];
+        for (map, number) in numbers {
+            if map.is_some() {
+                number.get_or_insert(1.0);
+            }
         }
     }
 

@@ -80,6 +80,16 @@ impl Physical {
         self.transmission != Vec3::ZERO && self.conductor.is_none()
     }
 
+    /// What of it does nothing beside the rest, and what to do.
+    pub fn idle(&self) -> Option<&'static str> {
+        if self.conductor.is_some() && self.transmission != Vec3::ZERO {
+            return Some("no light passes a conductor; remove conductor or transmission");
+        }
+        let has_inside = self.is_transparent() && !self.thin;
+        let absorbs_nothing = self.absorption.is_some() && !has_inside;
+        absorbs_nothing.then_some("absorption is of light that passes inside; give it transmission and leave thin out")
+    }
+
     /// What it reflects at normal incidence where it is no metal, linear RGB.
     pub fn reflectance(&self) -> Vec3 {
         let root = (self.ior - 1.0) / (self.ior + 1.0);

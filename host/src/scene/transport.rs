@@ -59,19 +59,14 @@ pub struct Transport {
 impl Integrator {
     /// What of a scene it leaves out, in a line.
     pub fn ignored(self, scene: &Scene) -> Option<String> {
-        if self != Integrator::Path {
-            return None;
+        match self {
+            Integrator::Path => path_ignores(scene),
+            Integrator::Whitted if scene.environment.is_some() && scene.lights.is_empty() => Some(
+                "the environment lights nothing under the integrator whitted: choose path (--integrator path) or add a light"
+                    .to_owned(),
+            ),
+            _ => None,
         }
-        let any = |of: &dyn Fn(&Material) -> bool| scene.materials.iter().any(of);
-        let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient != Vec3::ZERO);
-        let has_highlights = !scene.lights.is_empty() && any(&|m| m.specular != Vec3::ZERO);
-        let what = match (has_ambient, has_highlights) {
-            (true, true) => "ambient light and Phong's highlights are",
-            (true, false) => "ambient light is",
-            (false, true) => "Phong's highlights are",
-            (false, false) => return None,
-        };
-        Some(format!("{what} not drawn: the integrator path finds all light by itself"))
     }
 
     /// Does it choose one light of all at each vertex?
@@ -83,6 +78,19 @@ impl Integrator {
     pub fn samples(self) -> bool {
         self != Integrator::Whitted
     }
+}
+
+fn path_ignores(scene: &Scene) -> Option<String> {
+    let any = |of: &dyn Fn(&Material) -> bool| scene.materials.iter().any(of);
+    let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient != Vec3::ZERO);
+    let has_highlights = !scene.lights.is_empty() && any(&|m| m.physical.is_none() && m.specular != Vec3::ZERO);
+    let what = match (has_ambient, has_highlights) {
+        (true, true) => "ambient light and Phong's highlights are",
+        (true, false) => "ambient light is",
+        (false, true) => "Phong's highlights are",
+        (false, false) => return None,
+    };
+    Some(format!("{what} not drawn: the integrator path finds all light by itself"))
 }
 
 impl Direct {

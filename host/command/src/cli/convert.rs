@@ -1,6 +1,7 @@
 //! `eyerays convert`.
 
 use std::ffi::OsString;
+use std::iter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::slice;
@@ -24,7 +25,8 @@ Examples:
   eyerays convert model.glb scene.toml
 A binary file holds all that the scene's files say and a hierarchy, and renders to the same picture without them.
 It needs neither to be parsed nor, with a hierarchy of its quality, to be built; its hash is checked each time.
-A scene file takes its surfaces and textures from the mesh that it names, and holds the rest for you to change.";
+A scene file takes its surfaces and textures from the mesh that it names, and holds the rest for you to change.
+An .eyerays file of the name is replaced; a .toml file is not, since it may hold changes of yours.";
 
 #[derive(Args)]
 pub(super) struct Convert {
@@ -123,7 +125,7 @@ fn check_new(path: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The name of a mesh as a scene file at `path` calls it: from its folder if the mesh lies in it or below, else from the root.
+/// The name of a mesh as a scene file at `path` calls it, from its folder.
 fn from_folder(mesh: &Path, path: &Path) -> Result<String> {
     let whole =
         |path: &Path| path.canonicalize().map_err(|error| Error::file(path, format!("it cannot be found: {error}")));
@@ -132,7 +134,10 @@ fn from_folder(mesh: &Path, path: &Path) -> Result<String> {
         _ => Path::new("."),
     };
     let (mesh, folder) = (whole(mesh)?, whole(folder)?);
-    let name = mesh.strip_prefix(&folder).unwrap_or(&mesh);
+    let shared = mesh.components().zip(folder.components()).take_while(|(a, b)| a == b).count();
+    // Another drive shares nothing.
+    let up = if shared == 0 { 0 } else { folder.components().count() - shared };
+    let name: PathBuf = iter::repeat_n("..".as_ref(), up).chain(mesh.iter().skip(shared)).collect();
     let fault = "a scene file is UTF-8 text, and this name is not; rename it";
-    name.to_str().map(str::to_owned).ok_or_else(|| Error::file(name, fault))
+    name.to_str().map(str::to_owned).ok_or_else(|| Error::file(&name, fault))
 }

@@ -66,7 +66,7 @@ enum Command {
     Info(info::Info),
     /// Validate a scene and render nothing
     Check(check::Check),
-    /// Write a scene with its hierarchy in the binary form, which is not parsed and built again
+    /// Write a scene as one binary file that loads at once, or a model as a scene file to change
     #[command(after_help = convert::EXAMPLES)]
     Convert(convert::Convert),
     /// Make a scene of any number of triangles or spheres to measure with

@@ -13,11 +13,13 @@ const KNOWN: [&str; 11] = [
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
-    "KHR_materials_variants",
+    VARIANTS,
     "KHR_materials_volume",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];
+
+const VARIANTS: &str = "KHR_materials_variants";
 
 /// Those that change nothing of a picture.
 const IDLE: [&str; 2] = ["KHR_xmp", "KHR_xmp_json_ld"];
@@ -30,12 +32,29 @@ const MOST_NAMED: usize = 20;
 /// # Errors
 /// An extension that is required and not read.
 pub fn check(document: &Document, notes: &mut Notes) -> Unplaced<()> {
+    if document.extensions_used.iter().any(|name| name == VARIANTS) {
+        notes.once(
+            VARIANTS,
+            &format!("variants of materials ({VARIANTS}) are left out: each mesh has its first material"),
+        );
+    }
     let is_unknown = |name: &&String| !KNOWN.contains(&name.as_str()) && !IDLE.contains(&name.as_str());
     if let Some(name) = document.extensions_required.iter().find(is_unknown) {
-        return Err(format!("extensionsRequired: {name:?} is not read; save the file without it"));
+        return Err(format!("extensionsRequired: {name:?} is not read; {}", remedy(name)));
     }
     for name in document.extensions_used.iter().filter(is_unknown).take(MOST_NAMED) {
         notes.once(name, &format!("the extension {name:?} is left out: the picture may look different"));
     }
     Ok(())
+}
+
+/// How to do without an extension that a file requires.
+fn remedy(name: &str) -> &'static str {
+    match name {
+        "KHR_draco_mesh_compression" | "EXT_meshopt_compression" | "KHR_meshopt_compression" => {
+            "save its meshes without compression, as Blender does unless it is asked to"
+        }
+        "KHR_texture_basisu" | "EXT_texture_webp" | "EXT_texture_avif" => "save its textures as PNG or JPEG",
+        _ => "save the file without it",
+    }
 }

@@ -16,6 +16,11 @@ pub fn plain() -> Fields {
     Fields { physical, ..Fields::default() }
 }
 
+/// The index of refraction that means that all light is reflected (KHR_materials_ior).
+const MIRROR: f64 = 0.0;
+/// The greatest by which light is bent.
+const MOST_IOR: f64 = 4.0;
+
 /// Reads the material of a number.
 ///
 /// # Errors
@@ -86,14 +91,29 @@ impl Reader<'_, '_, '_> {
     }
 
     fn extensions(&mut self, of: &Extensions) -> Unplaced<()> {
-        if let Some(ior) = of.ior.as_ref().and_then(|of| of.ior) {
-            self.fields.ior = Some(self.clamped(ior, "extensions.KHR_materials_ior.ior", Range::IOR, (1.0, 4.0))?);
-        }
-        if let Some(transmission) = &of.transmission {
+        let ior = of.ior.as_ref().and_then(|of| of.ior);
+        if let Some(transmission) = of.transmission.as_ref().filter(|_| ior != Some(MIRROR)) {
             self.transmission(transmission, of.volume.as_ref())?;
         }
         of.specular.as_ref().map_or(Ok(()), |of| self.specular(of))?;
+        ior.map_or(Ok(()), |ior| self.ior(ior))?;
         of.anisotropy.as_ref().map_or(Ok(()), |of| self.anisotropy(of))
+    }
+
+    /// An index of refraction. One that is too great to bend light here still reflects as much as it says: by the tint, which the
+    /// reflection at normal incidence is multiplied with.
+    fn ior(&mut self, ior: f64) -> Unplaced<()> {
+        let bends = self.fields.transmission.is_some() && self.fields.physical.thin == Some(false);
+        if ior == MIRROR || ior > MOST_IOR && !bends {
+            let root = |ior: f64| (ior - 1.0) / (ior + 1.0);
+            let reflectance = |ior: f64| root(ior) * root(ior);
+            let tint = self.fields.physical.specular_tint.unwrap_or(Vec3::ONE);
+            self.fields.physical.specular_tint = Some(tint * (reflectance(ior) / reflectance(MOST_IOR)) as f32);
+            self.fields.ior = Some(MOST_IOR as f32);
+            return Ok(());
+        }
+        self.fields.ior = Some(self.clamped(ior, "extensions.KHR_materials_ior.ior", Range::IOR, (1.0, MOST_IOR))?);
+        Ok(())
     }
 
     fn transmission(&mut self, of: &Transmission, volume: Option<&Volume>) -> Unplaced<()> {

@@ -101,7 +101,7 @@ fn document(json: &[u8]) -> Unplaced<Document> {
     let document: Document = serde_path_to_error::deserialize(&mut from).map_err(|error| {
         let (path, fault) = (error.path().to_string(), error.inner());
         let owner = if path == "." { "the JSON".into() } else { path };
-        format!("{owner}: {fault}; write the file again as glTF 2.0")
+        format!("{owner}: {}; write the file again as glTF 2.0", plain(fault))
     })?;
     from.end().map_err(|fault| format!("the JSON: {fault}; write the file again as glTF 2.0"))?;
     match document.asset.version.as_deref() {
@@ -109,6 +109,26 @@ fn document(json: &[u8]) -> Unplaced<Document> {
         Some(version) if version.starts_with("2.") => Ok(document),
         Some(version) => Err(format!("asset.version: this is glTF {version}; convert it to 2.0")),
     }
+}
+
+/// What a parser found, without what it wanted: the names of types in this program.
+fn plain(fault: &serde_json::Error) -> String {
+    let text = fault.to_string();
+    let Some((found, _)) = text.split_once(", expected ") else { return text };
+    let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ").replace('`', "");
+    let words = [
+        ("floating point ", ""),
+        ("integer ", ""),
+        ("boolean ", ""),
+        ("map", "a table"),
+        ("sequence", "a list"),
+        ("invalid length ", "a list of length "),
+    ];
+    let found = words.into_iter().fold(found, |found, (theirs, ours)| match found.strip_prefix(theirs) {
+        Some(rest) => format!("{ours}{rest}"),
+        None => found,
+    });
+    format!("{found} makes no sense here (line {}, column {})", fault.line(), fault.column())
 }
 
 fn merged(

@@ -41,7 +41,10 @@ fn numbers_that_name_nothing_are_refused_where_they_stand() {
             "accessors[0]: 4 elements of 12 bytes from 0 are more than the 36 of buffer view 0",
         ),
         ("/accessors/0/count", json!(u64::MAX), "accessors[0].count"),
-        ("/accessors/0/count", json!(-1), "accessors[0].count: invalid value: integer `-1`"),
+        ("/accessors/0/count", json!(-1), "accessors[0].count: -1 makes no sense here"),
+        ("/accessors/0/count", json!(3.5), "accessors[0].count: 3.5 makes no sense here (line 1, column "),
+        ("/accessors/0/type", json!({}), "accessors[0].type: a table makes no sense here"),
+        ("/nodes/0/extensions", json!(null), "nodes[0].extensions: null makes no sense here"),
         ("/accessors/0/byteOffset", json!(u64::MAX), "accessors[0]: 3 elements"),
         ("/bufferViews/0/byteLength", json!(40), "bufferViews[0]: 40 bytes from 0 are more than the 36 of buffer 0"),
         ("/bufferViews/0/byteOffset", json!(u64::MAX), "bufferViews[0]: 36 bytes"),
@@ -70,7 +73,11 @@ fn numbers_that_name_nothing_are_refused_where_they_stand() {
         ("/scene", json!(1), "scene: there is no scene 1"),
         ("/scenes/0/nodes", json!([1]), "scenes[0].nodes: there is no node 1"),
         ("/scenes/0/nodes", json!([]), "there is no triangle in its scene"),
-        ("/extensionsRequired", json!(["KHR_draco_mesh_compression"]), "\"KHR_draco_mesh_compression\" is not read"),
+        (
+            "/extensionsRequired",
+            json!(["KHR_draco_mesh_compression"]),
+            "\"KHR_draco_mesh_compression\" is not read; save its meshes without compression",
+        ),
         ("/asset/version", json!("1.0"), "this is glTF 1.0; convert it to 2.0"),
     ] {
         assert_refused(&changed(path, value), why);

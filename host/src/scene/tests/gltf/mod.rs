@@ -36,7 +36,10 @@ fn a_triangle_is_a_scene_in_a_studio_and_a_mesh_of_a_scene() {
     model.json["nodes"][0]["camera"] = json!(0);
     let folder = Folder::new(&[("a.glb", &model.glb()), ("a.toml", toml_of_one())]);
     let (_, warnings) = folder.load("a.toml").unwrap();
-    assert!(warnings[0].contains("its lights and cameras are left out"), "{warnings:?}");
+    assert!(warnings[0].contains("its cameras are left out"), "{warnings:?}");
+    let with_camera = [toml_of_one(), b"[[camera]]\nname = \"mine\"\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n"].concat();
+    let folder = Folder::new(&[("a.glb", &model.glb()), ("a.toml", &with_camera)]);
+    assert_eq!(folder.load("a.toml").unwrap().1, Vec::<String>::new(), "the scene has its own");
 }
 
 fn toml_of_one() -> &'static [u8] {
@@ -171,6 +174,38 @@ fn materials_take_textures_and_extensions() {
     assert!(Vec2::from(at(0.0, 1.0)).abs_diff_eq(Vec2::new(0.5, 1.0), 1e-6), "{rows:?}");
     assert_eq!((fields.maps.normal_scale, fields.maps.all().count()), (2.0, 2));
     assert_eq!(obj.warnings.len(), 1, "{:?}", obj.warnings);
+}
+
+/// KHR_materials_ior: what light meets at right angles reflects by its index, all of it by the index 0, and by its tint; glass bends
+/// light by 4 at most.
+#[test]
+fn any_index_of_refraction_reflects_as_much_as_it_says() {
+    let read = |ior: f64, more: serde_json::Value| {
+        let mut model = Model::triangle();
+        let mut extensions = json!({
+            "KHR_materials_ior": { "ior": ior },
+            "KHR_materials_specular": { "specularColorFactor": [0.9, 0.6, 0.3] },
+        });
+        extensions.as_object_mut().unwrap().extend(more.as_object().unwrap().clone());
+        model.json["materials"] = json!([{ "extensions": extensions }]);
+        model.primitive()["material"] = json!(0);
+        let Gltf { obj, .. } = model.load();
+        (obj.materials[1].1.clone().finish("a").physical.unwrap(), obj.warnings.len())
+    };
+    let tint = Vec3::new(0.9, 0.6, 0.3);
+    for (ior, share) in [(0.0, 1.0f32), (1.0, 0.0), (1.5, 0.04), (4.0, 0.36), (9.0, 0.64), (1e9, 1.0)] {
+        let (physical, warnings) = read(ior, json!({}));
+        assert!((physical.reflectance() - share * tint).abs().max_element() < 1e-6, "{ior}: {physical:?}");
+        assert_eq!(warnings, 0, "{ior}");
+    }
+    let glass = json!({
+        "KHR_materials_transmission": { "transmissionFactor": 1.0 },
+        "KHR_materials_volume": { "thicknessFactor": 1.0 },
+    });
+    let (physical, warnings) = read(9.0, glass.clone());
+    assert_eq!((physical.ior, physical.specular_tint, warnings), (4.0, tint, 1));
+    let (physical, _) = read(0.0, glass);
+    assert!(!physical.is_transparent(), "nothing passes what reflects all");
 }
 
 #[test]

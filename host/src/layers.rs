@@ -24,9 +24,9 @@ choices! {
         Object = "object",
         /// The number of the material there, likewise
         Material = "material",
-        /// Light that was scattered once at most
+        /// What a picture of 0 bounces shows: the background, what shines, and light that was scattered once
         Direct = "direct",
-        /// Light that was scattered more often
+        /// All other light
         Indirect = "indirect",
     }
 }

@@ -145,7 +145,7 @@ fn not_read(mut reader: impl BufRead, names: &str) -> io::Result<String> {
 fn room(width: u32, height: u32, each: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * each;
     Room::now().check(bytes).map_err(|why| {
-        Error::new(format!("its {width}x{height} pixels {why}; end other programs or make the image smaller"))
+        Error::new(format!("has {width}x{height} pixels, which {why}; end other programs or make it smaller"))
     })
 }
 

@@ -14,8 +14,9 @@ use crate::scene::{Texels, Texture};
 pub struct TextureBudget(u64);
 
 impl TextureBudget {
-    /// Bytes of the texels of all pictures: 4 each, or 12 of floats.
-    pub const MOST: u64 = 1 << 31;
+    /// Bytes of the texels of all pictures, 4 each, or 12 of floats: with a third more for their levels, what kernels number by words
+    /// of 4 bytes.
+    pub const MOST: u64 = 12 << 30;
 
     /// So many bytes, for tests.
     #[cfg(test)]
@@ -27,9 +28,9 @@ impl TextureBudget {
     fn take(&mut self, Size { width, height, is_float }: Size) -> Result<()> {
         let bytes = u64::from(width) * u64::from(height) * if is_float { 12 } else { 4 };
         self.0 = self.0.checked_sub(bytes).ok_or_else(|| {
-            let most = Self::MOST;
-            let fault = format!("has {width}x{height} texels, more than the pictures before it leave of {most} bytes");
-            Error::new(fault + "; make them smaller")
+            let left = self.0;
+            let fault = format!("has {width}x{height} texels, which take {bytes} bytes");
+            Error::new(format!("{fault}, and the pictures before it leave {left}; make them smaller"))
         })?;
         Ok(())
     }

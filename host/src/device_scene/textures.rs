@@ -95,14 +95,15 @@ fn colours(scene: &Scene, corners: [u32; 3]) -> Colours {
 }
 
 /// Maps so far, and the pictures that they lay.
+#[derive(Default)]
 struct Pack {
     maps: Vec<MapsRecord>,
     textures: Vec<TextureMap>,
     /// Which picture each of them lays.
     laid: Vec<usize>,
     pictures: Vec<Picture>,
-    /// Where the next picture's words begin: after the table of sRGB and the pictures before.
-    end: u64,
+    /// Words of all pictures.
+    words: u64,
 }
 
 /// A picture and its levels among the words of all.
@@ -113,14 +114,7 @@ struct Picture {
     levels: u32,
 }
 
-impl Default for Pack {
-    fn default() -> Self {
-        let (maps, textures, laid, pictures) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        Pack { maps, textures, laid, pictures, end: TABLE }
-    }
-}
-
-/// Words of the table from which linear light of sRGB's bytes is taken.
+/// Words of the table from which linear light of sRGB's bytes is taken. All pictures follow it.
 const TABLE: u64 = 1 << u8::BITS;
 
 impl Pack {
@@ -201,11 +195,11 @@ impl Pack {
         }
         let (levels, words) = levels::size(texture);
         let full = || Error::new(format!("the texture {:?} is one too many; use smaller ones", texture.name));
-        let end = self.end + words;
+        let start = TABLE + self.words;
         // Kernels count words in 32 bits.
-        u32::try_from(end).map_err(|_| full())?;
-        self.pictures.push(Picture { texture: texture.clone(), is_colour, start: self.end as u32, levels });
-        self.end = end;
+        u32::try_from(start + words).map_err(|_| full())?;
+        self.pictures.push(Picture { texture: texture.clone(), is_colour, start: start as u32, levels });
+        self.words += words;
         Ok(self.pictures.len() - 1)
     }
 
@@ -213,9 +207,10 @@ impl Pack {
     fn texels(&self, room: Room) -> Result<(Vec<u32>, Vec<Vec3>)> {
         let texels = |picture: &Picture| u64::from(picture.texture.width) * u64::from(picture.texture.height);
         let largest = self.pictures.iter().map(texels).max().unwrap_or(0);
-        let fits = room.check(self.end * 4 + largest * levels::BYTES_PER_TEXEL);
+        let count = TABLE + self.words;
+        let fits = room.check(count * 4 + largest * levels::BYTES_PER_TEXEL);
         fits.map_err(|why| Error::new(format!("the textures' levels {why}; use smaller ones")))?;
-        let mut words = Vec::with_capacity(self.end as usize);
+        let mut words = Vec::with_capacity(count as usize);
         words.extend((0..=u8::MAX).map(|byte| byte_to_linear(byte).to_bits()));
         let mut append = |Picture { texture, is_colour, .. }: &Picture| {
             levels::append(texture, *is_colour, &mut words);
@@ -253,7 +248,8 @@ mod tests {
         }
         let texels = |bytes| pack.texels(Room { bytes, limit: "this test" });
         let (words, _) = texels(17 << 20).unwrap();
-        assert_eq!((words.len(), words.capacity()), (pack.end as usize, pack.end as usize));
+        assert_eq!(words.len(), (TABLE + pack.words) as usize);
+        assert_eq!(words.capacity(), words.len(), "no more is taken than was asked for");
         let refused = texels(15 << 20).unwrap_err().message();
         assert!(refused.starts_with("the textures' levels take about 16 MB of memory, and this test"), "{refused}");
     }

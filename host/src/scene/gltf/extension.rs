@@ -35,7 +35,7 @@ pub fn check(document: &Document, notes: &mut Notes) -> Unplaced<()> {
     if document.extensions_used.iter().any(|name| name == VARIANTS) {
         notes.once(
             VARIANTS,
-            &format!("variants of materials ({VARIANTS}) are left out: each mesh has its first material"),
+            &format!("variants of materials ({VARIANTS}) are left out: meshes have what they are made of without one"),
         );
     }
     let is_unknown = |name: &&String| !KNOWN.contains(&name.as_str()) && !IDLE.contains(&name.as_str());

@@ -114,7 +114,10 @@ impl Corners {
         let property = element.properties.iter().find(|(name, _)| Corners::is(name));
         match property.map(|(_, property)| &property.data_type) {
             Some(PropertyType::List(_, ScalarType::Float | ScalarType::Double) | PropertyType::Scalar(_)) | None => {
-                Err(format!("its elements {:?} have no list vertex_indices of whole numbers; is it a mesh?", element.name))
+                Err(format!(
+                    "its elements {:?} have no list vertex_indices of whole numbers; is it a mesh?",
+                    element.name
+                ))
             }
             Some(PropertyType::List(..)) => Ok(()),
         }

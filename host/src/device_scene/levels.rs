@@ -20,14 +20,14 @@ pub(super) fn size(texture: &Texture) -> (u32, u64) {
     (levels, texels * if is_float(texture) { 3 } else { 1 })
 }
 
-/// Adds the words of all levels, the finest first. Colours of 8 bits are sRGB.
-pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) {
+/// Adds the words of all levels, the finest first, and returns the mean of all light, linear RGB, before it is rounded to words.
+/// Colours of 8 bits are sRGB.
+pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) -> [f32; 3] {
     finest(texture, words);
-    let (width, height) = (texture.width, texture.height);
-    if width == 1 && height == 1 {
-        return;
-    }
     let mut level = first_half(texture, is_colour);
+    if texture.width == 1 && texture.height == 1 {
+        return level.only();
+    }
     loop {
         if is_float(texture) {
             words.par_extend(level.texels.par_iter().flat_map_iter(|texel| texel[..3].iter().map(|x| x.to_bits())));
@@ -35,7 +35,7 @@ pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) {
             words.par_extend(level.texels.par_iter().map(|texel| u32::from_le_bytes(encoded(*texel, is_colour))));
         }
         if level.width == 1 && level.height == 1 {
-            return;
+            return level.only();
         }
         level = Level::halved(level.width, level.height, |i| level.texels[i]);
     }
@@ -103,6 +103,12 @@ impl Level {
         });
         Level { width, height, texels }
     }
+
+    /// The light of its only texel.
+    fn only(&self) -> [f32; 3] {
+        let [r, g, b, _] = self.texels[0];
+        [r, g, b]
+    }
 }
 
 fn mean(columns: &Span, rows: &Span, texel: impl Fn(usize, usize) -> [f32; 4]) -> [f32; 4] {
@@ -160,15 +166,31 @@ mod tests {
         for (width, height) in [(1, 1), (2, 2), (8, 4), (3, 3), (7, 5), (1, 9), (100, 3)] {
             let picture = texture(width, height, |x, y| [x as f32, (y * y) as f32, 1.0]);
             let mut words = Vec::new();
-            append(&picture, true, &mut words);
+            let mean_of_all = append(&picture, true, &mut words);
             assert_eq!(size(&picture), (1 + width.max(height).ilog2(), words.len() as u64));
             let last: Vec<f32> = words[words.len() - 3..].iter().map(|&word| f32::from_bits(word)).collect();
+            assert_eq!(last, mean_of_all);
             let mean = |of: &dyn Fn(u32) -> f64, count: u32| (0..count).map(of).sum::<f64>() / f64::from(count);
             let want = [mean(&|x| f64::from(x), width), mean(&|y| f64::from(y * y), height), 1.0];
             for (got, want) in last.into_iter().zip(want) {
                 assert!((f64::from(got) - want).abs() <= 1e-5 * want.max(1.0), "{width}x{height}: {got}, not {want}");
             }
         }
+    }
+
+    /// Words are rounded, the mean is not.
+    #[test]
+    fn a_single_faint_texel_is_light_and_a_black_picture_is_none() {
+        let mut bytes = vec![[0, 0, 0, 255]; 256 * 256];
+        let mean = |bytes: &[[u8; 4]]| {
+            let picture =
+                Texture { name: "test".into(), width: 256, height: 256, texels: Texels::Bytes(bytes.to_vec()) };
+            append(&picture, true, &mut Vec::new())
+        };
+        assert_eq!(mean(&bytes), [0.0; 3]);
+        bytes[77] = [1, 0, 0, 255];
+        let [red, green, blue] = mean(&bytes);
+        assert!(red > 0.0 && (green, blue) == (0.0, 0.0), "{red}");
     }
 
     /// Half black and half white is half of the light, which in sRGB is 188.

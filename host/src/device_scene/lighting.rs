@@ -1,6 +1,6 @@
 //! Every light that an integrator chooses from which samples one of them, and how likely each is.
 
-use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Primitive, pack};
+use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Opacity, Primitive, pack};
 use glam::{DVec3, UVec4, Vec3};
 use std::f64::consts::PI;
 
@@ -24,7 +24,7 @@ pub struct Lighting {
 pub(super) struct Lamps {
     /// The place in leaf order and the power of each that has an area, by their numbers; of a split one the first place.
     powers: Vec<(u32, f64)>,
-    /// Each material's emission, whose density is left open, and its power of a unit of area; none if there is no lamp.
+    /// Each material's emission, whose density is left open, and its power of a unit of area; none if no material emits.
     emissions: Vec<(Emission, f64)>,
     /// The least and the greatest corner around all of them, if there are any.
     pub bounds: Option<[Vec3; 2]>,
@@ -48,10 +48,11 @@ impl Lamps {
         let boxes = boxes.map(|(least, greatest)| [least, greatest]);
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
         let emission = |(material, number): (&Material, usize)| {
-            let sides = UVec4::new(u32::from(material.two_sided), textures.emission(number).0, 0, 0);
+            let (map, opacity) = (textures.emission(number).0, textures.opacity(number));
+            let sides = UVec4::new(u32::from(material.two_sided), map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
-        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
+        let emissions = materials.iter().zip(0..).map(emission).collect();
         Lamps {
             powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(),
             emissions,
@@ -74,7 +75,7 @@ impl Lighting {
         let records = records.chain(far.map(|_| of_environment()));
         let emitters = records.zip(table(&powers)).map(|(light, choice)| Emitter { light, choice }).collect();
         let with_density = |&(emission, flux): &(Emission, f64)| {
-            let density = (flux / total) as f32;
+            let density = if total > 0.0 { (flux / total) as f32 } else { 0.0 };
             Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
         let environment = far.map_or(0.0, |power| (power / total) as f32);
@@ -102,6 +103,13 @@ fn power(light: &Light, scale: f64) -> f64 {
 /// Power of a unit of area that is covered with a texture of some mean.
 fn flux(material: &Material, covered: Vec3) -> f64 {
     PI * brightness(material.emission * covered) * if material.two_sided { 2.0 } else { 1.0 }
+}
+
+/// The opacity of an [`Emission`], in one number.
+fn opacity_of(opacity: &Opacity) -> f32 {
+    let (factor, least) = (f32::from_bits(opacity.mask.x), f32::from_bits(opacity.mask.y));
+    // A mask of factor 0 is nowhere.
+    if least > 0.0 { -(least / factor).min(f32::MAX) } else { factor }
 }
 
 /// The area of a primitive as rays meet it.

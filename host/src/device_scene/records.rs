@@ -88,7 +88,8 @@ fn is_transparent(m: &Material) -> bool {
 }
 
 fn is_cutout(m: &Material) -> bool {
-    m.alpha != Alpha::Opaque
+    // Any opacity is at least 0.
+    !matches!(m.alpha, Alpha::Opaque | Alpha::Mask(0.0))
 }
 
 fn absorbs(p: &Physical) -> bool {

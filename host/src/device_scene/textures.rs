@@ -54,7 +54,8 @@ impl Textures {
         let mut coordinates = Vec::new();
         if effects.has(Effects::TEXTURED) {
             coordinates = of(0);
-            if !mesh.coordinates[1].is_empty() {
+            // Also where no mesh has the set: kernels read it without asking.
+            if pack.textures.iter().any(|map| map.place.w & TextureMap::SECOND_SET != 0) {
                 coordinates.extend(of(1));
             }
         }
@@ -73,6 +74,12 @@ impl Textures {
     pub(super) fn emission(&self, material: usize) -> (u32, Vec3) {
         let map = self.maps.get(material).map_or(0, |maps| maps.of(MapsRecord::EMISSION));
         (map, if map > 0 { self.means[map as usize - 1] } else { Vec3::ONE })
+    }
+
+    /// How opaque a material is.
+    pub(super) fn opacity(&self, material: usize) -> Opacity {
+        let opaque = Opacity { mask: UVec4::new(1.0f32.to_bits(), 0.0f32.to_bits(), 0, 0) };
+        self.opacities.get(material).copied().unwrap_or(opaque)
     }
 
     /// Bytes of the texels of pictures.
@@ -212,24 +219,9 @@ impl Pack {
         fits.map_err(|why| Error::new(format!("the textures' levels {why}; use smaller ones")))?;
         let mut words = Vec::with_capacity(count as usize);
         words.extend((0..=u8::MAX).map(|byte| byte_to_linear(byte).to_bits()));
-        let mut append = |Picture { texture, is_colour, .. }: &Picture| {
-            levels::append(texture, *is_colour, &mut words);
-            last(texture, &words)
-        };
-        let means: Vec<Vec3> = self.pictures.iter().map(&mut append).collect();
+        let append = |picture: &Picture| Vec3::from(levels::append(&picture.texture, picture.is_colour, &mut words));
+        let means: Vec<Vec3> = self.pictures.iter().map(append).collect();
         Ok((words, self.laid.iter().map(|&picture| means[picture]).collect()))
-    }
-}
-
-/// The only texel of a picture's coarsest level, which the words end with.
-fn last(texture: &Texture, words: &[u32]) -> Vec3 {
-    match (&texture.texels, words) {
-        (Texels::Floats(_), [.., r, g, b]) => Vec3::from_array([*r, *g, *b].map(f32::from_bits)),
-        (Texels::Bytes(_), [.., word]) => {
-            let [r, g, b, _] = word.to_le_bytes();
-            Vec3::from_array([r, g, b].map(byte_to_linear))
-        }
-        _ => Vec3::ZERO,
     }
 }
 

@@ -11,7 +11,7 @@ use crate::geometry::{SurfaceInteraction, tangents};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
 use crate::sampler::unit;
 use crate::scene::LaunchContext;
-use crate::texture::{Place, Textures};
+use crate::texture::{Place, Textures, opacity as opacity_of};
 
 /// What emits in a scene.
 #[derive(Clone, Copy)]
@@ -148,6 +148,13 @@ impl<R: Scalar> EmitterSample<R> {
         };
         let at = SurfaceInteraction::new(effects, primitive, coordinates, V3::zero());
         let sample = Self::of_place(emission, at.position, at.normal, origin);
+        let sample = if effects.has(Effects::CUTOUT) && primitive.is_triangle() && primitive.is_cutout() {
+            let place = Place { index, weights: coordinates, count: launch.frame.vertices };
+            let light = sample.light * opacity(effects, &lighting.textures, emission, &place);
+            EmitterSample { light: light.map(|c| c.flush(FAINT)), ..sample }
+        } else {
+            sample
+        };
         if !effects.has(Effects::TEXTURED) || emission.sides.y == 0 {
             return sample;
         }
@@ -264,6 +271,18 @@ impl<R: Scalar> Cone<R> {
         let two = R::splat(2.0);
         Density { over: (two * (over_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
     }
+}
+
+/// How often a place on a triangle that is not opaque everywhere is there to send out light.
+#[inline(always)]
+fn opacity<R: Scalar>(effects: Effects, textures: &Textures<'_>, emission: &Emission, place: &Place<R>) -> R {
+    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+    let mut opacity = place.opacity(effects, textures);
+    if effects.has(Effects::TEXTURED) && emission.sides.z != 0 {
+        opacity = opacity * opacity_of(textures, emission.sides.z, place);
+    }
+    let factor = R::splat(f32::from_bits(emission.sides.w));
+    if factor.lt(zero) { R::select((-factor).le(opacity), one, zero) } else { opacity * factor }
 }
 
 /// The cosine and the sine of a drawn angle.

@@ -3,10 +3,11 @@
 
 use eyerays::film::Film;
 use eyerays::scene::{
-    Direct, Environment, Integrator, Light, Physical, Sampler, Scene, Settings, Texels, Texture, Transport,
+    Alpha, Direct, Environment, Integrator, Light, Map, Physical, Placement, Sampler, Scene, Settings, Texels, Texture,
+    Transport,
 };
 use eyerays_tests::{by, on_cpu, pack, shipped};
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 /// Blocks along an edge of the picture.
 const BLOCKS: usize = 8;
@@ -82,6 +83,30 @@ fn a_box_with_a_lamp_and_a_glass_ball() {
 #[test]
 fn lamps_of_every_shape() {
     assert_scene(&shipped("soft_shadows"));
+}
+
+/// Everything opaque to a share, or behind a mask: what surfaces find and what lamps send is as much less.
+#[test]
+fn lamps_that_are_not_opaque_everywhere() {
+    let dots = |i: usize| if i.is_multiple_of(3) { [255; 4] } else { [255, 255, 255, 40] };
+    let texels = Texels::Bytes((0..8 * 8).map(dots).collect());
+    let texture = std::sync::Arc::new(Texture { name: "dots".into(), width: 8, height: 8, texels });
+    for (alpha, is_covered) in
+        [(Alpha::Blend, false), (Alpha::Blend, true), (Alpha::Mask(0.3), true), (Alpha::Mask(0.9), false)]
+    {
+        let mut scene = shipped("cornell_path");
+        let places = &scene.mesh.positions;
+        scene.mesh.coordinates[0] = places.iter().map(|place| Vec2::new(place.x, place.z) * 3.0).collect();
+        let lamp = scene.materials.iter_mut().find(|material| material.emission != Vec3::ZERO).expect("a lamp");
+        (lamp.alpha, lamp.opacity) = (alpha, 0.6);
+        lamp.maps.opacity = is_covered.then(|| Map { texture: texture.clone(), placement: Placement::default() });
+        let settings = Settings { bounces: 1, ..settings(&scene) };
+        let power = estimate(&scene, by(Direct::Power, settings));
+        for direct in [Direct::Light, Direct::Surface] {
+            let what = format!("{alpha:?}, {is_covered}, power and {direct:?}");
+            assert_alike(&what, &power, &estimate(&scene, by(direct, settings)));
+        }
+    }
 }
 
 #[test]

@@ -2,41 +2,60 @@
 
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use eyerays_shader::data::{Normals, pack};
-use glam::{Vec3, Vec4};
+use glam::{Vec2, Vec3, Vec4};
 
 use super::normalisation::flushed;
 use super::records::by_slot;
-use crate::scene::{Mesh, Scene};
+use crate::scene::{Material, Mesh, Scene};
 
-/// Tangents in the order of slots; three zeros where there are none.
+/// Tangents in the order of slots; three zeros where there are none. Triangles without tangents of their own get them by the
+/// coordinates that their normal map lies by, those of the first set if they have none.
 pub(super) fn tangents(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let mesh = &scene.mesh;
-    let made = if mesh.tangents.is_empty() && !mesh.coordinates[0].is_empty() { made(mesh) } else { Vec::new() };
     let own = |vertex: u32| mesh.tangents.get(vertex as usize).copied().unwrap_or(Vec4::ZERO);
+    let made = made(scene, |corners| corners.iter().all(|&vertex| own(vertex) == Vec4::ZERO));
     by_slot(scene, order, |triangle, corners| {
-        let [a, b, c] = made.get(triangle).copied().unwrap_or_else(|| corners.map(own));
+        let found = made.binary_search_by_key(&triangle, |(number, _)| *number);
+        let [a, b, c] = found.map_or_else(|_| corners.map(own), |place| made[place].1);
         let record = |tangent: Vec4, word| pack(flushed(tangent.truncate()), word);
         let sign = if a.w < 0.0 { -1.0f32 } else { 1.0 };
         Normals { a: record(a, sign.to_bits()), b: record(b, 0), c: record(c, 0) }
     })
 }
 
-/// Those of a mesh without, by its texture coordinates.
-fn made(mesh: &Mesh) -> Vec<[Vec4; 3]> {
-    let mut corners = Corners { mesh, tangents: vec![[Vec4::ZERO; 3]; mesh.triangles.len()] };
-    // It fails where no triangle has an area, and then there is nothing to be had.
-    let _ = generate_tangents(&mut corners);
-    corners.tangents
+/// Those of triangles that lack them, each with its number.
+fn made(scene: &Scene, lacks: impl Fn(&[u32; 3]) -> bool) -> Vec<(usize, [Vec4; 3])> {
+    let mesh = &scene.mesh;
+    let set_of = |material: &Material| material.maps.normal.as_ref().map_or(0, |map| map.placement.set as usize);
+    let sets: Vec<usize> = scene.materials.iter().map(set_of).collect();
+    let set_of = |triangle: usize| sets[mesh.materials[triangle] as usize];
+    let mut made = Vec::new();
+    for set in [0, 1] {
+        if mesh.coordinates[set].is_empty() {
+            continue;
+        }
+        let faces =
+            mesh.triangles.iter().enumerate().filter(|(number, corners)| set_of(*number) == set && lacks(corners));
+        let tangents = faces.map(|(number, _)| (number, [Vec4::ZERO; 3])).collect();
+        let mut corners = Corners { mesh, coordinates: &mesh.coordinates[set], tangents };
+        // It fails where no triangle has an area, and then there is nothing to be had.
+        let _ = generate_tangents(&mut corners);
+        made.append(&mut corners.tangents);
+    }
+    made.sort_unstable_by_key(|(number, _)| *number);
+    made
 }
 
 struct Corners<'m> {
     mesh: &'m Mesh,
-    tangents: Vec<[Vec4; 3]>,
+    coordinates: &'m [Vec2],
+    /// Of the triangles of these numbers.
+    tangents: Vec<(usize, [Vec4; 3])>,
 }
 
 impl Corners<'_> {
     fn vertex(&self, face: usize, corner: usize) -> usize {
-        self.mesh.triangles[face][corner] as usize
+        self.mesh.triangles[self.tangents[face].0][corner] as usize
     }
 }
 
@@ -71,17 +90,18 @@ impl Geometry<Software> for Corners<'_> {
         if normal != Vec3::ZERO {
             return normal.to_array();
         }
-        let [a, b, c] = self.mesh.triangles[face].map(|vertex| self.mesh.positions[vertex as usize].as_dvec3());
+        let [a, b, c] =
+            self.mesh.triangles[self.tangents[face].0].map(|vertex| self.mesh.positions[vertex as usize].as_dvec3());
         (b - a).cross(c - a).normalize_or_zero().as_vec3().to_array()
     }
 
     fn tex_coord(&self, face: usize, corner: usize) -> [f32; 2] {
-        let coordinates = self.mesh.coordinates[0][self.vertex(face, corner)];
+        let coordinates = self.coordinates[self.vertex(face, corner)];
         // Normal maps have their second axis up, texture coordinates down.
         [coordinates.x, 1.0 - coordinates.y]
     }
 
     fn set_tangent(&mut self, space: Option<TangentSpace>, face: usize, corner: usize) {
-        self.tangents[face][corner] = space.map_or(Vec4::ZERO, |space| Vec4::from(space.tangent_encoded()));
+        self.tangents[face].1[corner] = space.map_or(Vec4::ZERO, |space| Vec4::from(space.tangent_encoded()));
     }
 }

@@ -154,7 +154,7 @@ fn room(width: u32, height: u32, each: u64) -> Result<()> {
 fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     let damaged = |error| match error {
         ::exr::error::Error::Io(error) => Error::new(read_error(&error)),
-        error => Error::new(format!("is damaged or of an unknown kind ({error}); write the image again")),
+        _ => Error::new("is damaged; write the image again"),
     };
     let parts = ::exr::meta::MetaData::read_from_buffered(reader, false).map_err(damaged)?.headers;
     let most = most_per_pixel(ImageFormat::OpenExr).unwrap_or(0);
@@ -194,7 +194,9 @@ fn decode_error(error: ImageError) -> Error {
     Error::new(match error {
         ImageError::IoError(error) => read_error(&error),
         ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
-        error => format!("is damaged or of an unknown kind ({error}); write the image again"),
+        // Decoders' own words are of their insides.
+        ImageError::Unsupported(_) => "is of a kind that is not read; write it with 8 or 16 bits a channel".to_owned(),
+        _ => "is damaged; write the image again".to_owned(),
     })
 }
 

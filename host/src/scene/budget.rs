@@ -60,6 +60,14 @@ impl Budget {
         fits.map_err(|why| format!("textures of {bytes} bytes {why}; use smaller ones"))
     }
 
+    /// Refuses so many bytes for anything else.
+    ///
+    /// # Errors
+    /// What they would take of what there is.
+    pub fn check_bytes(&self, bytes: u64) -> Unplaced<()> {
+        self.room.check(bytes)
+    }
+
     fn fits(&self) -> Unplaced<()> {
         let primitives = self.triangles.saturating_add(self.round);
         if primitives > MAX_PRIMITIVES {

@@ -59,6 +59,10 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let mut images = Images::new(file::folder(path));
     let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
     scene.files.extend(images.paths());
+    if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
+        // Whitted's model draws nothing that shines.
+        scene.settings = of_paths();
+    }
     Ok((framed(path, scene)?, warnings))
 }
 
@@ -71,15 +75,20 @@ fn load_gltf(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let is_lit = !lights.is_empty() || scene.materials.iter().any(shines);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
-    let settings = Settings {
+    let settings = of_paths();
+    let scene = Scene { parts, lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
+    Ok((framed(path, scene)?, warnings))
+}
+
+/// Enough samples of paths to look at a model.
+fn of_paths() -> Settings {
+    Settings {
         spp: 64,
         sampler: Sampler::Sobol,
         bounces: 6,
         transport: Transport { integrator: Integrator::Path, ..Transport::default() },
         ..Settings::default()
-    };
-    let scene = Scene { parts, lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
-    Ok((framed(path, scene)?, warnings))
+    }
 }
 
 /// Is it a light, rather than a thing with glowing spots, which shows its form in the light of others?

@@ -9,10 +9,13 @@ use std::fs;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
+use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::error::Error;
+use eyerays::error::{Error, Result};
+use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
-use eyerays::scene::{self, Settings};
+use eyerays::scene::{self, Integrator, Scene, Settings, Transport};
+use eyerays::view::View;
 
 /// A scene of more is not packed: that is tried by other tests, and takes long.
 const MOST_PRIMITIVES: usize = 1000;
@@ -22,18 +25,22 @@ pub fn start() {
     std::panic::set_hook(Box::new(|_| ()));
 }
 
-/// Reads a file of that name with these bytes, and packs what it holds.
+/// Reads a file of that name with these bytes, and draws what it holds.
 pub fn read(name: &str, bytes: &[u8]) {
-    match scene::load(&place(name, bytes)) {
-        Ok((scene, _)) if scene.primitives() <= MOST_PRIMITIVES => {
-            let settings = Settings { size: (8, 8), ..scene.settings };
-            if let Err(error) = DeviceScene::new(&scene, settings, Bvh::Fast.quality()) {
-                check_line(&error);
-            }
-        }
-        Ok(_) => (),
-        Err(error) => check_line(&error),
+    let read = scene::load(&place(name, bytes));
+    let drawn = read.and_then(|(scene, _)| if scene.primitives() <= MOST_PRIMITIVES { draw(&scene) } else { Ok(()) });
+    if let Err(error) = drawn {
+        check_line(&error);
     }
+}
+
+/// Draws a small picture of a scene.
+fn draw(scene: &Scene) -> Result<()> {
+    let transport = Transport { integrator: Integrator::Path, ..scene.settings.transport };
+    let settings = Settings { size: (4, 4), samples: 1, spp: 1, bounces: 2, transport, ..scene.settings };
+    let packed = DeviceScene::new(scene, settings, Bvh::Fast.quality())?;
+    let view = View::new(&packed, &scene.cameras[0])?;
+    cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).map(drop)
 }
 
 /// Keeps a file of that name with these bytes.

@@ -26,6 +26,8 @@ pub struct Elements<'f> {
     /// Numbers of an element.
     pub width: usize,
     component: Component,
+    /// That of the component.
+    code: u64,
     /// All are zero without.
     base: Option<Strided<'f>>,
     /// Elements in place of those of the base.
@@ -71,7 +73,18 @@ impl<'f> Accessors<'f> {
         let base = accessor.buffer_view.map(|view| self.strided(view, accessor.byte_offset, count, size, &here));
         let over = accessor.sparse.as_ref().map(|sparse| self.over(sparse, count, size, &here));
         let (base, over) = (base.transpose()?, over.transpose()?);
-        Ok(Elements { count, width, component, base, over, is_normalised: accessor.normalized })
+        let code = accessor.component_type;
+        Ok(Elements { count, width, component, code, base, over, is_normalised: accessor.normalized })
+    }
+
+    /// A list of numbers of vertices.
+    ///
+    /// # Errors
+    /// Those of [`Accessors::open`], and numbers that are not whole.
+    pub fn indices(&self, number: usize, owner: &str) -> Unplaced<Elements<'f>> {
+        let indices = self.open(number, &[1], owner)?;
+        check_indices(indices.code, &format!("accessors[{number}]"))?;
+        Ok(indices)
     }
 
     fn strided(&self, view: usize, offset: usize, count: usize, size: usize, owner: &str) -> Unplaced<Strided<'f>> {
@@ -106,6 +119,7 @@ impl<'f> Accessors<'f> {
         let SparsePart { buffer_view, byte_offset, component_type } = *indices;
         let owner = format!("{here}.indices");
         let component = component_of(component_type, &owner)?;
+        check_indices(component_type, &owner)?;
         let list = self.strided(buffer_view, byte_offset, *places, component.size(), &owner)?;
         let places: Vec<u32> = (0..*places).map(|number| component.whole(list.from(number))).collect();
         let is_rising = places.is_sorted_by(|a, b| a < b);
@@ -115,6 +129,16 @@ impl<'f> Accessors<'f> {
         let values =
             self.strided(values.buffer_view, values.byte_offset, places.len(), size, &format!("{here}.values"))?;
         Ok(Over { places, values })
+    }
+}
+
+/// Refuses indices that are no whole numbers from 0 on.
+fn check_indices(code: u64, owner: &str) -> Unplaced<()> {
+    match code {
+        5121 | 5123 | 5125 => Ok(()),
+        _ => Err(format!(
+            "{owner}.componentType: {code} is none of 5121, 5123 and 5125, as indices have; write the file again"
+        )),
     }
 }
 

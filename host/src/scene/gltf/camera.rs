@@ -47,7 +47,7 @@ impl Cameras {
             return Ok(());
         };
         let name = placed.node.name.as_deref().or(of.name.as_deref());
-        let name = self.name(name.filter(|name| !name.is_empty()).unwrap_or("camera"));
+        let name = self.name(name.filter(|name| !name.trim().is_empty()).unwrap_or("camera"));
         self.all.push(Camera { name, ..camera });
         Ok(())
     }

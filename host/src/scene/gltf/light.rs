@@ -39,12 +39,23 @@ pub fn read(placed: &Placed, all: &[document::Light], notes: &mut Notes) -> Unpl
         );
         return Ok(None);
     };
+    if light.range.is_some() {
+        notes.once(
+            "range",
+            "ranges of lights are left out: light fades with the square of the distance, and never ends",
+        );
+    }
     Ok(Some(match light.kind.as_str() {
         "point" => Light::Point { position: view.eye, colour },
         "directional" => Light::Directional { direction: view.direction, colour },
         "spot" => {
-            let [outer, inner] =
-                angles(&light.spot).ok_or_else(|| format!("{here}.spot: an angle is out of range; repair it"))?;
+            let angles = angles(&light.spot);
+            let [outer, inner] = angles.ok_or_else(|| format!("{here}.spot: an angle is out of range; repair it"))?;
+            if inner > outer {
+                let text = format!("{here}.spot: innerConeAngle is more than outerConeAngle, which takes its place");
+                notes.once("spot", &text);
+            }
+            let inner = inner.min(outer);
             Light::Spot { position: view.eye, target: view.target(), colour, outer, inner }
         }
         other => return Err(format!("{here}.type: {other:?} is none of point, directional and spot; repair it")),
@@ -61,7 +72,7 @@ fn colour(light: &document::Light) -> Option<Vec3> {
 fn angles(spot: &document::Spot) -> Option<[f32; 2]> {
     let outer = spot.outer_cone_angle.unwrap_or(FRAC_PI_4).to_degrees().min(WIDEST) as f32;
     let inner = spot.inner_cone_angle.unwrap_or(0.0).to_degrees() as f32;
-    (outer > 0.0 && inner >= 0.0).then_some([outer, inner.min(outer)])
+    (outer > 0.0 && inner >= 0.0).then_some([outer, inner])
 }
 
 /// Where a node is and where it looks, which is along its negative z axis.

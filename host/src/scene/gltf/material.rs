@@ -65,15 +65,33 @@ impl Reader<'_, '_, '_> {
         self.fields.physical.metallic = Some(self.share(metal.metallic_factor.unwrap_or(1.0), &key("metallicFactor"))?);
         self.fields.physical.roughness =
             Some(self.share(metal.roughness_factor.unwrap_or(1.0), &key("roughnessFactor"))?);
-        self.fields.alpha = Some(match of.alpha_mode.as_deref() {
-            Some("MASK") => Alpha::Mask(self.share(of.alpha_cutoff.unwrap_or(0.5), "alphaCutoff")?),
-            Some("BLEND") => Alpha::Blend,
-            _ => Alpha::Opaque,
-        });
+        self.fields.alpha = Some(self.alpha(of)?);
         self.fields.maps.base = self.map(metal.base_color_texture.as_ref(), &key("baseColorTexture"))?;
         let rough = metal.metallic_roughness_texture.as_ref();
         self.fields.maps.metallic_roughness = self.map(rough, &key("metallicRoughnessTexture"))?;
         Ok(())
+    }
+
+    fn alpha(&mut self, of: &Material) -> Unplaced<Alpha> {
+        let cutoff = of.alpha_cutoff.unwrap_or(0.5);
+        match of.alpha_mode.as_deref() {
+            Some("MASK") if cutoff > 1.0 => {
+                // Nothing is as opaque.
+                self.fields.opacity = Some(0.0);
+                Ok(Alpha::Mask(1.0))
+            }
+            Some("MASK") => Ok(Alpha::Mask(self.share(cutoff, "alphaCutoff")?)),
+            Some("BLEND") => Ok(Alpha::Blend),
+            None | Some("OPAQUE") => Ok(Alpha::Opaque),
+            Some(other) => {
+                let text = format!(
+                    "{}.alphaMode: {other:?} is none of OPAQUE, MASK and BLEND; OPAQUE takes its place",
+                    self.owner
+                );
+                self.notes.once("alphaMode", &text);
+                Ok(Alpha::Opaque)
+            }
+        }
     }
 
     fn emission(&mut self, of: &Material, extensions: &Extensions) -> Unplaced<()> {
@@ -147,6 +165,11 @@ impl Reader<'_, '_, '_> {
         let of_tint = key("specularColorFactor");
         let [red, green, blue] = tint.map(|number| self.number(number, &of_tint, Range::AMOUNT));
         self.fields.physical.specular_tint = Some(Vec3::new(red?, green?, blue?));
+        let is_glass = self.fields.transmission.is_some() && self.fields.physical.thin == Some(false);
+        if is_glass && (tint != [1.0; 3] || of.specular_color_texture.is_some()) {
+            let text = format!("{}.{of_tint}: bodies of glass reflect without a tint", self.owner);
+            self.notes.once("glass", &text);
+        }
         self.fields.maps.specular_weight = self.map(of.specular_texture.as_ref(), &key("specularTexture"))?;
         self.fields.maps.specular_tint = self.map(of.specular_color_texture.as_ref(), &key("specularColorTexture"))?;
         Ok(())

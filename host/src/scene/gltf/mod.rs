@@ -68,7 +68,9 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<Gltf> {
 
 fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
     let container = container::open(bytes)?;
-    let document = document(bytes.get(container.json).unwrap_or_default())?;
+    let json = bytes.get(container.json).unwrap_or_default();
+    budget.check_bytes(document::memory(json)).map_err(|why| format!("its JSON would {why}; split the file"))?;
+    let document = document(json)?;
     let chunk = container.chunk.and_then(|range| bytes.get(range));
     let folder = file::folder(path);
     let mut notes = Notes::new(path);
@@ -104,6 +106,9 @@ fn document(json: &[u8]) -> Unplaced<Document> {
         format!("{owner}: {}; write the file again as glTF 2.0", plain(fault))
     })?;
     from.end().map_err(|fault| format!("the JSON: {fault}; write the file again as glTF 2.0"))?;
+    if let Some(version) = document.asset.min_version.as_deref().filter(|version| !matches!(*version, "2" | "2.0")) {
+        return Err(format!("asset.minVersion: this needs a reader of glTF {version}; convert it to 2.0"));
+    }
     match document.asset.version.as_deref() {
         None | Some("2") => Ok(document),
         Some(version) if version.starts_with("2.") => Ok(document),
@@ -174,8 +179,16 @@ fn materials(
     }
     let mut materials = vec![(DEFAULT.to_owned(), material::plain())];
     for ((number, of), is_used) in document.materials.iter().enumerate().zip(is_used.into_iter().skip(1)) {
+        let is_unlit = of.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
+        if is_used && is_unlit && !mesh.colours.is_empty() {
+            notes.once(
+                "colours",
+                "colours of vertices are left out of materials without lighting (KHR_materials_unlit)",
+            );
+        }
         let fields = if is_used { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
-        let name = of.name.clone().filter(|name| !name.is_empty()).unwrap_or_else(|| format!("material {number}"));
+        let name =
+            of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));
         materials.push((name, fields));
     }
     Ok((materials, pictures.paths))

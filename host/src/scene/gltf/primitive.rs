@@ -78,7 +78,7 @@ impl<'f> Plan<'f> {
         let number = of.attributes.get("POSITION");
         let number = number.ok_or_else(|| format!("{owner}.attributes: there is no POSITION; write the file again"))?;
         let positions = accessors.open(*number, &[3], &format!("{owner}.attributes.POSITION"))?;
-        let indices = of.indices.map(|number| accessors.open(number, &[1], &format!("{owner}.indices"))).transpose()?;
+        let indices = of.indices.map(|number| accessors.indices(number, &format!("{owner}.indices"))).transpose()?;
         let corners = indices.as_ref().map_or(positions.count, |indices| indices.count);
         let triangles = mode.triangles(corners);
         let vertices = positions.count.min(3 * triangles);

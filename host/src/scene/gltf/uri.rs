@@ -1,5 +1,6 @@
 //! URIs of buffers and images: data in the file itself, or the name of a file beside it.
 
+use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use base64::Engine;
@@ -29,11 +30,14 @@ pub enum Target {
 /// # Errors
 /// Data that is not base64, an address of a network or of another folder, or a name that is no text.
 pub fn follow(uri: &str, folder: &Path) -> Unplaced<Target> {
-    if let Some(data) = uri.strip_prefix("data:") {
-        return data_of(data).map(Target::Bytes);
+    if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
+        let data = &uri[5..];
+        let data = if data.contains('%') { Cow::Owned(percent_decoded(data)?) } else { Cow::Borrowed(data) };
+        return data_of(&data).map(Target::Bytes);
     }
     if has_scheme(uri) {
-        return Err(format!("{uri:?} is an address and is not fetched; copy the file next to this one and name it"));
+        let start: String = uri.chars().take(60).collect();
+        return Err(format!("{start:?} is an address and is not fetched; copy the file next to this one and name it"));
     }
     let name = percent_decoded(uri)?;
     if name.is_empty() {
@@ -68,7 +72,10 @@ fn percent_decoded(uri: &str) -> Unplaced<String> {
         bytes.push(code.unwrap_or(first));
         rest = if code.is_some() { after.get(2..).unwrap_or_default() } else { after };
     }
-    String::from_utf8(bytes).map_err(|_| format!("{uri:?} is no UTF-8 text; rename the file"))
+    String::from_utf8(bytes).map_err(|_| {
+        let start: String = uri.chars().take(60).collect();
+        format!("{start:?} is no UTF-8 text; rename the file")
+    })
 }
 
 fn hexadecimal(digits: &[u8]) -> Option<u8> {

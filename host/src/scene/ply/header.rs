@@ -11,6 +11,8 @@ use super::fault::{Checked, Fault};
 
 /// Bytes of a header, most of them comments.
 const MOST: u64 = 1 << 20;
+/// Elements, of which each that is not read is warned of.
+const MOST_ELEMENTS: usize = 64;
 
 /// Reads it, and the number of its lines.
 ///
@@ -61,6 +63,9 @@ fn check_names(text: &str) -> Checked<()> {
         };
         if !is_new {
             return Err(Fault::of_line(number, format!("a second {kind} {name:?}; remove one")));
+        }
+        if elements.len() > MOST_ELEMENTS {
+            return Err(Fault::of_line(number, format!("there are more than {MOST_ELEMENTS} elements; remove some")));
         }
     }
     Ok(())

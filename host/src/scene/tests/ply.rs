@@ -152,6 +152,13 @@ fn what_makes_no_sense_is_refused_in_a_line() {
         (spoiled("property float y", "property float x"), "a second property \"x\"; remove one"),
         (spoiled("element face 5", "element vertex 5"), "a second element \"vertex\"; remove one"),
         (spoiled("format ascii 1.0\n", ""), "its header has no line \"format ascii 1.0\""),
+        (
+            spoiled(
+                "element face",
+                &((0..70).map(|i| format!("element e{i} 0\n")).collect::<String>() + "element face"),
+            ),
+            "there are more than 64 elements; remove some",
+        ),
         (spoiled("made by hand", &"x".repeat(1 << 20)), "its header has more than 1048576 bytes"),
         (spoiled("4 0 1 2 3", "4 0 1 2 9"), "face 0 names vertex 9, but 6 precede it"),
         (spoiled("4 0 1 2 3", "4 0 1 2 -3"), "face 0 names vertex -3"),

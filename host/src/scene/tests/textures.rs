@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::{Folder, assert_refused};
-use crate::scene::{Alpha, Maps, Material, Scene, Texels, Wrap};
+use crate::scene::{Alpha, Integrator, Maps, Material, Scene, Texels, Wrap};
 
 /// A square of two triangles, with the first corner's texture coordinates on a seam.
 const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0.5\nvt 0.5\n\
@@ -94,6 +94,9 @@ fn a_picture_is_multiplied_with_its_colour_or_white() {
     assert_eq!(texels[1], [128, 255, 0, 255]);
     assert_eq!(material("Ke 0 0 0\nmap_Ke a.png\n").emission, Vec3::ONE);
     assert_eq!(material("Ke 4 2 1\nmap_Ke a.png\n").emission, Vec3::new(4.0, 2.0, 1.0));
+    let integrator = |statements| loaded(statements).0.settings.transport.integrator;
+    assert_eq!(integrator("map_Ke a.png\n"), Integrator::Path, "Whitted's model draws nothing that shines");
+    assert_eq!(integrator("map_Kd a.png\n"), Integrator::Whitted);
 }
 
 #[test]

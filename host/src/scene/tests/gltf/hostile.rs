@@ -1,10 +1,13 @@
 //! Files of strangers: refused in a line that says where, or read in full, but never a panic and never a long wait.
 
+use std::path::Path;
+
 use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::model::{F32, Model, U16, data, floats, parse, picture, shorts};
-use crate::scene::tests::Folder;
+use crate::scene::gltf;
+use crate::scene::tests::{Folder, budget};
 
 /// Asserts why a file is refused.
 fn assert_refused(bytes: &[u8], why: &str) {
@@ -63,6 +66,8 @@ fn numbers_that_name_nothing_are_refused_where_they_stand() {
             "primitives[0].material: there is no material 0; the file has none",
         ),
         ("/meshes/0/primitives/0/mode", json!(7), "meshes[0].primitives[0].mode: 7 is none of"),
+        ("/meshes/0/primitives/0/indices", json!(0), "accessors[0].type: \"VEC3\" is not SCALAR"),
+        ("/asset/minVersion", json!("2.1"), "asset.minVersion: this needs a reader of glTF 2.1"),
         ("/nodes/0/mesh", json!(1), "nodes[0].mesh: there is no mesh 1"),
         ("/nodes/0/children", json!([5]), "nodes[0].children: there is no node 5"),
         ("/nodes/0/children", json!([0]), "nodes[0]: it is reached twice"),
@@ -134,6 +139,18 @@ fn too_many_triangles_are_refused_before_they_are_made() {
     text.extend(b"{},".repeat(1_000_001));
     text.extend(b"{}]}");
     assert_refused(&text, "a list has more than 1000000 elements");
+}
+
+/// Tables of three bytes become records of hundreds.
+#[test]
+fn json_that_there_is_no_memory_for_is_refused_before_it_is_read() {
+    let json = format!("{{\"asset\": {{}}, \"materials\": [{{}}{}]}}", ",{}".repeat(500_000));
+    let error = gltf::parse(Path::new("/nowhere/a.gltf"), json.as_bytes(), budget(1 << 28)).unwrap_err();
+    assert!(error.message().starts_with("its JSON would take about"), "{error}");
+    // A long text is no table.
+    let data = format!("{{\"asset\": {{\"generator\": \"{}\"}}}}", "A".repeat(1 << 24));
+    let error = gltf::parse(Path::new("/nowhere/a.gltf"), data.as_bytes(), budget(1 << 28)).unwrap_err();
+    assert!(error.message().starts_with("there is no triangle"), "{error}");
 }
 
 #[test]

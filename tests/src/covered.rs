@@ -21,7 +21,10 @@ pub fn covered() -> Scene {
             _ => (Alpha::Blend, 0.7),
         };
     }
-    scene.materials[0].emission = Vec3::new(0.3, 0.2, 0.1);
+    // One of each opacity.
+    for material in scene.materials.iter_mut().take(3) {
+        material.emission = Vec3::new(0.3, 0.2, 0.1);
+    }
     let mesh = &mut scene.mesh;
     mesh.coordinates[0] = mesh.positions.iter().map(|p| Vec2::new(p.x * 0.7 + p.y, p.z * 0.6 - p.y)).collect();
     mesh.coordinates[1] = mesh.positions.iter().map(|p| Vec2::new(p.y * 0.3, p.x * 0.2)).collect();

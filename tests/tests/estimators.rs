@@ -1,6 +1,9 @@
 //! Estimates of the same light by different ways: their means agree on each of 64 blocks of the picture, by the standard errors
 //! that seeds tell.
 
+use std::collections::BTreeSet;
+use std::sync::Arc;
+
 use eyerays::film::Film;
 use eyerays::scene::{
     Alpha, Direct, Environment, Integrator, Light, Map, Physical, Placement, Sampler, Scene, Settings, Texels, Texture,
@@ -85,19 +88,34 @@ fn lamps_of_every_shape() {
     assert_scene(&shipped("soft_shadows"));
 }
 
+/// Makes the lamp of a scene three times as wide, so that chance finds it soon, and returns its material.
+fn widen_lamp(scene: &mut Scene) -> usize {
+    let lamp = scene.materials.iter().position(|material| material.emission != Vec3::ZERO).expect("there is a lamp");
+    let mesh = &mut scene.mesh;
+    let of_lamp = mesh.triangles.iter().zip(&mesh.materials).filter(|(_, material)| **material as usize == lamp);
+    let corners: BTreeSet<u32> = of_lamp.flat_map(|(corners, _)| *corners).collect();
+    let middle = corners.iter().map(|&corner| mesh.positions[corner as usize]).sum::<Vec3>() / corners.len() as f32;
+    for corner in corners {
+        let place = &mut mesh.positions[corner as usize];
+        *place = middle + (*place - middle) * 3.0;
+    }
+    lamp
+}
+
 /// Everything opaque to a share, or behind a mask: what surfaces find and what lamps send is as much less.
 #[test]
 fn lamps_that_are_not_opaque_everywhere() {
     let dots = |i: usize| if i.is_multiple_of(3) { [255; 4] } else { [255, 255, 255, 40] };
     let texels = Texels::Bytes((0..8 * 8).map(dots).collect());
-    let texture = std::sync::Arc::new(Texture { name: "dots".into(), width: 8, height: 8, texels });
+    let texture = Arc::new(Texture { name: "dots".into(), width: 8, height: 8, texels });
     for (alpha, is_covered) in
         [(Alpha::Blend, false), (Alpha::Blend, true), (Alpha::Mask(0.3), true), (Alpha::Mask(0.9), false)]
     {
         let mut scene = shipped("cornell_path");
         let places = &scene.mesh.positions;
         scene.mesh.coordinates[0] = places.iter().map(|place| Vec2::new(place.x, place.z) * 3.0).collect();
-        let lamp = scene.materials.iter_mut().find(|material| material.emission != Vec3::ZERO).expect("a lamp");
+        let lamp = widen_lamp(&mut scene);
+        let lamp = &mut scene.materials[lamp];
         (lamp.alpha, lamp.opacity) = (alpha, 0.6);
         lamp.maps.opacity = is_covered.then(|| Map { texture: texture.clone(), placement: Placement::default() });
         let settings = Settings { bounces: 1, ..settings(&scene) };

@@ -135,7 +135,7 @@ fn surfaces_and_surroundings() {
         assert!(!pair[0].bits_equal(&pair[1]), "a filter or an integrator changes nothing");
     }
     // Whitted's model refuses light that surfaces send out.
-    scene.materials[0].emission = Vec3::ZERO;
+    scene.materials.iter_mut().for_each(|material| material.emission = Vec3::ZERO);
     let settings = Settings { sampler: Sampler::Regular, spp: 4, size: (40, 30), bounces: 3, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
     let Some(gpu) = exact() else { return };

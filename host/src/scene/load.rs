@@ -60,8 +60,8 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
     let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
-        // Whitted's model draws nothing that shines.
-        scene.settings = of_paths();
+        // Whitted's model draws nothing that shines, and paths no ambient light.
+        (scene.settings, scene.ambient) = (of_paths(), Vec3::ZERO);
     }
     Ok((framed(path, scene)?, warnings))
 }

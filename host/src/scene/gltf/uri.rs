@@ -50,7 +50,7 @@ fn data_of(data: &str) -> Unplaced<Vec<u8>> {
     let Some((kind, text)) = data.split_once(',') else {
         return Err("the data URI has no comma before its data; write the file again".into());
     };
-    if !kind.ends_with(";base64") {
+    if !kind.to_ascii_lowercase().ends_with(";base64") {
         return Err("the data URI is not in base64; write the file again".into());
     }
     BASE64.decode(text).map_err(|error| format!("the data URI is not base64 ({error}); write the file again"))

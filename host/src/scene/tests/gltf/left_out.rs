@@ -70,9 +70,14 @@ fn colours_of_vertices_are_left_out_of_what_is_unlit() {
 fn data_may_be_named_in_capitals_and_percent_encoded() {
     let mut model = with(json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } }));
     model.json["textures"] = json!([{ "source": 0 }]);
-    for uri in
-        [data(&picture()), data(&picture()).replacen("data:", "DATA:", 1).replace('=', "%3D").replace('+', "%2B")]
-    {
+    for uri in [
+        data(&picture()),
+        data(&picture())
+            .replacen("data:", "DATA:", 1)
+            .replace(";base64,", ";BASE64,")
+            .replace('=', "%3D")
+            .replace('+', "%2B"),
+    ] {
         model.json["images"] = json!([{ "uri": uri }]);
         assert_eq!(model.load().obj.materials[1].1.maps.all().count(), 1);
     }

@@ -1,0 +1,174 @@
+//! Any scene that is accepted is drawn: whatever its materials, pictures and vertices have and lack, no kernel reads beyond what was
+//! packed, and all light is finite.
+
+use std::sync::Arc;
+
+use eyerays::device_scene::Feature;
+use eyerays::scene::{
+    Absorption, Alpha, Conductor, Direct, Environment, Integrator, Map, Maps, Material, Physical, Placement, Sampler,
+    Scene, Settings, Texels, Texture, Transport, Wrap,
+};
+use eyerays_tests::random::Random;
+use eyerays_tests::{on_cpu, pack, shipped};
+use glam::{Vec2, Vec3, Vec4};
+
+const SCENES: u64 = 1500;
+
+/// One of a few.
+fn one<T: Copy>(random: &mut Random, of: &[T]) -> T {
+    of[random.index(of.len())]
+}
+
+fn chance(random: &mut Random, share: f64) -> bool {
+    random.unit() < share
+}
+
+fn colour(random: &mut Random) -> Vec3 {
+    let channel = |random: &mut Random| one(random, &[0.0, 0.0, 0.3, 1.0]);
+    Vec3::new(channel(random), channel(random), channel(random))
+}
+
+/// Small ones, with texels of every kind.
+fn pictures() -> Vec<Arc<Texture>> {
+    let picture = |name: &str, width, height, texels| Arc::new(Texture { name: name.into(), width, height, texels });
+    let noise = (0..3 * 5u32).map(|i| i.wrapping_mul(2_654_435_761).to_le_bytes()).collect();
+    vec![
+        picture("black", 1, 1, Texels::Bytes(vec![[0; 4]])),
+        picture("noise", 3, 5, Texels::Bytes(noise)),
+        picture(
+            "spark",
+            64,
+            64,
+            Texels::Bytes((0..64 * 64).map(|i| if i == 9 { [1, 9, 0, 7] } else { [0; 4] }).collect()),
+        ),
+        picture("dark", 2, 1, Texels::Floats(vec![[0.0; 3]; 2])),
+        picture("bright", 1, 4, Texels::Floats(vec![[0.0, 1e3, 1e-20], [1e3; 3], [1e-30; 3], [0.5; 3]])),
+    ]
+}
+
+fn map(random: &mut Random, pictures: &[Arc<Texture>]) -> Option<Map> {
+    let wrap = one(random, &[Wrap::Repeat, Wrap::Mirror, Wrap::Clamp]);
+    let scale = one(random, &[0.0, 1.0, -3.0, 1e6]);
+    let placement = Placement {
+        set: random.bits() % 2,
+        wrap: [wrap; 2],
+        nearest: chance(random, 0.5),
+        ..Placement::default().transformed(Vec2::splat(scale), 30.0, Vec2::new(0.5, -9.0))
+    };
+    chance(random, 0.3).then(|| Map { texture: pictures[random.index(pictures.len())].clone(), placement })
+}
+
+fn maps(random: &mut Random, pictures: &[Arc<Texture>]) -> Maps {
+    Maps {
+        base: map(random, pictures),
+        metallic_roughness: map(random, pictures),
+        normal: map(random, pictures),
+        normal_scale: one(random, &[0.0, 1.0, -1e3]),
+        emission: map(random, pictures),
+        transmission: map(random, pictures),
+        specular_weight: map(random, pictures),
+        specular_tint: map(random, pictures),
+        anisotropy: map(random, pictures),
+        opacity: map(random, pictures),
+    }
+}
+
+fn physical(random: &mut Random) -> Physical {
+    let gold = Conductor { eta: Vec3::new(0.143, 0.375, 1.442), k: Vec3::new(3.983, 0.0, 100.0) };
+    Physical {
+        base: colour(random),
+        metallic: one(random, &[0.0, 0.5, 1.0]),
+        roughness: one(random, &[0.0, 0.03, 0.4, 1.0]),
+        anisotropy: one(random, &[0.0, 0.0, 1.0]),
+        anisotropy_rotation: 77.0,
+        specular_weight: one(random, &[0.0, 1.0]),
+        specular_tint: 4.0 * colour(random),
+        transmission: colour(random),
+        ior: one(random, &[1.0, 1.001, 1.5, 4.0]),
+        thin: chance(random, 0.5),
+        absorption: chance(random, 0.5).then(|| Absorption { colour: colour(random), distance: 1e-3 }),
+        conductor: chance(random, 0.2).then_some(gold),
+    }
+}
+
+fn change(random: &mut Random, material: &mut Material, pictures: &[Arc<Texture>]) {
+    material.physical = chance(random, 0.7).then(|| physical(random));
+    material.maps = maps(random, pictures);
+    material.emission = one(random, &[0.0, 0.0, 1e-6, 1e3]) * colour(random);
+    material.two_sided = chance(random, 0.5);
+    material.alpha = one(random, &[Alpha::Opaque, Alpha::Mask(0.0), Alpha::Mask(0.5), Alpha::Mask(1.0), Alpha::Blend]);
+    material.opacity = one(random, &[0.0, 0.5, 1.0]);
+}
+
+fn any_scene(random: &mut Random) -> Scene {
+    let mut scene = shipped(one(random, &["lights", "bleeding", "soft_shadows", "glass", "cornell_path"]));
+    let pictures = pictures();
+    scene.materials.iter_mut().for_each(|material| change(random, material, &pictures));
+    let mesh = &mut scene.mesh;
+    let count = mesh.positions.len();
+    for set in 0..2 {
+        let coordinate = |random: &mut Random| Vec2::new(random.magnitude(-3.0, 3.0), one(random, &[0.0, 0.5, 1e9]));
+        let has = chance(random, 0.5);
+        mesh.coordinates[set] = if has { (0..count).map(|_| coordinate(random)).collect() } else { Vec::new() };
+    }
+    if chance(random, 0.4) {
+        mesh.colours = (0..count).map(|_| colour(random).extend(one(random, &[0.0, 0.5, 1.0]))).collect();
+    }
+    if chance(random, 0.4) {
+        let tangent = |random: &mut Random| one(random, &[Vec4::ZERO, Vec4::X, Vec4::new(0.6, 0.0, 0.8, -1.0)]);
+        mesh.tangents = (0..count).map(|_| tangent(random)).collect();
+    }
+    if chance(random, 0.3) {
+        mesh.normals = Vec::new();
+    }
+    if chance(random, 0.4) {
+        scene.lights.clear();
+    }
+    let far = pictures[random.index(pictures.len())].clone();
+    let visible = chance(random, 0.5);
+    scene.environment =
+        chance(random, 0.5).then_some(Environment { texture: far, rotation: 33.0, scale: 2.0, visible });
+    scene.settings = any_settings(random, &scene);
+    scene
+}
+
+fn any_settings(random: &mut Random, scene: &Scene) -> Settings {
+    let shines = scene.materials.iter().any(|material| material.emission != Vec3::ZERO);
+    let mut integrators = vec![Integrator::Path, Integrator::Path, Integrator::Distributed, Integrator::Ao];
+    if !shines {
+        integrators.push(Integrator::Whitted);
+    }
+    let direct = one(random, &[Direct::Power, Direct::Balance, Direct::Light, Direct::Surface]);
+    let transport = Transport { integrator: one(random, &integrators), direct, ..Transport::default() };
+    Settings {
+        size: (8, 6),
+        samples: 1,
+        spp: 1,
+        sampler: Sampler::Random,
+        bounces: 3,
+        culling: chance(random, 0.2),
+        filter: one(random, &[eyerays::scene::Filter::Nearest, eyerays::scene::Filter::Bilinear, Default::default()]),
+        transport,
+        ..Settings::default()
+    }
+}
+
+#[test]
+fn any_scene_that_is_accepted_is_drawn() {
+    let mut drawn = 0;
+    for seed in 0..SCENES {
+        let mut random = Random::new(seed);
+        let scene = any_scene(&mut random);
+        if let Err(error) = scene.check() {
+            panic!("seed {seed}: {error}");
+        }
+        let mut posed = pack(&scene, &scene.cameras[0], scene.settings);
+        for feature in [None, Some(one(&mut random, &[Feature::Albedo, Feature::Normal, Feature::Place]))] {
+            posed.packed.show(feature);
+            let (film, rays) = on_cpu(&posed);
+            assert_eq!(rays.non_finite, 0, "seed {seed}, {feature:?}");
+            drawn += film.pixels.iter().filter(|pixel| pixel.iter().any(|&channel| channel != 0.0)).count();
+        }
+    }
+    assert!(drawn as u64 > 10 * SCENES, "most are not black, but {drawn} pixels are bright");
+}

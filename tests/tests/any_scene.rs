@@ -4,12 +4,14 @@
 use std::sync::Arc;
 
 use eyerays::device_scene::Feature;
+use eyerays::gpu::{AdapterRequest, Renderer};
+use eyerays::method::Traversal;
 use eyerays::scene::{
-    Absorption, Alpha, Conductor, Direct, Environment, Integrator, Map, Maps, Material, Physical, Placement, Sampler,
-    Scene, Settings, Texels, Texture, Transport, Wrap,
+    Absorption, Alpha, Conductor, Direct, Environment, Filter, Integrator, Map, Maps, Material, Physical, Placement,
+    Sampler, Scene, Settings, Texels, Texture, Transport, Wrap,
 };
 use eyerays_tests::random::Random;
-use eyerays_tests::{on_cpu, pack, shipped};
+use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack, shipped};
 use glam::{Vec2, Vec3, Vec4};
 
 const SCENES: u64 = 1500;
@@ -147,7 +149,7 @@ fn any_settings(random: &mut Random, scene: &Scene) -> Settings {
         sampler: Sampler::Random,
         bounces: 3,
         culling: chance(random, 0.2),
-        filter: one(random, &[eyerays::scene::Filter::Nearest, eyerays::scene::Filter::Bilinear, Default::default()]),
+        filter: one(random, &[Filter::Nearest, Filter::Bilinear, Default::default()]),
         transport,
         ..Settings::default()
     }
@@ -171,4 +173,23 @@ fn any_scene_that_is_accepted_is_drawn() {
         }
     }
     assert!(drawn as u64 > 10 * SCENES, "most are not black, but {drawn} pixels are bright");
+}
+
+/// Of the first so many, `EYERAYS_SCENES` or ten, on a GPU of hardware: each asks for kernels of its own, which take seconds to compile.
+#[test]
+fn any_scene_has_the_same_bits_on_a_gpu() {
+    let gpu = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() });
+    let Some(gpu) = gpu.filter(|gpu| !gpu.report.is_software()) else {
+        eprintln!("skipped: there is no GPU of hardware");
+        return;
+    };
+    let count = std::env::var("EYERAYS_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(10);
+    for seed in 0..count {
+        let scene = any_scene(&mut Random::new(seed));
+        let posed = pack(&scene, &scene.cameras[0], scene.settings);
+        let mut renderer = Renderer::new(&gpu, &posed, true, Traversal::default()).unwrap_or_else(|e| panic!("{e}"));
+        let rendering = renderer.render(&posed.view, &|_| ()).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
+        assert_same_bits(&rendering.film, &on_cpu(&posed).0, &format!("seed {seed}"));
+        println!("{} scenes have the same bits", seed + 1);
+    }
 }

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use eyerays::film::Film;
 use eyerays::scene::{Integrator, Map, Physical, Placement, Scene, Settings, Texels, Texture, Transport};
+use eyerays_shader::data::Effects;
 use eyerays_tests::{on_cpu, pack, shipped};
 use glam::{Vec2, Vec3, Vec4};
 
@@ -47,6 +48,9 @@ fn a_black_picture_of_light_is_dark_and_a_faint_one_is_seen() {
         assert_eq!(light(&film(&black, integrator)), 0.0, "{integrator:?}");
         assert!(light(&film(&faint, integrator)) > 0.0, "{integrator:?}");
     }
+    // Kernels that draw lamps need some.
+    let is_emissive = |scene| pack(scene, &scene.cameras[0], scene.settings).effects().has(Effects::EMISSIVE);
+    assert_eq!((is_emissive(&black), is_emissive(&faint)), (false, true));
     // One texel of many, so that the mean rounds to nothing in 8 bits.
     let spark = shining(|i| if i == 77 { [9, 9, 9, 255] } else { [0, 0, 0, 255] });
     let samples = pack(&spark, &spark.cameras[0], spark.settings);

@@ -24,7 +24,7 @@ pub struct Lighting {
 pub(super) struct Lamps {
     /// The place in leaf order and the power of each that has an area, by their numbers; of a split one the first place.
     powers: Vec<(u32, f64)>,
-    /// Each material's emission, whose density is left open, and its power of a unit of area; none if no material emits.
+    /// Each material's emission, whose density is left open, and its power of a unit of area; none if there is no lamp.
     emissions: Vec<(Emission, f64)>,
     /// The least and the greatest corner around all of them, if there are any.
     pub bounds: Option<[Vec3; 2]>,
@@ -52,13 +52,18 @@ impl Lamps {
             let sides = UVec4::new(u32::from(material.two_sided), map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
-        let emissions = materials.iter().zip(0..).map(emission).collect();
+        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
         Lamps {
             powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(),
             emissions,
             bounds,
             far_light,
         }
+    }
+
+    /// Is there none? Pictures may take all light away that materials emit.
+    pub fn is_empty(&self) -> bool {
+        self.powers.is_empty()
     }
 }
 

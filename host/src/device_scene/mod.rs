@@ -119,6 +119,7 @@ impl DeviceScene {
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
         let (environment, far_light) = far.unwrap_or_default();
         let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
+        let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
         Ok(DeviceScene {
             statistics,
@@ -135,7 +136,7 @@ impl DeviceScene {
             environment,
             emissive,
             lamps,
-            effects,
+            effects: Effects(effects.0 & !dark),
             background: scene.background,
             settings,
             feature: None,

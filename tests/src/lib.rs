@@ -103,6 +103,18 @@ pub fn gpu(want: &AdapterRequest) -> Option<Gpu> {
     }
 }
 
+/// One that has exact precision, and whose compiler is quick: lavapipe's optimizer needs minutes for the kernels of paths unless
+/// `GALLIVM_PERF=nopt` turns it off.
+pub fn quick_gpu() -> Option<Gpu> {
+    gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }).filter(|gpu| {
+        let is_slow = gpu.report.is_software() && std::env::var_os("GALLIVM_PERF").is_none_or(|value| value != "nopt");
+        if is_slow {
+            eprintln!("skipped: {} compiles such kernels for minutes without GALLIVM_PERF=nopt", gpu.report.name);
+        }
+        !is_slow
+    })
+}
+
 /// Every method; the hybrids parting early, late, and as they do by default; single rays persistent too, and
 /// each of the other switches once.
 pub fn traversals() -> Vec<Traversal> {

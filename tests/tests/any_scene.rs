@@ -4,14 +4,14 @@
 use std::sync::Arc;
 
 use eyerays::device_scene::Feature;
-use eyerays::gpu::{AdapterRequest, Renderer};
+use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
     Absorption, Alpha, Conductor, Direct, Environment, Filter, Integrator, Map, Maps, Material, Physical, Placement,
     Sampler, Scene, Settings, Texels, Texture, Transport, Wrap,
 };
 use eyerays_tests::random::Random;
-use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack, shipped};
+use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
 use glam::{Vec2, Vec3, Vec4};
 
 const SCENES: u64 = 1500;
@@ -175,21 +175,38 @@ fn any_scene_that_is_accepted_is_drawn() {
     assert!(drawn as u64 > 10 * SCENES, "most are not black, but {drawn} pixels are bright");
 }
 
-/// Of the first so many, `EYERAYS_SCENES` or ten, on a GPU of hardware: each asks for kernels of its own, which take seconds to compile.
+/// Of the first so many, `EYERAYS_SCENES` or five: each asks for kernels of its own, which take seconds to compile.
 #[test]
 fn any_scene_has_the_same_bits_on_a_gpu() {
-    let gpu = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() });
-    let Some(gpu) = gpu.filter(|gpu| !gpu.report.is_software()) else {
-        eprintln!("skipped: there is no GPU of hardware");
-        return;
-    };
-    let count = std::env::var("EYERAYS_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(10);
+    let Some(gpu) = quick_gpu() else { return };
+    let count = std::env::var("EYERAYS_SCENES").ok().and_then(|count| count.parse().ok()).unwrap_or(5);
     for seed in 0..count {
         let scene = any_scene(&mut Random::new(seed));
-        let posed = pack(&scene, &scene.cameras[0], scene.settings);
-        let mut renderer = Renderer::new(&gpu, &posed, true, Traversal::default()).unwrap_or_else(|e| panic!("{e}"));
-        let rendering = renderer.render(&posed.view, &|_| ()).unwrap_or_else(|e| panic!("seed {seed}: {e}"));
-        assert_same_bits(&rendering.film, &on_cpu(&posed).0, &format!("seed {seed}"));
+        assert_same_on(&gpu, &scene, &format!("seed {seed}"));
         println!("{} scenes have the same bits", seed + 1);
     }
+}
+
+/// Light that pictures take away leaves kernels something to bind.
+#[test]
+fn black_surroundings_and_black_lamps_are_drawn_on_a_gpu() {
+    let Some(gpu) = quick_gpu() else { return };
+    let black = pictures()[0].clone();
+    let mut scene = shipped("bleeding");
+    scene.lights.clear();
+    for material in &mut scene.materials {
+        material.maps.emission = Some(Map { texture: black.clone(), placement: Placement::default() });
+        material.emission = Vec3::ONE;
+    }
+    scene.settings = Settings { size: (8, 6), spp: 1, bounces: 1, ..scene.settings };
+    assert_same_on(&gpu, &scene, "black lamps");
+    scene.environment = Some(Environment { texture: black, rotation: 0.0, scale: 1.0, visible: true });
+    assert_same_on(&gpu, &scene, "black lamps in black surroundings");
+}
+
+fn assert_same_on(gpu: &Gpu, scene: &Scene, what: &str) {
+    let posed = pack(scene, &scene.cameras[0], scene.settings);
+    let mut renderer = Renderer::new(gpu, &posed, true, Traversal::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let rendering = renderer.render(&posed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
+    assert_same_bits(&rendering.film, &on_cpu(&posed).0, what);
 }

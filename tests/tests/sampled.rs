@@ -9,22 +9,11 @@ use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
 use eyerays::scene::{Background, Direct, Filter, Integrator, Light, Sampler, Scene, Settings, Transport};
 use eyerays_tests::covered::covered;
-use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, shipped};
+use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, quick_gpu, shipped};
 use glam::Vec3;
 
 fn exact() -> Option<Gpu> {
     gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() })
-}
-
-/// One whose compiler is quick.
-fn quick() -> Option<Gpu> {
-    exact().filter(|gpu| {
-        let is_slow = gpu.report.is_software() && std::env::var_os("GALLIVM_PERF").is_none_or(|value| value != "nopt");
-        if is_slow {
-            eprintln!("skipped: {} compiles such kernels for minutes without GALLIVM_PERF=nopt", gpu.report.name);
-        }
-        !is_slow
-    })
 }
 
 /// Of the scene's own, as many samples as this.
@@ -50,7 +39,7 @@ fn assert_same(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
 
 #[test]
 fn walls_that_throw_colours() {
-    let Some(gpu) = quick() else { return };
+    let Some(gpu) = quick_gpu() else { return };
     let scene = shipped("bleeding");
     let packed = pack(&scene, &scene.cameras[0], settings(&scene, (45, 37), 3));
     assert_same(&gpu, &packed, Traversal::default(), "bleeding");
@@ -66,7 +55,7 @@ fn ambient_occlusion() {
 
 #[test]
 fn shipped_scenes() {
-    let Some(gpu) = quick() else { return };
+    let Some(gpu) = quick_gpu() else { return };
     for (name, method) in SAMPLED.into_iter().zip([Method::Auto, Method::Packet, Method::Wide, Method::IfIf]) {
         let scene = shipped(name);
         for (camera, size, spp) in [(0, (45, 37), 3), (scene.cameras.len() - 1, (16, 40), 1)] {
@@ -80,7 +69,7 @@ fn shipped_scenes() {
 /// glass, by each way to find lights, with chance at every bounce and a limit to what it brings.
 #[test]
 fn everything_at_once() {
-    let Some(gpu) = quick() else { return };
+    let Some(gpu) = quick_gpu() else { return };
     let mut scene = shipped("glass");
     scene.background = Background::Gradient { horizon: Vec3::new(0.3, 0.2, 0.1), zenith: Vec3::new(0.1, 0.2, 0.5) };
     scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2) });
@@ -125,7 +114,7 @@ fn surfaces_and_surroundings() {
             let settings = Settings { transport, filter, bounces: 4, ..settings(&scene, (40, 30), 4) };
             let packed = pack(&scene, &scene.cameras[0], settings);
             let what = format!("{integrator}, {filter}, {method}");
-            if let Some(gpu) = quick() {
+            if let Some(gpu) = quick_gpu() {
                 assert_same(&gpu, &packed, method.into(), &what);
             }
             on_cpu(&packed).0
@@ -174,7 +163,7 @@ fn samples_in_parts() {
         assert_same_bits(&got, &film, &format!("CPU, {parts:?}"));
         assert_eq!(counted, rays);
     }
-    let Some(mut gpu) = quick() else { return };
+    let Some(mut gpu) = quick_gpu() else { return };
     let sample = 64 * 64 * 48;
     for (in_flight, parts) in [(16, &[16][..]), (16, &[8, 8]), (4, &[16]), (1, &[16]), (1, &[5, 11])] {
         gpu.report.max_binding = gpu.report.max_buffer.min(in_flight * sample);
@@ -247,7 +236,7 @@ fn lights_change_without_another_scene() {
     let film = renderer.render::<f32>(&packed.view, &|_| (), &()).unwrap().0;
     let fresh = pack(&scene, &scene.cameras[0], settings);
     assert_same_bits(&film, &on_cpu(&fresh).0, "CPU");
-    let Some(gpu) = quick() else { return };
+    let Some(gpu) = quick_gpu() else { return };
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     renderer.set_lights(&scene.lights).unwrap();
     assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "GPU");

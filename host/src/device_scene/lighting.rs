@@ -28,12 +28,16 @@ pub(super) struct Lamps {
     emissions: Vec<(Emission, f64)>,
     /// The least and the greatest corner around all of them, if there are any.
     pub bounds: Option<[Vec3; 2]>,
-    /// Light from far away, over all directions.
-    far_light: f64,
+    /// Light from far away, over all directions, if there is an environment.
+    far_light: Option<f64>,
 }
 
 impl Lamps {
-    pub fn new(materials: &[Material], primitives: &[Primitive], (textures, far_light): (&Textures, f64)) -> Self {
+    pub fn new(
+        materials: &[Material],
+        primitives: &[Primitive],
+        (textures, far_light): (&Textures, Option<f64>),
+    ) -> Self {
         if materials.iter().all(|material| material.emission == Vec3::ZERO) {
             return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
         }
@@ -71,8 +75,11 @@ impl Lighting {
     /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene.
     pub(super) fn new(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Self {
         let of_lights = lights.0.iter().map(|light| power(light, normalisation.scale));
+        // A black environment is chosen where there is nothing else: kernels that know one choose something.
+        let is_only = lights.0.is_empty() && lamps.is_empty();
+        let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
         // That on a scene within a sphere of radius 1.
-        let far = (lamps.far_light > 0.0).then_some(PI * lamps.far_light);
+        let far = far_light.map(|light| PI * light);
         let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).chain(far).collect();
         let total: f64 = powers.iter().sum();
         let records = lights.0.iter().zip(lights.1).map(|(light, record)| scaled(light, record, normalisation));
@@ -83,7 +90,7 @@ impl Lighting {
             let density = if total > 0.0 { (flux / total) as f32 } else { 0.0 };
             Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
-        let environment = far.map_or(0.0, |power| (power / total) as f32);
+        let environment = far.map_or(0.0, |power| if total > 0.0 { (power / total) as f32 } else { 1.0 });
         Lighting { emitters, environment, emissions: lamps.emissions.iter().map(with_density).collect() }
     }
 }

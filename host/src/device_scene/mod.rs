@@ -117,7 +117,7 @@ impl DeviceScene {
         let lights = lights(&scene.lights, &normalisation)?;
         let textures = Textures::new(scene, effects, &bvh.order)?;
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
-        let (environment, far_light) = far.unwrap_or_default();
+        let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);

@@ -64,7 +64,7 @@ fn maps(number: usize) -> Maps {
         },
     };
     let bytes = picture("bytes", 7, 5, |_| None);
-    let floats = picture("floats", 4, 6, |i| Some([0.5, 0.1 * (i % 9) as f32, 0.9]));
+    let floats = picture("floats", 4, 6, |i| Some([0.5, 0.1 * (i % 9) as f32, 0.9, 0.2 * (i % 6) as f32]));
     Maps {
         base: Some(map(&bytes, 15.0)),
         metallic_roughness: Some(map(&floats, 0.0)),
@@ -79,9 +79,9 @@ fn maps(number: usize) -> Maps {
 }
 
 /// A picture whose texels are given, or bytes that look drawn at random.
-fn picture(name: &str, width: u32, height: u32, light: impl Fn(usize) -> Option<[f32; 3]>) -> Arc<Texture> {
+fn picture(name: &str, width: u32, height: u32, light: impl Fn(usize) -> Option<[f32; 4]>) -> Arc<Texture> {
     let count = (width * height) as usize;
-    let floats: Option<Vec<[f32; 3]>> = (0..count).map(&light).collect();
+    let floats: Option<Vec<[f32; 4]>> = (0..count).map(&light).collect();
     let byte = |i: usize, k: usize| ((i * 97 + k * 59 + i * i * 13) % 256) as u8;
     let texels = match floats {
         Some(floats) => Texels::Floats(floats),

@@ -43,8 +43,13 @@ fn pictures() -> Vec<Arc<Texture>> {
             64,
             Texels::Bytes((0..64 * 64).map(|i| if i == 9 { [1, 9, 0, 7] } else { [0; 4] }).collect()),
         ),
-        picture("dark", 2, 1, Texels::Floats(vec![[0.0; 3]; 2])),
-        picture("bright", 1, 4, Texels::Floats(vec![[0.0, 1e3, 1e-20], [1e3; 3], [1e-30; 3], [0.5; 3]])),
+        picture("dark", 2, 1, Texels::Floats(vec![[0.0; 4]; 2])),
+        picture(
+            "bright",
+            1,
+            4,
+            Texels::Floats(vec![[0.0, 1e3, 1e-20, 1.0], [1e3, 1e3, 1e3, 0.3], [1e-30; 4], [0.5; 4]]),
+        ),
     ]
 }
 

@@ -143,8 +143,8 @@ fn lights_without_extent_beside_a_lamp() {
 
 /// A scene below a picture of 16 x 8 texels, one of which is bright; a ball and the floor are of rough materials.
 fn below(column: usize, row: usize) -> Scene {
-    let mut texels = vec![[0.02, 0.03, 0.05]; 16 * 8];
-    texels[row * 16 + column] = [40.0, 35.0, 30.0];
+    let mut texels = vec![[0.02, 0.03, 0.05, 1.0]; 16 * 8];
+    texels[row * 16 + column] = [40.0, 35.0, 30.0, 1.0];
     let texture = Texture { name: "sky".into(), width: 16, height: 8, texels: Texels::Floats(texels) };
     let mut scene = shipped("lights");
     scene.lights.clear();

@@ -60,7 +60,7 @@ fn light(environment: &Environment) -> Vec<Vec3> {
         Vec3::from_array(v.map(|x| flushed_number((f64::from(x) * f64::from(environment.scale)).min(1e18) as f32)))
     };
     match &environment.texture.texels {
-        Texels::Floats(floats) => floats.par_iter().map(|&v| scaled(v)).collect(),
+        Texels::Floats(floats) => floats.par_iter().map(|&[r, g, b, _]| scaled([r, g, b])).collect(),
         Texels::Bytes(bytes) => bytes.par_iter().map(|&[r, g, b, _]| scaled([r, g, b].map(byte_to_linear))).collect(),
     }
 }
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn an_environment_that_there_is_no_memory_for_is_refused_before_its_words_are_made() {
-        let texels = Texels::Floats(vec![[1.0; 3]; 64 * 32]);
+        let texels = Texels::Floats(vec![[1.0; 4]; 64 * 32]);
         let texture = Arc::new(Texture { name: "grey".into(), width: 64, height: 32, texels });
         let environment = Environment { texture, rotation: 0.0, scale: 1.0, visible: true };
         let words = |bytes| words(&environment, Room { bytes, limit: "this test" });

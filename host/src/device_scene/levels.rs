@@ -17,7 +17,7 @@ pub(super) fn size(texture: &Texture) -> (u32, u64) {
         levels += 1;
         texels += u64::from(width) * u64::from(height);
     }
-    (levels, texels * if is_float(texture) { 3 } else { 1 })
+    (levels, texels * if is_float(texture) { 4 } else { 1 })
 }
 
 /// Adds the words of all levels, the finest first, and returns the mean of all light, linear RGB, before it is rounded to words.
@@ -30,7 +30,7 @@ pub(super) fn append(texture: &Texture, is_colour: bool, words: &mut Vec<u32>) -
     }
     loop {
         if is_float(texture) {
-            words.par_extend(level.texels.par_iter().flat_map_iter(|texel| texel[..3].iter().map(|x| x.to_bits())));
+            words.par_extend(level.texels.par_iter().flat_map_iter(|texel| texel.iter().map(|x| x.to_bits())));
         } else {
             words.par_extend(level.texels.par_iter().map(|texel| u32::from_le_bytes(encoded(*texel, is_colour))));
         }
@@ -60,10 +60,7 @@ fn first_half(texture: &Texture, is_colour: bool) -> Level {
             let [r, g, b, a] = bytes[i];
             [colour(r), colour(g), colour(b), share(a)]
         }),
-        Texels::Floats(floats) => Level::halved(width, height, |i| {
-            let [r, g, b] = floats[i];
-            [r, g, b, 1.0]
-        }),
+        Texels::Floats(floats) => Level::halved(width, height, |i| floats[i]),
     }
 }
 
@@ -156,7 +153,8 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, height: u32, texel: impl Fn(u32, u32) -> [f32; 3]) -> Texture {
-        let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let texels = places.map(|(x, y)| texel(x, y)).map(|[r, g, b]| [r, g, b, 0.25]).collect();
         Texture { name: "test".into(), width, height, texels: Texels::Floats(texels) }
     }
 
@@ -168,8 +166,8 @@ mod tests {
             let mut words = Vec::new();
             let mean_of_all = append(&picture, true, &mut words);
             assert_eq!(size(&picture), (1 + width.max(height).ilog2(), words.len() as u64));
-            let last: Vec<f32> = words[words.len() - 3..].iter().map(|&word| f32::from_bits(word)).collect();
-            assert_eq!(last, mean_of_all);
+            let last: Vec<f32> = words[words.len() - 4..].iter().map(|&word| f32::from_bits(word)).collect();
+            assert_eq!((&last[..3], last[3]), (&mean_of_all[..], 0.25));
             let mean = |of: &dyn Fn(u32) -> f64, count: u32| (0..count).map(of).sum::<f64>() / f64::from(count);
             let want = [mean(&|x| f64::from(x), width), mean(&|y| f64::from(y * y), height), 1.0];
             for (got, want) in last.into_iter().zip(want) {

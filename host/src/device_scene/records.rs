@@ -23,7 +23,7 @@ pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
     let out = match settings.transport.integrator {
         Integrator::Whitted if settings.bounces > 0 => MICROFACETS,
         Integrator::Whitted => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS,
-        Integrator::Distributed if settings.bounces > 0 => Effects::ABSORBING,
+        Integrator::Distributed if settings.bounces > 0 => 0,
         Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION | Effects::ABSORBING,
         Integrator::Ao => !(GEOMETRY | Effects::TRANSPARENT),
         // What is behind glass is lit through it, by light that is bent there, or not at all.
@@ -76,8 +76,8 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::ANISOTROPIC, physical(&|p| p.anisotropy > 0.0));
     ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
     ask(Effects::COLOURED, !scene.mesh.colours.is_empty());
-    let has_grain = |m: &Material| m.maps.normal.is_some() || m.physical.is_some_and(|p| p.anisotropy > 0.0);
-    ask(Effects::TANGENTS, used(&has_grain));
+    let has_axes = |m: &Material| m.maps.normal.is_some() || m.physical.is_some_and(|p| p.anisotropy > 0.0);
+    ask(Effects::TANGENTS, used(&has_axes));
     ask(Effects::CUTOUT, used(&is_cutout));
     ask(Effects::ENVIRONMENT, scene.environment.is_some());
     Effects(bits)
@@ -184,7 +184,7 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
     PhysicalRecord {
         base: colour(base, flags),
         shape: colour(Vec3::new(p.roughness, p.metallic, p.anisotropy), p.ior.to_bits()),
-        dielectric: colour(p.reflectance(), flushed_number(p.specular_weight).to_bits()),
+        dielectric: colour(p.tinted(), flushed_number(p.specular_weight).to_bits()),
         transmission: colour(p.transmission, lengths.to_bits()),
         attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), 0),
         eta: colour(conductor.eta, turned(math::cos(turns))),

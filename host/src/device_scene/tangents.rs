@@ -1,4 +1,4 @@
-//! Tangents of triangles, where a normal map or a grain asks for them (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
+//! Tangents of triangles, where a normal map or anisotropy asks for them (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
 
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use eyerays_shader::data::{Normals, pack};

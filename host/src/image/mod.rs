@@ -10,6 +10,8 @@
 mod bounded;
 mod encode;
 mod exr;
+mod hdr;
+mod jpeg;
 mod read;
 mod texels;
 mod tone;

@@ -11,6 +11,7 @@ use image::{
 
 use super::bounded::{Allowance, Bounded};
 use super::transfer::{byte_to_linear, linear_table};
+use super::{hdr, jpeg};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::memory::Room;
@@ -98,24 +99,20 @@ pub(super) struct Size {
 
 /// Decodes an image whose size `check` accepts and that there is memory for, reading no more of it than its size accounts for.
 pub(super) fn pixels_of(
-    reader: impl BufRead + Seek,
+    mut reader: impl BufRead + Seek,
     kinds: &Kinds,
     check: impl FnOnce(Size) -> Result<()>,
 ) -> Result<(Size, DynamicImage)> {
-    let allowance = Allowance::new(MOST_HEADER);
-    let reader = Bounded::new(reader, allowance.clone());
     let unreadable = |e: io::Error| Error::new(read_error(&e));
-    let reader = ImageReader::new(reader).with_guessed_format().map_err(unreadable)?;
-    let kind = reader.format().and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
+    let guessed = ImageReader::new(&mut reader).with_guessed_format().map_err(unreadable)?.format();
+    let kind = guessed.and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
     let Some((format, most_per_pixel)) = kind else {
-        return Err(Error::new(not_read(reader.into_inner(), kinds.names).map_err(unreadable)?));
+        return Err(Error::new(not_read(reader, kinds.names).map_err(unreadable)?));
     };
-    let mut reader = reader.into_inner();
-    if format == ImageFormat::OpenExr {
-        check_parts(&mut reader)?;
-        reader.rewind().map_err(unreadable)?;
-    }
-    let mut reader = ImageReader::with_format(reader, format);
+    let allowance = Allowance::new(MOST_HEADER);
+    let exposure = check_header(&mut reader, format, allowance.clone())?;
+    reader.rewind().map_err(unreadable)?;
+    let mut reader = ImageReader::with_format(Bounded::new(reader, allowance.clone()), format);
     let mut limits = Limits::default();
     // The widest pixel is one of four floats.
     limits.max_alloc = Some(kinds.most_pixels * 16);
@@ -127,7 +124,32 @@ pub(super) fn pixels_of(
     check(size)?;
     room(width, height, MEMORY_PER_PIXEL)?;
     allowance.add(u64::from(width) * u64::from(height) * most_per_pixel);
-    Ok((size, DynamicImage::from_decoder(decoder).map_err(decode_error)?))
+    let mut image = DynamicImage::from_decoder(decoder).map_err(decode_error)?;
+    if let DynamicImage::ImageRgb32F(pixels) = &mut image
+        && exposure != 1.0
+    {
+        pixels.iter_mut().for_each(|x| *x /= exposure);
+    }
+    Ok((size, image))
+}
+
+/// Refuses what no decoder does, or too late, and returns what light is to be divided by.
+fn check_header(reader: &mut (impl BufRead + Seek), format: ImageFormat, allowance: Allowance) -> Result<f32> {
+    let unreadable = |e: io::Error| Error::new(read_error(&e));
+    match format {
+        ImageFormat::OpenExr => check_parts(&mut Bounded::new(reader, allowance))?,
+        ImageFormat::Jpeg => {
+            if jpeg::is_cut_off(reader).map_err(unreadable)? {
+                return Err(Error::new("ends before its picture does; write the image again"));
+            }
+        }
+        ImageFormat::Hdr => {
+            let exposure = hdr::exposure(Bounded::new(reader, allowance)).map_err(unreadable)?;
+            return exposure.ok_or_else(|| Error::new("has an EXPOSURE that is no number above 0; write it again"));
+        }
+        _ => (),
+    }
+    Ok(1.0)
 }
 
 /// What is said of an image that begins as none of the `names` does.
@@ -158,6 +180,10 @@ fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     };
     let parts = ::exr::meta::MetaData::read_from_buffered(reader, false).map_err(damaged)?.headers;
     let most = most_per_pixel(ImageFormat::OpenExr).unwrap_or(0);
+    let has = |part: &::exr::meta::header::Header, name: &str| part.channels.list.iter().any(|of| of.name.eq(name));
+    if !parts.iter().any(|part| ["R", "G", "B"].into_iter().all(|name| has(part, name))) {
+        return Err(Error::new("has no channels called R, G and B; write it with these"));
+    }
     parts.iter().try_for_each(|part| {
         let [width, height] =
             [part.layer_size.0, part.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
@@ -195,7 +221,9 @@ fn decode_error(error: ImageError) -> Error {
         ImageError::IoError(error) => read_error(&error),
         ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
         // Decoders' own words are of their insides.
-        ImageError::Unsupported(_) => "is of a kind that is not read; write it with 8 or 16 bits a channel".to_owned(),
+        ImageError::Unsupported(_) => {
+            "is of a kind that is not read; write it as RGB of 8 or 16 bits, or of floats".to_owned()
+        }
         _ => "is damaged; write the image again".to_owned(),
     })
 }

@@ -14,7 +14,7 @@ use crate::scene::{Texels, Texture};
 pub struct TextureBudget(u64);
 
 impl TextureBudget {
-    /// Bytes of the texels of all pictures, 4 each, or 12 of floats: with a third more for their levels, what kernels number by words
+    /// Bytes of the texels of all pictures, 4 each, or 16 of floats: with a third more for their levels, what kernels number by words
     /// of 4 bytes.
     pub const MOST: u64 = 12 << 30;
 
@@ -26,7 +26,7 @@ impl TextureBudget {
 
     /// Takes a picture's share.
     fn take(&mut self, Size { width, height, is_float }: Size) -> Result<()> {
-        let bytes = u64::from(width) * u64::from(height) * if is_float { 12 } else { 4 };
+        let bytes = u64::from(width) * u64::from(height) * if is_float { 16 } else { 4 };
         self.0 = self.0.checked_sub(bytes).ok_or_else(|| {
             let left = self.0;
             let fault = format!("has {width}x{height} texels, which take {bytes} bytes");
@@ -52,7 +52,8 @@ pub fn read_texture(path: &Path, budget: &mut TextureBudget) -> Result<Texture> 
 }
 
 /// Decodes a PNG, JPEG, EXR or HDR file, told apart by their first bytes. Of the first two the values stay what they are, in 8 bits;
-/// light that is below 0 or NaN becomes 0, and infinite light the greatest number.
+/// light that is below 0 or NaN becomes 0, and infinite light the greatest number. Colours of an EXR with opacity, which are
+/// multiplied with it, are divided by it.
 ///
 /// # Errors
 /// What is none of these, damaged, truncated, larger than a texture may be, or more than the budget or memory has room for. They
@@ -78,10 +79,17 @@ fn texels(image: DynamicImage) -> Texels {
     use DynamicImage::{ImageRgb32F, ImageRgba32F};
     match image {
         ImageRgb32F(_) | ImageRgba32F(_) => {
-            let light = |x: f32| if x > 0.0 { x.min(f32::MAX) } else { 0.0 };
-            Texels::Floats(image.into_rgb32f().pixels().map(|pixel| pixel.0.map(light)).collect())
+            Texels::Floats(image.into_rgba32f().pixels().map(|pixel| straight(pixel.0)).collect())
         }
         // 16 bits become 8, rounded.
         _ => Texels::Bytes(image.into_rgba8().pixels().map(|pixel| pixel.0).collect()),
     }
+}
+
+/// Light and opacity in their ranges, with the colour that it has where it is opaque.
+fn straight([r, g, b, opacity]: [f32; 4]) -> [f32; 4] {
+    let positive = |x: f32| if x > 0.0 { x.min(f32::MAX) } else { 0.0 };
+    let opacity = positive(opacity).min(1.0);
+    let [r, g, b] = [r, g, b].map(|x| if opacity > 0.0 { positive(positive(x) / opacity) } else { positive(x) });
+    [r, g, b, opacity]
 }

@@ -62,12 +62,25 @@ pub fn inside(folder: &Path, name: &str) -> Unplaced<PathBuf> {
 }
 
 /// A name with slashes between folders, for the backslashes that Windows writes. One that is absolute or climbs
-/// with `..` is refused.
+/// with `..` is refused, even if it comes back.
 pub fn downward(name: &str) -> Unplaced<String> {
     let slashed = name.replace('\\', "/");
     let drive = slashed.as_bytes().get(1) == Some(&b':');
-    if drive || slashed.starts_with('/') || slashed.split('/').any(|part| part == "..") {
+    let step = |part: &str| match part {
+        ".." => -1,
+        "" | "." => 0,
+        _ => 1,
+    };
+    let mut below = 0;
+    let mut depths = slashed.split('/').map(|part| {
+        below += step(part);
+        below
+    });
+    if drive || slashed.starts_with('/') || depths.any(|depth| depth < 0) {
         return Err(outside(name));
+    }
+    if slashed.split('/').any(|part| part == "..") {
+        return Err(format!("{name:?} goes back by \"..\"; name the file without it"));
     }
     Ok(slashed)
 }

@@ -16,9 +16,10 @@ pub struct Physical {
     pub metallic: f32,
     /// Perceived roughness in [0, 1]; its square is that of the facets. Below 1/32 the surface is a mirror or a lens.
     pub roughness: f32,
-    /// How much smoother the facets lie along the grain, in [0, 1]: brushed metal (KHR_materials_anisotropy).
+    /// How much rougher than across the facets lie along an axis, in [0, 1] (KHR_materials_anisotropy). Highlights are stretched along
+    /// it: metal is brushed across it.
     pub anisotropy: f32,
-    /// The angle from the tangent to the grain, counter-clockwise, in degrees.
+    /// The angle from the tangent to that axis, counter-clockwise, in degrees.
     pub anisotropy_rotation: f32,
     /// How strongly what is no metal reflects, in [0, 1] (KHR_materials_specular).
     pub specular_weight: f32,
@@ -92,8 +93,13 @@ impl Physical {
 
     /// What it reflects at normal incidence where it is no metal, linear RGB.
     pub fn reflectance(&self) -> Vec3 {
+        self.tinted().min(Vec3::ONE) * self.specular_weight
+    }
+
+    /// The same before its weight, of which at most 1 counts.
+    pub fn tinted(&self) -> Vec3 {
         let root = (self.ior - 1.0) / (self.ior + 1.0);
-        (self.specular_tint * (root * root)).min(Vec3::ONE) * self.specular_weight
+        (self.specular_tint * (root * root)).min(Vec3::MAX)
     }
 }
 

@@ -17,7 +17,8 @@ const LAMPS: [([u32; 2], [u32; 2], f32); 3] =
     [([2, 10], [5, 11], 5.0), ([49, 57], [8, 16], 1.5), ([32, 40], [3, 7], 4.0)];
 
 static TEXTURE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
-    let texels = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| [radiance(column, row); 3])).collect();
+    let places = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| (column, row)));
+    let texels = places.map(|(column, row)| radiance(column, row)).map(|light| [light, light, light, 1.0]).collect();
     Arc::new(Texture { name: NAME.into(), width: WIDTH, height: HEIGHT, texels: Texels::Floats(texels) })
 });
 

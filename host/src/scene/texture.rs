@@ -26,8 +26,8 @@ pub struct Texture {
 pub enum Texels {
     /// RGB and opacity in 8 bits. Whether they are sRGB or shares of 255 is up to what they are taken for: colours are sRGB.
     Bytes(Vec<[u8; 4]>),
-    /// Linear RGB, finite and at least 0.
-    Floats(Vec<[f32; 3]>),
+    /// Linear RGB, finite and at least 0, and opacity in [0, 1].
+    Floats(Vec<[f32; 4]>),
 }
 
 choices! {
@@ -177,15 +177,17 @@ impl Texture {
         let (found, odd) = match &self.texels {
             Texels::Bytes(bytes) => (bytes.len(), None),
             Texels::Floats(floats) => {
-                let odd = floats.as_flattened().iter().find(|x| !(x.is_finite() && **x >= 0.0));
-                (floats.len(), odd.copied())
+                let most = [f32::MAX, f32::MAX, f32::MAX, 1.0];
+                let mut numbers = floats.iter().flat_map(|texel| texel.iter().zip(most));
+                (floats.len(), numbers.find(|(x, most)| !(0.0..=*most).contains(*x)).map(|(x, _)| *x))
             }
         };
         let wanted = self.width as usize * self.height as usize;
         if found != wanted {
             return Err(Error::new(format!("the texture {:?} has {found} texels and needs {wanted}", self.name)));
         }
-        let fault = |odd| format!("the texture {:?} holds {odd}; light is finite and at least 0", self.name);
+        let fault =
+            |odd| format!("the texture {:?} holds {odd}; light is finite and at least 0, opacity at most 1", self.name);
         odd.map_or(Ok(()), |odd| Err(Error::new(fault(odd))))
     }
 
@@ -193,7 +195,7 @@ impl Texture {
     pub fn has_opacity(&self) -> bool {
         match &self.texels {
             Texels::Bytes(bytes) => bytes.iter().any(|texel| texel[3] < u8::MAX),
-            Texels::Floats(_) => false,
+            Texels::Floats(floats) => floats.iter().any(|texel| texel[3] < 1.0),
         }
     }
 
@@ -203,8 +205,8 @@ impl Texture {
         let texels = match &self.texels {
             Texels::Bytes(bytes) => bytes.iter().map(|texel| [texel[channel]; 4]).collect(),
             Texels::Floats(floats) => {
-                let share = |red: f32| (f64::from(red).min(1.0) * 255.0).round() as u8;
-                floats.iter().map(|&[red, ..]| [share(red); 4]).collect()
+                let share = |x: f32| (f64::from(x).min(1.0) * 255.0).round() as u8;
+                floats.iter().map(|texel| [share(texel[channel]); 4]).collect()
             }
         };
         Texture { name: self.name.clone(), texels: Texels::Bytes(texels), ..*self }

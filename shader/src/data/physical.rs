@@ -12,7 +12,8 @@ pub struct Physical {
     pub base: UVec4,
     /// Roughness, metalness and strength of the anisotropy, each in [0, 1]; the integer is the bits of the index of refraction.
     pub shape: UVec4,
-    /// What the dielectric part reflects at normal incidence, linear RGB; the integer is the bits of its share at grazing angles.
+    /// What the dielectric part reflects at normal incidence, linear RGB of at least 0, of which at most 1 counts, times the share at
+    /// grazing angles, whose bits the integer is.
     pub dielectric: UVec4,
     /// Share of the base that lets light pass, linear RGB; the integer is the bits of one over the distance of `attenuation`, 0
     /// where nothing is absorbed.
@@ -20,7 +21,7 @@ pub struct Physical {
     /// What is left of light that went that far inside, linear RGB; the integer is unused.
     pub attenuation: UVec4,
     /// The refractive part of a conductor's complex index, linear RGB; the integer is the bits of the cosine of the angle by which
-    /// the grain is turned from the tangent.
+    /// the axis along which facets are rougher is turned from the tangent.
     pub eta: UVec4,
     /// The absorbing part; the integer is the bits of that angle's sine.
     pub k: UVec4,

@@ -18,7 +18,7 @@ pub struct TextureMap {
 }
 
 impl TextureMap {
-    /// Texels are three single-precision numbers, linear RGB; without this flag a word of four bytes, red in the lowest.
+    /// Texels are four single-precision numbers, linear RGB and opacity; without this flag a word of four bytes, red in the lowest.
     pub const FLOATS: u32 = 1;
     /// Bytes of colours are in the sRGB transfer function; else they are shares of 255.
     pub const SRGB: u32 = 2;

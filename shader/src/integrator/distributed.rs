@@ -21,10 +21,11 @@ pub(super) fn at<R: Scalar>(
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
-    let (path, effects) = (vertex.path, launch.spec.effects);
+    let effects = launch.spec.effects;
     let ScatterContext { shading, lighting, physicals } = context;
     let seen = vertex.met(launch);
-    let interaction = seen.interaction;
+    let vertex = &vertex.arrived(effects, physicals, &seen);
+    let (path, interaction) = (vertex.path, seen.interaction);
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {

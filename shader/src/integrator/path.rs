@@ -3,15 +3,15 @@
 
 use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, Physical, numbers};
+use crate::data::{Effects, Frame, Launch, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting};
-use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, transmittance};
+use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure};
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
-use crate::texture::{Cone, Covering};
+use crate::texture::Covering;
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
 #[inline(always)]
@@ -23,7 +23,7 @@ pub(super) fn at<R: Scalar>(
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting } = context;
     let seen = vertex.met(launch);
-    let vertex = &arrived(effects, physicals, vertex, &seen);
+    let vertex = &vertex.arrived(effects, physicals, &seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
     let covering = seen.covering(launch, shading, is_last);
@@ -40,18 +40,6 @@ pub(super) fn at<R: Scalar>(
     let interaction = seen.interaction;
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
     scattered(launch, lighting, vertex, (&seen, &lobes), light)
-}
-
-/// What of a path has come through the body whose inside it hits.
-#[inline(always)]
-fn arrived<R: Scalar>(effects: Effects, physicals: &[Physical], vertex: &Vertex<R>, seen: &Seen<R>) -> Vertex<R> {
-    if !effects.has(Effects::ABSORBING) || seen.interaction.front {
-        return *vertex;
-    }
-    let material = read(physicals, seen.material());
-    let left = transmittance(&material, vertex.distance);
-    let weight = vertex.path.weight.times(left).map(|c| c.flush(FAINT));
-    Vertex { path: PathState { weight, ..vertex.path }, ..*vertex }
 }
 
 /// The light of one light, and the next ray, by a surface's closure.
@@ -71,12 +59,9 @@ fn scattered<R: Scalar>(
     let draws = (decisions.y, decisions.w);
     let sample = closure.sample((&interaction, origin), draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
-    let next = if launch.spec.launch.has(Launch::MIPMAPPED) {
-        let Cone { width, spread } = seen.cone.scattered(sample.density);
-        PathState { beside: (width, spread), ..next }
-    } else {
-        PathState { beside: (R::splat(0.0), R::splat(0.0)), ..next }
-    };
+    let is_wide = launch.spec.launch.has(Launch::MIPMAPPED) && sample.density.eq(R::splat(0.0));
+    let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
+    let next = PathState { beside: (width, R::splat(0.0)), ..next };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));

@@ -6,7 +6,7 @@ use crate::camera;
 use crate::data::{Effects, Launch, Physical};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
-use crate::material::Seen;
+use crate::material::{Seen, transmittance};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, Key};
@@ -60,8 +60,20 @@ impl<R: Scalar> Vertex<R> {
         let (index, direction) = (self.primitive_index, self.path.direction);
         let primitive = launch.primitive(index);
         let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction);
-        let cone = self.path.cone(launch).after(launch.spec.launch, self.distance);
+        let cone = self.path.cone(launch, self.distance);
         Seen { index, primitive, interaction, direction, cone }
+    }
+
+    /// With what of the path has come through the body whose inside it hits.
+    #[inline(always)]
+    pub fn arrived(&self, effects: Effects, physicals: &[Physical], seen: &Seen<R>) -> Self {
+        if !effects.has(Effects::ABSORBING) || seen.interaction.front {
+            return *self;
+        }
+        let material = read(physicals, seen.material());
+        let left = transmittance(&material, self.distance);
+        let weight = self.path.weight.times(left).map(|c| c.flush(FAINT));
+        Vertex { path: PathState { weight, ..self.path }, ..*self }
     }
 
     /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.

@@ -150,7 +150,7 @@ impl<R: Scalar> EmitterSample<R> {
         let sample = Self::of_place(emission, at.position, at.normal, origin);
         let sample = if effects.has(Effects::CUTOUT) && primitive.is_triangle() && primitive.is_cutout() {
             let place = Place { index, weights: coordinates, count: launch.frame.vertices };
-            let light = sample.light * opacity(effects, &lighting.textures, emission, &place);
+            let light = sample.light * opacity(launch, &lighting.textures, emission, &place);
             EmitterSample { light: light.map(|c| c.flush(FAINT)), ..sample }
         } else {
             sample
@@ -275,11 +275,11 @@ impl<R: Scalar> Cone<R> {
 
 /// How often a place on a triangle that is not opaque everywhere is there to send out light.
 #[inline(always)]
-fn opacity<R: Scalar>(effects: Effects, textures: &Textures<'_>, emission: &Emission, place: &Place<R>) -> R {
-    let (zero, one) = (R::splat(0.0), R::splat(1.0));
+fn opacity<R: Scalar>(launch: &LaunchContext<'_>, textures: &Textures<'_>, emission: &Emission, place: &Place<R>) -> R {
+    let (effects, zero, one) = (launch.spec.effects, R::splat(0.0), R::splat(1.0));
     let mut opacity = place.opacity(effects, textures);
     if effects.has(Effects::TEXTURED) && emission.sides.z != 0 {
-        opacity = opacity * opacity_of(textures, emission.sides.z, place);
+        opacity = opacity * opacity_of(launch.spec.launch, textures, emission.sides.z, place);
     }
     let factor = R::splat(f32::from_bits(emission.sides.w));
     if factor.lt(zero) { R::select((-factor).le(opacity), one, zero) } else { opacity * factor }

@@ -83,8 +83,7 @@ impl<R: Scalar> Seen<R> {
         let place = Place { index, weights: interaction.coordinates, count: launch.frame.vertices };
         let mut footprint = R::splat(0.0);
         if effects.has(Effects::TEXTURED) && launched.has(Launch::MIPMAPPED) {
-            let facing = (interaction.normal, direction);
-            footprint = cone.footprint(&shading.textures, &place, &primitive, facing);
+            footprint = cone.footprint(&primitive, (interaction.normal, direction));
         }
         let maps = if emits_only { (Maps::EMISSION, Maps::EMISSION + 1) } else { (0, Maps::COUNT) };
         let own = || read(shading.maps, primitive.material());

@@ -26,8 +26,8 @@ pub struct Parameters<R: Real> {
     pub grazing: R,
     /// Strength of anisotropy in [0, 1].
     pub anisotropy: R,
-    /// Cosine and sine of the angle of the grain.
-    pub grain: (R, R),
+    /// Cosine and sine of the angle of the axis of anisotropy, along which highlights are stretched.
+    pub axis: (R, R),
 }
 
 impl<R: Scalar> Parameters<R> {
@@ -37,27 +37,29 @@ impl<R: Scalar> Parameters<R> {
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let shape = colour(material.shape);
-        let grain = (number(material.eta.w), number(material.k.w));
+        let axis = (number(material.eta.w), number(material.k.w));
         // Angles add: that of the material and that of the map.
-        let (cosine, sine) = covering.grain;
-        let turned = (grain.0 * cosine - grain.1 * sine, grain.1 * cosine + grain.0 * sine);
+        let (cosine, sine) = covering.axis;
+        let turned = (axis.0 * cosine - axis.1 * sine, axis.1 * cosine + axis.0 * sine);
         let strength = (cosine * cosine + sine * sine).sqrt();
+        let dielectric = colour(material.dielectric).times(covering.specular_tint);
+        let grazing = number(material.dielectric.w) * covering.specular_weight;
         Parameters {
             base: colour(material.base).times(covering.base),
             roughness: shape.x * covering.roughness,
             metalness: shape.y * covering.metalness,
             transmission: colour(material.transmission) * covering.transmission,
-            normal: colour(material.dielectric).times(covering.specular_tint) * covering.specular_weight,
-            grazing: number(material.dielectric.w) * covering.specular_weight,
+            normal: dielectric.map(|c| c.min(R::splat(1.0))) * grazing,
+            grazing,
             anisotropy: shape.z * strength,
-            grain: turned,
+            axis: turned,
         }
     }
 
-    /// The axes of a surface's frame, turned to the grain.
+    /// The axes of a surface's frame, turned to the axis of anisotropy.
     #[inline(always)]
     fn turned(&self, [x, y, z]: [V3<R>; 3]) -> [V3<R>; 3] {
-        let (cosine, sine) = self.grain;
+        let (cosine, sine) = self.axis;
         let none = cosine.eq(R::splat(0.0)) && sine.eq(R::splat(0.0));
         let across = |a: V3<R>, b: V3<R>| (a + b).map(|c| c.flush(TINY));
         let (cosine, sine) = (R::select(none, R::splat(1.0), cosine), sine);
@@ -180,8 +182,8 @@ fn smooth<R: Scalar>() -> Ggx<R> {
     Ggx { x: R::splat(0.0), y: R::splat(0.0) }
 }
 
-/// Facets by perceived roughness, whose square they have; along the grain less by the strength of anisotropy
-/// (KHR_materials_anisotropy).
+/// Facets by perceived roughness, whose square they have, and more along the axis of anisotropy, by its strength
+/// (KHR_materials_anisotropy): highlights are stretched along it.
 #[inline(always)]
 fn rough<R: Scalar>(roughness: R, strength: R) -> Ggx<R> {
     let (least, one) = (R::splat(Ggx::<R>::LEAST), R::splat(1.0));

@@ -2,7 +2,7 @@
 
 use super::PathState;
 use crate::camera;
-use crate::data::{Frame, Launch, Specialisation};
+use crate::data::{Frame, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
@@ -13,9 +13,6 @@ pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, slot: u32, paths
     let pixel = camera::pixel(frame, spec.order, slot);
     let (origin, direction) = camera::ray(frame, spec.launch, pixel);
     let near = Ray::from_afar(origin, direction);
-    let is_narrowing = spec.launch.has(Launch::MIPMAPPED) && !spec.launch.has(Launch::TREE);
-    let spread = if is_narrowing { frame.spread } else { 0.0 };
-    let beside = (R::splat(0.0), R::splat(spread));
     let path = PathState {
         origin: near.origin,
         direction,
@@ -23,7 +20,7 @@ pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, slot: u32, paths
         weight: V3::splat(glam::Vec3::ONE),
         bounces: 0,
         density: R::splat(0.0),
-        beside,
+        beside: (R::splat(0.0), R::splat(0.0)),
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
     path.store(frame.slots, slot, 0, pixel.inside, paths);

@@ -31,8 +31,8 @@ pub struct PathState<R: Real> {
     pub density: R,
     /// The column and, in the upper half, the row of its pixel in the image.
     pub pixel: u32,
-    /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width and the spread of the
-    /// path's [`Cone`].
+    /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width of the path's [`Cone`]
+    /// and nothing.
     pub beside: (R, R),
 }
 
@@ -68,14 +68,16 @@ impl<R: Scalar> PathState<R> {
         PathState { beside: (R::splat(pending as f32), R::splat(vertex as f32)), ..self }
     }
 
-    /// How wide it is. Where paths branch, each begins as narrow as the camera's.
+    /// How wide it is after a distance. Where paths branch, each begins as narrow as the camera's. One that chance has led has no
+    /// width: its light is a mean over many anyhow, and coarse texels, which reach over the borders of an atlas, would change that
+    /// mean; lamps that are sampled have their finest texels, too.
     #[inline(always)]
-    pub fn cone(&self, launch: &LaunchContext<'_>) -> Cone<R> {
-        if launch.spec.launch.has(Launch::TREE) {
-            Cone { width: R::splat(0.0), spread: R::splat(launch.frame.spread) }
-        } else {
-            Cone { width: self.beside.0, spread: self.beside.1 }
+    pub fn cone(&self, launch: &LaunchContext<'_>, distance: R) -> Cone<R> {
+        if !launch.spec.launch.has(Launch::MIPMAPPED) || !self.density.eq(R::splat(0.0)) {
+            return Cone::none();
         }
+        let start = if launch.spec.launch.has(Launch::TREE) { Cone::none() } else { Cone { width: self.beside.0 } };
+        start.after(launch, distance)
     }
 
     /// Keeps it at a level; `follows` unless it is not to be traced.

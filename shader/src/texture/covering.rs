@@ -23,8 +23,8 @@ pub struct Covering<R: Real> {
     pub specular_weight: R,
     /// Its tint.
     pub specular_tint: V3<R>,
-    /// Cosine and sine of the angle of the grain times the strength of anisotropy.
-    pub grain: (R, R),
+    /// Cosine and sine of the angle of the axis of anisotropy times the strength of anisotropy.
+    pub axis: (R, R),
 }
 
 impl<R: Scalar> Covering<R> {
@@ -42,7 +42,7 @@ impl<R: Scalar> Covering<R> {
             transmission: one,
             specular_weight: one,
             specular_tint: white,
-            grain: (one, zero),
+            axis: (one, zero),
         }
     }
 
@@ -97,7 +97,7 @@ impl<R: Scalar> Covering<R> {
         } else {
             let (direction, length) = V3::new(signed(colour.x), signed(colour.y), R::splat(0.0)).normalised();
             let is_none = length.eq(R::splat(0.0));
-            self.grain = (R::select(is_none, one, direction.x) * colour.z, direction.y * colour.z);
+            self.axis = (R::select(is_none, one, direction.x) * colour.z, direction.y * colour.z);
         }
     }
 }

@@ -34,7 +34,7 @@ impl Level {
     #[inline(always)]
     fn of(map: &TextureMap, number: u32) -> Level {
         let mut level = Level { start: map.place.x, width: map.place.y, height: map.place.z };
-        let words = if map.place.w & TextureMap::FLOATS != 0 { 3 } else { 1 };
+        let words = if map.place.w & TextureMap::FLOATS != 0 { 4 } else { 1 };
         let mut left = number;
         while left > 0 {
             level.start += level.width * level.height * words;
@@ -50,13 +50,22 @@ impl Level {
         let index = y * self.width + x;
         let number = |bits: u32| R::splat(f32::from_bits(bits));
         if flags & TextureMap::FLOATS != 0 {
-            let word = |i: u32| number(read(texels, self.start + 3 * index + i));
-            return Texel { colour: V3::new(word(0), word(1), word(2)), alpha: R::splat(1.0) };
+            let word = |i: u32| number(read(texels, self.start + 4 * index + i));
+            return Texel { colour: V3::new(word(0), word(1), word(2)), alpha: word(3) };
         }
         let word = read(texels, self.start + index);
         let (red, green, blue) = (word & 255, (word >> 8) & 255, (word >> 16) & 255);
         let colour = V3::new(channel(texels, flags, red), channel(texels, flags, green), channel(texels, flags, blue));
         Texel { colour, alpha: share(word >> 24) }
+    }
+
+    #[inline(always)]
+    fn alpha<R: Scalar>(&self, texels: &[u32], flags: u32, (x, y): (u32, u32)) -> R {
+        let index = y * self.width + x;
+        if flags & TextureMap::FLOATS != 0 {
+            return R::splat(f32::from_bits(read(texels, self.start + 4 * index + 3)));
+        }
+        share(read(texels, self.start + index) >> 24)
     }
 }
 
@@ -91,12 +100,12 @@ pub fn sample<R: Scalar>(
     footprint: R,
 ) -> Texel<R> {
     let flags = map.place.w;
-    let level = if launch.has(Launch::MIPMAPPED) { level(map, footprint) } else { 0 };
+    let level = if launch.has(Launch::MIPMAPPED) && R::splat(0.0).lt(footprint) { level(map, footprint) } else { 0 };
     let level = Level::of(map, level);
     let (wrap_u, wrap_v) = ((flags >> TextureMap::WRAP_SHIFT) & 3, (flags >> (TextureMap::WRAP_SHIFT + 2)) & 3);
     let (x, y) = (Axis::new(u, level.width, wrap_u), Axis::new(v, level.height, wrap_v));
     let texels = textures.texels;
-    if launch.has(Launch::NEAREST) || flags & TextureMap::NEAREST != 0 {
+    if is_nearest(launch, flags) {
         return level.texel(texels, flags, (x.nearest(), y.nearest()));
     }
     let (left, right) =
@@ -107,23 +116,30 @@ pub fn sample<R: Scalar>(
     above.mix(left.mix(right, x.share), y.share)
 }
 
-/// The opacity of the finest level alone, of the four texels around: what the kernels that follow rays hold of a texture.
+/// The opacity of the finest level alone, of the nearest texel or the four around: what the kernels that follow rays hold of a
+/// texture.
 #[inline(always)]
-pub fn opacity<R: Scalar>(textures: &Textures<'_>, map: u32, place: &Place<R>) -> R {
+pub fn opacity<R: Scalar>(launch: Launch, textures: &Textures<'_>, map: u32, place: &Place<R>) -> R {
     let map = read(textures.textures, map - 1);
-    let (flags, start, width) = (map.place.w, map.place.x, map.place.y);
-    if flags & TextureMap::FLOATS != 0 {
-        return R::splat(1.0);
-    }
-    let (u, v) = place.coordinates(textures, &map);
+    let (flags, finest, texels) = (map.place.w, Level::of(&map, 0), textures.texels);
+    let (u, v) = place.coordinates(&place.corners(textures, &map), &map);
     let (wrap_u, wrap_v) = ((flags >> TextureMap::WRAP_SHIFT) & 3, (flags >> (TextureMap::WRAP_SHIFT + 2)) & 3);
-    let (x, y) = (Axis::new(u, width, wrap_u), Axis::new(v, map.place.z, wrap_v));
-    let (upper, lower) = (start + y.first * width, start + y.second * width);
-    let corner = |word: u32| share::<R>(read(textures.texels, word) >> 24);
-    let (a, b) = (corner(upper + x.first), corner(upper + x.second));
-    let (c, d) = (corner(lower + x.first), corner(lower + x.second));
+    let (x, y) = (Axis::new(u, finest.width, wrap_u), Axis::new(v, finest.height, wrap_v));
+    if is_nearest(launch, flags) {
+        return finest.alpha(texels, flags, (x.nearest(), y.nearest()));
+    }
+    let a = finest.alpha::<R>(texels, flags, (x.first, y.first));
+    let b = finest.alpha::<R>(texels, flags, (x.second, y.first));
+    let c = finest.alpha::<R>(texels, flags, (x.first, y.second));
+    let d = finest.alpha::<R>(texels, flags, (x.second, y.second));
     let (above, below) = (a + (b - a) * x.share, c + (d - c) * x.share);
     above + (below - above) * y.share
+}
+
+/// Does the nearest texel count alone?
+#[inline(always)]
+fn is_nearest(launch: Launch, flags: u32) -> bool {
+    launch.has(Launch::NEAREST) || flags & TextureMap::NEAREST != 0
 }
 
 /// The level whose texels are nearest in size to a footprint: each is twice as wide as those of the one before.
@@ -206,7 +222,7 @@ mod tests {
         let flags = TextureMap::FLOATS | (wrap[0] | wrap[1] << 2) << TextureMap::WRAP_SHIFT;
         let map =
             TextureMap { place: UVec4::new(0, width, height, flags), u: UVec4::new(0, 0, 0, 1), ..Zeroable::zeroed() };
-        (map, (0..width * height).flat_map(|i| [(i as f32).to_bits(), 0, 0]).collect())
+        (map, (0..width * height).flat_map(|i| [(i as f32).to_bits(), 0, 0, (i as f32).to_bits()]).collect())
     }
 
     fn textures(texels: &[u32]) -> Textures<'_> {

@@ -56,7 +56,7 @@ fn covered() -> Scene {
     let turned = Placement { set: 1, nearest: true, wrap: [Wrap::Mirror, Wrap::Clamp], ..Placement::default() }
         .transformed(Vec2::new(2.0, 3.0), 30.0, Vec2::new(0.1, 1e-9));
     let bytes = map("a \"b\".png", Texels::Bytes(vec![[1, 2, 3, 4], [255, 0, 9, 128]]), turned);
-    let floats = map("sky.exr", Texels::Floats(vec![[0.1, 1e9, 0.0], [3.0, 4.0, 5.0]]), Placement::default());
+    let floats = map("sky.exr", Texels::Floats(vec![[0.1, 1e9, 0.0, 1.0], [3.0, 4.0, 5.0, 0.5]]), Placement::default());
     let like = map("a \"b\".png", bytes.texture.texels.clone(), turned);
     let all = |map: &Map| Some(map.clone());
     scene.materials[0].maps = Maps {
@@ -144,7 +144,7 @@ fn textures_that_do_not_fit_their_texels_or_are_not_there_are_refused() {
         read(&bytes).expect_err("accepted")
     };
     assert!(refused("width = 2", "width = 0").contains("is 0x1 texels large"));
-    assert!(refused("width = 2", "width = 1").contains("leave 12 bytes of texels over"));
+    assert!(refused("width = 2", "width = 1").contains("leave 16 bytes of texels over"));
     assert!(refused("height = 1", "height = 9").contains("bytes of texels and needs"));
     assert!(refused("picture = 1", "picture = 7").contains("something takes texture 7, but there are 3"));
     assert!(refused("material = 2", "material = 9").contains("material 9 takes textures, but there are"));
@@ -174,7 +174,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     };
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
-    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 3 is what is read"));
+    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 4 is what is read"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));
     assert!(refused(|b| b.push(0)).contains("are not what its header tells"));
     assert!(refused(|b| b[55] = 0xff).contains("are not what its header tells"));

@@ -176,7 +176,7 @@ impl Picture {
         let of = |fault: String| format!("the texture {name:?} {fault}");
         Texture::check_size(width, height).map_err(|error| of(error.message()))?;
         let count = width as usize * height as usize;
-        let bytes = count * if floats { size_of::<[f32; 3]>() } else { size_of::<[u8; 4]>() };
+        let bytes = count * if floats { size_of::<[f32; 4]>() } else { size_of::<[u8; 4]>() };
         let Some((own, rest)) = texels.split_at_checked(bytes) else {
             return Err(of(format!("has {} bytes of texels and needs {bytes}", texels.len())));
         };

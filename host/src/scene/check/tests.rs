@@ -109,7 +109,7 @@ fn what_covers_surfaces_is_refused_by_the_vertex_or_the_material() {
     whole.mesh.coordinates = [vec![Vec2::ONE; vertices], Vec::new()];
     whole.mesh.tangents = vec![Vec4::X; vertices];
     whole.mesh.colours = vec![Vec4::ONE; vertices];
-    let texture = Texture { name: "a.png".into(), width: 1, height: 1, texels: Texels::Floats(vec![[1.0; 3]]) };
+    let texture = Texture { name: "a.png".into(), width: 1, height: 1, texels: Texels::Floats(vec![[1.0; 4]]) };
     let map = Map { texture: texture.into(), placement: Placement::default() };
     whole.materials[0].maps.base = Some(map.clone());
     whole.environment = Some(Environment { texture: map.texture, rotation: 0.0, scale: 1.0, visible: true });
@@ -137,9 +137,11 @@ fn what_covers_surfaces_is_refused_by_the_vertex_or_the_material() {
     assert!(spoilt(|s| s.environment.as_mut().unwrap().rotation = f32::NAN).contains("environment's rotation NaN"));
     assert!(spoilt(|s| s.environment.as_mut().unwrap().scale = -1.0).contains("environment's scale -1"));
     let dark = |s: &mut Scene| {
-        let texture =
-            Texture { texels: Texels::Floats(vec![[-1.0; 3]]), ..(*s.environment.as_ref().unwrap().texture).clone() };
+        let texture = Texture {
+            texels: Texels::Floats(vec![[1.0, -1.0, 1.0, 1.0]]),
+            ..(*s.environment.as_ref().unwrap().texture).clone()
+        };
         s.environment.as_mut().unwrap().texture = texture.into();
     };
-    assert_eq!(spoilt(dark), "the texture \"a.png\" holds -1; light is finite and at least 0");
+    assert_eq!(spoilt(dark), "the texture \"a.png\" holds -1; light is finite and at least 0, opacity at most 1");
 }

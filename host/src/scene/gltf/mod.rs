@@ -99,6 +99,9 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
 fn document(json: &[u8]) -> Unplaced<Document> {
     // Some writers begin with the mark of UTF-8.
     let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    if json.trim_ascii_start().first().is_some_and(|&byte| byte != b'{') {
+        return Err("the JSON: it does not begin with {; write the file again as glTF 2.0".into());
+    }
     let mut from = serde_json::Deserializer::from_slice(json);
     let document: Document = serde_path_to_error::deserialize(&mut from).map_err(|error| {
         let (path, fault) = (error.path().to_string(), error.inner());

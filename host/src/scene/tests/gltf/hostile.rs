@@ -112,9 +112,9 @@ fn files_that_end_early_or_are_of_another_kind_are_refused() {
         (&whole[..30], "the file ends early"),
         (&whole[..whole.len() - 4], "the file ends early"),
         (b"glTF\x01\0\0\0\0\0\0\0", "a binary glTF of version 1"),
-        (b"solid thing", "the JSON: expected value at line 1 column 1; write the file again"),
+        (b"solid thing", "the JSON: it does not begin with {; write the file again as glTF 2.0"),
         (b"{}", "there is no triangle"),
-        (b"[]", "there is no triangle"),
+        (b"[]", "the JSON: it does not begin with {"),
     ] {
         assert_refused(bytes, why);
     }
@@ -176,6 +176,7 @@ fn only_files_in_the_folder_are_read() {
         ("file:///a.bin", "is an address"),
         ("/a.bin", "lies outside this file's folder"),
         ("b/%2e%2e/../a.bin", "lies outside this file's folder"),
+        ("b/%2e%2e/a.bin", "goes back by \"..\"; name the file without it"),
         ("%2Fa.bin", "lies outside this file's folder"),
         ("C:/a.bin", "lies outside this file's folder"),
         ("none.bin", "buffers[0].uri: \"none.bin\": there is no such file"),

@@ -30,7 +30,8 @@ pub fn covered() -> Scene {
     mesh.coordinates[1] = mesh.positions.iter().map(|p| Vec2::new(p.y * 0.3, p.x * 0.2)).collect();
     let colour = |(i, _): (usize, &Vec3)| Vec4::new(1.0, 0.5 + 0.5 * (i % 2) as f32, 0.8, 1.0 - 0.1 * (i % 3) as f32);
     mesh.colours = mesh.positions.iter().enumerate().map(colour).collect();
-    let sky = picture("sky", 16, 8, |i| Some([0.1, 0.2, 0.4].map(|x: f32| x * (1 + i % 7) as f32)));
+    let light = |i: usize| (1 + i % 7) as f32;
+    let sky = picture("sky", 16, 8, |i| Some([0.1 * light(i), 0.2 * light(i), 0.4 * light(i), 1.0]));
     scene.environment = Some(Environment { texture: sky, rotation: 30.0, scale: 0.7, visible: true });
     scene
 }

@@ -127,6 +127,25 @@ fn lamps_that_are_not_opaque_everywhere() {
     }
 }
 
+/// On an eighth of its picture, beside which there is another light: rays find what samples of lamps find, by any filter.
+#[test]
+fn lamps_with_pictures() {
+    let texel = |i: usize| if i % 64 < 8 && i / 64 < 8 { [255, 200, 90, 255] } else { [0, 0, 160, 255] };
+    let texels = Texels::Bytes((0..64 * 64).map(texel).collect());
+    let texture = Arc::new(Texture { name: "atlas".into(), width: 64, height: 64, texels });
+    let mut scene = shipped("cornell_path");
+    scene.mesh.coordinates[0] =
+        scene.mesh.positions.iter().map(|place| Vec2::new(place.x, place.z).fract().abs()).collect();
+    let lamp = widen_lamp(&mut scene);
+    let placement = Placement::default().transformed(Vec2::splat(0.125), 0.0, Vec2::ZERO);
+    scene.materials[lamp].maps.emission = Some(Map { texture, placement });
+    let settings = Settings { bounces: 1, ..settings(&scene) };
+    let power = estimate(&scene, by(Direct::Power, settings));
+    for direct in [Direct::Light, Direct::Surface] {
+        assert_alike(&format!("power and {direct:?}"), &power, &estimate(&scene, by(direct, settings)));
+    }
+}
+
 #[test]
 fn colours_that_walls_throw() {
     assert_scene(&shipped("bleeding"));

@@ -65,7 +65,7 @@ impl Log<'_> {
         let triangle = &geometry.primitive(primitive_index);
         let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, (hit.y, hit.z), path.direction);
         let (effects, direction) = (geometry.base.spec.effects, path.direction);
-        let narrow = Cone { width: R::splat(0.0), spread: R::splat(0.0) };
+        let narrow = Cone::none();
         let seen = Seen { index: primitive_index, primitive: *triangle, interaction: contact, direction, cone: narrow };
         let surface = Surface::new(effects, &looks, &seen, &Covering::none());
         // The diffuse colour tells the checker's cell.

@@ -114,7 +114,7 @@ fn grille(texels: Texels, side: u32, nearest: bool, filter: Filter) -> Film {
 
 #[test]
 fn opacity_is_that_of_the_nearest_texel_where_that_is_asked_for() {
-    let opaque = |x: u32, y: u32| (x * 7 + y * 5 + x * y) % 3 > 0;
+    let opaque = |x: u32, y: u32| !(x * 7 + y * 5 + x * y).is_multiple_of(3);
     let picture = |side: u32| {
         let place = move |i: u32| (i % side * 4 / side, i / side * 4 / side);
         let texel = move |i| if opaque(place(i).0, place(i).1) { [255; 4] } else { [255, 255, 255, 0] };

@@ -138,10 +138,8 @@ fn check_header(reader: &mut (impl BufRead + Seek), format: ImageFormat, allowan
     let unreadable = |e: io::Error| Error::new(read_error(&e));
     match format {
         ImageFormat::OpenExr => check_parts(&mut Bounded::new(reader, allowance))?,
-        ImageFormat::Jpeg => {
-            if jpeg::is_cut_off(reader).map_err(unreadable)? {
-                return Err(Error::new("ends before its picture does; write the image again"));
-            }
+        ImageFormat::Jpeg if jpeg::is_cut_off(reader).map_err(unreadable)? => {
+            return Err(Error::new("ends before its picture does; write the image again"));
         }
         ImageFormat::Hdr => {
             let exposure = hdr::exposure(Bounded::new(reader, allowance)).map_err(unreadable)?;

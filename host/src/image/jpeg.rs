@@ -48,7 +48,8 @@ mod tests {
 
     #[test]
     fn a_picture_is_whole_or_cut_off_wherever_it_ends() {
-        let noise = |x: u32, y: u32, k: u32| (x * 97 ^ y * 59 ^ k * 31).wrapping_mul(0x9e37_79b9).to_be_bytes()[0];
+        let noise =
+            |x: u32, y: u32, k: u32| ((x * 97) ^ (y * 59) ^ (k * 31)).wrapping_mul(0x9e37_79b9).to_be_bytes()[0];
         let picture = RgbImage::from_fn(40, 30, |x, y| ::image::Rgb([0, 1, 2].map(|k| noise(x, y, k))));
         let mut file = io::Cursor::new(Vec::new());
         DynamicImage::from(picture).write_to(&mut file, ImageFormat::Jpeg).unwrap();

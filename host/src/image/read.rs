@@ -110,7 +110,9 @@ pub(super) fn pixels_of(
         return Err(Error::new(not_read(reader, kinds.names).map_err(unreadable)?));
     };
     let allowance = Allowance::new(MOST_HEADER);
-    let exposure = check_header(&mut reader, format, allowance.clone())?;
+    // A JPEG is looked through to its end, which is no further than the largest has it.
+    let most = if format == ImageFormat::Jpeg { kinds.most_pixels * most_per_pixel } else { 0 };
+    let exposure = check_header(Bounded::new(&mut reader, Allowance::new(MOST_HEADER + most)), format)?;
     reader.rewind().map_err(unreadable)?;
     let mut reader = ImageReader::with_format(Bounded::new(reader, allowance.clone()), format);
     let mut limits = Limits::default();
@@ -134,15 +136,15 @@ pub(super) fn pixels_of(
 }
 
 /// Refuses what no decoder does, or too late, and returns what light is to be divided by.
-fn check_header(reader: &mut (impl BufRead + Seek), format: ImageFormat, allowance: Allowance) -> Result<f32> {
+fn check_header(mut reader: impl BufRead, format: ImageFormat) -> Result<f32> {
     let unreadable = |e: io::Error| Error::new(read_error(&e));
     match format {
-        ImageFormat::OpenExr => check_parts(&mut Bounded::new(reader, allowance))?,
-        ImageFormat::Jpeg if jpeg::is_cut_off(reader).map_err(unreadable)? => {
+        ImageFormat::OpenExr => check_parts(&mut reader)?,
+        ImageFormat::Jpeg if jpeg::is_cut_off(&mut reader).map_err(unreadable)? => {
             return Err(Error::new("ends before its picture does; write the image again"));
         }
         ImageFormat::Hdr => {
-            let exposure = hdr::exposure(Bounded::new(reader, allowance)).map_err(unreadable)?;
+            let exposure = hdr::exposure(reader).map_err(unreadable)?;
             return exposure.ok_or_else(|| Error::new("has an EXPOSURE that is no number above 0; write it again"));
         }
         _ => (),

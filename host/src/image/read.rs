@@ -103,7 +103,6 @@ pub(super) fn pixels_of(
     kinds: &Kinds,
     check: impl FnOnce(Size) -> Result<()>,
 ) -> Result<(Size, DynamicImage)> {
-    let unreadable = |e: io::Error| Error::new(read_error(&e));
     let guessed = ImageReader::new(&mut reader).with_guessed_format().map_err(unreadable)?.format();
     let kind = guessed.and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
     let Some((format, most_per_pixel)) = kind else {
@@ -137,7 +136,6 @@ pub(super) fn pixels_of(
 
 /// Refuses what no decoder does, or too late, and returns what light is to be divided by.
 fn check_header(mut reader: impl BufRead, format: ImageFormat) -> Result<f32> {
-    let unreadable = |e: io::Error| Error::new(read_error(&e));
     match format {
         ImageFormat::OpenExr => check_parts(&mut reader)?,
         ImageFormat::Jpeg if jpeg::is_cut_off(&mut reader).map_err(unreadable)? => {
@@ -175,7 +173,7 @@ fn room(width: u32, height: u32, each: u64) -> Result<()> {
 /// `image` asks for that of the display alone.
 fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     let damaged = |error| match error {
-        ::exr::error::Error::Io(error) => Error::new(read_error(&error)),
+        ::exr::error::Error::Io(error) => unreadable(error),
         _ => Error::new("is damaged; write the image again"),
     };
     let parts = ::exr::meta::MetaData::read_from_buffered(reader, false).map_err(damaged)?.headers;
@@ -226,6 +224,11 @@ fn decode_error(error: ImageError) -> Error {
         }
         _ => "is damaged; write the image again".to_owned(),
     })
+}
+
+/// The error of what can not be read.
+fn unreadable(error: io::Error) -> Error {
+    Error::new(read_error(&error))
 }
 
 fn read_error(error: &io::Error) -> String {

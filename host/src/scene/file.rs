@@ -71,10 +71,9 @@ pub fn downward(name: &str) -> Unplaced<String> {
         "" | "." => 0,
         _ => 1,
     };
-    let mut below = 0;
-    let mut depths = slashed.split('/').map(|part| {
-        below += step(part);
-        below
+    let mut depths = slashed.split('/').scan(0, |depth, part| {
+        *depth += step(part);
+        Some(*depth)
     });
     if drive || slashed.starts_with('/') || depths.any(|depth| depth < 0) {
         return Err(outside(name));

@@ -154,6 +154,7 @@ fn any_settings(random: &mut Random, scene: &Scene) -> Settings {
         sampler: Sampler::Random,
         bounces: 3,
         culling: chance(random, 0.2),
+        compensation: chance(random, 0.8),
         filter: one(random, &[Filter::Nearest, Filter::Bilinear, Default::default()]),
         transport,
         ..Settings::default()

@@ -8,6 +8,7 @@ use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
     Normals, Physical as PhysicalRecord, Primitive, Specialisation, pack,
 };
+use eyerays_shader::material::ALBEDOS;
 
 mod check;
 mod environment;
@@ -197,6 +198,15 @@ impl DeviceScene {
     /// Materials by microfacets; empty if there are none.
     pub fn physicals(&self) -> &[PhysicalRecord] {
         &self.physicals
+    }
+
+    /// Words of the albedos of facets, see [`eyerays_shader::material::Albedos`]; empty where nothing is given back.
+    pub fn albedos(&self) -> &'static [u32] {
+        static WORDS: OnceLock<Vec<u32>> = OnceLock::new();
+        if !self.effects().has(Effects::COMPENSATED) {
+            return &[];
+        }
+        WORDS.get_or_init(|| bytemuck::pod_collect_to_vec(ALBEDOS))
     }
 
     /// What covers surfaces.

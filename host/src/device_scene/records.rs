@@ -4,6 +4,7 @@ use bytemuck::Zeroable;
 use eyerays_shader::data::{
     Effects, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive, pack,
 };
+use eyerays_shader::material::conductor_mean;
 use eyerays_shader::real::SMALL;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
@@ -30,7 +31,9 @@ pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
         Integrator::Path => Effects::TRANSPARENT | Effects::SPECULAR,
     };
     let culled = if settings.culling { Effects::CULLING } else { 0 };
-    Effects(effects.0 & !out | culled)
+    let asked = effects.0 & !out;
+    let is_compensated = settings.compensation && asked & Effects::PHYSICAL != 0;
+    Effects(asked | culled | if is_compensated { Effects::COMPENSATED } else { 0 })
 }
 
 /// What microfacets do.
@@ -184,7 +187,11 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
     PhysicalRecord {
         base: colour(base, flags),
         shape: colour(Vec3::new(p.roughness, p.metallic, p.anisotropy), p.ior.to_bits()),
-        dielectric: colour(p.tinted(), flushed_number(p.specular_weight).to_bits()),
+        // A conductor has no dielectric part: the mean of what it reflects stands there.
+        dielectric: colour(
+            p.conductor.map_or(p.tinted(), |c| conductor_mean(c.eta, c.k)),
+            flushed_number(p.specular_weight).to_bits(),
+        ),
         transmission: colour(p.transmission, lengths.to_bits()),
         attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), 0),
         eta: colour(conductor.eta, turned(math::cos(turns))),

@@ -6,6 +6,7 @@ use eyerays_shader::bvh8::Bvh8View;
 use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
 use eyerays_shader::integrator::ScatterContext;
 use eyerays_shader::light as shading;
+use eyerays_shader::material::Albedos;
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 use eyerays_shader::texture::Textures;
 use eyerays_shader::traverse::Cutout;
@@ -87,7 +88,8 @@ impl<'a> SceneView<'a> {
 
     /// What scatters where integrators sample.
     pub fn scattering(&self) -> ScatterContext<'_> {
-        ScatterContext { shading: self.shading(), physicals: self.packed.physicals(), lighting: self.lighting() }
+        let (physicals, albedos) = (self.packed.physicals(), Albedos(self.packed.albedos()));
+        ScatterContext { shading: self.shading(), physicals, albedos, lighting: self.lighting() }
     }
 
     /// Takes other lights.

@@ -26,7 +26,7 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 18] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 19] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
@@ -53,6 +53,7 @@ impl<'a> SceneRecords<'a> {
             (binding::TANGENTS, bytemuck::cast_slice(&textures.tangents)),
             (binding::OPACITIES, bytemuck::cast_slice(&textures.opacities)),
             (binding::ENVIRONMENT, bytemuck::cast_slice(packed.environment())),
+            (binding::ALBEDOS, bytemuck::cast_slice(packed.albedos())),
         ]
     }
 }

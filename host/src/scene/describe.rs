@@ -133,6 +133,7 @@ fn settings(text: &mut Text, of: &Settings) {
     text.other("bounces", of.bounces, default.bounces);
     text.other("min_contribution", of.min_contribution, default.min_contribution);
     text.other("culling", of.culling, default.culling);
+    text.other("compensation", of.compensation, default.compensation);
     text.word("filter", of.filter, default.filter);
     let Transport { integrator, seed, roulette, clamp, direct, ao_distance } = of.transport;
     let default = default.transport;

@@ -25,6 +25,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?.unwrap_or(default.bounces),
         min_contribution: table.number("min_contribution", Range::SHARE)?.unwrap_or(default.min_contribution),
         culling: table.flag("culling")?.unwrap_or(default.culling),
+        compensation: table.flag("compensation")?.unwrap_or(default.compensation),
         spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
         filter: table.choice("filter")?.unwrap_or(default.filter),
         transport: transport(&mut table)?,

@@ -313,11 +313,18 @@ pub struct Settings {
     pub min_contribution: f32,
     /// Skip triangles seen from behind.
     pub culling: bool,
+    /// Give back what is lost between the facets of physical materials.
+    #[serde(default = "always")]
+    pub compensation: bool,
     /// How textures are filtered.
     #[serde(default)]
     pub filter: Filter,
     /// How light is carried.
     pub transport: Transport,
+}
+
+fn always() -> bool {
+    true
 }
 
 impl Settings {
@@ -364,6 +371,7 @@ impl Default for Settings {
             bounces: 5,
             min_contribution: 1.0 / 1024.0,
             culling: false,
+            compensation: true,
             filter: Filter::default(),
             transport: Transport::default(),
         }

@@ -31,19 +31,20 @@ const SHORTER: [Edit; 2] = [
 ];
 
 /// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
-const DUMMY: [Edit; 5] = [
+const DUMMY: [Edit; 6] = [
     (
         "src/resources.rs",
-        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n",
-        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n            29 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            29 albedos ALBEDOS: Read u32, \"albedos of facets\";\n",
+        "            29 albedos ALBEDOS: Read u32, \"albedos of facets\";\n            30 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",
         "        EMISSIVE = 13;\n",
-        "        EMISSIVE = 13;\n        /// Surfaces have the dummy's light.\n        DUMMY = 24;\n",
+        "        EMISSIVE = 13;\n        /// Surfaces have the dummy's light.\n        DUMMY = 31;\n",
     ),
     // Of both kernels that shade.
     ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
+    ("src/entry/mod.rs", "colours tangents environment albedos] {", "colours tangents environment albedos dummy] {"),
     (
         "src/entry/mod.rs",
         "let shading = ShadingData { normals, materials, tangents, maps, textures };",

@@ -121,6 +121,9 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
     ] {
         assert!(count(effects(physical | effect)) > count(effects(physical)), "{effect:#x}");
     }
+    let compensated = physical | Effects::COMPENSATED;
+    assert!(count(effects(compensated)) > count(effects(physical)));
+    assert_eq!(count(effects(Effects::LIT | Effects::COMPENSATED)), count(lit), "nothing has facets");
     for effect in [Effects::TEXTURED, Effects::COLOURED, Effects::ENVIRONMENT] {
         assert!(count(effects(effect | Effects::LIT)) > count(lit), "{effect:#x}");
     }

@@ -76,6 +76,8 @@ bits! {
         CUTOUT = 22;
         /// The background is a picture.
         ENVIRONMENT = 23;
+        /// What is lost between facets is given back.
+        COMPENSATED = 24;
     }
 }
 

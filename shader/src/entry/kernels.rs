@@ -5,6 +5,7 @@ use crate::data::*;
 use crate::integrator::{self, Exchange, ScatterContext, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::light::Lighting;
+use crate::material::Albedos;
 use crate::real::Fast;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};

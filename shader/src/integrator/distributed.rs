@@ -22,15 +22,14 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
-    let ScatterContext { shading, lighting, physicals } = context;
+    let ScatterContext { shading, lighting, physicals, .. } = context;
     let seen = vertex.met(launch);
     let vertex = &vertex.arrived(effects, physicals, &seen);
     let (path, interaction) = (vertex.path, seen.interaction);
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, seen.material());
-        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
+        let closure = closure(effects, context, (&seen, &surface), &covering);
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
         let shadow = light_by_closure(launch, lighting, vertex, (&interaction, &closure));
         let draws = vertex.draws.set(path.counts().1);
@@ -107,7 +106,7 @@ fn light_by_closure<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, closure): (&SurfaceInteraction<R>, &Bsdf<R>),
+    (interaction, closure): (&SurfaceInteraction<R>, &Bsdf<'_, R>),
 ) -> ShadowRay<R> {
     if !is_lit(launch) {
         return ShadowRay::none();

@@ -21,7 +21,7 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
-    let ScatterContext { shading, physicals, lighting } = context;
+    let ScatterContext { shading, physicals, lighting, .. } = context;
     let seen = vertex.met(launch);
     let vertex = &vertex.arrived(effects, physicals, &seen);
     let path = vertex.path;
@@ -33,8 +33,7 @@ pub(super) fn at<R: Scalar>(
     }
     let surface = Surface::new(effects, shading, &seen, &covering);
     if effects.has(Effects::PHYSICAL) {
-        let material = read(physicals, seen.material());
-        let closure = closure(effects, shading, &material, (&seen, &surface), &covering);
+        let closure = closure(effects, context, (&seen, &surface), &covering);
         return scattered(launch, lighting, vertex, (&seen, &closure), light);
     }
     let interaction = seen.interaction;

@@ -6,7 +6,7 @@ use crate::camera;
 use crate::data::{Effects, Launch, Physical};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
-use crate::material::{Seen, transmittance};
+use crate::material::{Albedos, Seen, transmittance};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, Key};
@@ -38,6 +38,8 @@ pub struct ScatterContext<'a> {
     pub shading: ShadingData<'a>,
     /// How they scatter by microfacets ([`Effects::PHYSICAL`](crate::data::Effects)), by material.
     pub physicals: &'a [Physical],
+    /// What their facets send back ([`Effects::COMPENSATED`](crate::data::Effects)).
+    pub albedos: Albedos<'a>,
     /// What emits.
     pub lighting: Lighting<'a>,
 }

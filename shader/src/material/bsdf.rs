@@ -1,9 +1,12 @@
 //! A physical surface: a matt base below facets that reflect, and let pass what is not reflected.
 
+use super::albedo::Albedos;
 use super::closure::{Closure, ClosureSample, Scattering};
-use super::fresnel::Reflectance;
+use super::energy::Energy;
+use super::facet::{Facet, passes, reflected, rest};
+use super::layers::{Layers, Way};
 use super::refraction::{refracted, refracting};
-use super::{Ggx, INVERSE_PI, cosine_direction, reflect, refract};
+use super::{INVERSE_PI, cosine_direction, reflect, refract};
 use crate::data::Effects;
 use crate::geometry::SurfaceInteraction;
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3};
@@ -16,88 +19,58 @@ const STEPS: i32 = 1 << 23;
 /// A part that counts at all is chosen at least so often, in steps: what it scatters elsewhere may be more than here.
 const LEAST: i32 = STEPS / 8;
 
-/// What happens to light that facets do not reflect and the base does not scatter.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub struct Way(u32);
-
-impl Way {
-    /// There is none.
-    pub const OPAQUE: Way = Way(0);
-    /// It goes on behind a thin wall as if it were mirrored there.
-    pub const THIN: Way = Way(1);
-    /// It is refracted into a body, or out of it.
-    pub const BODY: Way = Way(2);
-}
-
-/// Parts of a surface, each linear RGB in [0, 1].
-#[derive(Clone, Copy)]
-pub struct Layers<R: Real> {
-    /// The base's colour.
-    pub diffuse: V3<R>,
-    /// The colour of what passes.
-    pub through: V3<R>,
-    /// What facets reflect.
-    pub reflectance: Reflectance<R>,
-    /// Does the base get only what the facets do not reflect? By Schlick's mean over all directions it sends back as much of it
-    /// (Kelemen and Szirmay-Kalos, A Microfacet Based Coupled Specular-Matte BRDF Model, 2001): glTF's own mixture of both, by the
-    /// angle to a facet, sends up to a third more light than it gets.
-    pub is_coated: bool,
-    /// How the rest passes.
-    pub way: Way,
-    /// How rough the facets lie; zeros for a mirror or a lens.
-    pub ggx: Ggx<R>,
-}
+/// The same of what comes out from between facets, which is about as much in all directions.
+const LEAST_LOST: i32 = STEPS / 64;
 
 /// The closure of some layers, in the frame of a surface.
 #[derive(Clone, Copy)]
-pub struct Bsdf<R: Real> {
+pub struct Bsdf<'a, R: Real> {
     effects: Effects,
+    albedos: Albedos<'a>,
     /// The axes of the frame; the third is the shading normal.
     axes: [V3<R>; 3],
     /// Unit direction to the viewer, in the frame.
     viewer: V3<R>,
     layers: Layers<R>,
     is_smooth: bool,
+    /// Where light goes that rough facets do not send on at once ([`Effects::COMPENSATED`]).
+    energy: Energy<R>,
     /// What the base is given that it sends to the viewer.
     under: R,
-    /// Steps for the base.
-    diffuse: i32,
+    /// Steps for what is matt: the base, and what comes out from between facets.
+    matt: i32,
+    /// Of these steps, those for the far side.
+    far: i32,
 }
 
-/// What a facet does.
-struct Facet<R: Real> {
-    /// The colour that it reflects.
-    reflected: V3<R>,
-    /// The share of light that it does not.
-    rest: R,
-    /// How likely it is taken for one that reflects.
-    probability: R,
-}
-
-impl<R: Scalar> Bsdf<R> {
+impl<'a, R: Scalar> Bsdf<'a, R> {
     /// Layers in the frame of unit axes, seen along a unit direction on the third axis' side.
     #[inline(always)]
-    pub fn new(effects: Effects, axes: [V3<R>; 3], direction: V3<R>, layers: Layers<R>) -> Self {
-        let zero = R::splat(0.0);
-        let (is_smooth, one) = (layers.ggx.x.eq(zero), R::splat(1.0));
-        let mut bsdf = Bsdf { effects, axes, viewer: V3::zero(), layers, is_smooth, under: one, diffuse: 0 };
-        bsdf.viewer = bsdf.local(-direction);
-        bsdf.viewer.z = bsdf.viewer.z.max(R::splat(SMALL));
-        let facet = bsdf.facet(V3::splat(Vec3::Z));
-        let mut base = layers.diffuse;
-        if layers.is_coated {
-            bsdf.under = facet.rest.div((one - layers.reflectance.mean()).max(R::splat(SMALL)));
-            base = base * facet.rest;
-        }
-        let (own, facets) = (base.greatest(), facet.reflected.greatest() + (layers.through * facet.rest).greatest());
-        bsdf.diffuse = steps(own, facets);
-        bsdf
+    pub fn new(effects: Effects, albedos: Albedos<'a>, axes: [V3<R>; 3], direction: V3<R>, layers: Layers<R>) -> Self {
+        let (zero, one) = (R::splat(0.0), R::splat(1.0));
+        let is_smooth = layers.ggx.x.eq(zero);
+        let own = local(axes, -direction);
+        let viewer = V3::new(own.x, own.y, own.z.max(R::splat(SMALL)));
+        let facet = Facet::new(effects, &layers, viewer, V3::splat(Vec3::Z));
+        let is_compensated = effects.has(Effects::COMPENSATED) && !is_smooth;
+        let energy =
+            if is_compensated { Energy::new(effects, albedos, &layers, viewer) } else { Energy::none(&layers) };
+        let left = if is_compensated { energy.left } else { facet.rest };
+        let base = if layers.is_coated { layers.diffuse * left } else { layers.diffuse };
+        let under =
+            if layers.is_coated { facet.rest.div((one - layers.reflectance.mean()).max(R::splat(SMALL))) } else { one };
+        let facets = facet.reflected.greatest() + (layers.through * facet.rest).greatest();
+        let (near, far) = ((energy.near * energy.lost).greatest(), (energy.far * energy.lost).greatest());
+        let least = if zero.lt(base.greatest()) { LEAST } else { LEAST_LOST };
+        let matt = steps(base.greatest() + near + far, facets, least);
+        let share = far.div((base.greatest() + near + far).max(R::splat(SMALL)));
+        let far = (share * R::splat(matt as f32)).floor_index();
+        Bsdf { effects, albedos, axes, viewer, layers, is_smooth, energy, under, matt, far }
     }
 
     #[inline(always)]
     fn local(&self, v: V3<R>) -> V3<R> {
-        let [x, y, z] = self.axes;
-        V3::new(x.dot(v), y.dot(v), z.dot(v)).map(|c| c.flush(SMALL))
+        local(self.axes, v)
     }
 
     #[inline(always)]
@@ -107,10 +80,9 @@ impl<R: Scalar> Bsdf<R> {
         (part(x, v.x) + part(y, v.y) + part(z, v.z)).map(|c| c.flush(TINY)).direction_and_length().0
     }
 
-    /// Does anything pass? A constant where no material of the scene lets it.
     #[inline(always)]
     fn passes(&self) -> bool {
-        self.effects.has(Effects::THIN | Effects::REFRACTION) && self.layers.way != Way::OPAQUE
+        passes(self.effects, &self.layers)
     }
 
     #[inline(always)]
@@ -124,41 +96,37 @@ impl<R: Scalar> Bsdf<R> {
         if self.is_thin() { R::splat(1.0) } else { self.layers.reflectance.eta }
     }
 
-    /// What a facet of unit normal `h` reflects of light from the unit vector `w`.
-    #[inline(always)]
-    fn reflected(&self, w: V3<R>, h: V3<R>) -> V3<R> {
-        let cosine = w.dot(h).max(R::splat(0.0)).min(R::splat(1.0)).flush(SMALL);
-        let has_conductors = self.effects.has(Effects::CONDUCTOR);
-        let has_glass = self.effects.has(Effects::REFRACTION);
-        self.layers.reflectance.at(has_conductors, has_glass, (w, h, cosine))
-    }
-
     /// A facet of unit normal `h`, seen from the viewer.
     #[inline(always)]
     fn facet(&self, h: V3<R>) -> Facet<R> {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let reflected = self.reflected(self.viewer, h);
-        let greatest = reflected.greatest().min(one);
-        let rest = rest(reflected);
-        let passes = if self.passes() { (self.layers.through.greatest() * rest).flush(FAINT) } else { zero };
-        let probability = if zero.lt(passes) { greatest.div(greatest + passes) } else { one };
-        Facet { reflected, rest, probability }
+        Facet::new(self.effects, &self.layers, self.viewer, h)
     }
 
-    /// What the base sends to the viewer of light from a direction of the frame, with its cosine over pi.
+    /// What the base and what comes out from between facets send to the viewer of light from a direction of the frame on this side,
+    /// with its cosine over pi.
     #[inline(always)]
-    fn base(&self, to: V3<R>) -> V3<R> {
-        let share =
-            if self.layers.is_coated { rest(self.reflected(to, V3::splat(Vec3::Z))) * self.under } else { self.under };
-        self.layers.diffuse * (share * (to.z * R::splat(INVERSE_PI))).flush(FAINT)
+    fn matt(&self, to: V3<R>) -> V3<R> {
+        let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
+        if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
+            let (out, left) = self.energy.near_side(self.albedos, to);
+            let left = if self.layers.is_coated { left } else { R::splat(1.0) };
+            return (self.layers.diffuse * left + out) * cosine;
+        }
+        let up = V3::splat(Vec3::Z);
+        let share = if self.layers.is_coated {
+            rest(reflected(self.effects, &self.layers, to, up)) * self.under
+        } else {
+            self.under
+        };
+        self.layers.diffuse * (share * cosine).flush(FAINT)
     }
 
-    /// The probabilities of the base and of the facets.
+    /// The probabilities of what is matt, on this side and on the far one, and of the facets.
     #[inline(always)]
-    fn shares(&self) -> (R, R) {
+    fn shares(&self) -> (R, R, R) {
         const STEP: f32 = 1.0 / STEPS as f32;
         let share = |steps: i32| R::splat(steps as f32) * R::splat(STEP);
-        (share(self.diffuse), share(STEPS - self.diffuse))
+        (share(self.matt - self.far), share(self.far), share(STEPS - self.matt))
     }
 
     /// [`Closure::eval`] of a unit direction in the frame.
@@ -177,8 +145,8 @@ impl<R: Scalar> Bsdf<R> {
     #[inline(always)]
     fn on_this_side(&self, to: V3<R>) -> Scattering<R> {
         let h = half(self.viewer, to);
-        let (facet, (base, facets)) = (self.facet(h), self.shares());
-        let (mut value, mut density) = (self.base(to), base * (to.z * R::splat(INVERSE_PI)));
+        let (facet, (matt, _, facets)) = (self.facet(h), self.shares());
+        let (mut value, mut density) = (self.matt(to), matt * (to.z * R::splat(INVERSE_PI)));
         if !self.is_smooth {
             let (mirrored, likely) = self.layers.ggx.reflected(self.viewer, to, h);
             value = value + facet.reflected * mirrored;
@@ -190,18 +158,23 @@ impl<R: Scalar> Bsdf<R> {
     #[inline(always)]
     fn on_that_side(&self, to: V3<R>) -> Scattering<R> {
         let (eta, mirrored) = (self.eta(), V3::new(to.x, to.y, -to.z));
-        let h = if self.is_thin() { half(self.viewer, mirrored) } else { refracting(self.viewer, to, eta) };
-        if h.z.eq(R::splat(0.0)) {
-            return Scattering::none();
+        let (_, matt, facets) = self.shares();
+        let (mut value, mut density) = (V3::zero(), R::splat(0.0));
+        if self.effects.has(Effects::COMPENSATED) {
+            let cosine = (mirrored.z * R::splat(INVERSE_PI)).flush(FAINT);
+            (value, density) = (self.energy.far_side(self.albedos, to) * (eta * eta * cosine), matt * cosine);
         }
-        let facet = self.facet(h);
-        let (passed, likely) = if self.is_thin() {
-            self.layers.ggx.reflected(self.viewer, mirrored, h)
-        } else {
-            refracted(self.layers.ggx, self.viewer, to, h, eta)
-        };
-        let value = self.layers.through * (facet.rest * passed);
-        let density = self.shares().1 * (R::splat(1.0) - facet.probability) * likely;
+        let h = if self.is_thin() { half(self.viewer, mirrored) } else { refracting(self.viewer, to, eta) };
+        if !h.z.eq(R::splat(0.0)) {
+            let facet = self.facet(h);
+            let (passed, likely) = if self.is_thin() {
+                self.layers.ggx.reflected(self.viewer, mirrored, h)
+            } else {
+                refracted(self.layers.ggx, self.viewer, to, h, eta)
+            };
+            value = value + self.layers.through * (facet.rest * passed);
+            density = density + facets * (R::splat(1.0) - facet.probability) * likely;
+        }
         Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT) }
     }
 
@@ -223,7 +196,7 @@ impl<R: Scalar> Bsdf<R> {
     /// What a mirror or a lens lets count, over its probability.
     #[inline(always)]
     fn smooth_factor(&self, facet: &Facet<R>, reflects: bool) -> V3<R> {
-        let facets = self.shares().1;
+        let facets = self.shares().2;
         if reflects {
             let over = (facets * facet.probability).reciprocal();
             return (facet.reflected * over).map(|c| c.flush(FAINT));
@@ -270,13 +243,13 @@ impl<R: Scalar> Bsdf<R> {
 }
 
 /// For integrators that branch: facets by rays of their own, and the base by itself.
-impl<R: Scalar> Bsdf<R> {
-    /// What the base alone scatters, see [`Closure::eval`].
+impl<R: Scalar> Bsdf<'_, R> {
+    /// What is matt alone scatters, see [`Closure::eval`].
     #[inline(always)]
     pub fn eval_base(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
         let to = self.local(direction);
         let is_lit = R::splat(0.0).lt(to.z) && interaction.faces(direction);
-        if is_lit { self.base(to) } else { V3::zero() }
+        if is_lit { self.matt(to) } else { V3::zero() }
     }
 
     /// The ray that a facet reflects, and that which passes it; a factor of zero is none. The draws choose the facet.
@@ -322,10 +295,10 @@ impl<R: Scalar> Bsdf<R> {
     }
 }
 
-impl<R: Scalar> Closure<R> for Bsdf<R> {
+impl<R: Scalar> Closure<R> for Bsdf<'_, R> {
     #[inline(always)]
     fn is_rough(&self) -> bool {
-        !self.is_smooth || self.diffuse > 0
+        !self.is_smooth || self.matt > 0
     }
 
     #[inline(always)]
@@ -341,19 +314,20 @@ impl<R: Scalar> Closure<R> for Bsdf<R> {
         (part, way): (u32, u32),
         pair: impl FnOnce() -> UVec4,
     ) -> ClosureSample<R> {
-        let (is_diffuse, way) = (((part >> 9) as i32) < self.diffuse, R::splat(unit(way)));
-        if self.is_smooth && !is_diffuse {
+        let step = (part >> 9) as i32;
+        let (is_matt, way) = (step < self.matt, R::splat(unit(way)));
+        if self.is_smooth && !is_matt {
             return self.smooth_sample(interaction, way);
         }
         let (pair, zero) = (pair(), R::splat(0.0));
-        let mut reflects = true;
-        let to = if is_diffuse {
-            let up = V3::<R>::splat(Vec3::Z);
-            cosine_direction(up, (pair.x, pair.y)).0.map(|c| c.flush(SMALL))
+        let (to, reflects) = if is_matt {
+            let near = cosine_direction(V3::<R>::splat(Vec3::Z), (pair.x, pair.y)).0.map(|c| c.flush(SMALL));
+            let is_near = step >= self.far;
+            (V3::new(near.x, near.y, R::select(is_near, near.z, -near.z)), is_near)
         } else {
             let h = self.layers.ggx.visible(self.viewer, (pair.x, pair.y));
-            reflects = way.lt(self.facet(h).probability);
-            self.leaving(h, reflects)
+            let reflects = way.lt(self.facet(h).probability);
+            (self.leaving(h, reflects), reflects)
         };
         let (Scattering { value, density }, direction) = (self.scattering(to), self.world(to));
         // Between facets light may leave on the wrong side, whose density is of other ways to get there.
@@ -365,29 +339,29 @@ impl<R: Scalar> Closure<R> for Bsdf<R> {
     }
 }
 
-/// The share of light that is not reflected.
-#[inline(always)]
-fn rest<R: Scalar>(reflected: V3<R>) -> R {
-    (R::splat(1.0) - reflected.greatest().min(R::splat(1.0))).flush(FAINT)
-}
-
 /// The unit vector between two others.
 #[inline(always)]
 fn half<R: Scalar>(a: V3<R>, b: V3<R>) -> V3<R> {
     (a + b).map(|c| c.flush(SMALL)).direction_and_length().0.map(|c| c.flush(SMALL))
 }
 
-/// Steps for the base, given what it and the facets scatter.
+/// Steps for what is matt, given what it and the facets scatter.
 // A clamp holds a panic, which a kernel can't have.
 #[allow(clippy::manual_clamp)]
 #[inline(always)]
-fn steps<R: Scalar>(base: R, facets: R) -> i32 {
+fn steps<R: Scalar>(matt: R, facets: R, least: i32) -> i32 {
     let zero = R::splat(0.0);
-    if base.eq(zero) {
+    if matt.eq(zero) {
         return 0;
     }
     if facets.eq(zero) {
         return STEPS;
     }
-    (base.div(base + facets) * R::splat(STEPS as f32)).floor_index().max(LEAST).min(STEPS - LEAST)
+    (matt.div(matt + facets) * R::splat(STEPS as f32)).floor_index().max(least).min(STEPS - LEAST)
+}
+
+/// A vector in the frame of unit axes.
+#[inline(always)]
+fn local<R: Scalar>([x, y, z]: [V3<R>; 3], v: V3<R>) -> V3<R> {
+    V3::new(x.dot(v), y.dot(v), z.dot(v)).map(|c| c.flush(SMALL))
 }

@@ -2,6 +2,7 @@
 
 use super::{fresnel, refract};
 use crate::real::{Real, SMALL, Scalar, V3};
+use glam::Vec3;
 
 /// A facet's reflectance.
 #[derive(Clone, Copy)]
@@ -12,6 +13,8 @@ pub struct Reflectance<R: Real> {
     pub grazing: V3<R>,
     /// Is it a conductor?
     pub is_conductor: bool,
+    /// Of a conductor the mean over all directions of a hemisphere by their cosine, linear RGB; see [`conductor_mean`].
+    pub mean_colour: V3<R>,
     /// A share of the exact reflectance of glass that is added.
     pub glass: R,
     /// The index of refraction on the near side of the glass over that on the far side.
@@ -39,14 +42,34 @@ impl<R: Scalar> Reflectance<R> {
     /// share is Schlick's, too.
     #[inline(always)]
     pub fn mean(&self) -> R {
-        /// A fifth power's mean.
-        const MEAN: f32 = 1.0 / 21.0;
         let one = R::splat(1.0);
         let root = (one - self.eta).div(one + self.eta);
         let normal = self.normal.greatest() + self.glass * (root * root).flush(SMALL);
         let grazing = self.grazing.greatest() + self.glass;
         normal + (grazing - normal) * R::splat(MEAN)
     }
+
+    /// The mean of Schlick's share, linear RGB.
+    #[inline(always)]
+    pub fn schlick_mean(&self) -> V3<R> {
+        self.normal + (self.grazing - self.normal) * R::splat(MEAN)
+    }
+}
+
+/// A fifth power's mean over all directions of a hemisphere by their cosine.
+const MEAN: f32 = 1.0 / 21.0;
+
+/// The mean reflectance of a conductor over all directions of a hemisphere by their cosine, linear RGB; within 1e-5.
+#[cfg(not(target_arch = "spirv"))]
+pub fn conductor_mean(eta: Vec3, k: Vec3) -> Vec3 {
+    // By the midpoint rule over the square of the cosine, in double precision.
+    const STEPS: u32 = 512;
+    let of = |eta: f32, k: f32| {
+        let cosine = |i: u32| ((f64::from(i) + 0.5) / f64::from(STEPS)).sqrt();
+        let sum: f64 = (0..STEPS).map(|i| conductor(cosine(i), f64::from(eta), f64::from(k))).sum();
+        (sum / f64::from(STEPS)) as f32
+    };
+    Vec3::new(of(eta.x, k.x), of(eta.y, k.y), of(eta.z, k.z))
 }
 
 /// How far reflectance has come from that at normal incidence to that at grazing angles (Schlick, An Inexpensive BRDF Model for
@@ -104,7 +127,6 @@ fn ratio<R: Scalar>(a: R, b: R) -> R {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     /// The equations as they are derived, in complex numbers.
     fn complex(cosine: f64, eta: f64, k: f64) -> f64 {
@@ -149,6 +171,7 @@ mod tests {
             normal: V3::splat(normal),
             grazing: V3::splat(grazing),
             is_conductor,
+            mean_colour: V3::splat(Vec3::ZERO),
             glass: 0.0,
             eta: 1.0,
         };

@@ -1,10 +1,14 @@
 //! What a surface is made of at a place: its colours and its shading normal. How it answers light is a file a model.
 
+mod albedo;
 mod bsdf;
 mod closure;
+mod energy;
+mod facet;
 mod fresnel;
 mod ggx;
 mod lambert;
+mod layers;
 mod lobes;
 mod optics;
 mod phong;
@@ -12,11 +16,17 @@ mod physical;
 mod refraction;
 mod specular;
 
-pub use bsdf::{Bsdf, Layers, Way};
+#[cfg(not(target_arch = "spirv"))]
+pub use albedo::ALBEDOS;
+pub use albedo::{Albedos, BRUSHED, EVEN, GLASS, MOST_BEND, STARTS, cosine_coordinate};
+pub use bsdf::Bsdf;
 pub use closure::{Closure, ClosureSample, Scattering};
 pub use fresnel::Reflectance;
+#[cfg(not(target_arch = "spirv"))]
+pub use fresnel::conductor_mean;
 pub use ggx::Ggx;
 pub use lambert::{INVERSE_PI, cosine_direction};
+pub use layers::{Layers, Way};
 pub use lobes::Lobes;
 pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;

@@ -1,12 +1,15 @@
 //! From a physical material's record to its closure.
 
-use super::bsdf::{Bsdf, Layers, Way};
+use super::bsdf::Bsdf;
 use super::fresnel::Reflectance;
+use super::layers::{Layers, Way};
 use super::{Ggx, Seen, Surface, axes};
+use crate::buffer::read;
 use crate::data::{Effects, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
+use crate::integrator::ScatterContext;
 use crate::real::{Real, Scalar, TINY, V3};
-use crate::scene::ShadingData;
+
 use crate::texture::Covering;
 
 /// What a physical material says at a place, as textures may change it there.
@@ -70,25 +73,24 @@ impl<R: Scalar> Parameters<R> {
 
 /// The closure of a surface that is seen along a unit direction.
 #[inline(always)]
-pub fn closure<R: Scalar>(
+pub fn closure<'a, R: Scalar>(
     effects: Effects,
-    shading: &ShadingData<'_>,
-    material: &Physical,
+    context: &ScatterContext<'a>,
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
-) -> Bsdf<R> {
+) -> Bsdf<'a, R> {
     let Seen { interaction, direction, .. } = *seen;
-    let mut axes = axes(effects, shading, seen, surface.normal);
-    let layers = if material.has(Physical::IS_PHYSICAL) {
-        let at = Parameters::new(material, covering);
-        if effects.has(Effects::ANISOTROPIC) {
-            axes = at.turned(axes);
-        }
-        physical(effects, material, &at, &interaction)
+    let material = read(context.physicals, seen.material());
+    let frame = axes(effects, &context.shading, seen, surface.normal);
+    let at = Parameters::new(&material, covering);
+    let is_physical = material.has(Physical::IS_PHYSICAL);
+    let frame = if effects.has(Effects::ANISOTROPIC) && is_physical { at.turned(frame) } else { frame };
+    let layers = if is_physical {
+        physical(effects, &material, &at, &interaction)
     } else {
         whitted(effects, surface, &interaction)
     };
-    Bsdf::new(effects, axes, direction, layers)
+    Bsdf::new(effects, context.albedos, frame, direction, layers)
 }
 
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.
@@ -110,6 +112,7 @@ fn physical<R: Scalar>(
             normal: V3::splat(numbers(material.eta)),
             grazing: V3::splat(numbers(material.k)),
             is_conductor: true,
+            mean_colour: V3::splat(numbers(material.dielectric)),
             glass: zero,
             eta: one,
         },
@@ -142,6 +145,7 @@ fn physical<R: Scalar>(
             normal: at.normal * dielectric + at.base * metal,
             grazing: V3::new(grazing, grazing, grazing),
             is_conductor: false,
+            mean_colour: V3::zero(),
             glass: if is_body { at.grazing * rest } else { zero },
             eta: if is_body { interaction.relative_ior(ior) } else { one },
         },
@@ -168,6 +172,7 @@ fn whitted<R: Scalar>(effects: Effects, surface: &Surface<R>, interaction: &Surf
             normal: mirror,
             grazing: mirror,
             is_conductor: false,
+            mean_colour: V3::zero(),
             glass: if is_lens { one } else { zero },
             eta: if is_lens { interaction.relative_ior(surface.ior) } else { one },
         },

@@ -2,6 +2,8 @@
 
 mod albedo;
 mod chi_square;
+mod furnace;
 mod integral;
 mod reciprocity;
 mod surface;
+mod tables;

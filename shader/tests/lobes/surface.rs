@@ -2,10 +2,13 @@
 
 use eyerays_shader::data::Effects;
 use eyerays_shader::geometry::SurfaceInteraction;
-use eyerays_shader::material::{Bsdf, Closure, ClosureSample, Ggx, Layers, Reflectance, Scattering, Way};
+use eyerays_shader::material::{
+    ALBEDOS, Albedos, Bsdf, Closure, ClosureSample, Ggx, Layers, Reflectance, Scattering, Way, conductor_mean,
+};
 use eyerays_shader::real::V3;
 use eyerays_shader::sampler::hash;
 use glam::{DVec3, UVec4, Vec3};
+use std::sync::OnceLock;
 
 pub type V = V3<f64>;
 
@@ -14,7 +17,8 @@ pub const BLACK: V = V { x: 0.0, y: 0.0, z: 0.0 };
 
 /// Facets of some roughness that reflect everything.
 pub fn facets(x: f64, y: f64) -> Layers<f64> {
-    let reflectance = Reflectance { normal: WHITE, grazing: WHITE, is_conductor: false, glass: 0.0, eta: 1.0 };
+    let reflectance =
+        Reflectance { normal: WHITE, grazing: WHITE, is_conductor: false, mean_colour: BLACK, glass: 0.0, eta: 1.0 };
     let ggx = Ggx { x, y };
     Layers { diffuse: BLACK, through: BLACK, reflectance, is_coated: true, way: Way::OPAQUE, ggx }
 }
@@ -28,9 +32,11 @@ pub fn plastic(x: f64, y: f64) -> Layers<f64> {
 
 /// Gold.
 pub fn gold(x: f64, y: f64) -> Layers<f64> {
-    let (eta, k) = (V { x: 0.143, y: 0.375, z: 1.442 }, V { x: 3.983, y: 2.386, z: 1.603 });
+    let (eta, k) = (Vec3::new(0.143, 0.375, 1.442), Vec3::new(3.983, 2.386, 1.603));
+    let mean_colour = V3::splat(conductor_mean(eta, k));
+    let (eta, k) = (V3::splat(eta), V3::splat(k));
     let facets = facets(x, y);
-    let reflectance = Reflectance { normal: eta, grazing: k, is_conductor: true, ..facets.reflectance };
+    let reflectance = Reflectance { normal: eta, grazing: k, is_conductor: true, mean_colour, ..facets.reflectance };
     Layers { reflectance, ..facets }
 }
 
@@ -47,15 +53,30 @@ pub fn pane(x: f64, y: f64) -> Layers<f64> {
     Layers { through: half, diffuse: half, way: Way::THIN, ..plastic(x, y) }
 }
 
+/// The words of the tables.
+pub fn albedos() -> &'static [u32] {
+    static WORDS: OnceLock<Vec<u32>> = OnceLock::new();
+    WORDS.get_or_init(|| ALBEDOS.chunks_exact(4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]])).collect())
+}
+
 /// A closure that is seen from some direction, which may be below.
 pub struct Seen {
-    closure: Bsdf<f64>,
+    closure: Bsdf<'static, f64>,
     interaction: SurfaceInteraction<f64>,
 }
 
 impl Seen {
-    /// From the unit direction `viewer`.
+    /// From the unit direction `viewer`, with what is lost between facets.
     pub fn from(layers: Layers<f64>, viewer: DVec3) -> Self {
+        Self::by(Effects(u32::MAX), layers, viewer)
+    }
+
+    /// Where facets scatter once.
+    pub fn once(layers: Layers<f64>, viewer: DVec3) -> Self {
+        Self::by(Effects(!Effects::COMPENSATED), layers, viewer)
+    }
+
+    fn by(effects: Effects, layers: Layers<f64>, viewer: DVec3) -> Self {
         let up = if viewer.z < 0.0 { -1.0 } else { 1.0 };
         let normal = V::new(0.0, 0.0, up);
         let axes = [V::new(1.0, 0.0, 0.0), V::new(0.0, up, 0.0), normal];
@@ -69,7 +90,7 @@ impl Seen {
             is_curved: false,
             radius: 0.0,
         };
-        Seen { closure: Bsdf::new(Effects(u32::MAX), axes, -of(viewer), layers), interaction }
+        Seen { closure: Bsdf::new(effects, Albedos(albedos()), axes, -of(viewer), layers), interaction }
     }
 
     /// How it scatters light from a unit direction.

@@ -37,7 +37,7 @@ pub(super) struct Diff {
     #[arg(conflicts_with_all = [
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
         "no_passthrough", "size", "samples", "sampler", "filter", "camera", "eye", "target", "fov", "bounces", "min_contribution",
-        "cull", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
+        "cull", "no_compensation", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
     ])]
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)

@@ -47,6 +47,9 @@ pub(super) struct View {
     /// Skip opaque triangles seen from behind [default: the scene's]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     cull: Option<bool>,
+    /// Let facets of physical materials scatter light once: what is lost between them is not given back
+    #[arg(long)]
+    no_compensation: bool,
 }
 
 /// How much work a picture is worth.
@@ -228,6 +231,7 @@ impl View {
             bounces: effort.bounces.unwrap_or(own.bounces),
             min_contribution: effort.min_contribution.unwrap_or(own.min_contribution),
             culling: self.cull.unwrap_or(own.culling),
+            compensation: own.compensation && !self.no_compensation,
             filter: effort.filter.unwrap_or(own.filter),
         };
         Film::check_size(settings.size.0, settings.size.1)?;

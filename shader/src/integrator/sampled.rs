@@ -62,7 +62,7 @@ impl<R: Scalar> Vertex<R> {
         let (index, direction) = (self.primitive_index, self.path.direction);
         let primitive = launch.primitive(index);
         let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction);
-        let cone = self.path.cone(launch, self.distance);
+        let cone = self.path.cone(launch, self.distance, self.draws.sample);
         Seen { index, primitive, interaction, direction, cone }
     }
 

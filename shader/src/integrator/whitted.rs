@@ -53,7 +53,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     }
     let primitive = launch.primitive(primitive_index);
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
-    let cone = Cone::none().after(launch, hit.x);
+    let cone = Cone::none().after(launch, hit.x, camera::sample(launch.frame, slot));
     let seen = Seen { index: primitive_index, primitive, interaction, direction: path.direction, cone };
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);

@@ -1,6 +1,7 @@
 //! What a surface is made of at a place: its colours and its shading normal. How it answers light is a file a model.
 
 mod albedo;
+mod bend;
 mod bsdf;
 mod closure;
 mod energy;

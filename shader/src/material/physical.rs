@@ -1,5 +1,6 @@
 //! From a physical material's record to its closure.
 
+use super::bend::bent;
 use super::bsdf::Bsdf;
 use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
@@ -81,7 +82,9 @@ pub fn closure<'a, R: Scalar>(
 ) -> Bsdf<'a, R> {
     let Seen { interaction, direction, .. } = *seen;
     let material = read(context.physicals, seen.material());
-    let frame = axes(effects, &context.shading, seen, surface.normal);
+    let leans = effects.has(Effects::SMOOTH) || (effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED));
+    let normal = if leans { bent(&interaction, surface.normal, direction) } else { surface.normal };
+    let frame = axes(effects, &context.shading, seen, normal);
     let at = Parameters::new(&material, covering);
     let is_physical = material.has(Physical::IS_PHYSICAL);
     let frame = if effects.has(Effects::ANISOTROPIC) && is_physical { at.turned(frame) } else { frame };

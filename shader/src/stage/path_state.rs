@@ -72,12 +72,12 @@ impl<R: Scalar> PathState<R> {
     /// width: its light is a mean over many anyhow, and coarse texels, which reach over the borders of an atlas, would change that
     /// mean; lamps that are sampled have their finest texels, too.
     #[inline(always)]
-    pub fn cone(&self, launch: &LaunchContext<'_>, distance: R) -> Cone<R> {
+    pub fn cone(&self, launch: &LaunchContext<'_>, distance: R, sample: u32) -> Cone<R> {
         if !launch.spec.launch.has(Launch::MIPMAPPED) || !self.density.eq(R::splat(0.0)) {
             return Cone::none();
         }
         let start = if launch.spec.launch.has(Launch::TREE) { Cone::none() } else { Cone { width: self.beside.0 } };
-        start.after(launch, distance)
+        start.after(launch, distance, sample)
     }
 
     /// Keeps it at a level; `follows` unless it is not to be traced.

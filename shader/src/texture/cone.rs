@@ -19,13 +19,15 @@ impl<R: Scalar> Cone<R> {
         Cone { width: R::splat(0.0) }
     }
 
-    /// Where it has gone so far, as wide as a pixel more; as it was where no texture asks for that.
+    /// Where it has gone so far, wider by its share of a pixel there; as it was where no texture asks for that. The pixel's sample of
+    /// that number is its ray.
     #[inline(always)]
-    pub fn after(self, launch: &LaunchContext<'_>, distance: R) -> Self {
+    pub fn after(self, launch: &LaunchContext<'_>, distance: R, sample: u32) -> Self {
         if !launch.spec.launch.has(Launch::MIPMAPPED) {
             return self;
         }
-        Cone { width: (self.width + R::splat(launch.frame.spread) * distance).flush(SMALL) }
+        let spread = R::splat(launch.frame.spread) * share_of_pixel(sample);
+        Cone { width: (self.width + spread * distance).flush(SMALL) }
     }
 
     /// The square of its width on a triangle that it meets along a unit direction, over twice the triangle's area.
@@ -43,6 +45,16 @@ impl<R: Scalar> Cone<R> {
         let none = area.eq(R::splat(0.0));
         (wide * wide).flush(FAINT).div(R::select(none, R::splat(1.0), area))
     }
+}
+
+/// The share of a pixel's edge that a sample of it sees: the first sees all, and so many samples side by side share it. By the
+/// sample's number alone, so that samples added later change none before; and not for ever less, since levels of textures are for
+/// texels that lie apart in memory.
+#[inline(always)]
+fn share_of_pixel<R: Scalar>(sample: u32) -> R {
+    const LEAST: f32 = 1.0 / 8.0;
+    // Exact in single precision: a pixel has at most 2^24 samples.
+    R::splat(sample.wrapping_add(1) as f32).sqrt().reciprocal().max(R::splat(LEAST))
 }
 
 #[cfg(test)]
@@ -68,10 +80,14 @@ mod tests {
     #[test]
     fn rays_widen_on_their_way() {
         let frame = Frame { spread: 0.125, ..Frame::default() };
-        let width = |launch| {
+        let width = |launch, sample| {
             let spec = Specialisation::default().with_launch(launch);
-            Cone::<f64> { width: 1.0 }.after(&LaunchContext { frame: &frame, spec, primitives: &[] }, 2.0).width
+            Cone::<f64> { width: 1.0 }.after(&LaunchContext { frame: &frame, spec, primitives: &[] }, 2.0, sample).width
         };
-        assert_eq!((width(Launch::MIPMAPPED), width(0)), (1.25, 1.0));
+        assert_eq!((width(Launch::MIPMAPPED, 0), width(0, 0)), (1.25, 1.0));
+        assert_eq!(
+            [3, 15, 63, 10_000].map(|sample| width(Launch::MIPMAPPED, sample)),
+            [1.125, 1.0625, 1.03125, 1.03125]
+        );
     }
 }

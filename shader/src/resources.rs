@@ -58,6 +58,7 @@ macro_rules! resources {
             26 tangents TANGENTS: Read Normals, "tangents";
             27 opacities OPACITIES: Read Opacity, "opacities";
             28 environment ENVIRONMENT: Read u32, "environment";
+            29 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
         }
     };
 }

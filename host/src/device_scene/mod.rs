@@ -14,6 +14,7 @@ mod environment;
 mod feature;
 mod hierarchy;
 mod levels;
+mod light_tree;
 mod lighting;
 mod normalisation;
 mod records;
@@ -121,6 +122,7 @@ impl DeviceScene {
         let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
+        let many = if lighting.nodes.is_empty() { 0 } else { Effects::MANY_LIGHTS };
         Ok(DeviceScene {
             statistics,
             primitives,
@@ -136,7 +138,7 @@ impl DeviceScene {
             environment,
             emissive,
             lamps,
-            effects: Effects(effects.0 & !dark),
+            effects: Effects(effects.0 & !dark | many),
             background: scene.background,
             settings,
             feature: None,
@@ -373,6 +375,7 @@ impl DeviceScene {
             clamp,
             reach,
             environment: self.lighting.environment,
+            far: self.lighting.far,
             vertices: self.primitives.len() as u32,
             ..Frame::default()
         }

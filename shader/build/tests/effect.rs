@@ -34,8 +34,8 @@ const SHORTER: [Edit; 2] = [
 const DUMMY: [Edit; 5] = [
     (
         "src/resources.rs",
-        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n",
-        "            28 environment ENVIRONMENT: Read u32, \"environment\";\n            29 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            29 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n",
+        "            29 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n            30 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",

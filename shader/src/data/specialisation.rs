@@ -76,6 +76,8 @@ bits! {
         CUTOUT = 22;
         /// The background is a picture.
         ENVIRONMENT = 23;
+        /// Several lights have places, and an integrator chooses one of them by a hierarchy.
+        MANY_LIGHTS = 24;
     }
 }
 

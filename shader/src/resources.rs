@@ -59,6 +59,7 @@ macro_rules! resources {
             27 opacities OPACITIES: Read Opacity, "opacities";
             28 environment ENVIRONMENT: Read u32, "environment";
             29 albedos ALBEDOS: Read u32, "albedos of facets";
+            30 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
         }
     };
 }

@@ -1,9 +1,10 @@
 //! Every light that an integrator chooses from which samples one of them, and how likely each is.
 
-use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, Opacity, Primitive, pack};
+use eyerays_shader::data::{Emission, Emitter, Light as LightRecord, LightNode, Opacity, Primitive, numbers, pack};
 use glam::{DVec3, UVec4, Vec3};
 use std::f64::consts::PI;
 
+use super::light_tree::{Bounded, Cone, LightTree};
 use super::normalisation::Normalisation;
 use super::records::colour;
 use super::textures::Textures;
@@ -12,8 +13,13 @@ use crate::scene::{Light, Material};
 /// What emits, as kernels read it.
 #[derive(Debug, Clone, Default)]
 pub struct Lighting {
-    /// The scene's lights, then its primitives that emit, by their numbers.
+    /// The scene's lights, then its primitives that emit, by their numbers, and the environment; what is far away first where there
+    /// are nodes.
     pub emitters: Vec<Emitter>,
+    /// The hierarchy of those that have a place; empty if they are one lamp.
+    pub nodes: Vec<LightNode>,
+    /// How many emitters are far away, where there are nodes.
+    pub far: u32,
     /// By material; empty if none emits.
     pub emissions: Vec<Emission>,
     /// The probability that the environment is chosen of all.
@@ -22,8 +28,8 @@ pub struct Lighting {
 
 /// The primitives that emit: what does not change with the lights beside them.
 pub(super) struct Lamps {
-    /// The place in leaf order and the power of each that has an area, by their numbers; of a split one the first place.
-    powers: Vec<(u32, f64)>,
+    /// Each that has an area, by their numbers.
+    lamps: Vec<Lamp>,
     /// Each material's emission, whose density is left open, and its power of a unit of area; none if there is no lamp.
     emissions: Vec<(Emission, f64)>,
     /// The least and the greatest corner around all of them, if there are any.
@@ -39,16 +45,18 @@ impl Lamps {
         (textures, far_light): (&Textures, Option<f64>),
     ) -> Self {
         if materials.iter().all(|material| material.emission == Vec3::ZERO) {
-            return Lamps { powers: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
+            return Lamps { lamps: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
         }
         let flux = |(material, number)| flux(material, textures.emission(number).1);
         let fluxes: Vec<f64> = materials.iter().zip(0..).map(flux).collect();
-        let power = |primitive: &Primitive| area(primitive) * fluxes[primitive.material() as usize];
-        let powers = primitives.iter().zip(0..).map(|(primitive, index)| (primitive.number(), index, power(primitive)));
-        let mut powers: Vec<(u32, u32, f64)> = powers.filter(|&(.., power)| power > 0.0).collect();
-        powers.sort_unstable_by_key(|&(number, index, _)| (number, index));
-        powers.dedup_by_key(|&mut (number, ..)| number);
-        let boxes = powers.iter().map(|&(_, index, _)| primitives[index as usize].bounds());
+        let lamp = |(primitive, index): (&Primitive, u32)| {
+            let material = primitive.material() as usize;
+            Lamp::new(primitive, index, (fluxes[material], materials[material].two_sided))
+        };
+        let mut lamps: Vec<Lamp> = primitives.iter().zip(0..).map(lamp).filter(|lamp| lamp.power > 0.0).collect();
+        lamps.sort_unstable_by_key(|lamp| (lamp.number, lamp.index));
+        lamps.dedup_by_key(|lamp| lamp.number);
+        let boxes = lamps.iter().map(|lamp| primitives[lamp.index as usize].bounds());
         let boxes = boxes.map(|(least, greatest)| [least, greatest]);
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
         let emission = |(material, number): (&Material, usize)| {
@@ -56,43 +64,184 @@ impl Lamps {
             let sides = UVec4::new(u32::from(material.two_sided), map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
-        let emissions = if powers.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
-        Lamps {
-            powers: powers.into_iter().map(|(_, index, power)| (index, power)).collect(),
-            emissions,
-            bounds,
-            far_light,
-        }
+        let emissions = if lamps.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };
+        Lamps { lamps, emissions, bounds, far_light }
     }
 
     /// Is there none? Pictures may take all light away that materials emit.
     pub fn is_empty(&self) -> bool {
-        self.powers.is_empty()
+        self.lamps.is_empty()
+    }
+
+    /// Are they one lamp, whose parts are all as near to whatever they light: a primitive, or a rectangle of two triangles?
+    fn are_one(&self) -> bool {
+        match &self.lamps[..] {
+            [] | [_] => true,
+            [a, b] => a.is_triangle && b.is_triangle && a.is_beside(b),
+            _ => false,
+        }
     }
 }
 
+/// A primitive that emits.
+struct Lamp {
+    number: u32,
+    /// Its place in leaf order; of a split one the first.
+    index: u32,
+    area: f64,
+    power: f64,
+    is_triangle: bool,
+    bounded: Bounded,
+}
+
+impl Lamp {
+    /// Of a material that sends a flux from a unit of area.
+    fn new(primitive: &Primitive, index: u32, (flux, is_two_sided): (f64, bool)) -> Self {
+        let area = area(primitive);
+        let (number, power) = (primitive.number(), area * flux);
+        let sides = if is_two_sided { 2.0 } else { 1.0 };
+        let (cone, intensity) = if primitive.is_sphere() {
+            (Cone::all(), power / (4.0 * PI * sides))
+        } else {
+            (Cone::flat(normal(primitive), is_two_sided), power / (PI * sides))
+        };
+        let (least, greatest) = primitive.bounds();
+        let bounded = Bounded { least: least.as_dvec3(), greatest: greatest.as_dvec3(), intensity, cone };
+        Lamp { number, index, area, power, is_triangle: primitive.is_triangle(), bounded }
+    }
+
+    /// As an emitter's, but for its trail.
+    fn record(&self) -> LightRecord {
+        let per_area = (1.0 / self.area).min(f64::from(f32::MAX)) as f32;
+        LightRecord {
+            position: UVec4::new(self.number, 0, 0, Emitter::PRIMITIVE),
+            colour: UVec4::new(per_area.to_bits(), 0, 0, 0),
+            axis: pack(Vec3::ZERO, self.index),
+        }
+    }
+
+    /// Do both lie in a plane and in a box of the size of either?
+    fn is_beside(&self, other: &Lamp) -> bool {
+        let (a, b) = (&self.bounded, &other.bounded);
+        let size = |of: &Bounded| of.greatest - of.least;
+        let all = a.greatest.max(b.greatest) - a.least.min(b.least);
+        let flat = a.cone.axis.dot(b.cone.axis) > 1.0 - 1e-6;
+        flat && (size(a) - all).length() <= 1e-3 * all.length() && (size(b) - all).length() <= 1e-3 * all.length()
+    }
+}
+
+/// The normal of a flat primitive's front.
+fn normal(primitive: &Primitive) -> DVec3 {
+    if primitive.is_disk() {
+        return primitive.normal().as_dvec3();
+    }
+    let [a, b, c] = primitive.vertices().map(|v| v.as_dvec3());
+    (b - a).cross(c - a).normalize_or_zero()
+}
+
 impl Lighting {
-    /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene.
+    /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene; or, of many that have a
+    /// place, as its light may arrive.
     pub(super) fn new(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Self {
-        let of_lights = lights.0.iter().map(|light| power(light, normalisation.scale));
-        // A black environment is chosen where there is nothing else: kernels that know one choose something.
-        let is_only = lights.0.is_empty() && lamps.is_empty();
-        let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
-        // That on a scene within a sphere of radius 1.
-        let far = far_light.map(|light| PI * light);
-        let powers: Vec<f64> = of_lights.chain(lamps.powers.iter().map(|&(_, power)| power)).chain(far).collect();
-        let total: f64 = powers.iter().sum();
-        let records = lights.0.iter().zip(lights.1).map(|(light, record)| scaled(light, record, normalisation));
-        let records = records.chain(lamps.powers.iter().map(|&(index, _)| of_primitive(index)));
-        let records = records.chain(far.map(|_| of_environment()));
-        let emitters = records.zip(table(&powers)).map(|(light, choice)| Emitter { light, choice }).collect();
+        let choices = choices(lights, lamps, normalisation);
+        let total: f64 = choices.iter().map(|choice| choice.power).sum();
         let with_density = |&(emission, flux): &(Emission, f64)| {
             let density = if total > 0.0 { (flux / total) as f32 } else { 0.0 };
             Emission { radiance: UVec4 { w: density.to_bits(), ..emission.radiance }, ..emission }
         };
-        let environment = far.map_or(0.0, |power| if total > 0.0 { (power / total) as f32 } else { 1.0 });
-        Lighting { emitters, environment, emissions: lamps.emissions.iter().map(with_density).collect() }
+        let emissions = lamps.emissions.iter().map(with_density).collect();
+        let near = choices.iter().filter(|choice| choice.bounded.is_some()).count();
+        let are_one = near <= 1 || near == lamps.lamps.len() && lamps.are_one();
+        let chosen = if are_one { Lighting::by_power(&choices) } else { Lighting::by_place(choices) };
+        Lighting { emissions, ..chosen }
     }
+
+    /// Each as often as its power says.
+    fn by_power(choices: &[Choice]) -> Self {
+        let powers: Vec<f64> = choices.iter().map(|choice| choice.power).collect();
+        let emitter = |(choice, drawn): (&Choice, UVec4)| Emitter { light: choice.record, choice: drawn };
+        let emitters = choices.iter().zip(table(&powers)).map(emitter).collect();
+        Lighting { emitters, environment: environment_share(choices), ..Lighting::default() }
+    }
+
+    /// By the hierarchy, and what is far away beside it.
+    fn by_place(mut choices: Vec<Choice>) -> Self {
+        choices.sort_by_key(|choice| choice.bounded.is_some());
+        let far = choices.iter().filter(|choice| choice.bounded.is_none()).count();
+        let steps = far_steps(&choices);
+        let bounded: Vec<Bounded> = choices.iter().filter_map(|choice| choice.bounded).collect();
+        let tree = LightTree::new(&bounded, far as u32);
+        let Lighting { mut emitters, environment, .. } = Lighting::by_power(&choices[..far]);
+        emitters.iter_mut().for_each(|emitter| emitter.choice.w = steps);
+        let near = choices[far..].iter().zip(&tree.trails).map(|(choice, &trail)| {
+            let mut light = choice.record;
+            if light.position.w == Emitter::PRIMITIVE {
+                light.position.y = trail;
+            }
+            Emitter { light, choice: UVec4::new(0, 0, 0, steps) }
+        });
+        emitters.extend(near);
+        let environment = environment * (steps as f32 / LightNode::STEPS as f32);
+        Lighting { emitters, nodes: tree.nodes, far: far as u32, environment, emissions: Vec::new() }
+    }
+}
+
+/// What may be chosen.
+struct Choice {
+    power: f64,
+    record: LightRecord,
+    /// Where it is, unless it is far away.
+    bounded: Option<Bounded>,
+}
+
+/// All of a scene: its lights, its lamps, and its environment.
+fn choices(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Vec<Choice> {
+    let of_light = |(light, record): (&Light, &LightRecord)| {
+        let record = scaled(light, record, normalisation);
+        Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record), record }
+    };
+    let of_lamp = |lamp: &Lamp| Choice { power: lamp.power, record: lamp.record(), bounded: Some(lamp.bounded) };
+    // A black environment is chosen where there is nothing else: kernels that know one choose something.
+    let is_only = lights.0.is_empty() && lamps.is_empty();
+    let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
+    // That on a scene within a sphere of radius 1.
+    let far = far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None });
+    lights.0.iter().zip(lights.1).map(of_light).chain(lamps.lamps.iter().map(of_lamp)).chain(far).collect()
+}
+
+/// The probability of the environment, if it is among some choices.
+fn environment_share(choices: &[Choice]) -> f32 {
+    let total: f64 = choices.iter().map(|choice| choice.power).sum();
+    let environment = choices.iter().find(|choice| choice.record.position.w == Emitter::ENVIRONMENT);
+    environment.map_or(0.0, |choice| if total > 0.0 { (choice.power / total) as f32 } else { 1.0 })
+}
+
+/// How likely something far away is chosen, in steps: as its power says, but neither it nor what is near is left with less than a
+/// quarter, since power tells little of what arrives from near.
+fn far_steps(choices: &[Choice]) -> u32 {
+    let sum = |is_far: bool| -> f64 {
+        choices.iter().filter(|choice| choice.bounded.is_none() == is_far).map(|choice| choice.power).sum()
+    };
+    let (far, near) = (sum(true), sum(false));
+    if far == 0.0 {
+        return 0;
+    }
+    let share = if near == 0.0 { 1.0 } else { (far / (far + near)).clamp(0.25, 0.75) };
+    (share * f64::from(LightNode::STEPS)) as u32
+}
+
+/// A light without extent as the hierarchy takes it, if it has a place.
+fn bounded(light: &Light, record: &LightRecord) -> Option<Bounded> {
+    let cone = match *light {
+        Light::Directional { .. } => return None,
+        Light::Point { .. } => Cone::all(),
+        Light::Spot { outer, .. } => {
+            let opening = f64::from(outer).to_radians();
+            Cone { axis: numbers(record.axis).as_dvec3(), opening, is_spread: false, is_two_sided: false }
+        }
+    };
+    let (place, intensity) = (numbers(record.position).as_dvec3(), brightness(numbers(record.colour)));
+    Some(Bounded { least: place, greatest: place, intensity, cone })
 }
 
 /// The mean of the channels.
@@ -151,14 +300,6 @@ fn scaled(light: &Light, record: &LightRecord, normalisation: &Normalisation) ->
 fn of_environment() -> LightRecord {
     let nothing = pack(Vec3::ZERO, 0);
     LightRecord { position: pack(Vec3::ZERO, Emitter::ENVIRONMENT), colour: nothing, axis: nothing }
-}
-
-fn of_primitive(index: u32) -> LightRecord {
-    LightRecord {
-        position: pack(Vec3::ZERO, Emitter::PRIMITIVE),
-        colour: pack(Vec3::ZERO, 0),
-        axis: pack(Vec3::ZERO, index),
-    }
 }
 
 /// The alias table of some powers (Vose, A Linear Algorithm for Generating Random Numbers with a Given Distribution, 1991): for

@@ -15,6 +15,7 @@ mod environment;
 mod feature;
 mod hierarchy;
 mod levels;
+mod light_tree;
 mod lighting;
 mod normalisation;
 mod records;
@@ -122,6 +123,7 @@ impl DeviceScene {
         let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
+        let many = if lighting.nodes.is_empty() { 0 } else { Effects::MANY_LIGHTS };
         Ok(DeviceScene {
             statistics,
             primitives,
@@ -137,7 +139,7 @@ impl DeviceScene {
             environment,
             emissive,
             lamps,
-            effects: Effects(effects.0 & !dark),
+            effects: Effects(effects.0 & !dark | many),
             background: scene.background,
             settings,
             feature: None,
@@ -383,6 +385,7 @@ impl DeviceScene {
             clamp,
             reach,
             environment: self.lighting.environment,
+            far: self.lighting.far,
             vertices: self.primitives.len() as u32,
             ..Frame::default()
         }

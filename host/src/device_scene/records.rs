@@ -22,8 +22,8 @@ pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
 /// The effects that a scene asks for, of those that it has, under some settings.
 pub(super) fn asked(effects: Effects, settings: &Settings) -> Effects {
     let out = match settings.transport.integrator {
-        Integrator::Whitted if settings.bounces > 0 => MICROFACETS,
-        Integrator::Whitted => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS,
+        Integrator::Whitted if settings.bounces > 0 => MICROFACETS | Effects::MANY_LIGHTS,
+        Integrator::Whitted => Effects::REFLECTION | Effects::REFRACTION | MICROFACETS | Effects::MANY_LIGHTS,
         Integrator::Distributed if settings.bounces > 0 => 0,
         Integrator::Distributed => Effects::REFLECTION | Effects::REFRACTION | Effects::ABSORBING,
         Integrator::Ao => !(GEOMETRY | Effects::TRANSPARENT),

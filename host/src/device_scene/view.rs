@@ -80,6 +80,7 @@ impl<'a> SceneView<'a> {
     fn lighting(&self) -> shading::Lighting<'_> {
         shading::Lighting {
             emitters: &self.lighting.emitters,
+            nodes: &self.lighting.nodes,
             emissions: &self.lighting.emissions,
             textures: self.textures(),
             environment: self.packed.environment(),

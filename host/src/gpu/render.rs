@@ -110,6 +110,7 @@ impl<'a> Renderer<'a> {
         };
         write(binding::LIGHTS, bytemuck::cast_slice(&records));
         write(binding::EMITTERS, bytemuck::cast_slice(&lighting.emitters));
+        write(binding::LIGHT_NODES, bytemuck::cast_slice(&lighting.nodes));
         write(binding::EMISSIONS, bytemuck::cast_slice(&lighting.emissions));
         Ok(())
     }

@@ -26,12 +26,11 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 19] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 20] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
-        let (emitters, emissions): (&[_], &[_]) =
-            if is_chosen { (&packed.lighting().emitters, &packed.lighting().emissions) } else { (&[], &[]) };
+        let lighting = is_chosen.then(|| packed.lighting());
         let physicals = if packed.effects().has(Effects::PHYSICAL) { packed.physicals() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
@@ -42,8 +41,9 @@ impl<'a> SceneRecords<'a> {
             (binding::NORMALS, bytemuck::cast_slice(normals)),
             (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),
             (binding::LIGHTS, bytemuck::cast_slice(packed.lights())),
-            (binding::EMITTERS, bytemuck::cast_slice(emitters)),
-            (binding::EMISSIONS, bytemuck::cast_slice(emissions)),
+            (binding::EMITTERS, lighting.map_or(&[], |lighting| bytemuck::cast_slice(&lighting.emitters))),
+            (binding::LIGHT_NODES, lighting.map_or(&[], |lighting| bytemuck::cast_slice(&lighting.nodes))),
+            (binding::EMISSIONS, lighting.map_or(&[], |lighting| bytemuck::cast_slice(&lighting.emissions))),
             (binding::PHYSICALS, bytemuck::cast_slice(physicals)),
             (binding::MAPS, bytemuck::cast_slice(&textures.maps)),
             (binding::TEXTURES, bytemuck::cast_slice(&textures.textures)),

@@ -34,8 +34,8 @@ const SHORTER: [Edit; 2] = [
 const DUMMY: [Edit; 6] = [
     (
         "src/resources.rs",
-        "            29 albedos ALBEDOS: Read u32, \"albedos of facets\";\n",
-        "            29 albedos ALBEDOS: Read u32, \"albedos of facets\";\n            30 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            30 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n",
+        "            30 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n            31 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",
@@ -44,7 +44,7 @@ const DUMMY: [Edit; 6] = [
     ),
     // Of both kernels that shade.
     ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
-    ("src/entry/mod.rs", "colours tangents environment albedos] {", "colours tangents environment albedos dummy] {"),
+    ("src/entry/mod.rs", "colours tangents environment albedos light_nodes] {", "colours tangents environment albedos light_nodes dummy] {"),
     (
         "src/entry/mod.rs",
         "let shading = ShadingData { normals, materials, tangents, maps, textures };",

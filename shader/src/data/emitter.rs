@@ -10,10 +10,11 @@ use glam::UVec4;
 #[repr(C, align(16))]
 pub struct Emitter {
     /// A light without extent, whose colour is in units of the normalised scene; or of kind [`Emitter::PRIMITIVE`], whose axis'
-    /// integer is the index of the primitive.
+    /// integer is the index of the primitive, and the other numbers those of the functions below.
     pub light: Light,
     /// The threshold below which a draw that came to this entry means it, the number of the emitter that it means otherwise,
-    /// the bits of the probability that this emitter is chosen at all, and 0.
+    /// the bits of the probability that this emitter is chosen at all, and 0. Where lights are chosen by a
+    /// [hierarchy](super::LightNode), of all that are far away alone, with the steps of 2^-23 of the probability that one of these is.
     pub choice: UVec4,
 }
 
@@ -22,6 +23,24 @@ impl Emitter {
     pub const PRIMITIVE: u32 = 3;
     /// The kind of light from far away.
     pub const ENVIRONMENT: u32 = 4;
+
+    /// A primitive's number in the scene.
+    #[inline(always)]
+    pub fn number(&self) -> u32 {
+        self.light.position.x
+    }
+
+    /// The way to a primitive's leaf in the hierarchy: from the lowest bit on, 1 for each second child.
+    #[inline(always)]
+    pub fn trail(&self) -> u32 {
+        self.light.position.y
+    }
+
+    /// One over a primitive's area in the normalised scene.
+    #[inline(always)]
+    pub fn per_area(&self) -> f32 {
+        f32::from_bits(self.light.colour.x)
+    }
 }
 
 /// What a material emits.

@@ -66,8 +66,8 @@ pub struct Frame {
     pub spread: f32,
     /// The probability that the environment is chosen of all lights.
     pub environment: f32,
-    /// Unused: uniform records are multiples of 16 bytes.
-    pub padding: u32,
+    /// How many of the emitters are far away, which are the first, where there are [many](super::Effects::MANY_LIGHTS).
+    pub far: u32,
 }
 
 /// A pinhole camera for an image of some size: vectors in the normalised scene, whose last integers are unused.

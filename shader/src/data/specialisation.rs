@@ -78,6 +78,8 @@ bits! {
         ENVIRONMENT = 23;
         /// What is lost between facets is given back.
         COMPENSATED = 24;
+        /// Several lights have places, and an integrator chooses one of them by a hierarchy.
+        MANY_LIGHTS = 25;
     }
 }
 

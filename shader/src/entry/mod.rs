@@ -97,7 +97,7 @@ macro_rules! scatter {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions
-             physicals maps textures texels coordinates colours tangents environment albedos] {
+             physicals maps textures texels coordinates colours tangents environment albedos light_nodes] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
@@ -105,7 +105,7 @@ macro_rules! scatter {
                 let launch = LaunchContext { frame, spec, primitives };
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
-                let lighting = Lighting { emitters, emissions, textures, environment };
+                let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
                 let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting };
                 let exchange = Exchange { paths, hits, shadows, segments, sums };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);

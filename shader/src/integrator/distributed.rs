@@ -6,7 +6,7 @@ use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
-use crate::light::{EmitterSample, LightSample, Lighting};
+use crate::light::{EmitterSample, LightSample, Lighting, Viewpoint};
 use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
@@ -31,7 +31,7 @@ pub(super) fn at<R: Scalar>(
     if effects.has(Effects::PHYSICAL) {
         let closure = closure(effects, context, (&seen, &surface), &covering);
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
-        let shadow = light_by_closure(launch, lighting, vertex, (&interaction, &closure));
+        let shadow = light_by_closure(launch, lighting, vertex, (&seen, &closure));
         let draws = vertex.draws.set(path.counts().1);
         let [reflected, passed] = closure.branches(&interaction, (draws.x, draws.y));
         let on = |s: &ClosureSample<R>| vertex.on((&interaction, s.origin), s.direction, s.factor, s.density);
@@ -92,12 +92,13 @@ fn drawn_light<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    interaction: &SurfaceInteraction<R>,
+    (interaction, passes): (&SurfaceInteraction<R>, bool),
 ) -> (EmitterSample<R>, V3<R>) {
     let number = vertex.path.counts().1;
     let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
     let origin = interaction.offset_ray_origin(interaction.normal);
-    (EmitterSample::new(launch, lighting, origin, decisions.x, (places.z, places.w)), origin)
+    let view = Viewpoint::new(origin, interaction.normal, passes);
+    (EmitterSample::new(launch, lighting, &view, decisions.x, (places.z, places.w)), origin)
 }
 
 /// The light of one light, by a closure: of one that rays find, what the base scatters alone, since facets send rays of their own.
@@ -106,12 +107,13 @@ fn light_by_closure<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, closure): (&SurfaceInteraction<R>, &Bsdf<'_, R>),
+    (seen, closure): (&Seen<R>, &Bsdf<'_, R>),
 ) -> ShadowRay<R> {
     if !is_lit(launch) {
         return ShadowRay::none();
     }
-    let (sample, origin) = drawn_light(launch, lighting, vertex, interaction);
+    let interaction = &seen.interaction;
+    let (sample, origin) = drawn_light(launch, lighting, vertex, (interaction, seen.primitive.is_transparent()));
     let value = if sample.density.over.eq(R::splat(0.0)) {
         closure.eval(interaction, sample.direction).value
     } else {
@@ -136,7 +138,7 @@ fn sampled_light<R: Scalar>(
     if !is_lit(launch) {
         return ShadowRay::none();
     }
-    let (sample, origin) = drawn_light(launch, lighting, vertex, interaction);
+    let (sample, origin) = drawn_light(launch, lighting, vertex, (interaction, false));
     if !interaction.faces(sample.direction) {
         return ShadowRay::none();
     }

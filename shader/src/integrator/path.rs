@@ -5,7 +5,7 @@ use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
 use crate::data::{Effects, Frame, Launch, numbers};
 use crate::geometry::SurfaceInteraction;
-use crate::light::{Density, EmitterSample, Lighting};
+use crate::light::{Density, EmitterSample, Lighting, Viewpoint};
 use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure};
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
@@ -54,13 +54,16 @@ fn scattered<R: Scalar>(
     let origin = interaction.offset_ray_origin(interaction.normal);
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, origin), decisions.x);
+    let view = Viewpoint::new(origin, interaction.normal, seen.primitive.is_transparent());
+    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, &view), decisions.x);
     let draws = (decisions.y, decisions.w);
     let sample = closure.sample((&interaction, origin), draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let is_wide = launch.spec.launch.has(Launch::MIPMAPPED) && sample.density.eq(R::splat(0.0));
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
-    let next = PathState { beside: (width, R::splat(0.0)), ..next };
+    // What a lamp's density depends on that the path finds.
+    let side = if launch.spec.effects.has(Effects::MANY_LIGHTS) { view.side } else { 0 };
+    let next = PathState { beside: (width, R::splat(side as f32)), ..next };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
@@ -115,7 +118,8 @@ fn emitted<R: Scalar>(
     if own.eq(R::splat(0.0)) {
         return radiance;
     }
-    let other = Density::of_hit(effects, (&primitive, &emission), &interaction, vertex.path.origin);
+    let view = vertex.path.view();
+    let other = Density::of_hit(launch, lighting, (&primitive, &emission), &interaction, &view);
     (radiance * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own * other.under)).map(|c| c.flush(FAINT))
 }
 
@@ -125,7 +129,7 @@ fn sampled_light<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, closure, origin): (&SurfaceInteraction<R>, &impl Closure<R>, V3<R>),
+    (interaction, closure, view): (&SurfaceInteraction<R>, &impl Closure<R>, &Viewpoint<R>),
     choice: u32,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
@@ -133,7 +137,7 @@ fn sampled_light<R: Scalar>(
         return ShadowRay::none();
     }
     let places = vertex.draws.set(vertex.path.bounces);
-    let sample = EmitterSample::new(launch, lighting, origin, choice, (places.z, places.w));
+    let sample = EmitterSample::new(launch, lighting, view, choice, (places.z, places.w));
     let Scattering { value, density } = closure.eval(interaction, sample.direction);
     let mut light = value.times(sample.light).map(|c| c.flush(FAINT));
     if !sample.density.over.eq(zero) {
@@ -142,7 +146,7 @@ fn sampled_light<R: Scalar>(
         light = (light * share).map(|c| c.flush(FAINT));
     }
     let passes = effects.has(Effects::PHYSICAL) && !interaction.faces(sample.direction);
-    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { origin };
+    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { view.origin };
     vertex.asks(launch, (interaction, origin), &sample, light)
 }
 

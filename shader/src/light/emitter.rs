@@ -1,12 +1,13 @@
 //! Which light a path's vertex samples, where on it, and how likely that is (thesis 3.4.1, 3.4.4).
 //!
-//! A light is chosen by its power; a triangle or a disk is then sampled by area, a sphere by the solid angle of its cone, or from
+//! A light is chosen by its power or, of many, by what of it may arrive; a triangle or a disk is then sampled by area, a sphere by the solid angle of its cone, or from
 //! inside by area. Densities that are compared by multiple importance sampling are over solid angle as seen from a ray's origin,
 //! and a function here gives them for a place whether it was sampled or hit, so that both know the same.
 
-use super::{Environment, LightSample, SHORT};
+use super::tree::{Guide, STEPS, descend, probability};
+use super::{Environment, LightSample, SHORT, Viewpoint};
 use crate::buffer::read;
-use crate::data::{Effects, Emission, Emitter, Light, Primitive, numbers};
+use crate::data::{Effects, Emission, Emitter, Light, LightNode, Primitive, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
 use crate::sampler::unit;
@@ -18,6 +19,8 @@ use crate::texture::{Place, Textures, opacity as opacity_of};
 pub struct Lighting<'a> {
     /// Every light that may be chosen.
     pub emitters: &'a [Emitter],
+    /// Those that have a place, where there are many ([`Effects::MANY_LIGHTS`]).
+    pub nodes: &'a [LightNode],
     /// What each material emits.
     pub emissions: &'a [Emission],
     /// What it is covered with.
@@ -81,18 +84,25 @@ impl<R: Scalar> EmitterSample<R> {
         EmitterSample { direction: V3::new(zero, zero, one), limit: -one, light: V3::zero(), density }
     }
 
-    /// Samples one light of all as seen from `origin`: `choice` draws which, `place` where on it.
+    /// Samples one light of all as seen from a place: `choice` draws which, `place` where on it.
     #[inline(always)]
     pub fn new(
         launch: &LaunchContext<'_>,
         lighting: &Lighting<'_>,
-        origin: V3<R>,
+        view: &Viewpoint<R>,
         choice: u32,
         place: (u32, u32),
     ) -> Self {
-        let effects = launch.spec.effects;
-        let emitter = chosen(lighting.emitters, launch.frame.emitters, choice);
-        let probability = R::splat(f32::from_bits(emitter.choice.z));
+        let (effects, origin) = (launch.spec.effects, view.origin);
+        let (emitter, probability) = if effects.has(Effects::MANY_LIGHTS) {
+            of_many(launch, lighting, view, choice, place)
+        } else {
+            let emitter = chosen(lighting.emitters, launch.frame.emitters, choice);
+            (emitter, R::splat(f32::from_bits(emitter.choice.z)))
+        };
+        if effects.has(Effects::MANY_LIGHTS) && probability.eq(R::splat(0.0)) {
+            return Self::none();
+        }
         if effects.has(Effects::ENVIRONMENT) && emitter.light.position.w == Emitter::ENVIRONMENT {
             return Environment::new(lighting.environment).sample(place, probability);
         }
@@ -101,10 +111,11 @@ impl<R: Scalar> EmitterSample<R> {
         }
         let primitive = launch.primitive(emitter.light.axis.w);
         let emission = read(lighting.emissions, primitive.material());
+        let per_area = per_area(effects, &emission, &emitter, probability);
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {
-            Self::of_sphere(&primitive, &emission, origin, place)
+            Self::of_sphere(&primitive, (&emission, per_area), origin, place)
         } else {
-            Self::of_plane(launch, lighting, (&primitive, emitter.light.axis.w, &emission), origin, place)
+            Self::of_plane(launch, lighting, (&primitive, &emitter), (&emission, per_area), (origin, place))
         }
     }
 
@@ -134,11 +145,11 @@ impl<R: Scalar> EmitterSample<R> {
     fn of_plane(
         launch: &LaunchContext<'_>,
         lighting: &Lighting<'_>,
-        (primitive, index, emission): (&Primitive, u32, &Emission),
-        origin: V3<R>,
-        place: (u32, u32),
+        (primitive, emitter): (&Primitive, &Emitter),
+        (emission, per_area): (&Emission, R),
+        (origin, place): (V3<R>, (u32, u32)),
     ) -> Self {
-        let effects = launch.spec.effects;
+        let (effects, index) = (launch.spec.effects, emitter.light.axis.w);
         let coordinates = if effects.has(Effects::DISK) && primitive.is_disk() {
             let (x, y) = on_circle::<R>(place.1);
             let reach = R::splat(unit(place.0)).sqrt();
@@ -147,7 +158,7 @@ impl<R: Scalar> EmitterSample<R> {
             in_triangle(R::splat(unit(place.0)), R::splat(unit(place.1)))
         };
         let at = SurfaceInteraction::new(effects, primitive, coordinates, V3::zero());
-        let sample = Self::of_place(emission, at.position, at.normal, origin);
+        let sample = Self::of_place((emission, per_area), at.position, at.normal, origin);
         let sample = if effects.has(Effects::CUTOUT) && primitive.is_triangle() && primitive.is_cutout() {
             let place = Place { index, weights: coordinates, count: launch.frame.vertices };
             let light = sample.light * opacity(launch, &lighting.textures, emission, &place);
@@ -165,12 +176,12 @@ impl<R: Scalar> EmitterSample<R> {
 
     /// A place on a surface that emits, sampled by area, with its front's normal.
     #[inline(always)]
-    fn of_place(emission: &Emission, position: V3<R>, normal: V3<R>, origin: V3<R>) -> Self {
+    fn of_place((emission, per_area): (&Emission, R), position: V3<R>, normal: V3<R>, origin: V3<R>) -> Self {
         let away = (position - origin).map(|c| c.flush(SMALL));
         let (direction, distance) = away.direction_and_length();
         let facing = -normal.dot(direction).flush(SMALL);
         let is_seen = if emission.sides.x != 0 { !facing.eq(R::splat(0.0)) } else { R::splat(0.0).lt(facing) };
-        let density = over_area(emission, away, facing.abs());
+        let density = over_area(per_area, away, facing.abs());
         if !is_seen || density.over.eq(R::splat(0.0)) {
             return Self::none();
         }
@@ -179,7 +190,7 @@ impl<R: Scalar> EmitterSample<R> {
     }
 
     #[inline(always)]
-    fn of_sphere(sphere: &Primitive, emission: &Emission, origin: V3<R>, place: (u32, u32)) -> Self {
+    fn of_sphere(sphere: &Primitive, (emission, per_area): (&Emission, R), origin: V3<R>, place: (u32, u32)) -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (centre, radius) = (V3::<R>::splat(sphere.centre()), R::splat(sphere.radius()));
         let cone = Cone::new(centre, radius, origin);
@@ -190,7 +201,7 @@ impl<R: Scalar> EmitterSample<R> {
             let across = (drawn * (one - drawn)).sqrt();
             let across = across + across;
             let normal = V3::new(x * across, y * across, height).map(|c| c.flush(TINY));
-            return Self::of_place(emission, centre + normal * radius, normal, origin);
+            return Self::of_place((emission, per_area), centre + normal * radius, normal, origin);
         }
         let (axis, distance) = (centre - origin).map(|c| c.flush(SMALL)).direction_and_length();
         let height = (drawn * cone.height).flush(FAINT);
@@ -201,7 +212,7 @@ impl<R: Scalar> EmitterSample<R> {
         let direction = (across * sine + axis * cosine).map(|c| c.flush(TINY));
         let half = (radius * radius - (distance * distance * square).flush(FAINT)).max(zero).sqrt();
         let limit = (distance * cosine - half) * R::splat(1.0 - SHORT);
-        let density = cone.density(emission, radius);
+        let density = cone.density(per_area, radius);
         if density.over.eq(zero) {
             return Self::none();
         }
@@ -211,23 +222,26 @@ impl<R: Scalar> EmitterSample<R> {
 }
 
 impl<R: Scalar> Density<R> {
-    /// That a ray from `origin` would have been sampled which found an emitter at an interaction.
+    /// That a ray from a place would have been sampled which found an emitter at an interaction.
     #[inline(always)]
     pub fn of_hit(
-        effects: Effects,
+        launch: &LaunchContext<'_>,
+        lighting: &Lighting<'_>,
         (primitive, emission): (&Primitive, &Emission),
         at: &SurfaceInteraction<R>,
-        origin: V3<R>,
+        view: &Viewpoint<R>,
     ) -> Self {
+        let (effects, origin) = (launch.spec.effects, view.origin);
+        let per_area = per_area_of_hit(launch, lighting, (primitive, emission), view);
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             let (centre, radius) = (V3::<R>::splat(primitive.centre()), R::splat(primitive.radius()));
             let cone = Cone::new(centre, radius, origin);
             if cone.is_outside {
-                return cone.density(emission, radius);
+                return cone.density(per_area, radius);
             }
         }
         let away = (at.position - origin).map(|c| c.flush(SMALL));
-        over_area(emission, away, at.normal.dot(away.direction_and_length().0).flush(SMALL).abs())
+        over_area(per_area, away, at.normal.dot(away.direction_and_length().0).flush(SMALL).abs())
     }
 
     /// A radiance over the density.
@@ -240,9 +254,76 @@ impl<R: Scalar> Density<R> {
 
 /// The density of a place that was sampled by area, so far away.
 #[inline(always)]
-fn over_area<R: Scalar>(emission: &Emission, away: V3<R>, cosine: R) -> Density<R> {
-    let over = (R::splat(f32::from_bits(emission.radiance.w)) * away.dot(away)).flush(FAINT);
-    Density { over, under: cosine }
+fn over_area<R: Scalar>(per_area: R, away: V3<R>, cosine: R) -> Density<R> {
+    Density { over: (per_area * away.dot(away)).flush(FAINT), under: cosine }
+}
+
+/// One of many: one of those that are far away, or one that has a place. With its probability, which is 0 if there is nothing to
+/// choose.
+#[inline(always)]
+fn of_many<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    view: &Viewpoint<R>,
+    choice: u32,
+    place: (u32, u32),
+) -> (Emitter, R) {
+    let steps = read(lighting.emitters, 0).choice.w;
+    let mut guide = Guide::draw(choice, place);
+    if !guide.is_second(steps) {
+        let emitter = chosen(lighting.emitters, launch.frame.far, guide.word());
+        let likely = R::splat(f32::from_bits(emitter.choice.z)) * probability(steps);
+        return (emitter, likely.flush(FAINT));
+    }
+    let found = descend(lighting.nodes, view, probability(STEPS - steps), guide);
+    (read(lighting.emitters, found.emitter), found.probability)
+}
+
+/// The density over area with which a place on an emitter is chosen.
+#[inline(always)]
+fn per_area<R: Scalar>(effects: Effects, emission: &Emission, emitter: &Emitter, probability: R) -> R {
+    if effects.has(Effects::MANY_LIGHTS) {
+        (probability * R::splat(emitter.per_area())).flush(FAINT)
+    } else {
+        R::splat(f32::from_bits(emission.radiance.w))
+    }
+}
+
+/// The same for a place that a ray found.
+#[inline(always)]
+fn per_area_of_hit<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    (primitive, emission): (&Primitive, &Emission),
+    view: &Viewpoint<R>,
+) -> R {
+    let effects = launch.spec.effects;
+    if !effects.has(Effects::MANY_LIGHTS) {
+        return R::splat(f32::from_bits(emission.radiance.w));
+    }
+    let emitter = of_primitive(lighting.emitters, launch.frame.emitters, primitive.number());
+    if emitter.light.position.w != Emitter::PRIMITIVE || emitter.number() != primitive.number() {
+        return R::splat(0.0);
+    }
+    let steps = emitter.choice.w;
+    let found = descend(lighting.nodes, view, probability(STEPS - steps), Guide::trail(emitter.trail()));
+    per_area(effects, emission, &emitter, found.probability)
+}
+
+/// The emitter of a primitive, if it is one: they are the last, by their numbers.
+#[inline(always)]
+fn of_primitive(emitters: &[Emitter], count: u32, number: u32) -> Emitter {
+    let (mut low, mut high) = (0, count - 1);
+    while low < high {
+        let middle = (low + high) >> 1;
+        let emitter = read(emitters, middle);
+        if emitter.light.position.w != Emitter::PRIMITIVE || emitter.number() < number {
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    read(emitters, low)
 }
 
 /// The cone in which a sphere is seen.
@@ -265,11 +346,10 @@ impl<R: Scalar> Cone<R> {
 
     /// The sphere is chosen as its area is, and each direction of the cone is as likely.
     #[inline(always)]
-    fn density(&self, emission: &Emission, radius: R) -> Density<R> {
-        let over_area = R::splat(f32::from_bits(emission.radiance.w));
+    fn density(&self, per_area: R, radius: R) -> Density<R> {
         // 4 pi r^2 of area over 2 pi h of solid angle.
         let two = R::splat(2.0);
-        Density { over: (two * (over_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
+        Density { over: (two * (per_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
     }
 }
 

@@ -3,10 +3,14 @@
 
 mod emitter;
 mod environment;
+mod tree;
+mod viewpoint;
 
 pub(crate) use emitter::on_circle;
 pub use emitter::{Density, EmitterSample, Lighting};
 pub use environment::{Environment, HEADER};
+pub use tree::{Chosen, Guide, descend};
+pub use viewpoint::Viewpoint;
 
 use crate::data::{Effects, Light, numbers};
 use crate::geometry::SurfaceInteraction;

@@ -4,6 +4,7 @@ use super::segment::NOWHERE;
 use super::{REACHED, Segment};
 use crate::buffer::{read, write};
 use crate::data::Launch;
+use crate::light::Viewpoint;
 use crate::real::{Real, Scalar, V3};
 use crate::scene::LaunchContext;
 use crate::texture::Cone;
@@ -32,7 +33,7 @@ pub struct PathState<R: Real> {
     /// The column and, in the upper half, the row of its pixel in the image.
     pub pixel: u32,
     /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width of the path's [`Cone`]
-    /// and nothing.
+    /// and, where there are many lights, the side of its [`Viewpoint`].
     pub beside: (R, R),
 }
 
@@ -66,6 +67,12 @@ impl<R: Scalar> PathState<R> {
     #[inline(always)]
     pub fn with_counts(self, pending: u32, vertex: u32) -> Self {
         PathState { beside: (R::splat(pending as f32), R::splat(vertex as f32)), ..self }
+    }
+
+    /// From where it sees lights, where it does not branch.
+    #[inline(always)]
+    pub fn view(&self) -> Viewpoint<R> {
+        Viewpoint { origin: self.origin, side: self.beside.1.to_f32() as u32 }
     }
 
     /// How wide it is after a distance. Where paths branch, each begins as narrow as the camera's. One that chance has led has no

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use super::Texture;
 
-/// A picture of the surroundings by the angles of a sphere: its middle is seen along the negative z axis, its right half along x, its
-/// upper edge straight up along y.
+/// A picture of the surroundings by the angles of a sphere: its middle is seen along x, what is right of it along z, and its
+/// upper edge straight up along y, as Blender and three.js have it.
 #[derive(Debug, Clone)]
 pub struct Environment {
     /// Linear light, or of 8 bits in sRGB.

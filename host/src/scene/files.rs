@@ -75,7 +75,7 @@ impl<'p> Files<'p> {
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
             let mut obj = match is_gltf(path) {
-                true => meshes_of(path, gltf::load(path, self.budget)?, self.has),
+                true => meshes_of(path, gltf::load(path, None, self.budget)?, self.has),
                 false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
             };
             self.warnings.append(&mut obj.warnings);
@@ -120,7 +120,7 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
 
 /// The meshes of a scene, with a warning of what else it has and the scene file has not.
 fn meshes_of(path: &Path, scene: Gltf, own: Own) -> Obj {
-    let Gltf { mut obj, parts: _, lights, cameras } = scene;
+    let Gltf { mut obj, parts: _, lights, cameras, .. } = scene;
     let what = match (!lights.is_empty() && !own.lights, !cameras.is_empty() && !own.cameras) {
         (true, true) => "lights and cameras",
         (true, false) => "lights",

@@ -76,6 +76,10 @@ bits! {
         CUTOUT = 22;
         /// The background is a picture.
         ENVIRONMENT = 23;
+        /// Some spot fades by the square of a ramp.
+        RAMP = 24;
+        /// What some material emits is multiplied with the colours of vertices.
+        GLOWING_COLOURS = 25;
     }
 }
 

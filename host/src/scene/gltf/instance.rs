@@ -37,7 +37,9 @@ impl<'f> Copies<'f> {
             let found = elements.count;
             let wanted = *count.get_or_insert(found);
             if found != wanted {
-                return Err(format!("{here}: it has {found} elements beside {wanted} of another; write the file again"));
+                return Err(format!(
+                    "{here}: it has {found} elements beside {wanted} of another; write the file again"
+                ));
             }
             match key.as_str() {
                 "TRANSLATION" => copies.translation = Some(elements),

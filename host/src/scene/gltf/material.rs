@@ -35,6 +35,7 @@ pub fn read(of: &Material, number: usize, pictures: &mut Pictures, notes: &mut N
         Some(gloss) => reader.gloss(gloss, of)?,
         None => reader.metal(of.pbr_metallic_roughness.as_deref().unwrap_or(&default), of)?,
     }
+    reader.fields.two_sided = Some(of.double_sided);
     let normal = of.normal_texture.as_deref();
     reader.fields.maps.normal = reader.map(normal, "normalTexture")?;
     reader.fields.maps.normal_scale = match normal.and_then(|normal| normal.scale) {
@@ -132,7 +133,6 @@ impl Reader<'_, '_, '_> {
         // A picture of light that is switched off need not be decoded.
         if emission != Vec3::ZERO {
             self.fields.emission = Some(emission);
-            self.fields.two_sided = Some(of.double_sided);
             self.fields.maps.emission = self.map(of.emissive_texture.as_deref(), "emissiveTexture")?;
         }
         Ok(())
@@ -230,8 +230,16 @@ impl Reader<'_, '_, '_> {
         };
         // The base's picture stays for its opacity.
         let maps = Maps { emission: maps.base.clone(), base: maps.base, normal_scale: 1.0, ..Maps::default() };
-        let (emission, two_sided) = (metal.base, Some(is_two_sided));
-        self.fields = Fields { physical, emission, two_sided, opacity, alpha, maps, ..Fields::default() };
+        self.fields = Fields {
+            physical,
+            emission: metal.base,
+            emission_is_coloured: Some(true),
+            two_sided: Some(is_two_sided),
+            opacity,
+            alpha,
+            maps,
+            ..Fields::default()
+        };
     }
 
     fn map(&mut self, info: Option<&Info>, key: &str) -> Unplaced<Option<crate::scene::Map>> {

@@ -46,7 +46,16 @@ struct Place<'p> {
 impl<'f> Merge<'f> {
     /// Nothing yet, within the budget.
     pub fn new(document: &'f Document, accessors: Accessors<'f>, skins: Skins<'f>, budget: Budget) -> Self {
-        Merge { document, accessors, skins, budget, mesh: Mesh::default(), parts: Vec::new(), triangles: 0, vertices: 0 }
+        Merge {
+            document,
+            accessors,
+            skins,
+            budget,
+            mesh: Mesh::default(),
+            parts: Vec::new(),
+            triangles: 0,
+            vertices: 0,
+        }
     }
 
     /// Adds the mesh of a number at all of some nodes that have it, whose morph targets have the same weights. A mesh is read once,
@@ -137,13 +146,25 @@ impl<'f> Merge<'f> {
         let before = self.mesh.positions.len();
         let after = before + of.positions.len();
         let range = (before, after);
-        self.mesh.positions.extend(of.positions.iter().enumerate().map(|(vertex, &position)| transform(vertex).position(position)));
+        self.mesh
+            .positions
+            .extend(of.positions.iter().enumerate().map(|(vertex, &position)| transform(vertex).position(position)));
         let is_finite = self.mesh.positions.iter().skip(before).all(|position| position.is_finite());
         if !is_finite {
             return Err(format!("nodes[{}] takes it out of single precision; make it smaller", at.node));
         }
-        put(&mut self.mesh.normals, of.normals.iter().enumerate().map(|(vertex, &normal)| transform(vertex).normal(normal)), range, Vec3::ZERO);
-        put(&mut self.mesh.tangents, of.tangents.iter().enumerate().map(|(vertex, &tangent)| transform(vertex).tangent(tangent)), range, Vec4::ZERO);
+        put(
+            &mut self.mesh.normals,
+            of.normals.iter().enumerate().map(|(vertex, &normal)| transform(vertex).normal(normal)),
+            range,
+            Vec3::ZERO,
+        );
+        put(
+            &mut self.mesh.tangents,
+            of.tangents.iter().enumerate().map(|(vertex, &tangent)| transform(vertex).tangent(tangent)),
+            range,
+            Vec4::ZERO,
+        );
         for (all, more) in self.mesh.coordinates.iter_mut().zip(&of.coordinates) {
             put(all, more.iter().copied(), range, Vec2::ZERO);
         }

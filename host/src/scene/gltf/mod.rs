@@ -42,7 +42,7 @@ use self::skin::Skins;
 use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
 use super::obj::Obj;
-use super::{Camera, Light, Mesh, Part, Unplaced, file};
+use super::{Camera, Light, LightUnit, Mesh, Part, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// A scene but for its surroundings.
@@ -57,24 +57,27 @@ pub struct Gltf {
     pub lights: Vec<Light>,
     /// Likewise, each with a name of its own.
     pub cameras: Vec<Camera>,
+    /// Width over height of the picture of the first camera, if it says so.
+    pub aspect: Option<f64>,
 }
 
 /// Reads a `.gltf` or `.glb` file and those that it names, which lie in its folder or below. It has the pose that it has at rest.
+/// Its lights are in `unit`, or else in that of what wrote the file.
 ///
 /// # Errors
 /// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
 /// triangle, or more than the budget has room for: each says where in the JSON.
-pub fn load(path: &Path, budget: Budget) -> Result<Gltf> {
+pub fn load(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
     let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes, budget)
+    parse(path, &bytes, unit, budget)
 }
 
 /// The scene of the bytes of a file.
-pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<Gltf> {
-    read(path, bytes, budget).map_err(|fault| Error::file(path, fault))
+pub(super) fn parse(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
+    read(path, bytes, unit, budget).map_err(|fault| Error::file(path, fault))
 }
 
-fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
+fn read(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Unplaced<Gltf> {
     let container = container::open(bytes)?;
     let json = bytes.get(container.json).unwrap_or_default();
     budget.check_bytes(document::memory(json)).map_err(|why| format!("its JSON would {why}; split the file"))?;
@@ -89,16 +92,24 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
     let nodes = node::walk(&document)?;
     let buffers = Buffers::read(&document, chunk, folder)?;
     let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
     for placed in &nodes {
-        lights.extend(light::read(placed, &document.extensions.lights.lights, &mut notes)?);
+        lights.extend(light::read(placed, &document.extensions.lights.lights, unit.unwrap_or(by_writer), &mut notes)?);
         cameras.add(placed, &document, &mut notes)?;
+    }
+    if unit.is_none() && by_writer == LightUnit::Blender && !lights.is_empty() {
+        notes.once(
+            "unit",
+            "its lights are divided by 683, which Blender's exporter multiplies them with by default; \
+             --light-unit gltf takes them as they are",
+        );
     }
     let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
-    Ok(Gltf { obj, parts, lights, cameras: cameras.all })
+    Ok(Gltf { obj, parts, lights, aspect: cameras.aspect, cameras: cameras.all })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
@@ -191,14 +202,17 @@ fn merged(
 /// Why nothing is drawn, and what to do.
 fn nothing(document: &Document) -> String {
     let shown = document.scene.unwrap_or(0);
-    let others = document.scenes.iter().enumerate().filter(|&(number, scene)| number != shown && !scene.nodes.is_empty());
+    let others =
+        document.scenes.iter().enumerate().filter(|&(number, scene)| number != shown && !scene.nodes.is_empty());
     let Some((other, _)) = others.into_iter().next() else {
         return "there is no triangle in its scene; does a node of it have a mesh?".into();
     };
     let count = document.scenes.len();
     let why = match document.scene {
         Some(number) => format!("scene: it asks for scenes[{number}], which holds no triangle"),
-        None => format!("scene: it is not given, and the first of {count} scenes, which is shown then, holds no triangle"),
+        None => {
+            format!("scene: it is not given, and the first of {count} scenes, which is shown then, holds no triangle")
+        }
     };
     format!("{why}; write \"scene\": {other} into the JSON to see another")
 }
@@ -222,13 +236,6 @@ fn materials(
     }
     let mut materials = vec![(DEFAULT.to_owned(), material::plain())];
     for ((number, of), is_used) in document.materials.iter().enumerate().zip(is_used.into_iter().skip(1)) {
-        let is_unlit = of.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
-        if is_used && is_unlit && !mesh.colours.is_empty() {
-            notes.once(
-                "colours",
-                "colours of vertices are left out of materials without lighting (KHR_materials_unlit)",
-            );
-        }
         let fields = if is_used { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
         let name =
             of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));

@@ -104,8 +104,7 @@ impl Bond {
 /// A matrix of a list. Its last row is (0, 0, 0, 1), whatever rounding made of it.
 fn matrix(of: &Elements, number: usize) -> DMat4 {
     let numbers: [f32; 16] = of.vector(number);
-    let [x, y, z, w] = [0, 4, 8, 12].map(|first| {
-        DVec4::new(numbers[first].into(), numbers[first + 1].into(), numbers[first + 2].into(), 0.0)
-    });
+    let [x, y, z, w] = [0, 4, 8, 12]
+        .map(|first| DVec4::new(numbers[first].into(), numbers[first + 1].into(), numbers[first + 2].into(), 0.0));
     DMat4::from_cols(x, y, z, w.with_w(1.0))
 }

@@ -82,7 +82,8 @@ impl<'f> Merge<'f> {
             let Some((mode, positions)) = drawn(of, &here, notes)? else { continue };
             let material = self.material(of, &here)?;
             let plan = Plan::new(of, positions, mode, &self.accessors, &here)?;
-            self.count(&plan, copies).map_err(|fault| format!("{here}: {fault}"))?;
+            // It is read even if it has no place.
+            self.count(&plan, copies.max(1)).map_err(|fault| format!("{here}: {fault}"))?;
             let primitive = plan.read(of, &shape, &self.accessors, &here)?;
             primitives.push(Part { primitive, material, here });
         }

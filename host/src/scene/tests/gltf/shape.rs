@@ -30,7 +30,7 @@ fn a_node_with_instances_has_a_copy_of_its_mesh_at_each() {
     assert!((half - 23170.0 / 32767.0).abs() < 1e-4);
     model.json["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = json!(0);
     let error = parse(&model.glb()).unwrap_err().to_string();
-    assert!(error.contains("attributes.TRANSLATION: it has 2 elements beside 3 of another"), "{error}");
+    assert!(error.contains("attributes.SCALE: it has 3 elements beside 2 of another"), "{error}");
 }
 
 #[test]

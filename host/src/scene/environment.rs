@@ -10,7 +10,7 @@ use super::Texture;
 pub struct Environment {
     /// Linear light, or of 8 bits in sRGB.
     pub texture: Arc<Texture>,
-    /// The angle by which it is turned around the y axis, counter-clockwise seen from above, in degrees.
+    /// The angle by which it is turned around the y axis, from x towards z (clockwise seen from above), in degrees.
     pub rotation: f32,
     /// What its light is multiplied with, at least 0.
     pub scale: f32,

@@ -260,7 +260,7 @@ mod tests {
         }
         assert_eq!(environment.place(V3::<f64>::splat(Vec3::X)), (4.0, 2.0), "the middle is along x");
         let words = turned(90.0);
-        let (x, y) = Environment::new(&words).place(V3::<f64>::splat(Vec3::NEG_Z));
-        assert!((x - 4.0).abs() < 1e-5 && (y - 2.0).abs() < 1e-5, "turned counter-clockwise: {x}, {y}");
+        let (x, y) = Environment::new(&words).place(V3::<f64>::splat(Vec3::Z));
+        assert!((x - 4.0).abs() < 1e-5 && (y - 2.0).abs() < 1e-5, "turned from x to z: {x}, {y}");
     }
 }

@@ -65,7 +65,7 @@ fn mean(map: &Map) -> Vec3 {
         (sum / count).as_vec3()
     };
     // No power of two, which would stay in one column.
-    let step = |count: usize| if count > MOST_TEXELS { count / MOST_TEXELS | 1 } else { 1 };
+    let step = |count: usize| if count > MOST_TEXELS { (count / MOST_TEXELS) | 1 } else { 1 };
     match &map.texture.texels {
         Texels::Bytes(bytes) => {
             let some = bytes.iter().step_by(step(bytes.len()));

@@ -88,7 +88,7 @@ impl<'f> Pictures<'f> {
                 made
             }
         };
-        Ok(Map { texture, placement: glossy.placement.clone() })
+        Ok(Map { texture, placement: glossy.placement })
     }
 
     fn texture(&mut self, number: usize, owner: &str) -> Unplaced<Arc<Texture>> {

@@ -1,6 +1,7 @@
 //! How bright a picture is shown.
 
 use eyerays::film::Film;
+use eyerays::math;
 
 /// What `--exposure` asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,7 +47,7 @@ impl Brightness {
 
     /// The share of it that is beyond white where a picture is brightened by so many stops; 0 of a black picture.
     pub fn beyond_white(&self, stops: f32) -> f64 {
-        let white = (-f64::from(stops)).exp2();
+        let white = math::exp2(-f64::from(stops));
         let within = self.0.partition_point(|&light| f64::from(light) <= white);
         if self.0.is_empty() { 0.0 } else { 1.0 - within as f64 / self.0.len() as f64 }
     }
@@ -56,7 +57,7 @@ impl Brightness {
     pub fn exposure(&self) -> f32 {
         let place = (self.0.len() as f64 * SHOWN).ceil() as usize;
         let Some(&light) = self.0.get(place.saturating_sub(1)) else { return 0.0 };
-        ((-f64::from(light).log2() * 10.0).floor() / 10.0) as f32
+        ((-math::log2(f64::from(light)) * 10.0).floor() / 10.0) as f32
     }
 }
 

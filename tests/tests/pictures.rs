@@ -1,6 +1,6 @@
 //! Pictures whose pixels a person can calculate: exact precision on the CPU against the formulas.
 
-use eyerays::scene::{Background, Checker, Light, Material, Scene, Settings};
+use eyerays::scene::{Background, Checker, Falloff, Light, Material, Scene, Settings};
 use eyerays_tests::model::{add, add_box, add_wall, black, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{on_cpu, pack};
 use glam::Vec3;
@@ -123,7 +123,8 @@ fn a_spot_lights_its_cone_with_a_soft_rim() {
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let position = Vec3::new(0.0, 0.0, -1.0);
         let target = position + Vec3::new(sine, 0.0, -cosine);
-        scene.lights = vec![Light::Spot { position, target, colour: Vec3::ONE, outer: 40.0, inner: 20.0 }];
+        let (outer, inner, falloff) = (40.0, 20.0, Falloff::Smooth);
+        scene.lights = vec![Light::Spot { position, target, colour: Vec3::ONE, outer, inner, falloff }];
         let cos = |degrees: f64| degrees.to_radians().cos();
         let x = (cos(degrees.into()) - cos(40.0)) / (cos(20.0) - cos(40.0));
         let share = if share.is_nan() { x * x * (3.0 - 2.0 * x) } else { share };

@@ -7,7 +7,7 @@ use eyerays::device_scene::Feature;
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
-use eyerays::scene::{Background, Direct, Filter, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays::scene::{Background, Direct, Falloff, Filter, Integrator, Light, Sampler, Scene, Settings, Transport};
 use eyerays_tests::covered::covered;
 use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, quick_gpu, shipped};
 use glam::Vec3;
@@ -74,7 +74,14 @@ fn everything_at_once() {
     scene.background = Background::Gradient { horizon: Vec3::new(0.3, 0.2, 0.1), zenith: Vec3::new(0.1, 0.2, 0.5) };
     scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2) });
     let (position, target) = (Vec3::new(1.0, 4.0, 2.0), Vec3::ZERO);
-    scene.lights.push(Light::Spot { position, target, colour: Vec3::splat(9.0), outer: 30.0, inner: 10.0 });
+    scene.lights.push(Light::Spot {
+        position,
+        target,
+        colour: Vec3::splat(9.0),
+        outer: 30.0,
+        inner: 10.0,
+        falloff: Falloff::Smooth,
+    });
     scene.materials[0].emission = Vec3::new(0.2, 0.3, 0.1);
     for (direct, sampler) in [(Direct::Power, Sampler::Random), (Direct::Balance, Sampler::Jittered)] {
         let transport = Transport {
@@ -218,8 +225,8 @@ fn lights_change_without_another_scene() {
     let dark = |light: &Light| match *light {
         Light::Point { position, .. } => Light::Point { position, colour: Vec3::ZERO },
         Light::Directional { direction, .. } => Light::Directional { direction, colour: Vec3::ZERO },
-        Light::Spot { position, target, outer, inner, .. } => {
-            Light::Spot { position, target, outer, inner, colour: Vec3::ZERO }
+        Light::Spot { position, target, outer, inner, falloff, .. } => {
+            Light::Spot { position, target, outer, inner, falloff, colour: Vec3::ZERO }
         }
     };
     let black = Scene { lights: scene.lights.iter().map(dark).collect(), ..scene.clone() };

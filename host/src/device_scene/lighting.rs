@@ -61,7 +61,10 @@ impl Lamps {
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
         let emission = |(material, number): (&Material, usize)| {
             let (map, opacity) = (textures.emission(number).0, textures.opacity(number));
-            let sides = UVec4::new(u32::from(material.two_sided), map, opacity.mask.z, opacity_of(&opacity).to_bits());
+            let bit = |bit: u32, is_set: bool| if is_set { bit } else { 0 };
+            let bits =
+                bit(Emission::TWO_SIDED, material.two_sided) | bit(Emission::COLOURED, material.emission_is_coloured);
+            let sides = UVec4::new(bits, map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
         let emissions = if lamps.is_empty() { Vec::new() } else { materials.iter().zip(0..).map(emission).collect() };

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Alpha, Background, Conductor, Integrator, Light, Material, Physical, Scene, Settings};
+use crate::scene::{Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
@@ -62,13 +62,16 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::REFLECTION, used(&|m| m.reflection != Vec3::ZERO || is_transparent(m)));
     ask(Effects::TRANSPARENT, used(&is_transparent));
     ask(Effects::REFRACTION, used(&is_transparent));
-    ask(Effects::SPOT, scene.lights.iter().any(|l| matches!(l, Light::Spot { .. })));
+    let fades = |by: Falloff| scene.lights.iter().any(|l| matches!(l, Light::Spot { falloff, .. } if *falloff == by));
+    ask(Effects::SPOT, fades(Falloff::Smooth));
+    ask(Effects::RAMP, fades(Falloff::Gltf));
     ask(Effects::DIRECTIONAL, scene.lights.iter().any(|l| matches!(l, Light::Directional { .. })));
     ask(Effects::SPECULAR, lit && used(&|m| m.specular != Vec3::ZERO));
     ask(Effects::LIT, lit);
     ask(Effects::SPHERE, !scene.spheres.is_empty());
     ask(Effects::DISK, !scene.disks.is_empty());
     ask(Effects::EMISSIVE, used(&|m| m.emission != Vec3::ZERO));
+    ask(Effects::GLOWING_COLOURS, used(&|m| m.emission_is_coloured) && !scene.mesh.colours.is_empty());
     ask(Effects::GRADIENT, matches!(scene.background, Background::Gradient { .. }));
     let physical = |m: &dyn Fn(&Physical) -> bool| scene.materials.iter().filter_map(|m| m.physical.as_ref()).any(m);
     ask(Effects::PHYSICAL, physical(&|_| true));
@@ -103,10 +106,11 @@ fn absorbs(p: &Physical) -> bool {
 pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
     let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
+    let two_sided: Vec<bool> = scene.materials.iter().map(|material| material.two_sided).collect();
     let cut: Vec<bool> = scene.materials.iter().map(is_cutout).collect();
     let flags = |material: u32| {
         let flag = |flag, holds: &[bool]| if holds[material as usize] { flag } else { 0 };
-        flag(Primitive::TRANSPARENT, &clear) | flag(Primitive::CUTOUT, &cut)
+        flag(Primitive::TRANSPARENT, &clear) | flag(Primitive::CUTOUT, &cut) | flag(Primitive::TWO_SIDED, &two_sided)
     };
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
@@ -213,10 +217,16 @@ pub(super) fn light(light: &Light, index: usize, normalisation: &Normalisation) 
         Light::Directional { direction, colour } => {
             record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
         }
-        Light::Spot { position, target, colour, outer, inner } => {
+        Light::Spot { position, target, colour, outer, inner, falloff } => {
             let cosine = |degrees: f32| flushed_number(math::cos(f64::from(degrees).to_radians()) as f32);
             let axis = unit_between(position, target);
-            record(at(position)?, LightRecord::SPOT, colour, axis, (cosine(inner), cosine(outer)))
+            let (inner, outer) = (cosine(inner), cosine(outer));
+            let (kind, inner) = match falloff {
+                Falloff::Smooth => (LightRecord::SPOT, inner),
+                // The extension's ramp is never narrower.
+                Falloff::Gltf => (LightRecord::RAMP, inner.max(outer + 0.001)),
+            };
+            record(at(position)?, kind, colour, axis, (inner, outer))
         }
     })
 }

@@ -24,6 +24,14 @@ impl TextureBudget {
         TextureBudget(bytes)
     }
 
+    /// Takes the share of a picture of so many texels that is made of another, of 4 bytes each.
+    ///
+    /// # Errors
+    /// The pictures before it leave less.
+    pub fn take_bytes(&mut self, width: u32, height: u32) -> Result<()> {
+        self.take(Size { width, height, is_float: false })
+    }
+
     /// Takes a picture's share.
     fn take(&mut self, Size { width, height, is_float }: Size) -> Result<()> {
         let bytes = u64::from(width) * u64::from(height) * if is_float { 16 } else { 4 };

@@ -6,7 +6,7 @@ use std::fmt::{Debug, Write};
 use glam::Vec3;
 
 use super::{
-    Alpha, Background, Camera, Environment, Integrator, Light, Material, Physical, Scene, Settings, Transport,
+    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Transport,
 };
 use super::{physical, studio};
 use crate::choice::Named;
@@ -185,13 +185,16 @@ fn light(text: &mut Text, of: &Light) {
             text.key("direction", triple(direction));
             text.colour("color", colour, Vec3::ONE);
         }
-        Light::Spot { position, target, colour, outer, inner } => {
+        Light::Spot { position, target, colour, outer, inner, falloff } => {
             text.key("kind", quoted("spot"));
             text.key("position", triple(position));
             text.key("target", triple(target));
             text.colour("color", colour, Vec3::ONE);
             text.value("angle", 2.0 * outer);
             text.value("softness", (1.0 - f64::from(inner) / f64::from(outer)) as f32);
+            if falloff != Falloff::default() {
+                text.key("falloff", quoted(falloff.name()));
+            }
         }
     }
 }

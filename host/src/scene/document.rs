@@ -196,7 +196,8 @@ fn spot(table: &mut Table, colour: Vec3) -> Result<Light> {
     let angle = table.number("angle", Range::CONE)?;
     let outer = table.need("angle", angle)? / 2.0;
     let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
-    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness) })
+    let falloff = table.choice("falloff")?.unwrap_or_default();
+    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness), falloff })
 }
 
 fn light_colour(table: &mut Table) -> Result<Vec3> {

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use super::Texture;
 
-/// A picture of the surroundings by the angles of a sphere: its middle is seen along the negative z axis, its right half along x, its
-/// upper edge straight up along y.
+/// A picture of the surroundings by the angles of a sphere: its middle is seen along x, what is right of it along z, and its
+/// upper edge straight up along y, as Blender and three.js have it.
 #[derive(Debug, Clone)]
 pub struct Environment {
     /// Linear light, or of 8 bits in sRGB.
     pub texture: Arc<Texture>,
-    /// The angle by which it is turned around the y axis, counter-clockwise seen from above, in degrees.
+    /// The angle by which it is turned around the y axis, from x towards z (clockwise seen from above), in degrees.
     pub rotation: f32,
     /// What its light is multiplied with, at least 0.
     pub scale: f32,

@@ -11,7 +11,7 @@ use super::map::Images;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
 use super::table::Table;
-use super::{Sphere, file, part, xyzr};
+use super::{LightUnit, Sphere, file, part, xyzr};
 use crate::error::Result;
 
 /// What a scene file has of which its meshes may have others.
@@ -75,7 +75,8 @@ impl<'p> Files<'p> {
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
             let mut obj = match is_gltf(path) {
-                true => meshes_of(path, gltf::load(path, self.budget)?, self.has),
+                // Lights are left out, so nobody asks for their unit.
+                true => meshes_of(path, gltf::load(path, Some(LightUnit::Gltf), self.budget)?, self.has),
                 false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
             };
             self.warnings.append(&mut obj.warnings);
@@ -120,7 +121,7 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
 
 /// The meshes of a scene, with a warning of what else it has and the scene file has not.
 fn meshes_of(path: &Path, scene: Gltf, own: Own) -> Obj {
-    let Gltf { mut obj, parts: _, lights, cameras } = scene;
+    let Gltf { mut obj, parts: _, lights, cameras, .. } = scene;
     let what = match (!lights.is_empty() && !own.lights, !cameras.is_empty() && !own.cameras) {
         (true, true) => "lights and cameras",
         (true, false) => "lights",

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Background, Camera, Light, Scene};
+use super::{Background, Camera, Integrator, Light, Scene, Settings};
 use crate::math;
 
 /// From the mesh to the eye: right, above and in front of it.
@@ -22,6 +22,38 @@ pub fn default_camera(scene: &Scene, aspect: f64) -> Option<Camera> {
     let eye = (center + THREE_QUARTER.normalize() * distance).as_vec3();
     let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, fov: FOV };
     (eye.is_finite() && camera.target.is_finite()).then_some(camera)
+}
+
+/// The size of a picture so many times as wide as high: about as many pixels as one of the default size has.
+pub fn size(aspect: f64) -> (u32, u32) {
+    let (width, height) = Settings::default().size;
+    let (width, height) = (f64::from(width) * aspect.sqrt(), f64::from(height) / aspect.sqrt());
+    let side = |side: f64| side.round().clamp(1.0, f64::from(Settings::MOST_SIDE)) as u32;
+    (side(width), side(height))
+}
+
+/// Takes the two lamps that a scene file without lights gets away where an integrator finds light elsewhere: paths and
+/// `distributed` by what emits, paths by the background too. A pale sky is a bare mesh's, which keeps them.
+pub fn without_spare_lamps(scene: &mut Scene, integrator: Integrator) {
+    if scene.lights == lights() && scene.background != background() && finds_light(scene, integrator) {
+        scene.lights.clear();
+    }
+}
+
+/// Does an integrator find light in a scene without lights?
+fn finds_light(scene: &Scene, integrator: Integrator) -> bool {
+    let is_light = |colour: Vec3| colour != Vec3::ZERO;
+    let sky = match scene.background {
+        Background::Colour(colour) => is_light(colour),
+        Background::Gradient { horizon, zenith } => is_light(horizon) || is_light(zenith),
+    };
+    let has_emitter = scene.materials.iter().any(|material| is_light(material.emission));
+    scene.environment.is_some()
+        || match integrator {
+            Integrator::Path => sky || has_emitter,
+            Integrator::Distributed => has_emitter,
+            Integrator::Whitted | Integrator::Ao => false,
+        }
 }
 
 /// A key light from above and a weaker one from the right, of no place, so that size does not matter.

@@ -12,6 +12,7 @@ use super::files::{Files, Own, is, is_gltf, read_mesh};
 use super::frame;
 use super::geometry::Geometry;
 use super::gltf::{self, Gltf};
+use super::lit;
 use super::map::Images;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
@@ -21,7 +22,7 @@ use super::range::Range;
 use super::source::Source;
 use super::studio;
 use super::table::Table;
-use super::{Background, Integrator, Material, Sampler, Scene, Settings, Transport};
+use super::{Background, Integrator, LightUnit, Sampler, Scene, Settings, Transport};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
@@ -35,11 +36,20 @@ use crate::memory::Room;
 /// A path that is no readable `.toml`, `.gltf`, `.glb`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
-    load_within(path, Budget::new(Room::now()))
+    load_with(path, None)
+}
+
+/// As [`load`], where the intensities of a glTF scene's lights are in `unit`. Without one they are in what its writer is known to
+/// use: candela and lux, or Blender's, of which a warning tells.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_with(path: &Path, unit: Option<LightUnit>) -> Result<(Scene, Vec<String>)> {
+    load_within(path, unit, Budget::new(Room::now()))
 }
 
 /// As [`load`], of a scene within the budget.
-pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+pub(super) fn load_within(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<(Scene, Vec<String>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
         Ok((binary::load(path, budget)?, Vec::new()))
@@ -48,7 +58,7 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
     } else if is(path, "obj") || is(path, "ply") {
         load_mesh(path, budget)
     } else if is_gltf(path) {
-        load_gltf(path, budget)
+        load_gltf(path, unit, budget)
     } else {
         let fault = "unknown kind of scene; name a .toml, .gltf, .glb or .eyerays scene or an .obj or .ply mesh";
         Err(Error::file(path, fault))
@@ -69,13 +79,14 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
 /// What the camera sees behind a glTF scene without light, which the studio lights: a bright grey of 80 %.
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
-fn load_gltf(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Gltf { obj, parts, lights, cameras } = gltf::load(path, budget)?;
+fn load_gltf(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<(Scene, Vec<String>)> {
+    let Gltf { obj, parts, lights, cameras, aspect } = gltf::load(path, unit, budget)?;
     let (scene, warnings) = bare(path, obj)?;
-    let is_lit = !lights.is_empty() || scene.materials.iter().any(shines);
+    let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
-    let settings = of_paths();
+    let mut settings = of_paths();
+    settings.size = aspect.map_or(settings.size, frame::size);
     let scene = Scene { parts, lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
     Ok((framed(path, scene)?, warnings))
 }
@@ -89,11 +100,6 @@ fn of_paths() -> Settings {
         transport: Transport { integrator: Integrator::Path, ..Transport::default() },
         ..Settings::default()
     }
-}
-
-/// Is it a light, rather than a thing with glowing spots, which shows its form in the light of others?
-fn shines(material: &Material) -> bool {
-    material.emission.max_element() > 1.0 || material.emission != Vec3::ZERO && material.maps.emission.is_none()
 }
 
 /// A scene of one mesh without a camera, and the warnings of it.
@@ -179,15 +185,15 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
     let Merged { mesh, spheres, disks, parts, materials } = merge(meshes, &overrides, &mut files)?.finish();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
-    let scene = Scene {
+    let names_lights = lights.is_some();
+    let mut scene = Scene {
         mesh,
         spheres,
         disks,
         parts,
         files: files.paths.into_iter().chain(files.images.paths()).collect(),
         materials,
-        // An environment is light enough.
-        lights: lights.unwrap_or_else(|| if environment.is_some() { Vec::new() } else { frame::lights() }),
+        lights: lights.unwrap_or_else(frame::lights),
         cameras,
         background,
         environment,
@@ -195,6 +201,9 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene,
         settings,
         hierarchy: None,
     };
+    if !names_lights {
+        frame::without_spare_lamps(&mut scene, settings.transport.integrator);
+    }
     for material in &scene.materials {
         let idle = material.physical.and_then(|physical| physical.idle());
         warnings.extend(idle.map(|idle| format!("{}: material {:?}: {idle}", path.display(), material.name)));

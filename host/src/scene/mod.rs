@@ -13,13 +13,16 @@ mod describe;
 mod document;
 mod environment;
 mod extent;
+mod falloff;
 mod file;
 mod files;
 mod filter;
 mod frame;
 mod geometry;
 mod gltf;
+mod light_unit;
 mod lines;
+mod lit;
 mod load;
 mod map;
 mod material;
@@ -52,9 +55,11 @@ mod tests;
 pub use binary::{ENDING, Hierarchy, write};
 pub use describe::describe;
 pub use environment::Environment;
+pub use falloff::Falloff;
 pub use filter::Filter;
-pub use frame::default_camera;
-pub use load::{load, read_table};
+pub use frame::{default_camera, without_spare_lamps};
+pub use light_unit::LightUnit;
+pub use load::{load, load_with, read_table};
 pub use physical::{Absorption, Conductor, Physical};
 pub use primitive::{Disk, Primitives, Sphere};
 pub use range::Range;
@@ -196,8 +201,11 @@ pub struct Material {
     pub checker: Option<Checker>,
     /// Radiance that it sends out, linear RGB, at least 0.
     pub emission: Vec3,
-    /// Does its back emit too?
+    /// Does its back emit too? Culling leaves it.
     pub two_sided: bool,
+    /// Is the emission multiplied with the colours of vertices?
+    #[serde(default)]
+    pub emission_is_coloured: bool,
     /// How it scatters where integrators sample it; without this as the rest says.
     pub physical: Option<Physical>,
     /// Its textures.
@@ -255,6 +263,9 @@ pub enum Light {
         outer: f32,
         /// Half the angle of the cone of full light, in [0, outer].
         inner: f32,
+        /// How it fades between them.
+        #[serde(default)]
+        falloff: Falloff,
     },
 }
 

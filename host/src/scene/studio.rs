@@ -14,7 +14,7 @@ const ROOM: [f32; 3] = [0.5, 0.28, 0.18];
 /// Columns and rows of each lamp, and its light: the key to the left of who looks along the negative z axis, a fill to the right, and
 /// a rim behind what is looked at. A matt white surface that faces up sends 0.93 of a screen's white, one that faces that eye 0.66.
 const LAMPS: [([u32; 2], [u32; 2], f32); 3] =
-    [([2, 10], [5, 11], 5.0), ([49, 57], [8, 16], 1.5), ([32, 40], [3, 7], 4.0)];
+    [([50, 58], [5, 11], 5.0), ([33, 41], [8, 16], 1.5), ([16, 24], [3, 7], 4.0)];
 
 static TEXTURE: LazyLock<Arc<Texture>> = LazyLock::new(|| {
     let places = (0..HEIGHT).flat_map(|row| (0..WIDTH).map(move |column| (column, row)));
@@ -57,7 +57,7 @@ mod tests {
         let part = |column: u32, row: u32| {
             let (angle, height) =
                 ((f64::from(column) + 0.5) / columns * TAU - PI, PI / 2.0 - (f64::from(row) + 0.5) / rows * PI);
-            let direction = DVec3::new(angle.sin() * height.cos(), height.sin(), -angle.cos() * height.cos());
+            let direction = DVec3::new(angle.cos() * height.cos(), height.sin(), angle.sin() * height.cos());
             let solid_angle = TAU / columns * (PI / rows) * height.cos();
             f64::from(radiance(column, row)) * direction.dot(normal).max(0.0) * solid_angle / PI
         };

@@ -30,6 +30,20 @@ pub enum Texels {
     Floats(Vec<[f32; 4]>),
 }
 
+impl Texels {
+    /// The opacity of each, in [0, 1].
+    pub fn opacities(&self) -> impl Iterator<Item = f32> + '_ {
+        let count = match self {
+            Texels::Bytes(bytes) => bytes.len(),
+            Texels::Floats(floats) => floats.len(),
+        };
+        (0..count).map(|texel| match self {
+            Texels::Bytes(bytes) => f32::from(bytes[texel][3]) / 255.0,
+            Texels::Floats(floats) => floats[texel][3],
+        })
+    }
+}
+
 choices! {
     /// What a texture does beyond [0, 1].
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

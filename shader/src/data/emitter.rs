@@ -50,16 +50,21 @@ pub struct Emission {
     /// Radiance, linear RGB; the integer is the bits of the probability density over the area of the normalised scene that a
     /// place on it is chosen as a light, 0 if it emits nothing.
     pub radiance: UVec4,
-    /// Not 0 if backs emit too, the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
+    /// Bits of [`Emission::TWO_SIDED`] and [`Emission::COLOURED`], the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
     /// the map of its opacity and the bits of a number: at least 0 what opacity is multiplied with, and below 0 less the least opacity
     /// that is there.
     pub sides: UVec4,
 }
 
 impl Emission {
+    /// Backs emit too.
+    pub const TWO_SIDED: u32 = 1;
+    /// The radiance is multiplied with the colours of vertices.
+    pub const COLOURED: u32 = 2;
+
     /// Does it shine to whoever sees its front, or its back?
     #[inline(always)]
     pub fn shines(&self, front: bool) -> bool {
-        front || self.sides.x != 0
+        front || self.sides.x & Self::TWO_SIDED != 0
     }
 }

@@ -39,8 +39,10 @@ impl Primitive {
     pub const TRANSPARENT: u32 = 4;
     /// The flag of a primitive that is not opaque everywhere.
     pub const CUTOUT: u32 = 8;
+    /// The flag of a primitive that is never skipped because it is seen from behind.
+    pub const TWO_SIDED: u32 = 16;
     /// How far the flags are shifted beside the material of an indexed vertex.
-    pub const FLAGS_SHIFT: u32 = 28;
+    pub const FLAGS_SHIFT: u32 = 27;
     /// The bits of the material there.
     pub const MATERIAL: u32 = (1 << Self::FLAGS_SHIFT) - 1;
 
@@ -120,6 +122,12 @@ impl Primitive {
     #[inline(always)]
     pub fn is_transparent(&self) -> bool {
         self.c.w & Self::TRANSPARENT != 0
+    }
+
+    /// May it be skipped where it is seen from behind? The inside of glass is seen from its back side.
+    #[inline(always)]
+    pub fn is_culled(&self) -> bool {
+        self.c.w & (Self::TRANSPARENT | Self::TWO_SIDED) == 0
     }
 
     /// Is it not opaque everywhere?

@@ -57,4 +57,7 @@ impl Light {
     pub const DIRECTIONAL: u32 = 1;
     /// [`Light::position`] is a place; light fades from the inner to the outer cone.
     pub const SPOT: u32 = 2;
+    // 3 and 4 are kinds of [`Emitter`](super::Emitter).
+    /// As [`Light::SPOT`], but light fades by the square of a ramp (KHR_lights_punctual) instead of a cubic.
+    pub const RAMP: u32 = 5;
 }

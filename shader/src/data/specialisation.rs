@@ -80,6 +80,10 @@ bits! {
         COMPENSATED = 24;
         /// Several lights have places, and an integrator chooses one of them by a hierarchy.
         MANY_LIGHTS = 25;
+        /// Some spot fades by the square of a ramp.
+        RAMP = 26;
+        /// What some material emits is multiplied with the colours of vertices.
+        GLOWING_COLOURS = 27;
     }
 }
 

@@ -6,13 +6,13 @@ use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
-use crate::light::{EmitterSample, LightSample, Lighting, Viewpoint};
+use crate::light::{EmitterSample, LightSample, Lighting, Viewpoint, glowing};
 use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
-use crate::texture::Covering;
+use crate::texture::{Covering, Place};
 
 /// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
 #[inline(always)]
@@ -60,6 +60,8 @@ fn shining<R: Scalar>(
         if emission.shines(seen.interaction.front) {
             let radiance = V3::splat(numbers(emission.radiance));
             let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };
+            let place = Place { index: seen.index, weights: seen.interaction.coordinates, count: 0 };
+            let radiance = glowing(effects, &lighting.textures, &emission, &place, radiance);
             light = light + radiance.map(|c| c.flush(FAINT));
         }
     }

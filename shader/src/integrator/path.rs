@@ -5,13 +5,13 @@ use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
 use crate::data::{Effects, Frame, Launch, numbers};
 use crate::geometry::SurfaceInteraction;
-use crate::light::{Density, EmitterSample, Lighting, Viewpoint};
+use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure};
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{PathState, ShadowRay};
-use crate::texture::Covering;
+use crate::texture::{Covering, Place};
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
 #[inline(always)]
@@ -115,6 +115,8 @@ fn emitted<R: Scalar>(
     } else {
         radiance
     };
+    let place = Place { index: seen.index, weights: interaction.coordinates, count: launch.frame.vertices };
+    let radiance = glowing(effects, &lighting.textures, &emission, &place, radiance);
     if own.eq(R::splat(0.0)) {
         return radiance;
     }

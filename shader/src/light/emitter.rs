@@ -166,10 +166,12 @@ impl<R: Scalar> EmitterSample<R> {
         } else {
             sample
         };
+        let place = Place { index, weights: coordinates, count: launch.frame.vertices };
+        let light = glowing(effects, &lighting.textures, emission, &place, sample.light);
+        let sample = EmitterSample { light, ..sample };
         if !effects.has(Effects::TEXTURED) || emission.sides.y == 0 {
             return sample;
         }
-        let place = Place { index, weights: coordinates, count: launch.frame.vertices };
         let texel = lighting.textures.at(launch.spec.launch, emission.sides.y, &place, R::splat(0.0)).1;
         EmitterSample { light: sample.light.times(texel.colour).map(|c| c.flush(FAINT)), ..sample }
     }
@@ -180,7 +182,11 @@ impl<R: Scalar> EmitterSample<R> {
         let away = (position - origin).map(|c| c.flush(SMALL));
         let (direction, distance) = away.direction_and_length();
         let facing = -normal.dot(direction).flush(SMALL);
-        let is_seen = if emission.sides.x != 0 { !facing.eq(R::splat(0.0)) } else { R::splat(0.0).lt(facing) };
+        let is_seen = if emission.sides.x & Emission::TWO_SIDED != 0 {
+            !facing.eq(R::splat(0.0))
+        } else {
+            R::splat(0.0).lt(facing)
+        };
         let density = over_area(per_area, away, facing.abs());
         if !is_seen || density.over.eq(R::splat(0.0)) {
             return Self::none();
@@ -363,6 +369,21 @@ fn opacity<R: Scalar>(launch: &LaunchContext<'_>, textures: &Textures<'_>, emiss
     }
     let factor = R::splat(f32::from_bits(emission.sides.w));
     if factor.lt(zero) { R::select((-factor).le(opacity), one, zero) } else { opacity * factor }
+}
+
+/// What a material emits, by the colours of vertices where they count.
+#[inline(always)]
+pub(crate) fn glowing<R: Scalar>(
+    effects: Effects,
+    textures: &Textures<'_>,
+    emission: &Emission,
+    place: &Place<R>,
+    light: V3<R>,
+) -> V3<R> {
+    if !effects.has(Effects::GLOWING_COLOURS) || emission.sides.x & Emission::COLOURED == 0 {
+        return light;
+    }
+    light.times(place.colour(effects, textures)).map(|c| c.flush(FAINT))
 }
 
 /// The cosine and the sine of a drawn angle.

@@ -95,13 +95,13 @@ impl<'a> Environment<'a> {
         V3::new(turned(v.x, v.z), v.y, turned(v.z, -v.x))
     }
 
-    /// Where a unit direction lies, in texels from the left and the upper edge. The middle of the picture is seen along the third
-    /// axis' negative, its right half along the first, its upper along the second.
+    /// Where a unit direction lies, in texels from the left and the upper edge. The middle of the picture is seen along the first
+    /// axis, what is right of it along the third, its upper half along the second.
     #[inline(always)]
     fn place<R: Scalar>(&self, direction: V3<R>) -> (R, R) {
         let d = self.turned(direction, false).map(|c| c.flush(SMALL));
         let across = (d.x * d.x + d.z * d.z).sqrt();
-        let azimuth = turns::atan2(d.x.to_f32(), -d.z.to_f32()) + 0.5;
+        let azimuth = turns::atan2(d.z.to_f32(), d.x.to_f32()) + 0.5;
         let polar = turns::atan2(across.to_f32(), d.y.to_f32());
         (R::splat(azimuth * self.width as f32), R::splat((polar + polar) * self.height as f32))
     }
@@ -168,7 +168,7 @@ impl<'a> Environment<'a> {
         let steps = (turn * R::splat((1 << 23) as f32)).floor_index() as u32;
         let (x, z) = on_circle::<R>((steps << 9).wrapping_add(1 << 31));
         // The angle is from the middle of the picture.
-        let local = V3::new((z * sine).flush(TINY), up, -(x * sine)).map(|c| c.flush(TINY));
+        let local = V3::new((x * sine).flush(TINY), up, (z * sine).flush(TINY)).map(|c| c.flush(TINY));
         let direction = self.turned(local, true).direction_and_length().0;
         let density = self.likely(row, column, probability);
         let light = density.share_of(self.radiance(direction));
@@ -234,3 +234,33 @@ impl Drawn {
 
 /// The greatest number below one.
 const MOST: f32 = 1.0 - 1.0 / (1 << 24) as f32;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f64::consts::{PI, TAU};
+    use glam::Vec3;
+
+    /// The words of a picture of 8 x 4 texels, of which only the header counts.
+    fn turned(degrees: f64) -> [u32; 8] {
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        [8, 4, (cosine as f32).to_bits(), (sine as f32).to_bits(), 1, 0, 0, 0]
+    }
+
+    /// As three.js has it: `u = atan(z, x) / 2 pi + 1/2` and, from below, `v = asin(y) / pi + 1/2`. Blender's is the same.
+    #[test]
+    fn a_direction_lies_where_others_have_it_in_pictures_of_all_directions() {
+        let words = turned(0.0);
+        let environment = Environment::new(&words);
+        for d in [Vec3::X, Vec3::Z, Vec3::NEG_Z, Vec3::new(0.3, 0.9, 0.2), Vec3::new(-0.6, -0.4, 0.1)] {
+            let d = V3::<f64>::splat(d).normalised().0;
+            let (x, y) = environment.place(d);
+            let (u, v) = (d.z.atan2(d.x) / TAU + 0.5, d.y.asin() / PI + 0.5);
+            assert!((x - 8.0 * u).abs() < 1e-5 && (y - 4.0 * (1.0 - v)).abs() < 1e-5, "{d:?}: {x}, {y}");
+        }
+        assert_eq!(environment.place(V3::<f64>::splat(Vec3::X)), (4.0, 2.0), "the middle is along x");
+        let words = turned(90.0);
+        let (x, y) = Environment::new(&words).place(V3::<f64>::splat(Vec3::Z));
+        assert!((x - 4.0).abs() < 1e-5 && (y - 2.0).abs() < 1e-5, "turned from x to z: {x}, {y}");
+    }
+}

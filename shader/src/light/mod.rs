@@ -6,8 +6,8 @@ mod environment;
 mod tree;
 mod viewpoint;
 
-pub(crate) use emitter::on_circle;
 pub use emitter::{Density, EmitterSample, Lighting};
+pub(crate) use emitter::{glowing, on_circle};
 pub use environment::{Environment, HEADER};
 pub use tree::{Chosen, Guide, descend};
 pub use viewpoint::Viewpoint;
@@ -61,17 +61,18 @@ impl<R: Scalar> LightSample<R> {
             return LightSample { direction: place, colour };
         }
         let direction = (place - position).normalised().0;
-        if is(effects, light, Effects::SPOT, Light::SPOT) {
-            let share = spot(light, direction);
+        let is_ramp = is(effects, light, Effects::RAMP, Light::RAMP);
+        if is_ramp || is(effects, light, Effects::SPOT, Light::SPOT) {
+            let share = spot(light, direction, is_ramp);
             return LightSample { direction, colour: (colour * share).map(|c| c.flush(FAINT)) };
         }
         LightSample { direction, colour }
     }
 }
 
-/// A spot's share: 1 within the inner cone, 0 outside the outer one, a cubic between (in the cosine).
+/// A spot's share: 1 within the inner cone, 0 outside the outer one, between (in the cosine) a cubic or the square of a ramp.
 #[inline(always)]
-fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
+fn spot<R: Scalar>(light: &Light, direction: V3<R>, is_ramp: bool) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let inner = R::splat(f32::from_bits(light.colour.w));
     let outer = R::splat(f32::from_bits(light.axis.w));
@@ -83,7 +84,7 @@ fn spot<R: Scalar>(light: &Light, direction: V3<R>) -> R {
         return one;
     }
     let x = (cosine - outer).div(inner - outer).max(zero).min(one);
-    x * x * (R::splat(3.0) - R::splat(2.0) * x)
+    if is_ramp { x * x } else { x * x * (R::splat(3.0) - R::splat(2.0) * x) }
 }
 
 #[cfg(test)]
@@ -102,9 +103,26 @@ mod tests {
         }
     }
 
-    fn spot(x: f32) -> f64 {
+    fn share(kind: u32, x: f32) -> f64 {
         let from = V3::<f64>::splat(Vec3::new(x, 0.0, 0.0));
-        LightSample::new(ALL, &light(Light::SPOT, Vec3::Y), from).colour.x
+        LightSample::new(ALL, &light(kind, Vec3::Y), from).colour.x
+    }
+
+    fn spot(x: f32) -> f64 {
+        share(Light::SPOT, x)
+    }
+
+    /// KHR_lights_punctual: `saturate(dot * scale + offset)` squared, of `scale = 1 / (cos inner - cos outer)` and
+    /// `offset = -cos outer * scale`.
+    #[test]
+    fn a_spot_of_gltf_fades_by_the_square_of_its_extensions_ramp() {
+        let scale = 1.0 / (f64::from(0.9f32) - 0.5);
+        for x in [0.0f32, 0.4, 0.5, 0.8, 1.0, 1.5, 1.8] {
+            let cosine = 1.0 / (1.0 + f64::from(x).powi(2)).sqrt();
+            let ramp = (cosine * scale - 0.5 * scale).clamp(0.0, 1.0);
+            assert!((share(Light::RAMP, x) - ramp * ramp).abs() < 1e-6, "{x}");
+        }
+        assert_ne!(share(Light::RAMP, 1.0), spot(1.0));
     }
 
     #[test]

@@ -129,7 +129,7 @@ impl Diff {
         }
         let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
         let cpu_choice = eyerays::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
-        let read = Read::scene(&self.first, outputs, quiet)?;
+        let read = Read::scene_of(&self.first, self.view.light_unit(), outputs, quiet)?;
         let loaded = self.view.pack(read, &self.effort, &gpu_choice, quiet)?;
         let (width, height) = loaded.packed.settings().size;
         let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);

@@ -6,6 +6,7 @@ mod choice;
 mod console;
 mod convert;
 mod diff;
+mod exposure;
 mod footprint;
 mod generate;
 mod info;

@@ -20,7 +20,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Filter, Sampler, Scene, Settings};
+use eyerays::scene::{self, Camera, Filter, LightUnit, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -44,6 +44,9 @@ pub(super) struct View {
     /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
+    /// In what unit a glTF file has its lights [default: that of what wrote it]
+    #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>())]
+    light_unit: Option<LightUnit>,
     /// Skip opaque triangles seen from behind [default: the scene's]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     cull: Option<bool>,
@@ -164,8 +167,13 @@ pub(super) struct Read<'a> {
 impl<'a> Read<'a> {
     /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
     pub fn scene(path: &'a Path, outputs: &[Destination], quiet: bool) -> Result<Self> {
+        Read::scene_of(path, None, outputs, quiet)
+    }
+
+    /// Likewise, where a glTF file's lights are in a unit.
+    pub fn scene_of(path: &'a Path, unit: Option<LightUnit>, outputs: &[Destination], quiet: bool) -> Result<Self> {
         let start = Instant::now();
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load_with(path, unit))?;
         let time = start.elapsed();
         super::warn(&warnings, quiet);
         output::check_apart(outputs, &scene.files)?;
@@ -187,6 +195,11 @@ pub(super) struct Loaded {
 }
 
 impl View {
+    /// The unit of a glTF file's lights, if one was asked for.
+    pub fn light_unit(&self) -> Option<LightUnit> {
+        self.light_unit
+    }
+
     /// Was a size asked for?
     pub fn has_size(&self) -> bool {
         self.size.is_some()
@@ -205,8 +218,11 @@ impl View {
         choice: &Choice,
         quiet: bool,
     ) -> Result<(Loaded, Scene, Camera)> {
-        let Read { path, scene, time: read_time } = read;
+        let Read { path, mut scene, time: read_time } = read;
         let settings = self.settings(&scene, effort)?;
+        if settings.transport.integrator != scene.settings.transport.integrator {
+            scene::without_spare_lamps(&mut scene, settings.transport.integrator);
+        }
         let ignored = settings.transport.integrator.ignored(&scene);
         super::warn(ignored.as_slice(), quiet);
         let camera = self.camera(&scene).map_err(|e| e.of(path))?;

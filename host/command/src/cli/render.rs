@@ -10,13 +10,14 @@ use clap::Args;
 
 use super::choice::choice;
 use super::console;
+use super::exposure::{Brightness, Exposure};
 use super::options::{DeviceArgs, Effort, Read, View};
 use super::progress;
 use super::summary::{Summary, Times};
 use crate::error::Result;
 use crate::output::{self, Destination};
 use crate::preset::Preset;
-use eyerays::image::{BitDepth, Encoding, ToneMap};
+use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, DeviceWish};
 
@@ -42,9 +43,9 @@ pub(super) struct Render {
     /// Where to render [default: auto]
     #[arg(long, value_parser = choice::<DeviceWish>())]
     device: Option<DeviceWish>,
-    /// Brighten the picture by this many stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
-    exposure: f32,
+    /// Brighten the picture by this many stops; auto makes white what all but 1 % of the pixels with light are darker than
+    #[arg(long, value_name = "EV|auto", default_value = "0", value_parser = Exposure::parse, allow_hyphen_values = true)]
+    exposure: Exposure,
     /// Bits a channel of a PNG: 8 or 16
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u32,
@@ -82,7 +83,7 @@ impl Render {
         };
         super::one_on_stdout(self.json, &destination)?;
         let bits = BitDepth::from_bits(self.bits)?;
-        let encoding = Encoding { exposure_ev: self.exposure, bits, half: self.half, tone: self.tone };
+        let mut encoding = Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone };
         encoding.check(destination.format()?)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let layers = self.layers();
@@ -92,7 +93,7 @@ impl Render {
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
-        let read = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
+        let read = Read::scene_of(&self.scene, self.view.light_unit(), slice::from_ref(&destination), quiet)?;
         let mut effort = self.effort.over(&preset);
         if self.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
@@ -121,6 +122,11 @@ impl Render {
             .map_err(|e| e.of(&self.scene))?,
             None => Vec::new(),
         };
+        let brightness = Brightness::of(&rendering.film);
+        if self.exposure == Exposure::Auto {
+            encoding.exposure_ev = brightness.exposure();
+        }
+        super::warn(self.beyond_white(&brightness, &encoding, &destination)?.as_slice(), quiet);
         let start = Instant::now();
         progress::stage("writing", quiet, || output::write_layers(&rendering.film, &layers, &destination, &encoding))?;
         let times = Times::new(&loaded, &rendering, start.elapsed());
@@ -135,6 +141,24 @@ impl Render {
 }
 
 impl Render {
+    /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
+    fn beyond_white(
+        &self,
+        brightness: &Brightness,
+        encoding: &Encoding,
+        destination: &Destination,
+    ) -> Result<Option<String>> {
+        if destination.format()? != Format::Png {
+            return Ok(None);
+        }
+        let share = brightness.beyond_white(encoding.exposure_ev);
+        if share <= MOST_BEYOND_WHITE {
+            return Ok(None);
+        }
+        let (percent, stops) = (100.0 * share, brightness.exposure());
+        Ok(Some(format!("{percent:.0} % of the light in the picture is beyond white: --exposure {stops:.1} shows it")))
+    }
+
     /// The layers beside the picture, each once.
     fn layers(&self) -> Vec<Layer> {
         let mut layers = self.layers.clone();
@@ -144,6 +168,9 @@ impl Render {
         layers
     }
 }
+
+/// The share of the pixels with light that may be beyond white before it is said.
+const MOST_BEYOND_WHITE: f64 = 1.0 / 3.0;
 
 /// A time of at most a year.
 fn seconds(text: &str) -> std::result::Result<Duration, String> {

@@ -242,7 +242,7 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let scene = Read::scene(&self.scene, &self.destinations(), quiet)?.unbuilt();
+        let scene = Read::scene_of(&self.scene, self.view.light_unit(), &self.destinations(), quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);

@@ -123,7 +123,7 @@ fn light(number: usize, light: &Light) -> Unplaced<()> {
             owner.colour("color", colour, Range::AMOUNT)?;
             if direction == Vec3::ZERO { owner.refuse("has no direction; say which way it shines") } else { Ok(()) }
         }
-        Light::Spot { position, target, colour, outer, inner } => {
+        Light::Spot { position, target, colour, outer, inner, falloff: _ } => {
             owner.place("position", position)?;
             owner.place("target", target)?;
             owner.colour("color", colour, Range::AMOUNT)?;

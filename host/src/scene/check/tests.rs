@@ -44,7 +44,8 @@ fn what_is_out_of_range_is_told_with_what_has_it() {
     let (position, colour, direction) = (Vec3::ONE, Vec3::ONE, Vec3::ZERO);
     assert!(light(Light::Point { position, colour: -colour }).starts_with("light 0 has the color -1"));
     assert!(light(Light::Directional { direction, colour }).starts_with("light 0 has no direction"));
-    let spot = |target, outer, inner| light(Light::Spot { position, target, colour, outer, inner });
+    let falloff = crate::scene::Falloff::Smooth;
+    let spot = |target, outer, inner| light(Light::Spot { position, target, colour, outer, inner, falloff });
     assert!(spot(position, 20.0, 10.0).starts_with("light 0 shines at its own position"));
     assert!(spot(-position, 20.0, 30.0).starts_with("light 0 has the inner angle 30"));
     assert!(spot(-position, 90.0, 10.0).starts_with("light 0 has the angle 180"));

@@ -14,6 +14,8 @@ use crate::scene::{Camera, Unplaced};
 pub struct Cameras {
     /// In the order of nodes.
     pub all: Vec<Camera>,
+    /// Width over height of the first one's picture, if it says so.
+    pub aspect: Option<f64>,
     /// The number that the next of a name gets, if the name is taken.
     next: HashMap<String, u32>,
 }
@@ -48,6 +50,9 @@ impl Cameras {
         };
         let name = placed.node.name.as_deref().or(of.name.as_deref());
         let name = self.name(name.filter(|name| !name.trim().is_empty()).unwrap_or("camera"));
+        if self.all.is_empty() {
+            self.aspect = perspective.aspect_ratio.filter(|aspect| aspect.is_finite() && *aspect > 0.0);
+        }
         self.all.push(Camera { name, ..camera });
         Ok(())
     }

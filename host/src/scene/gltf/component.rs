@@ -62,14 +62,14 @@ fn first<const N: usize>(bytes: &[u8]) -> [u8; N] {
     bytes.first_chunk::<N>().copied().unwrap_or([0; N])
 }
 
-const NAMES: [&str; 4] = ["SCALAR", "VEC2", "VEC3", "VEC4"];
+const NAMES: [(&str, usize); 5] = [("SCALAR", 1), ("VEC2", 2), ("VEC3", 3), ("VEC4", 4), ("MAT4", 16)];
 
-/// How many numbers an element of the type has; no matrix is read.
+/// How many numbers an element of the type has; of matrices only those of four rows are read.
 pub fn width(kind: &str) -> Option<usize> {
-    Some(1 + NAMES.iter().position(|&name| name == kind)?)
+    NAMES.iter().find(|(name, _)| *name == kind).map(|&(_, width)| width)
 }
 
 /// The type of so many numbers.
 pub fn name(width: usize) -> Option<&'static str> {
-    NAMES.get(width.checked_sub(1)?).copied()
+    NAMES.iter().find(|(_, of)| *of == width).map(|&(name, _)| name)
 }

@@ -78,7 +78,7 @@ pub struct Document {
     pub images: List<Image>,
     pub samplers: List<Sampler>,
     pub cameras: List<Camera>,
-    pub skins: List<IgnoredAny>,
+    pub skins: List<Skin>,
     pub animations: List<IgnoredAny>,
     pub extensions: DocumentExtensions,
 }
@@ -86,6 +86,7 @@ pub struct Document {
 #[derive(Deserialize, Default)]
 #[serde(rename_all = "camelCase", default)]
 pub struct Asset {
+    pub generator: Option<String>,
     pub version: Option<String>,
     pub min_version: Option<String>,
 }
@@ -108,6 +109,8 @@ pub struct Node {
     pub translation: Option<Vec<f64>>,
     pub rotation: Option<Vec<f64>>,
     pub scale: Option<Vec<f64>>,
+    /// Of morph targets, in place of the mesh's.
+    pub weights: Option<Vec<f64>>,
     pub extensions: NodeExtensions,
 }
 
@@ -116,6 +119,15 @@ pub struct Node {
 pub struct NodeExtensions {
     #[serde(rename = "KHR_lights_punctual")]
     pub light: Option<LightOf>,
+    #[serde(rename = "EXT_mesh_gpu_instancing")]
+    pub instances: Option<Box<Instances>>,
+}
+
+/// Where the copies of a node's mesh are.
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Instances {
+    pub attributes: BTreeMap<String, usize>,
 }
 
 /// Which light a node carries.
@@ -125,10 +137,19 @@ pub struct LightOf {
 }
 
 #[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Skin {
+    pub joints: Vec<usize>,
+    pub inverse_bind_matrices: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
 #[serde(default)]
 pub struct Mesh {
     pub name: Option<String>,
     pub primitives: List<Primitive>,
+    /// Of its morph targets.
+    pub weights: Vec<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -138,7 +159,8 @@ pub struct Primitive {
     pub indices: Option<usize>,
     pub material: Option<usize>,
     pub mode: Option<u64>,
-    pub targets: Vec<IgnoredAny>,
+    /// Morph targets: what is added to attributes.
+    pub targets: Vec<BTreeMap<String, usize>>,
 }
 
 #[derive(Deserialize, Default)]
@@ -218,9 +240,12 @@ pub struct Camera {
 }
 
 #[derive(Deserialize)]
+#[serde(rename_all = "camelCase")]
 pub struct Perspective {
     /// Radians.
     pub yfov: f64,
+    /// Width over height.
+    pub aspect_ratio: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]
@@ -256,11 +281,11 @@ pub struct Spot {
 }
 
 /// What the JSON of a file may take of memory at most, in bytes: for each table the largest record that one becomes, for each key
-/// an entry of a map, for each comma a number; twice as much while lists grow, and its text.
+/// an entry of a map, for each comma a number; twice as much while lists grow, and its text twice.
 pub fn memory(json: &[u8]) -> u64 {
     const RECORD: u64 = 2 * size_of::<Extensions>() as u64;
     let count = |byte: u8| json.iter().filter(|&&other| other == byte).count() as u64;
-    count(b'{') * RECORD + count(b':') * 2 * 56 + count(b',') * 2 * 8 + json.len() as u64
+    count(b'{') * RECORD + count(b':') * 2 * 56 + count(b',') * 2 * 8 + 2 * json.len() as u64
 }
 
 /// What a list holds under a number; `owner` is the JSON path of what names it.

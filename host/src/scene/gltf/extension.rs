@@ -5,11 +5,13 @@ use super::notes::Notes;
 use crate::scene::Unplaced;
 
 /// Those that are drawn.
-const KNOWN: [&str; 11] = [
+const KNOWN: [&str; 13] = [
+    "EXT_mesh_gpu_instancing",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
+    "KHR_materials_pbrSpecularGlossiness",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",

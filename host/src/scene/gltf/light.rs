@@ -1,4 +1,5 @@
-//! Lights without extent (KHR_lights_punctual). Their candela and lux are taken as they are: exposure is the viewer's.
+//! Lights without extent (KHR_lights_punctual). Their candela and lux are taken as they are, but for those that Blender wrote:
+//! exposure is the viewer's.
 
 use std::f64::consts::FRAC_PI_4;
 
@@ -7,7 +8,7 @@ use glam::{DVec3, Vec3};
 use super::document::{self, pick};
 use super::node::Placed;
 use super::notes::Notes;
-use crate::scene::{Light, Unplaced, normal};
+use crate::scene::{Falloff, Light, LightUnit, Unplaced, normal};
 
 /// The widest half angle of a spot in degrees: 90 make no cone.
 const WIDEST: f64 = 89.9;
@@ -16,14 +17,14 @@ const WIDEST: f64 = 89.9;
 ///
 /// # Errors
 /// There is no such light, it is of an unknown type, or out of range.
-pub fn read(placed: &Placed, all: &[document::Light], notes: &mut Notes) -> Unplaced<Option<Light>> {
+pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &mut Notes) -> Unplaced<Option<Light>> {
     let Some(of) = &placed.node.extensions.light else { return Ok(None) };
     let owner = format!("nodes[{}].extensions.KHR_lights_punctual.light", placed.number);
     let number = of.light.ok_or_else(|| format!("{owner}: there is none; name a light"))?;
     let light = pick(all, number, &owner, "light")?;
     let here = format!("extensions.KHR_lights_punctual.lights[{number}]");
-    let colour =
-        colour(light).ok_or_else(|| format!("{here}: its colour or intensity is below 0 or too large; repair it"))?;
+    let colour = colour(light, unit)
+        .ok_or_else(|| format!("{here}: its colour or intensity is below 0 or too large; repair it"))?;
     if colour == Vec3::ZERO {
         return Ok(None);
     }
@@ -56,14 +57,15 @@ pub fn read(placed: &Placed, all: &[document::Light], notes: &mut Notes) -> Unpl
                 notes.once("spot", &text);
             }
             let inner = inner.min(outer);
-            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner }
+            let falloff = Falloff::Gltf;
+            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner, falloff }
         }
         other => return Err(format!("{here}.type: {other:?} is none of point, directional and spot; repair it")),
     }))
 }
 
-fn colour(light: &document::Light) -> Option<Vec3> {
-    let intensity = light.intensity.unwrap_or(1.0);
+fn colour(light: &document::Light, unit: LightUnit) -> Option<Vec3> {
+    let intensity = light.intensity.unwrap_or(1.0) * unit.factor(light.kind == "directional");
     let colour = Vec3::from_array(light.color.unwrap_or([1.0; 3]).map(|share| (share * intensity) as f32));
     (colour.is_finite() && colour.min_element() >= 0.0).then_some(colour)
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 
 use super::notes::Notes;
 use super::picture::Pictures;
-use super::shading::{Anisotropy, Extensions, Info, Material, Metal, Specular, Transmission, Volume};
+use super::shading::{Anisotropy, Extensions, Gloss, Info, Material, Metal, Specular, Transmission, Volume};
 use crate::scene::material::Fields;
 use crate::scene::range::Range;
 use crate::scene::{Absorption, Alpha, Maps, Unplaced, physical};
@@ -28,18 +28,25 @@ const MOST_IOR: f64 = 4.0;
 pub fn read(of: &Material, number: usize, pictures: &mut Pictures, notes: &mut Notes) -> Unplaced<Fields> {
     let owner = format!("materials[{number}]");
     let mut reader = Reader { owner, pictures, notes, fields: plain() };
+    let none = Extensions::default();
+    let extensions = of.extensions.as_deref().unwrap_or(&none);
     let default = Metal::default();
-    reader.metal(of.pbr_metallic_roughness.as_deref().unwrap_or(&default), of)?;
+    match &extensions.gloss {
+        Some(gloss) => reader.gloss(gloss, of)?,
+        None => reader.metal(of.pbr_metallic_roughness.as_deref().unwrap_or(&default), of)?,
+    }
+    reader.fields.two_sided = Some(of.double_sided);
     let normal = of.normal_texture.as_deref();
     reader.fields.maps.normal = reader.map(normal, "normalTexture")?;
     reader.fields.maps.normal_scale = match normal.and_then(|normal| normal.scale) {
         Some(scale) => reader.number(scale, "normalTexture.scale", Range::ANY)?,
         None => 1.0,
     };
-    let default = Extensions::default();
-    let extensions = of.extensions.as_deref().unwrap_or(&default);
     reader.emission(of, extensions)?;
-    reader.extensions(extensions)?;
+    // The others are extensions of what this one takes the place of.
+    if extensions.gloss.is_none() {
+        reader.extensions(extensions)?;
+    }
     if extensions.unlit.is_some() {
         reader.unlit(of.double_sided);
     }
@@ -69,6 +76,30 @@ impl Reader<'_, '_, '_> {
         self.fields.maps.base = self.map(metal.base_color_texture.as_ref(), &key("baseColorTexture"))?;
         let rough = metal.metallic_roughness_texture.as_ref();
         self.fields.maps.metallic_roughness = self.map(rough, &key("metallicRoughnessTexture"))?;
+        Ok(())
+    }
+
+    /// KHR_materials_pbrSpecularGlossiness: no metal, whose reflection at normal incidence is the specular colour, and as rough as it
+    /// is not glossy. Metals are black there, with a bright specular colour.
+    fn gloss(&mut self, gloss: &Gloss, of: &Material) -> Unplaced<()> {
+        /// The reflection at normal incidence that a tint is multiplied with, for the index of refraction 1.5.
+        const REFLECTANCE: f32 = 0.04;
+        let key = |key: &str| format!("extensions.KHR_materials_pbrSpecularGlossiness.{key}");
+        let [red, green, blue, opacity] = gloss.diffuse_factor.unwrap_or([1.0; 4]);
+        self.fields.physical.base = Some(self.colour([red, green, blue], &key("diffuseFactor"))?);
+        self.fields.opacity = Some(self.share(opacity, &key("diffuseFactor"))?);
+        self.fields.alpha = Some(self.alpha(of)?);
+        self.fields.maps.base = self.map(gloss.diffuse_texture.as_ref(), &key("diffuseTexture"))?;
+        self.fields.physical.metallic = Some(0.0);
+        let specular = self.colour(gloss.specular_factor.unwrap_or([1.0; 3]), &key("specularFactor"))?;
+        self.fields.physical.specular_tint = Some(specular / REFLECTANCE);
+        let glossiness = self.share(gloss.glossiness_factor.unwrap_or(1.0), &key("glossinessFactor"))?;
+        let texture = self.map(gloss.specular_glossiness_texture.as_ref(), &key("specularGlossinessTexture"))?;
+        self.fields.physical.roughness = Some(if texture.is_some() { 1.0 } else { 1.0 - glossiness });
+        if let Some(map) = &texture {
+            self.fields.maps.metallic_roughness = Some(self.pictures.rough(map, glossiness)?);
+        }
+        self.fields.maps.specular_tint = texture;
         Ok(())
     }
 
@@ -102,7 +133,6 @@ impl Reader<'_, '_, '_> {
         // A picture of light that is switched off need not be decoded.
         if emission != Vec3::ZERO {
             self.fields.emission = Some(emission);
-            self.fields.two_sided = Some(of.double_sided);
             self.fields.maps.emission = self.map(of.emissive_texture.as_deref(), "emissiveTexture")?;
         }
         Ok(())
@@ -200,8 +230,16 @@ impl Reader<'_, '_, '_> {
         };
         // The base's picture stays for its opacity.
         let maps = Maps { emission: maps.base.clone(), base: maps.base, normal_scale: 1.0, ..Maps::default() };
-        let (emission, two_sided) = (metal.base, Some(is_two_sided));
-        self.fields = Fields { physical, emission, two_sided, opacity, alpha, maps, ..Fields::default() };
+        self.fields = Fields {
+            physical,
+            emission: metal.base,
+            emission_is_coloured: Some(true),
+            two_sided: Some(is_two_sided),
+            opacity,
+            alpha,
+            maps,
+            ..Fields::default()
+        };
     }
 
     fn map(&mut self, info: Option<&Info>, key: &str) -> Unplaced<Option<crate::scene::Map>> {

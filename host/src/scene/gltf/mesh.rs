@@ -3,32 +3,63 @@
 use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
 
 use super::accessor::Accessors;
-use super::document::{Document, pick};
+use super::document::{self, Document, pick};
+use super::instance::Copies;
+use super::morph;
 use super::node::Placed;
 use super::notes::Notes;
-use super::primitive::{Mode, Plan, Primitive};
+use super::primitive::{Mode, Plan, Primitive, Shape};
+use super::skin::{Pose, Skins};
 use crate::scene::budget::Budget;
-use crate::scene::{MAX_PRIMITIVES, Mesh, Part, Primitives, Unplaced, extent, normal};
+use crate::scene::{self, MAX_PRIMITIVES, Mesh, Primitives, Unplaced, extent, normal};
 
 /// All that is placed so far.
 pub struct Merge<'f> {
     document: &'f Document,
     accessors: Accessors<'f>,
+    skins: Skins<'f>,
     budget: Budget,
     mesh: Mesh,
-    parts: Vec<Part>,
+    parts: Vec<scene::Part>,
     /// Of what was placed or looked at, so that what draws nothing is not free.
     triangles: usize,
     vertices: usize,
 }
 
+/// A primitive that was read, for all its places.
+struct Part {
+    primitive: Primitive,
+    material: u32,
+    /// Its JSON path.
+    here: String,
+}
+
+/// Where a primitive is put.
+struct Place<'p> {
+    world: DMat4,
+    /// In place of `world`, at a node with a skin.
+    pose: Option<&'p Pose>,
+    /// The number of the node.
+    node: usize,
+}
+
 impl<'f> Merge<'f> {
     /// Nothing yet, within the budget.
-    pub fn new(document: &'f Document, accessors: Accessors<'f>, budget: Budget) -> Self {
-        Merge { document, accessors, budget, mesh: Mesh::default(), parts: Vec::new(), triangles: 0, vertices: 0 }
+    pub fn new(document: &'f Document, accessors: Accessors<'f>, skins: Skins<'f>, budget: Budget) -> Self {
+        Merge {
+            document,
+            accessors,
+            skins,
+            budget,
+            mesh: Mesh::default(),
+            parts: Vec::new(),
+            triangles: 0,
+            vertices: 0,
+        }
     }
 
-    /// Adds the mesh of a number at all the nodes that have it. A mesh is read once, and is gone before the next.
+    /// Adds the mesh of a number at all of some nodes that have it, whose morph targets have the same weights. A mesh is read once,
+    /// and is gone before the next.
     ///
     /// # Errors
     /// There is no such mesh, it makes no sense, or it is too large.
@@ -36,39 +67,59 @@ impl<'f> Merge<'f> {
         let Some(first) = nodes.first() else { return Ok(()) };
         let owner = format!("nodes[{}].mesh", first.number);
         let mesh = pick(&self.document.meshes, number, &owner, "mesh")?;
+        let shape = Shape {
+            weights: morph::weights(first, mesh),
+            is_skinned: nodes.iter().any(|placed| placed.node.skin.is_some()),
+        };
+        let mut copies = 0usize;
+        for placed in nodes {
+            copies = copies.saturating_add(Copies::of(placed, &self.accessors)?.count);
+        }
         let mut primitives = Vec::new();
         for (part, of) in mesh.primitives.iter().enumerate() {
             let here = format!("meshes[{number}].primitives[{part}]");
-            if !of.targets.is_empty() {
-                notes.once("targets", "morph targets are left out: meshes have their first shape");
-            }
-            let Some(mode) = Mode::from_code(of.mode).map_err(|fault| format!("{here}.{fault}"))? else {
-                notes.once("mode", "points and lines are left out: only triangles are drawn");
-                continue;
-            };
-            let material = match of.material {
-                Some(material) => {
-                    pick(&self.document.materials, material, &format!("{here}.material"), "material")?;
-                    // The first of the scene's is for what names none.
-                    u32::try_from(material + 1).unwrap_or(0)
-                }
-                None => 0,
-            };
-            let plan = Plan::new(of, mode, &self.accessors, &here)?;
-            self.count(&plan, nodes.len()).map_err(|fault| format!("{here}: {fault}"))?;
-            primitives.push((plan.read(of, &self.accessors, &here)?, material, here));
+            morph::note(of, notes);
+            let Some((mode, positions)) = drawn(of, &here, notes)? else { continue };
+            let material = self.material(of, &here)?;
+            let plan = Plan::new(of, positions, mode, &self.accessors, &here)?;
+            // It is read even if it has no place.
+            self.count(&plan, copies.max(1)).map_err(|fault| format!("{here}: {fault}"))?;
+            let primitive = plan.read(of, &shape, &self.accessors, &here)?;
+            primitives.push(Part { primitive, material, here });
         }
-        for placed in nodes {
-            let (triangle, vertex) = (self.mesh.triangles.len(), self.mesh.positions.len());
-            for (primitive, material, here) in &primitives {
-                self.place(primitive, *material, placed).map_err(|fault| format!("{here}: {fault}"))?;
+        if primitives.is_empty() {
+            return Ok(());
+        }
+        nodes.iter().try_for_each(|placed| self.place_all(&primitives, placed, mesh.name.as_deref()))
+    }
+
+    /// The number that a primitive's material has in the scene, whose first is for what names none.
+    fn material(&self, of: &document::Primitive, here: &str) -> Unplaced<u32> {
+        let Some(material) = of.material else { return Ok(0) };
+        pick(&self.document.materials, material, &format!("{here}.material"), "material")?;
+        Ok(u32::try_from(material + 1).unwrap_or(0))
+    }
+
+    /// Puts a mesh where a node has it.
+    fn place_all(&mut self, primitives: &[Part], placed: &Placed, of_mesh: Option<&str>) -> Unplaced<()> {
+        let (triangle, vertex) = (self.mesh.triangles.len(), self.mesh.positions.len());
+        let pose = self.skins.pose(placed, &self.accessors, &self.budget)?;
+        let copies = Copies::of(placed, &self.accessors)?;
+        for world in copies.worlds() {
+            let at = Place { world, pose: pose.as_deref(), node: placed.number };
+            for part in primitives {
+                self.place(part, &at).map_err(|fault| format!("{}: {fault}", part.here))?;
             }
-            let triangles = triangle..self.mesh.triangles.len();
-            if !triangles.is_empty() {
-                let bounds = extent::of(self.mesh.positions[vertex..].iter().copied());
-                let name = name(placed, mesh.name.as_deref());
-                self.parts.push(Part { name, primitives: Primitives::Triangles(triangles), bounds });
+            if pose.is_some() {
+                // Joints alone say where it is.
+                break;
             }
+        }
+        let triangles = triangle..self.mesh.triangles.len();
+        if !triangles.is_empty() {
+            let bounds = extent::of(self.mesh.positions[vertex..].iter().copied());
+            let name = name(placed, of_mesh);
+            self.parts.push(scene::Part { name, primitives: Primitives::Triangles(triangles), bounds });
         }
         Ok(())
     }
@@ -87,18 +138,34 @@ impl<'f> Merge<'f> {
         self.budget.check(triangles, vertices)
     }
 
-    fn place(&mut self, of: &Primitive, material: u32, placed: &Placed) -> Unplaced<()> {
-        let transform = Transform::new(placed.world);
+    fn place(&mut self, Part { primitive: of, material, .. }: &Part, at: &Place) -> Unplaced<()> {
+        let rigid = Transform::new(at.world);
+        let transform = |vertex: usize| match at.pose {
+            Some(pose) => Transform::new(pose.world(&of.bond, vertex)),
+            None => rigid,
+        };
         let before = self.mesh.positions.len();
         let after = before + of.positions.len();
         let range = (before, after);
-        self.mesh.positions.extend(of.positions.iter().map(|&position| transform.position(position)));
+        self.mesh
+            .positions
+            .extend(of.positions.iter().enumerate().map(|(vertex, &position)| transform(vertex).position(position)));
         let is_finite = self.mesh.positions.iter().skip(before).all(|position| position.is_finite());
         if !is_finite {
-            return Err(format!("nodes[{}] takes it out of single precision; make it smaller", placed.number));
+            return Err(format!("nodes[{}] takes it out of single precision; make it smaller", at.node));
         }
-        put(&mut self.mesh.normals, of.normals.iter().map(|&normal| transform.normal(normal)), range, Vec3::ZERO);
-        put(&mut self.mesh.tangents, of.tangents.iter().map(|&tangent| transform.tangent(tangent)), range, Vec4::ZERO);
+        put(
+            &mut self.mesh.normals,
+            of.normals.iter().enumerate().map(|(vertex, &normal)| transform(vertex).normal(normal)),
+            range,
+            Vec3::ZERO,
+        );
+        put(
+            &mut self.mesh.tangents,
+            of.tangents.iter().enumerate().map(|(vertex, &tangent)| transform(vertex).tangent(tangent)),
+            range,
+            Vec4::ZERO,
+        );
         for (all, more) in self.mesh.coordinates.iter_mut().zip(&of.coordinates) {
             put(all, more.iter().copied(), range, Vec2::ZERO);
         }
@@ -106,16 +173,29 @@ impl<'f> Merge<'f> {
         let first = u32::try_from(before).map_err(|_| "there are too many vertices; use fewer")?;
         self.mesh.triangles.extend(of.triangles.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|vertex| first + vertex);
-            if transform.is_mirror { [a, c, b] } else { [a, b, c] }
+            if transform(triangle[0] as usize).is_mirror { [a, c, b] } else { [a, b, c] }
         }));
-        self.mesh.materials.resize(self.mesh.triangles.len(), material);
+        self.mesh.materials.resize(self.mesh.triangles.len(), *material);
         Ok(())
     }
 
     /// All of it, and what each node has of it.
-    pub fn finish(self) -> (Mesh, Vec<Part>) {
+    pub fn finish(self) -> (Mesh, Vec<scene::Part>) {
         (self.mesh, self.parts)
     }
+}
+
+/// How the corners of a primitive make triangles, and the list of its positions; none of what is not drawn.
+fn drawn(of: &document::Primitive, here: &str, notes: &mut Notes) -> Unplaced<Option<(Mode, usize)>> {
+    let Some(mode) = Mode::from_code(of.mode).map_err(|fault| format!("{here}.{fault}"))? else {
+        notes.once("mode", "points and lines are left out: only triangles are drawn");
+        return Ok(None);
+    };
+    let Some(&positions) = of.attributes.get("POSITION") else {
+        notes.once("POSITION", &format!("{here} is left out, and others like it: it has no POSITION"));
+        return Ok(None);
+    };
+    Ok(Some((mode, positions)))
 }
 
 /// What a node is called: by its own name, its mesh's or its number.
@@ -136,6 +216,7 @@ fn put<T: Copy>(all: &mut Vec<T>, more: impl ExactSizeIterator<Item = T>, (befor
 }
 
 /// Where a node puts what it has.
+#[derive(Clone, Copy)]
 struct Transform {
     world: DMat4,
     /// What normals are multiplied with: the inverse transpose, times a positive number.

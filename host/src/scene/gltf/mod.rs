@@ -10,31 +10,39 @@ mod component;
 mod container;
 mod document;
 mod extension;
+mod instance;
 mod light;
 mod material;
 mod mesh;
+mod morph;
 mod node;
 mod notes;
 mod picture;
 mod primitive;
 mod shading;
+mod skin;
 mod uri;
+mod vertices;
+mod whole;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use serde::Deserialize;
+
 use self::accessor::Accessors;
 use self::buffer::Buffers;
 use self::camera::Cameras;
-use self::document::Document;
+use self::document::{Asset, Document};
 use self::mesh::Merge;
 use self::node::Placed;
 use self::notes::Notes;
 use self::picture::Pictures;
+use self::skin::Skins;
 use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
 use super::obj::Obj;
-use super::{Camera, Light, Mesh, Part, Unplaced, file};
+use super::{Camera, Light, LightUnit, Mesh, Part, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// A scene but for its surroundings.
@@ -49,24 +57,27 @@ pub struct Gltf {
     pub lights: Vec<Light>,
     /// Likewise, each with a name of its own.
     pub cameras: Vec<Camera>,
+    /// Width over height of the picture of the first camera, if it says so.
+    pub aspect: Option<f64>,
 }
 
 /// Reads a `.gltf` or `.glb` file and those that it names, which lie in its folder or below. It has the pose that it has at rest.
+/// Its lights are in `unit`, or else in that of what wrote the file.
 ///
 /// # Errors
 /// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
 /// triangle, or more than the budget has room for: each says where in the JSON.
-pub fn load(path: &Path, budget: Budget) -> Result<Gltf> {
+pub fn load(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
     let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes, budget)
+    parse(path, &bytes, unit, budget)
 }
 
 /// The scene of the bytes of a file.
-pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<Gltf> {
-    read(path, bytes, budget).map_err(|fault| Error::file(path, fault))
+pub(super) fn parse(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
+    read(path, bytes, unit, budget).map_err(|fault| Error::file(path, fault))
 }
 
-fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
+fn read(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Unplaced<Gltf> {
     let container = container::open(bytes)?;
     let json = bytes.get(container.json).unwrap_or_default();
     budget.check_bytes(document::memory(json)).map_err(|why| format!("its JSON would {why}; split the file"))?;
@@ -79,21 +90,26 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
         notes.once("animations", "animations are left out: nothing moves");
     }
     let nodes = node::walk(&document)?;
-    if nodes.iter().any(|placed| placed.node.skin.is_some()) {
-        notes.once("skins", "skins are left out: meshes have the shape that they are stored in");
-    }
     let buffers = Buffers::read(&document, chunk, folder)?;
     let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
     for placed in &nodes {
-        lights.extend(light::read(placed, &document.extensions.lights.lights, &mut notes)?);
+        lights.extend(light::read(placed, &document.extensions.lights.lights, unit.unwrap_or(by_writer), &mut notes)?);
         cameras.add(placed, &document, &mut notes)?;
+    }
+    if unit.is_none() && by_writer == LightUnit::Blender && !lights.is_empty() {
+        notes.once(
+            "unit",
+            "its lights are divided by 683, which Blender's exporter multiplies them with by default; \
+             --light-unit gltf takes them as they are",
+        );
     }
     let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
-    Ok(Gltf { obj, parts, lights, cameras: cameras.all })
+    Ok(Gltf { obj, parts, lights, aspect: cameras.aspect, cameras: cameras.all })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
@@ -102,19 +118,36 @@ fn document(json: &[u8]) -> Unplaced<Document> {
     if json.trim_ascii_start().first().is_some_and(|&byte| byte != b'{') {
         return Err("the JSON: it does not begin with {; write the file again as glTF 2.0".into());
     }
-    let mut from = serde_json::Deserializer::from_slice(json);
+    let json = whole::without_points(json);
+    let mut from = serde_json::Deserializer::from_slice(&json);
     let document: Document = serde_path_to_error::deserialize(&mut from).map_err(|error| {
+        // What makes no sense may do so in another version.
+        let asset = serde_json::from_slice::<Versioned>(&json).map(|document| document.asset).unwrap_or_default();
+        if let Err(fault) = check_version(&asset) {
+            return fault;
+        }
         let (path, fault) = (error.path().to_string(), error.inner());
         let owner = if path == "." { "the JSON".into() } else { path };
         format!("{owner}: {}; write the file again as glTF 2.0", plain(fault))
     })?;
     from.end().map_err(|fault| format!("the JSON: {fault}; write the file again as glTF 2.0"))?;
-    if let Some(version) = document.asset.min_version.as_deref().filter(|version| !matches!(*version, "2" | "2.0")) {
+    check_version(&document.asset)?;
+    Ok(document)
+}
+
+/// What any version of a file has.
+#[derive(Deserialize)]
+struct Versioned {
+    asset: Asset,
+}
+
+fn check_version(asset: &Asset) -> Unplaced<()> {
+    if let Some(version) = asset.min_version.as_deref().filter(|version| !matches!(*version, "2" | "2.0")) {
         return Err(format!("asset.minVersion: this needs a reader of glTF {version}; convert it to 2.0"));
     }
-    match document.asset.version.as_deref() {
-        None | Some("2") => Ok(document),
-        Some(version) if version.starts_with("2.") => Ok(document),
+    match asset.version.as_deref() {
+        None | Some("2") => Ok(()),
+        Some(version) if version.starts_with("2.") => Ok(()),
         Some(version) => Err(format!("asset.version: this is glTF {version}; convert it to 2.0")),
     }
 }
@@ -146,21 +179,42 @@ fn merged(
     budget: Budget,
     notes: &mut Notes,
 ) -> Unplaced<(Mesh, Vec<Part>)> {
-    let mut by_mesh: BTreeMap<usize, Vec<&Placed>> = BTreeMap::new();
+    // A mesh has another shape at each node that has weights of its own.
+    let mut by_mesh: BTreeMap<(usize, Option<usize>), Vec<&Placed>> = BTreeMap::new();
     for placed in nodes {
         if let Some(mesh) = placed.node.mesh {
-            by_mesh.entry(mesh).or_default().push(placed);
+            let own = placed.node.weights.as_ref().map(|_| placed.number);
+            by_mesh.entry((mesh, own)).or_default().push(placed);
         }
     }
-    let mut merge = Merge::new(document, Accessors::new(document, buffers), budget);
-    for (mesh, nodes) in by_mesh {
+    let skins = Skins::new(document, nodes);
+    let mut merge = Merge::new(document, Accessors::new(document, buffers), skins, budget);
+    for ((mesh, _), nodes) in by_mesh {
         merge.add(mesh, &nodes, notes)?;
     }
     let (mesh, parts) = merge.finish();
     if mesh.triangles.is_empty() {
-        return Err("there is no triangle in its scene; does a node of it have a mesh?".into());
+        return Err(nothing(document));
     }
     Ok((mesh, parts))
+}
+
+/// Why nothing is drawn, and what to do.
+fn nothing(document: &Document) -> String {
+    let shown = document.scene.unwrap_or(0);
+    let others =
+        document.scenes.iter().enumerate().filter(|&(number, scene)| number != shown && !scene.nodes.is_empty());
+    let Some((other, _)) = others.into_iter().next() else {
+        return "there is no triangle in its scene; does a node of it have a mesh?".into();
+    };
+    let count = document.scenes.len();
+    let why = match document.scene {
+        Some(number) => format!("scene: it asks for scenes[{number}], which holds no triangle"),
+        None => {
+            format!("scene: it is not given, and the first of {count} scenes, which is shown then, holds no triangle")
+        }
+    };
+    format!("{why}; write \"scene\": {other} into the JSON to see another")
 }
 
 /// All materials under the numbers that triangles have, read if any has it, and the files of their pictures.
@@ -182,13 +236,6 @@ fn materials(
     }
     let mut materials = vec![(DEFAULT.to_owned(), material::plain())];
     for ((number, of), is_used) in document.materials.iter().enumerate().zip(is_used.into_iter().skip(1)) {
-        let is_unlit = of.extensions.as_ref().is_some_and(|extensions| extensions.unlit.is_some());
-        if is_used && is_unlit && !mesh.colours.is_empty() {
-            notes.once(
-                "colours",
-                "colours of vertices are left out of materials without lighting (KHR_materials_unlit)",
-            );
-        }
         let fields = if is_used { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
         let name =
             of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));

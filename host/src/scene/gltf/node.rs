@@ -77,8 +77,8 @@ fn local(node: &Node) -> Unplaced<DMat4> {
     Ok(from_parts(translation, rotation.map_or(DVec4::W, DVec4::from), scale))
 }
 
-/// A quaternion of no length turns nothing.
-fn from_parts(translation: DVec3, rotation: DVec4, scale: DVec3) -> DMat4 {
+/// Scales, turns, then moves. A quaternion of no length turns nothing.
+pub fn from_parts(translation: DVec3, rotation: DVec4, scale: DVec3) -> DMat4 {
     let rotation = rotation.try_normalize().map_or(DQuat::IDENTITY, DQuat::from_vec4);
     DMat4::from_scale_rotation_translation(scale, rotation, translation)
 }

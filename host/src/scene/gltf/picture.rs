@@ -13,7 +13,7 @@ use super::notes::Notes;
 use super::shading::{Info, Transform};
 use super::uri::{self, Target};
 use crate::image::{TextureBudget, decode_texture, read_texture};
-use crate::scene::{Map, Placement, Texture, Unplaced, Wrap};
+use crate::scene::{Map, Placement, Texels, Texture, Unplaced, Wrap};
 
 /// The pictures that materials take, each decoded once.
 pub struct Pictures<'f> {
@@ -21,9 +21,18 @@ pub struct Pictures<'f> {
     buffers: &'f Buffers<'f>,
     folder: &'f Path,
     decoded: HashMap<usize, Arc<Texture>>,
+    /// What was made of the glossiness of pictures, by the bits of what it was multiplied with.
+    rough: Vec<Rough>,
     budget: TextureBudget,
     /// The files that were read for them.
     pub paths: Vec<PathBuf>,
+}
+
+/// A picture of roughness that was made of one of glossiness.
+struct Rough {
+    of: Arc<Texture>,
+    factor: f32,
+    made: Arc<Texture>,
 }
 
 impl<'f> Pictures<'f> {
@@ -34,6 +43,7 @@ impl<'f> Pictures<'f> {
             buffers,
             folder,
             decoded: HashMap::new(),
+            rough: Vec::new(),
             budget: TextureBudget::default(),
             paths: Vec::new(),
         }
@@ -56,6 +66,29 @@ impl<'f> Pictures<'f> {
         let placement = placement(info, sampler.transpose()?, owner, notes)?;
         let texture = self.texture(source, &format!("textures[{number}].source"))?;
         Ok(Some(Map { texture, placement }))
+    }
+
+    /// The map of roughness (green), for a map whose opacity times a factor is glossiness.
+    ///
+    /// # Errors
+    /// The pictures before it leave no room.
+    pub fn rough(&mut self, glossy: &Map, factor: f32) -> Unplaced<Map> {
+        let of = &glossy.texture;
+        let known = self.rough.iter().find(|rough| Arc::ptr_eq(&rough.of, of) && rough.factor == factor);
+        let texture = match known {
+            Some(rough) => rough.made.clone(),
+            None => {
+                let texels = of.texels.opacities();
+                self.budget.take_bytes(of.width, of.height).map_err(|error| error.message())?;
+                let rough = |share: f32| [0, (255.0 * (1.0 - factor * share) + 0.5) as u8, 0, 255];
+                let texels = Texels::Bytes(texels.map(rough).collect());
+                let made = Texture { name: of.name.clone(), width: of.width, height: of.height, texels };
+                let made = Arc::new(made);
+                self.rough.push(Rough { of: of.clone(), factor, made: made.clone() });
+                made
+            }
+        };
+        Ok(Map { texture, placement: glossy.placement })
     }
 
     fn texture(&mut self, number: usize, owner: &str) -> Unplaced<Arc<Texture>> {

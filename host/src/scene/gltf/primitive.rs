@@ -6,6 +6,8 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::accessor::{Accessors, Elements};
 use super::document;
+use super::skin::Bond;
+use super::vertices::Vertices;
 use crate::scene::Unplaced;
 
 /// One in the units of its mesh. Each list of vertices has as many elements as `positions`, or none at all.
@@ -15,6 +17,8 @@ pub struct Primitive {
     pub tangents: Vec<Vec4>,
     pub coordinates: [Vec<Vec2>; 2],
     pub colours: Vec<Vec4>,
+    /// The joints that its vertices follow at a node with a skin.
+    pub bond: Bond,
     pub triangles: Vec<[u32; 3]>,
 }
 
@@ -24,6 +28,14 @@ pub enum Mode {
     Triangles,
     Strip,
     Fan,
+}
+
+/// What shape a primitive has at its nodes.
+pub struct Shape<'d> {
+    /// Of its morph targets.
+    pub weights: &'d [f64],
+    /// Does it follow joints anywhere?
+    pub is_skinned: bool,
 }
 
 /// What is asked of a file before anything is read.
@@ -70,14 +82,18 @@ impl Mode {
 }
 
 impl<'f> Plan<'f> {
-    /// Looks at a primitive; `owner` is its JSON path.
+    /// Looks at a primitive whose positions are the list of a number; `owner` is its JSON path.
     ///
     /// # Errors
-    /// It has no positions, or those of [`Accessors::open`].
-    pub fn new(of: &document::Primitive, mode: Mode, accessors: &Accessors<'f>, owner: &str) -> Unplaced<Self> {
-        let number = of.attributes.get("POSITION");
-        let number = number.ok_or_else(|| format!("{owner}.attributes: there is no POSITION; write the file again"))?;
-        let positions = accessors.open(*number, &[3], &format!("{owner}.attributes.POSITION"))?;
+    /// Those of [`Accessors::open`].
+    pub fn new(
+        of: &document::Primitive,
+        positions: usize,
+        mode: Mode,
+        accessors: &Accessors<'f>,
+        owner: &str,
+    ) -> Unplaced<Self> {
+        let positions = accessors.open(positions, &[3], &format!("{owner}.attributes.POSITION"))?;
         let indices = of.indices.map(|number| accessors.indices(number, &format!("{owner}.indices"))).transpose()?;
         let corners = indices.as_ref().map_or(positions.count, |indices| indices.count);
         let triangles = mode.triangles(corners);
@@ -89,33 +105,34 @@ impl<'f> Plan<'f> {
     ///
     /// # Errors
     /// An index or a position that makes no sense, or an attribute of another length.
-    pub fn read(&self, of: &document::Primitive, accessors: &Accessors<'f>, owner: &str) -> Unplaced<Primitive> {
+    pub fn read(
+        &self,
+        of: &document::Primitive,
+        shape: &Shape,
+        accessors: &Accessors<'f>,
+        owner: &str,
+    ) -> Unplaced<Primitive> {
         let (triangles, used) = self.triangles(owner)?;
-        let attribute = |key: &str, widths: &[usize]| {
-            let Some(&number) = of.attributes.get(key) else { return Ok(None) };
-            let owner = format!("{owner}.attributes.{key}");
-            let elements = accessors.open(number, widths, &owner)?;
-            let (count, wanted) = (elements.count, self.positions.count);
-            if count != wanted {
-                return Err(format!("{owner}: it has {count} elements for {wanted} positions; write the file again"));
-            }
-            Ok(Some(elements))
-        };
+        let vertices = Vertices { used: &used, count: self.positions.count, accessors, owner };
+        let attribute = |key: &str, widths: &[usize]| vertices.attribute(&of.attributes, key, widths, "attributes");
         let normals = attribute("NORMAL", &[3])?;
         // Without normals, a file's tangents mean nothing.
         let tangents = if normals.is_some() { attribute("TANGENT", &[4])? } else { None };
         let pair = |pair| finite(Vec2::from_array(pair), Vec2::is_finite, Vec2::ZERO);
-        Ok(Primitive {
+        let mut primitive = Primitive {
             positions: self.positions(&used, owner)?,
-            normals: list(normals, &used, |normal| finite(Vec3::from_array(normal), Vec3::is_finite, Vec3::ZERO)),
-            tangents: list(tangents, &used, |tangent| finite(Vec4::from_array(tangent), Vec4::is_finite, Vec4::ZERO)),
+            normals: vertices.list(normals, |normal| finite(Vec3::from_array(normal), Vec3::is_finite, Vec3::ZERO)),
+            tangents: vertices.list(tangents, |tangent| finite(Vec4::from_array(tangent), Vec4::is_finite, Vec4::ZERO)),
             coordinates: [
-                list(attribute("TEXCOORD_0", &[2])?, &used, pair),
-                list(attribute("TEXCOORD_1", &[2])?, &used, pair),
+                vertices.list(attribute("TEXCOORD_0", &[2])?, pair),
+                vertices.list(attribute("TEXCOORD_1", &[2])?, pair),
             ],
-            colours: colours(attribute("COLOR_0", &[3, 4])?, &used),
+            colours: colours(attribute("COLOR_0", &[3, 4])?, &vertices),
+            bond: if shape.is_skinned { Bond::of(of, &vertices)? } else { Bond::default() },
             triangles,
-        })
+        };
+        primitive.morph(of, shape.weights, &vertices)?;
+        Ok(primitive)
     }
 
     fn positions(&self, used: &[u32], owner: &str) -> Unplaced<Vec<Vec3>> {
@@ -161,14 +178,9 @@ impl<'f> Plan<'f> {
     }
 }
 
-fn list<T, const N: usize>(elements: Option<Elements>, used: &[u32], make: impl Fn([f32; N]) -> T) -> Vec<T> {
-    let Some(elements) = elements else { return Vec::new() };
-    used.iter().map(|&number| make(elements.vector(number as usize))).collect()
-}
-
-fn colours(elements: Option<Elements>, used: &[u32]) -> Vec<Vec4> {
+fn colours(elements: Option<Elements>, vertices: &Vertices) -> Vec<Vec4> {
     let is_opaque = elements.as_ref().is_some_and(|elements| elements.width == 3);
-    list(elements, used, |colour| {
+    vertices.list(elements, |colour| {
         let colour = finite(Vec4::from_array(colour), Vec4::is_finite, Vec4::ONE).clamp(Vec4::ZERO, Vec4::ONE);
         if is_opaque { colour.with_w(1.0) } else { colour }
     })

@@ -70,6 +70,8 @@ pub struct Extensions {
     pub specular: Option<Specular>,
     #[serde(rename = "KHR_materials_anisotropy")]
     pub anisotropy: Option<Anisotropy>,
+    #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
+    pub gloss: Option<Gloss>,
     #[serde(rename = "KHR_materials_unlit")]
     pub unlit: Option<IgnoredAny>,
 }
@@ -118,4 +120,16 @@ pub struct Anisotropy {
     pub anisotropy_strength: Option<f64>,
     pub anisotropy_rotation: Option<f64>,
     pub anisotropy_texture: Option<Info>,
+}
+
+/// What takes the place of `pbrMetallicRoughness`.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Gloss {
+    pub diffuse_factor: Option<[f64; 4]>,
+    pub diffuse_texture: Option<Info>,
+    pub specular_factor: Option<[f64; 3]>,
+    pub glossiness_factor: Option<f64>,
+    /// Specular colour, and glossiness as alpha.
+    pub specular_glossiness_texture: Option<Info>,
 }

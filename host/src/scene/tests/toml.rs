@@ -5,7 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
-use crate::scene::{Background, Direct, Integrator, Light, Primitives, Sampler, Scene, Settings, Transport};
+use crate::scene::{Background, Direct, Falloff, Integrator, Light, Primitives, Sampler, Scene, Settings, Transport};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
@@ -57,6 +57,37 @@ fn what_is_not_said_has_defaults() {
     assert_eq!(scene.lights.len(), 2);
     let (scene, _) = load(&format!("light = []\n{BALL}"));
     assert!(scene.lights.is_empty());
+}
+
+#[test]
+fn no_lamps_are_added_where_an_integrator_finds_light_elsewhere() {
+    let lamps = |integrator: &str, rest: &str| {
+        let (scene, _) = load(&format!("[render]\nintegrator = \"{integrator}\"\n{rest}\n{BALL}"));
+        scene.lights.len()
+    };
+    let sky = "[background]\ncolor = [0, 0, 0.1]";
+    let gradient = "[background]\nhorizon = [0, 0, 0]\nzenith = [0, 1, 0]";
+    let black = "[background]\ncolor = [0, 0, 0]";
+    let studio = "[background]\nenvironment = \"studio\"";
+    let shining = "[[material]]\nname = \"default\"\nemission = [1, 0, 0]";
+    let of = |integrator: &str| [sky, gradient, black, studio, shining].map(|rest| lamps(integrator, rest));
+    assert_eq!(of("path"), [0, 0, 2, 0, 0]);
+    assert_eq!(of("distributed"), [2, 2, 2, 0, 0]);
+    // It lights nothing by a background, and draws nothing that shines.
+    assert_eq!([sky, gradient, black, studio].map(|rest| lamps("whitted", rest)), [2, 2, 2, 0]);
+}
+
+#[test]
+fn a_spot_fades_as_it_is_told() {
+    let spot = "[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 0, 0]\nangle = 40\n";
+    let of = |key: &str| match load(&format!("{spot}{key}\n{BALL}")).0.lights[0] {
+        Light::Spot { falloff, .. } => falloff,
+        ref other => panic!("{other:?}"),
+    };
+    assert_eq!(
+        (of(""), of("falloff = \"smooth\""), of("falloff = \"gltf\"")),
+        (Falloff::Smooth, Falloff::Smooth, Falloff::Gltf)
+    );
 }
 
 #[test]
@@ -278,7 +309,7 @@ fn spheres_and_files_placed_again_are_counted_before_they_are_made() {
         ("a.obj", TRIANGLE),
     ]);
     let refuse = |name: &str, bytes| {
-        let scene = crate::scene::load::load_within(&folder.path(name), budget(bytes));
+        let scene = crate::scene::load::load_within(&folder.path(name), None, budget(bytes));
         scene.expect_err("accepted")
     };
     let why = "1310720 triangles with 655362 vertices take about 652 MB of memory, and the test leaves 600 MB";

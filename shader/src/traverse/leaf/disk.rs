@@ -27,7 +27,7 @@ pub fn intersect<Q: Query, R: Real>(
     let ahead = zero.lt(crossing.t) & crossing.t.le(hit.t);
     // A ray can't meet a plane twice.
     let mut inside = crossing.meets & ahead & !R::equals(number, ray.source_primitive);
-    if effects.has(Effects::CULLING) && !Q::ANY && !disk.is_transparent() {
+    if effects.has(Effects::CULLING) && !Q::ANY && disk.is_culled() {
         inside = inside & crossing.front;
     }
     if !inside.any() {

@@ -92,7 +92,7 @@ fn accept_chord<Q: Query, R: Real>(
     let number = sphere.number();
     let end = end(chord, number, ray);
     let mut inside = end.hit & end.t.le(hit.t);
-    if context.base.spec.effects.has(Effects::CULLING) && !Q::ANY && !sphere.is_transparent() {
+    if context.base.spec.effects.has(Effects::CULLING) && !Q::ANY && sphere.is_culled() {
         inside = inside & !end.far;
     }
     if !inside.any() {

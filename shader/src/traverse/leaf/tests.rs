@@ -82,7 +82,7 @@ fn a_ray_that_goes_inside_meets_the_far_side_however_flat() {
 }
 
 #[test]
-fn culling_hides_insides_and_backs_but_not_those_of_glass() {
+fn culling_hides_insides_and_backs_but_not_those_of_glass_or_of_two_sides() {
     let of =
         |flags| [Primitive::sphere(Vec3::ZERO, 0.5, 0, 0, flags), Primitive::disk(Vec3::X, Vec3::X, 0.5, 1, 0, flags)];
     let right = leaving::<f32>(NOWHERE, [0.0, 0.0, 0.0], [1.0, 0.0, 0.0]);
@@ -92,6 +92,8 @@ fn culling_hides_insides_and_backs_but_not_those_of_glass() {
     assert_eq!((seen(0, Effects::CULLING, &right), seen(0, Effects::CULLING, &back)), (NOWHERE, 1));
     let clear = |ray| seen(Primitive::TRANSPARENT, Effects::CULLING | Effects::TRANSPARENT, ray);
     assert_eq!((clear(&right), clear(&back)), (0, 1));
+    let two_sided = |ray| seen(Primitive::TWO_SIDED, Effects::CULLING, ray);
+    assert_eq!((two_sided(&right), two_sided(&back)), (0, 1));
     let disk = |effects, ray| hit::<Closest, f32>(&of(0)[1..], effects, ray).primitive;
     assert_eq!((disk(0, &right), disk(Effects::CULLING, &right), disk(Effects::CULLING, &back)), (1, NOWHERE, 1));
 }

@@ -123,8 +123,7 @@ fn accept_candidate<Q: Query, R: Real>(
 ) {
     let (number, effects) = (triangle.number(), context.base.spec.effects);
     let mut inside = candidate.inside & !R::equals(number, ray.source_primitive);
-    // The inside of glass is seen from its back side.
-    if effects.has(Effects::CULLING) && !Q::ANY && !triangle.is_transparent() {
+    if effects.has(Effects::CULLING) && !Q::ANY && triangle.is_culled() {
         inside = inside & candidate.front;
     }
     // This is rare, so transforming the vertices again costs less than keeping them since the intersection.

@@ -2,7 +2,7 @@
 
 use serde_json::json;
 
-use super::model::{Model, data, floats, picture};
+use super::model::{Model, data, picture};
 use crate::scene::{Alpha, Light};
 
 #[test]
@@ -12,14 +12,12 @@ fn what_is_left_out_is_said_once() {
     let mut points = primitive.clone();
     points["mode"] = json!(0);
     let mut morphed = primitive.clone();
-    morphed["targets"] = json!([{ "POSITION": 0 }]);
+    morphed["targets"] = json!([{ "TEXCOORD_0": 0 }]);
     model.json["meshes"][0]["primitives"] = json!([points, points, morphed, morphed]);
-    model.json["skins"] = json!([{ "joints": [0] }]);
     model.json["animations"] = json!([{}, {}]);
-    model.json["nodes"][0]["skin"] = json!(0);
     model.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_materials_ior"]);
     let warnings = model.load().obj.warnings;
-    let wanted = ["KHR_materials_clearcoat", "animations", "skins", "points and lines", "morph targets"];
+    let wanted = ["KHR_materials_clearcoat", "animations", "points and lines", "morph targets"];
     assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");
     for (warning, wanted) in warnings.iter().zip(wanted) {
         assert!(warning.contains(wanted), "{warning}");
@@ -55,15 +53,6 @@ fn words_and_angles_that_make_no_sense_are_replaced() {
     assert!(matches!(scene.lights[0], Light::Spot { outer, inner, .. } if inner == outer));
     let says = |what: &str| scene.obj.warnings.iter().filter(|warning| warning.contains(what)).count();
     assert_eq!((says("ranges of lights are left out"), says("innerConeAngle is more than outerConeAngle")), (1, 1));
-}
-
-#[test]
-fn colours_of_vertices_are_left_out_of_what_is_unlit() {
-    let mut model = with(json!({ "extensions": { "KHR_materials_unlit": {} } }));
-    let colours = model.accessor("VEC3", super::model::F32, 3, &floats(&[[1.0, 0.0, 0.0]; 3].concat()));
-    model.primitive()["attributes"]["COLOR_0"] = json!(colours);
-    let warnings = model.load().obj.warnings;
-    assert!(warnings.iter().any(|warning| warning.contains("colours of vertices are left out")), "{warnings:?}");
 }
 
 #[test]

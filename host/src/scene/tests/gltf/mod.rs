@@ -4,6 +4,8 @@ mod damaged;
 mod hostile;
 mod left_out;
 mod model;
+mod shape;
+mod surroundings;
 
 use glam::{Vec2, Vec3, Vec4};
 use serde_json::json;
@@ -11,7 +13,7 @@ use serde_json::json;
 use self::model::{F32, Model, U16, data, floats, picture, shorts};
 use super::Folder;
 use crate::scene::gltf::Gltf;
-use crate::scene::{Alpha, Background, Integrator, Light, Primitives, Wrap};
+use crate::scene::{Alpha, Background, Integrator, Light, Primitives, Texels, Wrap};
 
 #[test]
 fn a_triangle_is_a_scene_in_a_studio_and_a_mesh_of_a_scene() {
@@ -208,6 +210,41 @@ fn any_index_of_refraction_reflects_as_much_as_it_says() {
     assert_eq!((physical.ior, physical.specular_tint, warnings), (4.0, tint, 2));
     let (physical, _) = read(0.0, glass);
     assert!(!physical.is_transparent(), "nothing passes what reflects all");
+}
+
+/// KHR_materials_pbrSpecularGlossiness: the specular colour is the reflection at normal incidence, and what is not glossy is rough.
+#[test]
+fn specular_glossiness_is_no_metal_of_its_specular_colour() {
+    let mut model = Model::triangle();
+    let coordinates = model.accessor("VEC2", F32, 3, &floats(&[0.0, 0.0, 1.0, 0.0, 0.0, 1.0]));
+    model.primitive()["attributes"]["TEXCOORD_0"] = json!(coordinates);
+    model.primitive()["material"] = json!(0);
+    model.json["extensionsRequired"] = json!(["KHR_materials_pbrSpecularGlossiness"]);
+    let gloss = json!({
+        "diffuseFactor": [0.5, 0.25, 1, 0.75], "specularFactor": [1, 0.5, 0], "glossinessFactor": 0.75,
+    });
+    model.json["materials"] = json!([{
+        "pbrMetallicRoughness": { "metallicFactor": 1 },
+        "extensions": { "KHR_materials_pbrSpecularGlossiness": gloss },
+    }]);
+    let Gltf { obj, .. } = model.load();
+    let material = obj.materials[1].1.clone().finish("a");
+    let physical = material.physical.unwrap();
+    assert_eq!((physical.base, physical.metallic, physical.roughness), (Vec3::new(0.5, 0.25, 1.0), 0.0, 0.25));
+    assert!(physical.reflectance().abs_diff_eq(Vec3::new(1.0, 0.5, 0.0), 1e-6), "{}", physical.reflectance());
+    assert_eq!((material.opacity, obj.warnings.len()), (0.75, 0));
+    model.json["images"] = json!([{ "uri": data(&picture()) }]);
+    model.json["textures"] = json!([{ "source": 0 }]);
+    let of = &mut model.json["materials"][0]["extensions"]["KHR_materials_pbrSpecularGlossiness"];
+    of["diffuseTexture"] = json!({ "index": 0 });
+    of["specularGlossinessTexture"] = json!({ "index": 0 });
+    let Gltf { obj, .. } = model.load();
+    let fields = &obj.materials[1].1;
+    assert!(fields.maps.base.is_some() && fields.maps.specular_tint == fields.maps.base);
+    let rough = fields.maps.metallic_roughness.as_ref().unwrap();
+    // The picture is opaque, which is glossy.
+    assert_eq!(rough.texture.texels, Texels::Bytes(vec![[0, 64, 0, 255]; 2]));
+    assert_eq!(fields.physical.roughness, Some(1.0));
 }
 
 #[test]

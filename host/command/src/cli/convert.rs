@@ -9,7 +9,7 @@ use std::slice;
 use clap::Args;
 
 use super::choice::choice;
-use super::options::Read;
+use super::options::{Read, Reading};
 use super::{console, plural, progress};
 use crate::error::{Error, Result, printable};
 use crate::output::{self, Destination};
@@ -41,6 +41,8 @@ pub(super) struct Convert {
     /// Leave the hierarchy out: a third of the bytes, built again by each command
     #[arg(long, conflicts_with = "bvh")]
     no_bvh: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Convert {
@@ -57,7 +59,8 @@ impl Convert {
         }
         let destination = Destination::File(path.to_owned());
         output::check_writable(&destination)?;
-        let Read { scene, .. } = Read::scene(&self.scene, slice::from_ref(&destination), quiet)?;
+        let Read { scene, .. } =
+            Read::scene(&self.scene, slice::from_ref(&destination), self.reading.loading(None), quiet)?;
         output::check_apart(slice::from_ref(&destination), [&self.scene])?;
         if is_text {
             check_new(path)?;

@@ -20,7 +20,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Filter, Sampler, Scene, Settings};
+use eyerays::scene::{self, Camera, Filter, Integrator, Loading, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -106,6 +106,11 @@ impl Effort {
         Ok(Effort { samples: None, spp: self.spp.or(Some(Settings::MOST_SPP)), ..self })
     }
 
+    /// The integrator that is asked for.
+    pub fn integrator(&self) -> Option<Integrator> {
+        self.transport.integrator()
+    }
+
     fn quality(&self) -> Quality {
         self.bvh.unwrap_or_default().quality()
     }
@@ -151,22 +156,39 @@ pub(super) struct DeviceArgs {
     pub no_passthrough: bool,
 }
 
+/// How a scene's files are read.
+#[derive(Args, Clone, Copy)]
+pub(super) struct Reading {
+    /// Read what models name outside their folders too, for files that you trust
+    #[arg(long, help_heading = "View")]
+    allow_outside: bool,
+}
+
+impl Reading {
+    /// For an integrator, if it is known before the scene is.
+    pub fn loading(self, integrator: Option<Integrator>) -> Loading {
+        Loading { allow_outside: self.allow_outside, integrator }
+    }
+}
+
 /// A scene that was read, from which file, and what that took.
 pub(super) struct Read<'a> {
     pub path: &'a Path,
     pub scene: Scene,
+    /// How many warnings were given.
+    pub warnings: usize,
     pub time: Duration,
 }
 
 impl<'a> Read<'a> {
     /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
-    pub fn scene(path: &'a Path, outputs: &[Destination], quiet: bool) -> Result<Self> {
+    pub fn scene(path: &'a Path, outputs: &[Destination], loading: Loading, quiet: bool) -> Result<Self> {
         let start = Instant::now();
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load(path))?;
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load_as(path, loading))?;
         let time = start.elapsed();
         super::warn(&warnings, quiet);
         output::check_apart(outputs, &scene.files)?;
-        Ok(Read { path, scene, time })
+        Ok(Read { path, scene, warnings: warnings.len(), time })
     }
 
     /// The scene without a hierarchy that it may bring along, for those who measure what building takes.
@@ -202,7 +224,7 @@ impl View {
         choice: &Choice,
         quiet: bool,
     ) -> Result<(Loaded, Scene, Camera)> {
-        let Read { path, scene, time: read_time } = read;
+        let Read { path, scene, time: read_time, .. } = read;
         let settings = self.settings(&scene, effort)?;
         let ignored = settings.transport.integrator.ignored(&scene);
         super::warn(ignored.as_slice(), quiet);

@@ -33,6 +33,7 @@ use self::notes::Notes;
 use self::picture::Pictures;
 use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
+use super::neighbours::Neighbours;
 use super::obj::Obj;
 use super::{Camera, Light, Mesh, Part, Unplaced, file};
 use crate::error::{Error, Result};
@@ -56,23 +57,22 @@ pub struct Gltf {
 /// # Errors
 /// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
 /// triangle, or more than the budget has room for: each says where in the JSON.
-pub fn load(path: &Path, budget: Budget) -> Result<Gltf> {
+pub fn load(path: &Path, budget: Budget, allow_outside: bool) -> Result<Gltf> {
     let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes, budget)
+    parse(path, &bytes, budget, allow_outside)
 }
 
 /// The scene of the bytes of a file.
-pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<Gltf> {
-    read(path, bytes, budget).map_err(|fault| Error::file(path, fault))
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, allow_outside: bool) -> Result<Gltf> {
+    read(&Neighbours::new(path, allow_outside), path, bytes, budget).map_err(|fault| Error::file(path, fault))
 }
 
-fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
+fn read(neighbours: &Neighbours, path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
     let container = container::open(bytes)?;
     let json = bytes.get(container.json).unwrap_or_default();
     budget.check_bytes(document::memory(json)).map_err(|why| format!("its JSON would {why}; split the file"))?;
     let document = document(json)?;
     let chunk = container.chunk.and_then(|range| bytes.get(range));
-    let folder = file::folder(path);
     let mut notes = Notes::new(path);
     extension::check(&document, &mut notes)?;
     if !document.animations.is_empty() {
@@ -82,7 +82,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
     if nodes.iter().any(|placed| placed.node.skin.is_some()) {
         notes.once("skins", "skins are left out: meshes have the shape that they are stored in");
     }
-    let buffers = Buffers::read(&document, chunk, folder)?;
+    let buffers = Buffers::read(&document, chunk, neighbours)?;
     let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
@@ -90,7 +90,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget) -> Unplaced<Gltf> {
         lights.extend(light::read(placed, &document.extensions.lights.lights, &mut notes)?);
         cameras.add(placed, &document, &mut notes)?;
     }
-    let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
+    let (materials, pictures) = materials(&document, &buffers, &mesh, neighbours, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
     Ok(Gltf { obj, parts, lights, cameras: cameras.all })
@@ -170,10 +170,10 @@ fn materials(
     document: &Document,
     buffers: &Buffers,
     mesh: &Mesh,
-    folder: &Path,
+    neighbours: &Neighbours,
     notes: &mut Notes,
 ) -> Unplaced<Materials> {
-    let mut pictures = Pictures::new(document, buffers, folder);
+    let mut pictures = Pictures::new(document, buffers, neighbours);
     let mut is_used = vec![false; document.materials.len() + 1];
     for &material in &mesh.materials {
         if let Some(is_used) = is_used.get_mut(material as usize) {
@@ -193,6 +193,9 @@ fn materials(
         let name =
             of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));
         materials.push((name, fields));
+    }
+    if let Some(warning) = pictures.warning() {
+        notes.once("pictures", &warning);
     }
     Ok((materials, pictures.paths))
 }

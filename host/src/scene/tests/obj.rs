@@ -233,7 +233,7 @@ fn normals_and_texture_vertices_of_which_there_are_none_are_left_out_with_one_wa
     let obj = obj::parse(Path::new("a.obj"), text.as_bytes(), budget(1 << 20)).unwrap();
     assert_eq!(obj.mesh.triangles.len(), 1);
     assert!(obj.mesh.normals.is_empty());
-    assert_eq!(obj.warnings, ["a.obj:4: texture vertex 1 and 5 more ignored: none precede the face"]);
+    assert_eq!(obj.warnings, ["a.obj:4: texture vertex 1 and 5 more ignored: none of this number precedes the face"]);
 }
 
 /// The one warning of what is read.

@@ -93,23 +93,38 @@ fn coordinates_that_are_no_finite_numbers() {
 }
 
 #[test]
-fn colours_without_all_numbers() {
+fn a_strict_check_takes_a_warning_for_an_error() {
     let place = Place::new(&[
         ("mesh.obj", &format!("mtllib mesh.mtl\nusemtl red\n{TRIANGLE}")),
         ("mesh.mtl", "newmtl red\nKd 1 0\n"),
     ]);
-    place.refuse(&["render", "mesh.obj", "-o", "out.png"], &["mesh.mtl:2: ", "Kd takes three numbers"]);
-    place.refuse(&["check", "mesh.obj"], &["error: mesh.mtl:2: "]);
+    let outcome = place.succeed(&["check", "mesh.obj"]);
+    assert!(outcome.stderr.starts_with("warning: mesh.mtl:2: Kd (Kd takes three numbers"), "{}", outcome.stderr);
+    let outcome = place.run(&["check", "mesh.obj", "--strict"]);
+    assert_eq!((outcome.code, outcome.stdout.len()), (Some(2), 0));
+    let lines: Vec<&str> = outcome.stderr.lines().collect();
+    assert!(
+        lines.len() == 2 && lines[1].starts_with("error: mesh.obj: 1 warning under --strict"),
+        "{}",
+        outcome.stderr
+    );
+    place.refuse(&["check", "mesh.obj", "--strict", "--quiet"], &["1 warning under --strict"]);
+    Place::new(&[("mesh.obj", TRIANGLE)]).succeed(&["check", "mesh.obj", "--strict"]);
 }
 
 #[test]
-fn names_that_leave_the_folder_of_their_file() {
-    for name in ["../secret.mtl", "/etc/passwd", "sub/../../secret.mtl", "..\\secret.mtl", "C:\\secret.mtl"] {
-        let mesh = format!("{TRIANGLE}mtllib {name}\n");
-        Place::new(&[("mesh.obj", &mesh)]).refuse_scene("mesh.obj", &["mesh.obj:5: ", "outside"]);
-        let texture = format!("newmtl red\nmap_Kd {name}\n");
-        let place = Place::new(&[("mesh.obj", &format!("mtllib a.mtl\n{TRIANGLE}")), ("a.mtl", &texture)]);
-        place.refuse(&["render", "mesh.obj", "-o", "out.png"], &["a.mtl:2: ", "outside"]);
+fn names_that_leave_the_folder_of_their_file_are_read_only_where_that_is_allowed() {
+    let outside = Place::new(&[("secret.mtl", "newmtl red\nKd 1 0\n")]);
+    std::fs::create_dir(outside.path("model")).unwrap();
+    let absolute = outside.path("secret.mtl").display().to_string();
+    for name in ["../secret.mtl", "sub/../../secret.mtl", "..\\secret.mtl", &absolute] {
+        std::fs::write(outside.path("model/mesh.obj"), format!("{TRIANGLE}mtllib {name}\n")).unwrap();
+        std::fs::create_dir_all(outside.path("model/sub")).unwrap();
+        let check = ["check", "model/mesh.obj"];
+        let said = outside.succeed(&check).stderr;
+        assert!(said.contains("mesh.obj:5: material file") && said.contains("not found"), "{said}");
+        let said = outside.succeed(&[&check[..], &["--allow-outside"]].concat()).stderr;
+        assert!(said.contains("secret.mtl:2: Kd (Kd takes three numbers"), "{said}");
     }
 }
 

@@ -172,10 +172,12 @@ fn a_texture_of_every_kind_is_read() {
 fn a_picture_of_another_kind_is_named_with_the_kinds_that_are_read() {
     let says =
         |bytes: &[u8]| decode_texture("a", Cursor::new(bytes), &mut TextureBudget::default()).unwrap_err().message();
-    let named = |name: &str| format!("is a {name} image, which is not read; convert it to PNG, JPEG, EXR or HDR");
+    let named = |name: &str| {
+        format!("is a {name} image, which is not read; convert it to PNG, JPEG, TGA, BMP, TIFF, EXR or HDR")
+    };
     assert_eq!(says(b"RIFF\x10\0\0\0WEBPVP8 "), named("WebP"));
     assert_eq!(says(b"\xABKTX 20\xBB\r\n\x1A\n"), named("KTX"));
-    assert_eq!(says(b"GIF89a"), "is not a PNG, JPEG, EXR or HDR image; convert it to one of these");
+    assert_eq!(says(b"GIF89a"), "is not a PNG, JPEG, TGA, BMP, TIFF, EXR or HDR image; convert it to one of these");
 }
 
 #[test]

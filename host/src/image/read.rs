@@ -50,7 +50,7 @@ pub(super) fn open(path: &Path) -> Result<File> {
 /// What is none of these, damaged, truncated, or larger than a film may be. They name no file.
 pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
     distrusting(|| {
-        let kinds = Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Film::MAX_PIXELS };
+        let kinds = Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Film::MAX_PIXELS, otherwise: None };
         let check = |Size { width, height, .. }| Film::check_size(width, height).map(drop);
         let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, check)?;
         Film::from_pixels(width, height, linear_pixels(decoded))
@@ -86,6 +86,8 @@ pub(super) struct Kinds {
     pub most_per_pixel: fn(ImageFormat) -> Option<u64>,
     /// The most pixels that one may have.
     pub most_pixels: u64,
+    /// What an image is that begins as none of them does.
+    pub otherwise: Option<ImageFormat>,
 }
 
 /// What is known of an image before it is decoded.
@@ -103,7 +105,7 @@ pub(super) fn pixels_of(
     kinds: &Kinds,
     check: impl FnOnce(Size) -> Result<()>,
 ) -> Result<(Size, DynamicImage)> {
-    let guessed = ImageReader::new(&mut reader).with_guessed_format().map_err(unreadable)?.format();
+    let guessed = ImageReader::new(&mut reader).with_guessed_format().map_err(unreadable)?.format().or(kinds.otherwise);
     let kind = guessed.and_then(|format| Some((format, (kinds.most_per_pixel)(format)?)));
     let Some((format, most_per_pixel)) = kind else {
         return Err(Error::new(not_read(reader, kinds.names).map_err(unreadable)?));

@@ -50,7 +50,7 @@ impl Default for TextureBudget {
     }
 }
 
-/// Reads a PNG, JPEG, EXR or HDR file, whatever its name says it is, as [`decode_texture`].
+/// Reads a PNG, JPEG, BMP, TIFF, EXR or HDR file, or a TGA file by its ending, whatever else its name says it is, as [`decode_texture`].
 ///
 /// # Errors
 /// What is missing, unreadable, empty or not a regular file, and those of [`decode_texture`]. They name the file.
@@ -59,7 +59,7 @@ pub fn read_texture(path: &Path, budget: &mut TextureBudget) -> Result<Texture> 
     decode_texture(&name, BufReader::new(open(path)?), budget).map_err(|error| error.of(path))
 }
 
-/// Decodes a PNG, JPEG, EXR or HDR file, told apart by their first bytes. Of the first two the values stay what they are, in 8 bits;
+/// Decodes a PNG, JPEG, BMP, TIFF, EXR or HDR file, told apart by their first bytes, or a TGA file by the end of its name. Of all but EXR and HDR the values stay what they are, in 8 bits;
 /// light that is below 0 or NaN becomes 0, and infinite light the greatest number. Colours of an EXR with opacity, which are
 /// multiplied with it, are divided by it.
 ///
@@ -69,7 +69,10 @@ pub fn read_texture(path: &Path, budget: &mut TextureBudget) -> Result<Texture> 
 pub fn decode_texture(name: &str, reader: impl BufRead + Seek, budget: &mut TextureBudget) -> Result<Texture> {
     const MOST: u64 = Texture::MOST_SIDE as u64;
     distrusting(|| {
-        let kinds = Kinds { names: "PNG, JPEG, EXR or HDR", most_per_pixel: most_per_texel, most_pixels: MOST * MOST };
+        // Files of this kind have no first bytes to be told by.
+        let otherwise = name.to_ascii_lowercase().ends_with(".tga").then_some(ImageFormat::Tga);
+        let names = "PNG, JPEG, TGA, BMP, TIFF, EXR or HDR";
+        let kinds = Kinds { names, most_per_pixel: most_per_texel, most_pixels: MOST * MOST, otherwise };
         let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, |size| {
             Texture::check_size(size.width, size.height)?;
             budget.take(size)
@@ -80,7 +83,11 @@ pub fn decode_texture(name: &str, reader: impl BufRead + Seek, budget: &mut Text
 
 /// The most bytes that a texel may have in a file, if the format is one of ours.
 fn most_per_texel(format: ImageFormat) -> Option<u64> {
-    if format == ImageFormat::Jpeg { Some(8) } else { most_per_pixel(format) }
+    match format {
+        ImageFormat::Jpeg | ImageFormat::Tga | ImageFormat::Bmp => Some(8),
+        ImageFormat::Tiff => Some(32),
+        other => most_per_pixel(other),
+    }
 }
 
 fn texels(image: DynamicImage) -> Texels {

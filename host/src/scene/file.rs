@@ -1,8 +1,8 @@
-//! Opening what a user named, and what a file names in turn.
+//! Opening what a user named.
 
 use std::fs::{self, File};
 use std::io::{ErrorKind, Read};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::Unplaced;
 
@@ -48,51 +48,7 @@ pub fn explain(error: &std::io::Error) -> String {
     }
 }
 
-/// The path of a file that another file names, inside that file's `folder`.
-///
-/// Meshes and materials come from strangers, so a name that [`downward`] refuses or that passes through a link to
-/// the outside is refused.
-pub fn inside(folder: &Path, name: &str) -> Unplaced<PathBuf> {
-    let path = folder.join(downward(name)?);
-    match (path.canonicalize(), real_folder(folder).canonicalize()) {
-        (Ok(real), Ok(root)) if !real.starts_with(&root) => Err(outside(name)),
-        // What does not exist cannot lead outside; opening it reports it.
-        _ => Ok(path),
-    }
-}
-
-/// A name with slashes between folders, for the backslashes that Windows writes. One that is absolute or climbs
-/// with `..` is refused, even if it comes back.
-pub fn downward(name: &str) -> Unplaced<String> {
-    let slashed = name.replace('\\', "/");
-    let drive = slashed.as_bytes().get(1) == Some(&b':');
-    let step = |part: &str| match part {
-        ".." => -1,
-        "" | "." => 0,
-        _ => 1,
-    };
-    let mut depths = slashed.split('/').scan(0, |depth, part| {
-        *depth += step(part);
-        Some(*depth)
-    });
-    if drive || slashed.starts_with('/') || depths.any(|depth| depth < 0) {
-        return Err(outside(name));
-    }
-    if slashed.split('/').any(|part| part == "..") {
-        return Err(format!("{name:?} goes back by \"..\"; name the file without it"));
-    }
-    Ok(slashed)
-}
-
-fn outside(name: &str) -> String {
-    format!("{name:?} lies outside this file's folder; copy it next to this file")
-}
-
 /// The folder of a file; a bare name lies in the working directory.
 pub fn folder(path: &Path) -> &Path {
     path.parent().unwrap_or(Path::new(""))
-}
-
-fn real_folder(folder: &Path) -> &Path {
-    if folder.as_os_str().is_empty() { Path::new(".") } else { folder }
 }

@@ -7,11 +7,12 @@ use glam::Vec3;
 
 use super::budget::Budget;
 use super::gltf::{self, Gltf};
+use super::load::Loading;
 use super::map::Images;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
 use super::table::Table;
-use super::{LightUnit, Sphere, file, part, xyzr};
+use super::{Sphere, file, part, xyzr};
 use crate::error::Result;
 
 /// What a scene file has of which its meshes may have others.
@@ -42,11 +43,11 @@ pub struct Files<'p> {
 
 impl<'p> Files<'p> {
     /// The files that a scene in `folder` names, all within the budget.
-    pub fn new(folder: &'p Path, budget: Budget) -> Self {
+    pub fn new(folder: &'p Path, budget: Budget, loading: Loading) -> Self {
         Files {
             folder,
             budget,
-            images: Images::new(folder),
+            images: Images::new(folder, loading),
             is_covered: false,
             has: Own::default(),
             meshes: HashMap::new(),
@@ -75,8 +76,7 @@ impl<'p> Files<'p> {
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
             let mut obj = match is_gltf(path) {
-                // Lights are left out, so nobody asks for their unit.
-                true => meshes_of(path, gltf::load(path, Some(LightUnit::Gltf), self.budget)?, self.has),
+                true => meshes_of(path, gltf::load(path, self.budget, self.images.loading)?, self.has),
                 false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
             };
             self.warnings.append(&mut obj.warnings);

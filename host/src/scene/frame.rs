@@ -78,8 +78,8 @@ fn sphere(scene: &Scene) -> (DVec3, f64) {
     let spheres = scene.spheres.iter().map(|sphere| reach(sphere.center, sphere.radius));
     let disks = scene.disks.iter().map(|disk| reach(disk.center, disk.radius));
     let radius = vertices.chain(spheres).chain(disks).fold(0.0, f64::max);
-    // The eye must differ from the target once both are rounded to single precision.
-    let least = center.abs().max_element() * 1e-4;
+    // The eye must differ from the target once both are rounded to single precision: this is some sixteen of its steps.
+    let least = center.abs().max_element() * 1e-6;
     let radius = radius.max(least);
     (center, if radius > 1e-30 { radius } else { 1.0 })
 }

@@ -36,37 +36,50 @@ use crate::memory::Room;
 /// A path that is no readable `.toml`, `.gltf`, `.glb`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
 /// that names file, line and remedy.
 pub fn load(path: &Path) -> Result<(Scene, Vec<String>)> {
-    load_with(path, None)
+    load_as(path, Loading::default())
 }
 
-/// As [`load`], where the intensities of a glTF scene's lights are in `unit`. Without one they are in what its writer is known to
-/// use: candela and lux, or Blender's, of which a warning tells.
+/// How a scene is read.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Loading {
+    /// May models name material files, pictures and buffers outside their folders? Those of strangers should not.
+    pub allow_outside: bool,
+    /// In what unit the intensities of a glTF scene's lights are. Without one they are in what its writer is known to use: candela
+    /// and lux, or Blender's, of which a warning tells.
+    pub light_unit: Option<LightUnit>,
+    /// Which integrator will draw it, if that is known: under paths the light `Ke` of MTL files shines.
+    pub integrator: Option<Integrator>,
+}
+
+/// As [`load`], in this way.
 ///
 /// # Errors
-/// As [`load`].
-pub fn load_with(path: &Path, unit: Option<LightUnit>) -> Result<(Scene, Vec<String>)> {
-    load_within(path, unit, Budget::new(Room::now()))
+/// Those of [`load`].
+pub fn load_as(path: &Path, loading: Loading) -> Result<(Scene, Vec<String>)> {
+    load_within(path, Budget::new(Room::now()), loading)
 }
 
-/// As [`load`], of a scene within the budget.
-pub(super) fn load_within(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<(Scene, Vec<String>)> {
+/// As [`load_as`], of a scene within the budget.
+pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
         Ok((binary::load(path, budget)?, Vec::new()))
     } else if is(path, "toml") {
-        load_toml(path, budget)
+        load_toml(path, budget, loading)
     } else if is(path, "obj") || is(path, "ply") {
-        load_mesh(path, budget)
+        load_mesh(path, budget, loading)
     } else if is_gltf(path) {
-        load_gltf(path, unit, budget)
+        load_gltf(path, budget, loading)
+    } else if is(path, "gz") {
+        Err(Error::file(path, "it is compressed; unpack it (gunzip) and name what comes out"))
     } else {
         let fault = "unknown kind of scene; name a .toml, .gltf, .glb or .eyerays scene or an .obj or .ply mesh";
         Err(Error::file(path, fault))
     }
 }
 
-fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let mut images = Images::new(file::folder(path));
+fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
+    let mut images = Images::new(file::folder(path), loading);
     let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
@@ -79,8 +92,8 @@ fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
 /// What the camera sees behind a glTF scene without light, which the studio lights: a bright grey of 80 %.
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
-fn load_gltf(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let Gltf { obj, parts, lights, cameras, aspect } = gltf::load(path, unit, budget)?;
+fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
+    let Gltf { obj, parts, lights, cameras, aspect } = gltf::load(path, budget, loading)?;
     let (scene, warnings) = bare(path, obj)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
@@ -139,9 +152,9 @@ fn framed(path: &Path, mut scene: Scene) -> Result<Scene> {
     Ok(scene)
 }
 
-fn load_toml(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
+fn load_toml(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes, budget)
+    parse(path, &bytes, budget, loading)
 }
 
 /// Makes something of the tables of a TOML file.
@@ -162,11 +175,12 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
 }
 
 /// The scene of a TOML text, whose meshes are relative to the folder of `path`.
-pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene, Vec<String>)> {
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
     let mut table = Source::new(path, text(path, bytes)?).parse()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
-    let mut files = Files::new(file::folder(path), budget);
+    let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));
+    let mut files = Files::new(file::folder(path), budget, Loading { integrator, ..loading });
     files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
+use super::load::Loading;
 use super::range::Range;
 use super::table::Table;
 use super::texture::{Map, Maps, Placement, Texture, Wrap};
@@ -15,6 +16,8 @@ use crate::image::{TextureBudget, read_texture};
 /// Pictures already read, since materials share them.
 pub struct Images {
     folder: PathBuf,
+    /// How the meshes that name some of them are read.
+    pub loading: Loading,
     budget: TextureBudget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
@@ -22,9 +25,10 @@ pub struct Images {
 
 impl Images {
     /// The pictures that a file in `folder` names, and those that its meshes do.
-    pub fn new(folder: &Path) -> Self {
+    pub fn new(folder: &Path, loading: Loading) -> Self {
         Images {
             folder: folder.to_owned(),
+            loading,
             budget: TextureBudget::default(),
             textures: HashMap::new(),
             opacities: HashMap::new(),
@@ -53,16 +57,8 @@ impl Images {
     }
 
     /// The [opacity](Texture::opacity) of the picture of a path.
-    ///
-    /// # Errors
-    /// Those of [`read_texture`].
-    pub fn opacity_at(&mut self, path: &Path) -> Result<Arc<Texture>> {
-        if let Some(texture) = self.opacities.get(path) {
-            return Ok(texture.clone());
-        }
-        let texture = Arc::new(self.at(path)?.opacity());
-        self.opacities.insert(path.to_owned(), texture.clone());
-        Ok(texture)
+    pub fn opacity_of(&mut self, path: &Path, texture: &Texture) -> Arc<Texture> {
+        self.opacities.entry(path.to_owned()).or_insert_with(|| Arc::new(texture.opacity())).clone()
     }
 
     /// Every file that was read, in the order of their names.

@@ -8,7 +8,8 @@ use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
 
 use super::choice::choice;
-use super::options::{self, Read};
+use super::options;
+use super::reading::{Read, Reading};
 use super::{console, progress};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
@@ -55,6 +56,8 @@ pub(super) struct Bench {
     ways: Ways,
     #[command(flatten)]
     on: Devices,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// Which rays.
@@ -244,7 +247,7 @@ impl Bench {
     fn subjects(&self, outputs: &[Destination], quiet: bool) -> Result<Vec<Subject>> {
         let mut subjects: Vec<Subject> = Vec::new();
         for path in &self.scenes {
-            let scene = Read::scene(path, outputs, quiet)?.unbuilt();
+            let scene = Read::scene(path, outputs, self.reading.loading(None), quiet)?.unbuilt();
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
             subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }

@@ -6,10 +6,10 @@ use std::process::ExitCode;
 use clap::Args;
 use eyerays_bvh::Quality;
 
-use super::options::Read;
+use super::reading::{Read, Reading};
 use super::outline::Outline;
 use super::{console, plural, progress};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use eyerays::device_scene::DeviceScene;
 use eyerays::scene::Scene;
 use eyerays::view::View;
@@ -18,17 +18,26 @@ use eyerays::view::View;
 pub(super) struct Check {
     /// The scene
     scene: PathBuf,
+    /// Take every warning for an error
+    #[arg(long)]
+    strict: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let Read { scene, .. } = Read::scene(&self.scene, &[], quiet)?;
+        let Read { scene, warnings, .. } = Read::scene(&self.scene, &[], self.reading.loading(None), quiet)?;
         let named = |e: eyerays::error::Error| e.of(&self.scene);
         let quality = scene.hierarchy.as_ref().map_or(Quality::Fast, |kept| kept.quality().quality());
         let pack = || DeviceScene::new(&scene, scene.settings, quality);
         let packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
             View::new(&packed, camera).map_err(named)?;
+        }
+        if self.strict && warnings > 0 {
+            let fault = format!("{} under --strict; mend what they name, or drop it", plural(warnings, "warning"));
+            return Err(Error::file(&self.scene, fault));
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();

@@ -9,13 +9,13 @@ use std::slice;
 use clap::Args;
 
 use super::choice::choice;
-use super::options::Read;
+use super::reading::{Read, Reading};
 use super::{console, plural, progress};
 use crate::error::{Error, Result, printable};
 use crate::output::{self, Destination};
 use eyerays::device_scene;
 use eyerays::quality::Bvh;
-use eyerays::scene::{self, LightUnit, Scene};
+use eyerays::scene::{self, Scene};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -38,12 +38,11 @@ pub(super) struct Convert {
     /// Quality of the hierarchy that an .eyerays file holds; renderings of another quality build their own [default: medium]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>())]
     bvh: Option<Bvh>,
-    /// In what unit a glTF file has its lights [default: that of what wrote it]
-    #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>())]
-    light_unit: Option<LightUnit>,
     /// Leave the hierarchy out: a third of the bytes, built again by each command
     #[arg(long, conflicts_with = "bvh")]
     no_bvh: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Convert {
@@ -60,7 +59,8 @@ impl Convert {
         }
         let destination = Destination::File(path.to_owned());
         output::check_writable(&destination)?;
-        let Read { scene, .. } = Read::scene_of(&self.scene, self.light_unit, slice::from_ref(&destination), quiet)?;
+        let Read { scene, .. } =
+            Read::scene(&self.scene, slice::from_ref(&destination), self.reading.loading(None), quiet)?;
         output::check_apart(slice::from_ref(&destination), [&self.scene])?;
         if is_text {
             check_new(path)?;

@@ -8,7 +8,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::console;
-use super::options::{DeviceArgs, Effort, Read, View};
+use super::options::{DeviceArgs, Effort, View};
+use super::reading::{Read, Reading};
 use super::progress;
 use crate::error::{Error, Result};
 use crate::flip::Flip;
@@ -38,6 +39,7 @@ pub(super) struct Diff {
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
         "no_passthrough", "size", "samples", "sampler", "filter", "camera", "eye", "target", "fov", "bounces", "min_contribution",
         "cull", "no_compensation", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
+        "allow_outside", "light_unit",
     ])]
     second: Option<PathBuf>,
     /// Write a heat map of the difference (black where bits are equal)
@@ -61,6 +63,8 @@ pub(super) struct Diff {
     view: View,
     #[command(flatten)]
     effort: Effort,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 fn has_extension(file: &Path, names: &[&str]) -> bool {
@@ -129,7 +133,8 @@ impl Diff {
         }
         let gpu_choice = self.on.choice(DeviceWish::Gpu)?;
         let cpu_choice = eyerays::render::Choice { device: DeviceWish::Cpu, ..gpu_choice.clone() };
-        let read = Read::scene_of(&self.first, self.view.light_unit(), outputs, quiet)?;
+        let loading = self.reading.loading(self.effort.integrator());
+        let read = Read::scene(&self.first, outputs, loading, quiet)?;
         let loaded = self.view.pack(read, &self.effort, &gpu_choice, quiet)?;
         let (width, height) = loaded.packed.settings().size;
         let progress = progress::pixels(2 * u64::from(width) * u64::from(height), quiet || self.json);

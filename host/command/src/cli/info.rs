@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::choice::choice;
 use super::footprint::Footprint;
-use super::options::Read;
+use super::reading::{Read, Reading};
 use super::outline::Outline;
 use super::{console, progress};
 use crate::error::Result;
@@ -32,6 +32,8 @@ pub(super) struct Info {
     /// Print JSON
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 impl Info {
@@ -56,7 +58,7 @@ impl Info {
 
     /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
-        let scene = Read::scene(path, &[], quiet)?.unbuilt();
+        let scene = Read::scene(path, &[], self.reading.loading(None), quiet)?.unbuilt();
         let outline = Outline::of(&scene);
         let (mut rows, mut cost) = (Vec::new(), None);
         let qualities = self.bvh.as_ref().map_or(Bvh::VARIANTS, std::slice::from_ref);

@@ -13,6 +13,7 @@ mod info;
 mod options;
 mod outline;
 mod progress;
+mod reading;
 mod render;
 #[cfg(unix)]
 mod signals;

@@ -1,6 +1,5 @@
 //! What the commands that render share.
 
-use std::path::Path;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -10,9 +9,9 @@ use glam::Vec3;
 
 use super::choice::choice;
 use super::progress;
+use super::reading::Read;
 use super::transport::Transport;
 use crate::error::{Error, Result, within};
-use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::choice::Named;
 use eyerays::device_scene::DeviceScene;
@@ -20,7 +19,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Filter, LightUnit, Sampler, Scene, Settings};
+use eyerays::scene::{self, Camera, Filter, Integrator, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -44,9 +43,6 @@ pub(super) struct View {
     /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
-    /// In what unit a glTF file has its lights [default: that of what wrote it]
-    #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>())]
-    light_unit: Option<LightUnit>,
     /// Skip opaque triangles seen from behind [default: the scene's]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     cull: Option<bool>,
@@ -112,6 +108,11 @@ impl Effort {
         Ok(Effort { samples: None, spp: self.spp.or(Some(Settings::MOST_SPP)), ..self })
     }
 
+    /// The integrator that is asked for.
+    pub fn integrator(&self) -> Option<Integrator> {
+        self.transport.integrator()
+    }
+
     fn quality(&self) -> Quality {
         self.bvh.unwrap_or_default().quality()
     }
@@ -157,35 +158,6 @@ pub(super) struct DeviceArgs {
     pub no_passthrough: bool,
 }
 
-/// A scene that was read, from which file, and what that took.
-pub(super) struct Read<'a> {
-    pub path: &'a Path,
-    pub scene: Scene,
-    pub time: Duration,
-}
-
-impl<'a> Read<'a> {
-    /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
-    pub fn scene(path: &'a Path, outputs: &[Destination], quiet: bool) -> Result<Self> {
-        Read::scene_of(path, None, outputs, quiet)
-    }
-
-    /// Likewise, where a glTF file's lights are in a unit.
-    pub fn scene_of(path: &'a Path, unit: Option<LightUnit>, outputs: &[Destination], quiet: bool) -> Result<Self> {
-        let start = Instant::now();
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load_with(path, unit))?;
-        let time = start.elapsed();
-        super::warn(&warnings, quiet);
-        output::check_apart(outputs, &scene.files)?;
-        Ok(Read { path, scene, time })
-    }
-
-    /// The scene without a hierarchy that it may bring along, for those who measure what building takes.
-    pub fn unbuilt(self) -> Scene {
-        Scene { hierarchy: None, ..self.scene }
-    }
-}
-
 /// A scene, packed, and what that took.
 pub(super) struct Loaded {
     pub packed: DeviceScene,
@@ -195,11 +167,6 @@ pub(super) struct Loaded {
 }
 
 impl View {
-    /// The unit of a glTF file's lights, if one was asked for.
-    pub fn light_unit(&self) -> Option<LightUnit> {
-        self.light_unit
-    }
-
     /// Was a size asked for?
     pub fn has_size(&self) -> bool {
         self.size.is_some()
@@ -218,7 +185,7 @@ impl View {
         choice: &Choice,
         quiet: bool,
     ) -> Result<(Loaded, Scene, Camera)> {
-        let Read { path, mut scene, time: read_time } = read;
+        let Read { path, mut scene, time: read_time, .. } = read;
         let settings = self.settings(&scene, effort)?;
         if settings.transport.integrator != scene.settings.transport.integrator {
             scene::without_spare_lamps(&mut scene, settings.transport.integrator);

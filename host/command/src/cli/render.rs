@@ -11,7 +11,8 @@ use clap::Args;
 use super::choice::choice;
 use super::console;
 use super::exposure::{Brightness, Exposure};
-use super::options::{DeviceArgs, Effort, Read, View};
+use super::options::{DeviceArgs, Effort, View};
+use super::reading::{Read, Reading};
 use super::progress;
 use super::summary::{Summary, Times};
 use crate::error::Result;
@@ -72,6 +73,8 @@ pub(super) struct Render {
     #[command(flatten)]
     view: View,
     #[command(flatten)]
+    reading: Reading,
+    #[command(flatten)]
     effort: Effort,
 }
 
@@ -93,8 +96,9 @@ impl Render {
         let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
-        let read = Read::scene_of(&self.scene, self.view.light_unit(), slice::from_ref(&destination), quiet)?;
         let mut effort = self.effort.over(&preset);
+        let loading = self.reading.loading(effort.integrator());
+        let read = Read::scene(&self.scene, slice::from_ref(&destination), loading, quiet)?;
         if self.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }

@@ -8,7 +8,8 @@ use clap::{Args, ValueEnum};
 
 use super::choice::choice;
 use super::console;
-use super::options::{self, Effort, Read, View};
+use super::options::{self, Effort, View};
+use super::reading::{Read, Reading};
 use super::progress;
 use crate::error::{Error, Result, within};
 use crate::output::{self, Destination, write_error};
@@ -59,6 +60,8 @@ pub(super) struct Tradeoff {
     view: View,
     #[command(flatten)]
     on: Device,
+    #[command(flatten)]
+    reading: Reading,
 }
 
 /// What to recommend.
@@ -242,7 +245,7 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let scene = Read::scene_of(&self.scene, self.view.light_unit(), &self.destinations(), quiet)?.unbuilt();
+        let scene = Read::scene(&self.scene, &self.destinations(), self.reading.loading(None), quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);

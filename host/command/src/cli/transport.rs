@@ -43,6 +43,11 @@ impl Transport {
         }
     }
 
+    /// The integrator that is asked for.
+    pub fn integrator(&self) -> Option<Integrator> {
+        self.integrator
+    }
+
     /// With a scene's settings below.
     pub fn over(&self, own: &scene::Transport) -> Result<scene::Transport> {
         within("--roulette", self.roulette.as_slice(), 0..=Settings::MOST_BOUNCES)?;

@@ -2,11 +2,12 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use super::document::{Buffer, BufferView, Document, pick};
 use super::uri::{self, Target};
+use crate::scene::neighbours::Neighbours;
 use crate::scene::{Unplaced, file};
 
 /// All buffers of a file, read once.
@@ -35,18 +36,18 @@ impl Bytes<'_> {
 }
 
 impl<'f> Buffers<'f> {
-    /// Reads those of a file in `folder`, whose binary chunk is the first.
+    /// Reads those of a file, whose binary chunk is the first.
     ///
     /// # Errors
     /// A URI that leads nowhere, a buffer shorter than it claims, or more than [`file::MOST_MESH`] bytes in all.
-    pub fn read(document: &'f Document, chunk: Option<&'f [u8]>, folder: &Path) -> Unplaced<Self> {
+    pub fn read(document: &'f Document, chunk: Option<&'f [u8]>, neighbours: &Neighbours) -> Unplaced<Self> {
         let mut files = HashMap::new();
         let mut buffers = Buffers { views: &document.buffer_views, bytes: Vec::new(), paths: Vec::new() };
         let mut left = file::MOST_MESH;
         for (number, buffer) in document.buffers.iter().enumerate() {
             let owner = format!("buffers[{number}]");
             let chunk = chunk.filter(|_| number == 0);
-            let bytes = buffers.bytes_of(buffer, chunk, folder, &mut files, &mut left);
+            let bytes = buffers.bytes_of(buffer, chunk, neighbours, &mut files, &mut left);
             let bytes = bytes.map_err(|fault| format!("{owner}.uri: {fault}"))?;
             check_length(&bytes, buffer).map_err(|fault| format!("{owner}.byteLength: {fault}"))?;
             buffers.bytes.push(bytes);
@@ -58,14 +59,15 @@ impl<'f> Buffers<'f> {
         &mut self,
         buffer: &Buffer,
         chunk: Option<&'f [u8]>,
-        folder: &Path,
+        neighbours: &Neighbours,
         files: &mut HashMap<PathBuf, Arc<Vec<u8>>>,
         left: &mut u64,
     ) -> Unplaced<Bytes<'f>> {
         let Some(uri) = &buffer.uri else { return Ok(chunk.map_or(Bytes::Missing, Bytes::Chunk)) };
-        let path = match uri::follow(uri, folder)? {
+        let path = match uri::follow(uri, neighbours)? {
             Target::Bytes(bytes) => return Ok(Bytes::Own(Arc::new(bytes))),
             Target::File(path) => path,
+            Target::Missing(name) => return Err(uri::missing(&name)),
         };
         if let Some(bytes) = files.get(&path) {
             return Ok(Bytes::Own(bytes.clone()));

@@ -41,8 +41,9 @@ use self::picture::Pictures;
 use self::skin::Skins;
 use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
+use super::neighbours::Neighbours;
 use super::obj::Obj;
-use super::{Camera, Light, LightUnit, Mesh, Part, Unplaced, file};
+use super::{Camera, Light, LightUnit, Loading, Mesh, Part, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// A scene but for its surroundings.
@@ -67,30 +68,31 @@ pub struct Gltf {
 /// # Errors
 /// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
 /// triangle, or more than the budget has room for: each says where in the JSON.
-pub fn load(path: &Path, unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
+pub fn load(path: &Path, budget: Budget, loading: Loading) -> Result<Gltf> {
     let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
-    parse(path, &bytes, unit, budget)
+    parse(path, &bytes, budget, loading)
 }
 
 /// The scene of the bytes of a file.
-pub(super) fn parse(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Result<Gltf> {
-    read(path, bytes, unit, budget).map_err(|fault| Error::file(path, fault))
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<Gltf> {
+    read(path, bytes, budget, loading).map_err(|fault| Error::file(path, fault))
 }
 
-fn read(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> Unplaced<Gltf> {
+fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced<Gltf> {
+    let neighbours = &Neighbours::new(path, loading.allow_outside);
+    let unit = loading.light_unit;
     let container = container::open(bytes)?;
     let json = bytes.get(container.json).unwrap_or_default();
     budget.check_bytes(document::memory(json)).map_err(|why| format!("its JSON would {why}; split the file"))?;
     let document = document(json)?;
     let chunk = container.chunk.and_then(|range| bytes.get(range));
-    let folder = file::folder(path);
     let mut notes = Notes::new(path);
     extension::check(&document, &mut notes)?;
     if !document.animations.is_empty() {
         notes.once("animations", "animations are left out: nothing moves");
     }
     let nodes = node::walk(&document)?;
-    let buffers = Buffers::read(&document, chunk, folder)?;
+    let buffers = Buffers::read(&document, chunk, neighbours)?;
     let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
@@ -106,7 +108,7 @@ fn read(path: &Path, bytes: &[u8], unit: Option<LightUnit>, budget: Budget) -> U
              --light-unit gltf takes them as they are",
         );
     }
-    let (materials, pictures) = materials(&document, &buffers, &mesh, folder, &mut notes)?;
+    let (materials, pictures) = materials(&document, &buffers, &mesh, neighbours, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
     Ok(Gltf { obj, parts, lights, aspect: cameras.aspect, cameras: cameras.all })
@@ -224,10 +226,10 @@ fn materials(
     document: &Document,
     buffers: &Buffers,
     mesh: &Mesh,
-    folder: &Path,
+    neighbours: &Neighbours,
     notes: &mut Notes,
 ) -> Unplaced<Materials> {
-    let mut pictures = Pictures::new(document, buffers, folder);
+    let mut pictures = Pictures::new(document, buffers, neighbours);
     let mut is_used = vec![false; document.materials.len() + 1];
     for &material in &mesh.materials {
         if let Some(is_used) = is_used.get_mut(material as usize) {
@@ -240,6 +242,9 @@ fn materials(
         let name =
             of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));
         materials.push((name, fields));
+    }
+    if let Some(warning) = pictures.warning() {
+        notes.once("pictures", &warning);
     }
     Ok((materials, pictures.paths))
 }

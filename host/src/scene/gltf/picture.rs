@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 use std::io::Cursor;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 use glam::Vec2;
@@ -13,17 +13,20 @@ use super::notes::Notes;
 use super::shading::{Info, Transform};
 use super::uri::{self, Target};
 use crate::image::{TextureBudget, decode_texture, read_texture};
+use crate::scene::neighbours::Neighbours;
 use crate::scene::{Map, Placement, Texels, Texture, Unplaced, Wrap};
 
 /// The pictures that materials take, each decoded once.
 pub struct Pictures<'f> {
     document: &'f Document,
     buffers: &'f Buffers<'f>,
-    folder: &'f Path,
-    decoded: HashMap<usize, Arc<Texture>>,
+    neighbours: &'f Neighbours,
+    decoded: HashMap<usize, Option<Arc<Texture>>>,
     /// What was made of the glossiness of pictures, by the bits of what it was multiplied with.
     rough: Vec<Rough>,
     budget: TextureBudget,
+    first: Option<String>,
+    faults: usize,
     /// The files that were read for them.
     pub paths: Vec<PathBuf>,
 }
@@ -36,15 +39,17 @@ struct Rough {
 }
 
 impl<'f> Pictures<'f> {
-    /// Those of a document in `folder`.
-    pub fn new(document: &'f Document, buffers: &'f Buffers<'f>, folder: &'f Path) -> Self {
+    /// Those of a document that has these neighbours.
+    pub fn new(document: &'f Document, buffers: &'f Buffers<'f>, neighbours: &'f Neighbours) -> Self {
         Pictures {
             document,
             buffers,
-            folder,
+            neighbours,
             decoded: HashMap::new(),
             rough: Vec::new(),
             budget: TextureBudget::default(),
+            first: None,
+            faults: 0,
             paths: Vec::new(),
         }
     }
@@ -65,7 +70,7 @@ impl<'f> Pictures<'f> {
         let sampler = texture.sampler.map(|number| pick(&self.document.samplers, number, &of_sampler, "sampler"));
         let placement = placement(info, sampler.transpose()?, owner, notes)?;
         let texture = self.texture(source, &format!("textures[{number}].source"))?;
-        Ok(Some(Map { texture, placement }))
+        Ok(texture.map(|texture| Map { texture, placement }))
     }
 
     /// The map of roughness (green), for a map whose opacity times a factor is glossiness.
@@ -91,14 +96,31 @@ impl<'f> Pictures<'f> {
         Ok(Map { texture, placement: glossy.placement })
     }
 
-    fn texture(&mut self, number: usize, owner: &str) -> Unplaced<Arc<Texture>> {
+    /// The picture of this number, if there is one that can be read; surfaces are drawn without those that cannot.
+    fn texture(&mut self, number: usize, owner: &str) -> Unplaced<Option<Arc<Texture>>> {
         if let Some(texture) = self.decoded.get(&number) {
             return Ok(texture.clone());
         }
         let image = pick(&self.document.images, number, owner, "image")?;
-        let texture = Arc::new(self.decode(image, number)?);
+        let texture = match self.decode(image, number) {
+            Ok(texture) => Some(Arc::new(texture)),
+            Err(fault) => {
+                self.faults += 1;
+                self.first.get_or_insert(fault);
+                None
+            }
+        };
         self.decoded.insert(number, texture.clone());
         Ok(texture)
+    }
+
+    /// What is said of pictures that surfaces are drawn without.
+    pub fn warning(&self) -> Option<String> {
+        let more = match self.faults.checked_sub(1)? {
+            0 => String::new(),
+            more => format!(" and {more} more like it"),
+        };
+        self.first.as_ref().map(|first| format!("{first}{more}: surfaces are drawn without"))
     }
 
     fn decode(&mut self, image: &Image, number: usize) -> Unplaced<Texture> {
@@ -116,8 +138,9 @@ impl<'f> Pictures<'f> {
         let Some(uri) = &image.uri else {
             return Err(format!("{here}: there is neither a uri nor a bufferView; write the file again"));
         };
-        match uri::follow(uri, self.folder).map_err(|fault| format!("{here}.uri: {fault}"))? {
+        match uri::follow(uri, self.neighbours).map_err(|fault| format!("{here}.uri: {fault}"))? {
             Target::Bytes(bytes) => of_bytes(&bytes, "uri"),
+            Target::Missing(name) => Err(format!("{here}.uri: {}", uri::missing(&name))),
             Target::File(path) => {
                 let texture = read_texture(&path, &mut self.budget).map_err(|error| format!("{here}.uri: {error}"))?;
                 self.paths.push(path);

@@ -1,13 +1,14 @@
 //! URIs of buffers and images: data in the file itself, or the name of a file beside it.
 
 use std::borrow::Cow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use base64::Engine;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 
-use crate::scene::{Unplaced, file};
+use crate::scene::Unplaced;
+use crate::scene::neighbours::Neighbours;
 
 /// With or without padding: writers differ.
 const BASE64: GeneralPurpose = GeneralPurpose::new(
@@ -23,13 +24,15 @@ pub enum Target {
     Bytes(Vec<u8>),
     /// A file in the folder or below.
     File(PathBuf),
+    /// No file of this name that may be read.
+    Missing(String),
 }
 
-/// Follows a URI of a file in `folder`. The error does not say whose URI it is.
+/// Follows a URI of a file that has these neighbours. The error does not say whose URI it is.
 ///
 /// # Errors
-/// Data that is not base64, an address of a network or of another folder, or a name that is no text.
-pub fn follow(uri: &str, folder: &Path) -> Unplaced<Target> {
+/// Data that is not base64, an address of a network, or a name that is no text.
+pub fn follow(uri: &str, neighbours: &Neighbours) -> Unplaced<Target> {
     if uri.get(..5).is_some_and(|scheme| scheme.eq_ignore_ascii_case("data:")) {
         let data = &uri[5..];
         let data = if data.contains('%') { Cow::Owned(percent_decoded(data)?) } else { Cow::Borrowed(data) };
@@ -43,7 +46,12 @@ pub fn follow(uri: &str, folder: &Path) -> Unplaced<Target> {
     if name.is_empty() {
         return Err("the uri is empty; name a file".into());
     }
-    file::inside(folder, &name).map(Target::File)
+    Ok(neighbours.find(&name).map_or(Target::Missing(name), Target::File))
+}
+
+/// What is said of a file without which nothing can be drawn.
+pub fn missing(name: &str) -> String {
+    format!("{name:?}: there is no such file in this file's folder or below; copy it there, or add --allow-outside")
 }
 
 fn data_of(data: &str) -> Unplaced<Vec<u8>> {
@@ -56,7 +64,7 @@ fn data_of(data: &str) -> Unplaced<Vec<u8>> {
     BASE64.decode(text).map_err(|error| format!("the data URI is not base64 ({error}); write the file again"))
 }
 
-/// Does it begin as `http:` does? One letter is a drive, which is refused as a folder elsewhere.
+/// Does it begin as `http:` does? One letter is a drive.
 fn has_scheme(uri: &str) -> bool {
     let Some((scheme, _)) = uri.split_once(':') else { return false };
     let is_of_scheme = |c: char| c.is_ascii_alphanumeric() || "+-.".contains(c);

@@ -3,7 +3,7 @@
 //! | MTL | material |
 //! |---|---|
 //! | `Kd`, `Ks`, `Ns` | diffuse, specular, shininess |
-//! | `Ka` | ambient; as diffuse where absent |
+//! | `Ka` | nothing: exporters write white for every material, and ambient light answers to `Kd` |
 //! | `illum` 0, 1 | no highlight, whatever `Ks` says |
 //! | `illum` 3, 5 | a mirror: reflection is `Ks` |
 //! | `d` below 1, or `illum` 6, 7, or `illum` 4, 9 with `Ni` above 1 | glass |
@@ -11,18 +11,19 @@
 //! | `Pr`, `Pm` | roughness and metalness of what is no glass, which is then of microfacets, with `Kd` as its base |
 //! | `map_Kd` | texture of the base and diffuse colour, times `Kd`; white where that is absent or black |
 //! | `map_Ke` | texture of the emission, times `Ke`; white where that is absent or black |
-//! | `Ke` alone | nothing, since Whitted's model refuses what emits and exporters write it for much |
+//! | `Ke` alone | emission under paths; nothing under Whitted's model, which draws nothing that emits |
 //! | `map_d` | blended opacity, times `d`, which then makes no glass: the picture's alpha, or its red without |
 //! | `norm` | texture of normals, whose slopes `-bm` multiplies |
 //! | `map_Pr`, `map_Pm` | texture of roughness (green) and metalness (blue), where both name the same picture |
 //! | other pictures | nothing |
 //!
 //! Glass passes the share 1 - `d` of the light (all of it where `d` is 1 or absent), coloured by
-//! `Tf`, or where that is absent by the hue of `Kd` (its brightest channel passes in full). `Kd` and
-//! `Ka` are scaled by the share that does not pass. `Tr` is 1 - `d`. `illum` 4 alone does not make
+//! `Tf`, or where that is absent by the hue of `Kd` (its brightest channel passes in full). `Kd` is
+//! scaled by the share that does not pass. `Tr` is 1 - `d`, but for `Tr 1` without `d`, which much is written with that is
+//! opaque. `illum` 4 alone does not make
 //! glass, since exporters write it for everything.
 //!
-//! Of the options of pictures `-s`, `-o`, `-clamp` and `-bm` count. Their files lie in the material file's folder or below it.
+//! Of the options of pictures `-s`, `-o`, `-clamp` and `-bm` count. Their files lie in the material file's folder or below it: see [`Neighbours`].
 //!
 //! Files are read here and not by tobj, which panics on `Kd 1 0`.
 
@@ -39,8 +40,9 @@ use self::statements::Statements;
 use super::lines::{self, Lines, NOT_UTF8};
 use super::map::Images;
 use super::material::Fields;
+use super::neighbours::Neighbours;
 use super::tally::Tally;
-use super::{Unplaced, file};
+use super::{Integrator, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// The materials of a file in its order, by name, and what of it was ignored or clamped.
@@ -53,8 +55,8 @@ pub struct Library {
 /// Reads a material file and its pictures.
 ///
 /// # Errors
-/// A file that cannot be read, a line that says nothing sensible, or a damaged picture. Finite numbers out of range
-/// are clamped with a warning, since many exporters write them; without a picture that is missing a surface is drawn.
+/// A file that cannot be read. A line that makes no sense is left out with a warning, finite numbers out of range are clamped
+/// with one, since many exporters write them, and without a picture that is missing or damaged a surface is drawn.
 pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
     parse(path, &bytes, images)
@@ -63,12 +65,12 @@ pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Library> {
     let mut lines = Lines::new(path, bytes);
-    let mut reader = Reader::new(path);
+    let mut reader = Reader::new(path, images.loading.allow_outside);
     while let Some((number, line)) = lines.advance()? {
         reader.line = number;
-        reader.read(line).map_err(|fault| Error::line(path, number, fault))?;
+        reader.read(line);
     }
-    reader.finish(images)
+    Ok(reader.finish(images))
 }
 
 /// What a `newmtl` says.
@@ -80,6 +82,7 @@ struct New {
 
 struct Reader<'p> {
     path: &'p Path,
+    neighbours: Neighbours,
     line: usize,
     materials: Vec<(String, New)>,
     /// Pictures that there is no use for, that are not there, and that are of another format.
@@ -87,24 +90,44 @@ struct Reader<'p> {
     missing: Tally,
     foreign: Tally,
     clamped: Tally,
+    /// Lines that make no sense.
+    bad: Tally,
     nameless: Tally,
     latin: Tally,
 }
 
 impl<'p> Reader<'p> {
-    fn new(path: &'p Path) -> Self {
-        let [unused, missing, foreign, clamped, nameless, latin] = std::array::from_fn(|_| Tally::default());
-        Reader { path, line: 0, materials: Vec::new(), unused, missing, foreign, clamped, nameless, latin }
+    fn new(path: &'p Path, allow_outside: bool) -> Self {
+        let neighbours = Neighbours::new(path, allow_outside);
+        let [unused, missing, foreign, clamped, bad, nameless, latin] = std::array::from_fn(|_| Tally::default());
+        Reader {
+            path,
+            neighbours,
+            line: 0,
+            materials: Vec::new(),
+            unused,
+            missing,
+            foreign,
+            clamped,
+            bad,
+            nameless,
+            latin,
+        }
     }
 
-    fn read(&mut self, line: &[u8]) -> Unplaced<()> {
+    fn read(&mut self, line: &[u8]) {
         let text = lines::text(line);
         if let Cow::Owned(_) = text {
             self.latin.add(self.line, "line");
         }
-        let Some((key, rest)) = lines::split(&text) else {
-            return Ok(());
-        };
+        if let Some((key, rest)) = lines::split(&text)
+            && let Err(fault) = self.follow(key, rest)
+        {
+            self.bad.add(self.line, format_args!("{key} ({fault})"));
+        }
+    }
+
+    fn follow(&mut self, key: &str, rest: &str) -> Unplaced<()> {
         match key {
             "newmtl" => {
                 if rest.is_empty() {
@@ -114,7 +137,7 @@ impl<'p> Reader<'p> {
                 self.materials.push(new);
                 Ok(())
             }
-            "Ka" | "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "Pr" | "Pm" | "illum" => {
+            "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "Pr" | "Pm" | "illum" => {
                 let mut now = self.latest(key)?.numbers;
                 self.statement(&mut now, key, rest)?;
                 self.latest(key)?.numbers = now;
@@ -134,8 +157,14 @@ impl<'p> Reader<'p> {
                 *of = picture;
                 Ok(())
             }
-            "bump" | "disp" | "decal" | "refl" => self.ignore(key, rest),
-            _ if key.starts_with("map_") => self.ignore(key, rest),
+            "bump" | "disp" | "decal" | "refl" => {
+                self.unused.add(self.line, key);
+                Ok(())
+            }
+            _ if key.starts_with("map_") => {
+                self.unused.add(self.line, key);
+                Ok(())
+            }
             _ => Ok(()),
         }
     }
@@ -148,7 +177,6 @@ impl<'p> Reader<'p> {
 
     fn statement(&mut self, now: &mut Statements, key: &str, rest: &str) -> Unplaced<()> {
         match key {
-            "Ka" => now.ka = Some(self.colour(key, rest)?),
             "Kd" => now.kd = Some(self.colour(key, rest)?),
             "Ks" => now.ks = Some(self.colour(key, rest)?),
             "Ke" => now.ke = Some((self.light(key, rest)?, self.line)),
@@ -158,7 +186,7 @@ impl<'p> Reader<'p> {
             "d" => now.d = Some(self.number(key, without_halo(rest), 0.0, 1.0)?),
             "Pr" => now.pr = Some(self.number(key, rest, 0.0, 1.0)?),
             "Pm" => now.pm = Some(self.number(key, rest, 0.0, 1.0)?),
-            "Tr" => now.d = now.d.or(Some(1.0 - self.number(key, rest, 0.0, 1.0)?)),
+            "Tr" => now.tr = Some((self.number(key, rest, 0.0, 1.0)?, self.line)),
             _ => {
                 let model = lines::words(rest).next().and_then(|word| word.parse().ok());
                 now.illum = model.filter(|&model| model <= 10);
@@ -206,11 +234,12 @@ impl<'p> Reader<'p> {
     /// The picture of a statement, if there is one that can be read.
     fn picture(&mut self, key: &str, rest: &str) -> Unplaced<Option<Picture>> {
         let Statement { name, placement, strength } = Statement::parse(rest)?;
-        let path = file::inside(file::folder(self.path), name)?;
         let what = format_args!("{key} {name:?}");
-        if name.is_empty() || !path.exists() {
+        let Some(path) = self.neighbours.find(name) else {
             self.missing.add(self.line, what);
-        } else if !picture::is_known(&path) {
+            return Ok(None);
+        };
+        if !picture::is_known(&path) {
             self.foreign.add(self.line, what);
         } else {
             return Ok(Some(Picture { path, placement, strength, line: self.line }));
@@ -218,37 +247,42 @@ impl<'p> Reader<'p> {
         Ok(None)
     }
 
-    /// A picture that is not opened; but a file that points out of its folder is not to be trusted.
-    /// Options come before the name, and the name may hold blanks: no word may lead outside.
-    fn ignore(&mut self, key: &str, rest: &str) -> Unplaced<()> {
-        self.unused.add(self.line, key);
-        rest.split_whitespace().try_for_each(|name| file::downward(name).map(drop))
-    }
-
-    fn finish(self, images: &mut Images) -> Result<Library> {
+    fn finish(self, images: &mut Images) -> Library {
         let path = self.path;
-        let (mut apart, mut unlit) = (Tally::default(), Tally::default());
+        let mut said = picture::Said::default();
+        let (mut unlit, mut opaque) = (Tally::default(), Tally::default());
+        let shines = images.loading.integrator == Some(Integrator::Path);
         let mut materials = Vec::with_capacity(self.materials.len());
-        for (name, New { numbers, pictures }) in self.materials {
-            let (maps, alpha) = pictures.maps(path, images, &mut apart)?;
-            if let Some(line) = numbers.unlit(&maps) {
+        for (name, New { mut numbers, pictures }) in self.materials {
+            if let Some(line) = numbers.take_transparency() {
+                opaque.add(line, "Tr 1");
+            }
+            let (maps, alpha) = pictures.maps(images, &mut said);
+            if let Some(line) = numbers.unlit(&maps).filter(|_| !shines) {
                 unlit.add(line, "Ke");
             }
-            materials.push((name, numbers.fields(maps, alpha)));
+            materials.push((name, numbers.fields(maps, alpha, shines)));
         }
         let warnings = [
             self.latin.warn(path, NOT_UTF8),
             self.nameless.warn(path, "without a name: usemtl without a name means it"),
-            self.missing.warn(path, "not found: surfaces are drawn without"),
-            self.foreign.warn(path, "is no .png, .jpg, .exr or .hdr: surfaces are drawn without; convert it"),
+            self.bad.warn(path, "left out"),
+            self.missing.warn(path, MISSING),
+            self.foreign.warn(path, picture::FOREIGN),
+            said.damaged.warn(path, "left out: surfaces are drawn without"),
             self.unused.warn(path, UNUSED),
-            apart.warn(path, "ignored: roughness and metalness are read of one picture that both name"),
-            unlit.warn(path, "ignored: give the material an emission in a scene file"),
+            said.apart.warn(path, "ignored: roughness and metalness are read of one picture that both name"),
+            unlit.warn(path, "ignored: add --integrator path, or give the material an emission in a scene file"),
+            opaque.warn(path, "without d taken for opaque, as many exporters mean it; write d 0 for what is not there"),
             self.clamped.warn(path, "out of range: the nearest value is used"),
         ];
-        Ok(Library { materials, warnings: warnings.into_iter().flatten().collect() })
+        Library { materials, warnings: warnings.into_iter().flatten().collect() }
     }
 }
+
+/// What is said of pictures that are not there.
+const MISSING: &str = "not found: surfaces are drawn without. Only this folder and those below are looked through, \
+    unless --allow-outside is given";
 
 fn numbers(key: &str, rest: &str) -> Unplaced<Vec<f32>> {
     lines::words(rest).map(|word| lines::number(key, word)).collect()

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use super::super::map::Images;
 use super::super::tally::Tally;
 use super::super::{Alpha, Map, Maps, Placement, Unplaced, Wrap, lines};
-use crate::error::{Error, Result};
 
 /// What is said of pictures for which there is no use.
 pub(super) const UNUSED: &str = "ignored: pictures are drawn of Kd, Ke, d, norm, and Pr and Pm together";
+/// What is said of pictures of other kinds.
+pub(super) const FOREIGN: &str =
+    "is no .png, .jpg, .tga, .bmp, .tif, .exr or .hdr: surfaces are drawn without; convert it";
 /// Endings of names of pictures that are read.
-const ENDINGS: [&str; 5] = ["png", "jpg", "jpeg", "exr", "hdr"];
+const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "exr", "hdr", "tga", "bmp", "tif", "tiff"];
 
 /// A picture that a statement names, and how it takes it.
 #[derive(Clone, PartialEq)]
@@ -32,6 +34,15 @@ pub(super) struct Pictures {
     pub normal: Option<Picture>,
     pub roughness: Option<Picture>,
     pub metallic: Option<Picture>,
+}
+
+/// What is said of the pictures of a file.
+#[derive(Default)]
+pub(super) struct Said {
+    /// Maps of roughness and metalness that are not one picture.
+    pub apart: Tally,
+    /// Pictures that cannot be read.
+    pub damaged: Tally,
 }
 
 /// What a statement says: its options come before the name, which may hold blanks.
@@ -114,28 +125,27 @@ pub(super) fn is_known(path: &Path) -> bool {
 }
 
 impl Pictures {
-    /// The maps of them, and the alpha of one whose opacity is its base's. `apart` counts maps of roughness and metalness that
-    /// are not one picture.
-    ///
-    /// # Errors
-    /// A picture that is damaged.
-    pub fn maps(self, path: &Path, images: &mut Images, apart: &mut Tally) -> Result<(Maps, Option<Alpha>)> {
-        let mut map = |picture: &Picture| {
-            let texture =
-                images.at(&picture.path).map_err(|error| Error::line(path, picture.line, error.to_string()))?;
-            Ok::<_, Error>(Map { texture, placement: picture.placement })
+    /// The maps of them, and the alpha of one whose opacity is its base's.
+    pub fn maps(self, images: &mut Images, said: &mut Said) -> (Maps, Option<Alpha>) {
+        let Said { apart, damaged } = said;
+        let mut map = |picture: &Picture| match images.at(&picture.path) {
+            Ok(texture) => Some(Map { texture, placement: picture.placement }),
+            Err(fault) => {
+                damaged.add(picture.line, fault);
+                None
+            }
         };
         let mut maps = Maps {
-            base: self.base.as_ref().map(&mut map).transpose()?,
-            emission: self.emission.as_ref().map(&mut map).transpose()?,
-            normal: self.normal.as_ref().map(&mut map).transpose()?,
+            base: self.base.as_ref().and_then(&mut map),
+            emission: self.emission.as_ref().and_then(&mut map),
+            normal: self.normal.as_ref().and_then(&mut map),
             normal_scale: self.normal.as_ref().map_or(0.0, |normal| normal.strength),
             ..Maps::default()
         };
         let same = |a: &Picture, b: &Picture| (&a.path, a.placement) == (&b.path, b.placement);
         match (&self.roughness, &self.metallic) {
             (Some(roughness), Some(metallic)) if same(roughness, metallic) => {
-                maps.metallic_roughness = Some(map(roughness)?);
+                maps.metallic_roughness = map(roughness);
             }
             (roughness, metallic) => {
                 let keys = [(roughness, "map_Pr"), (metallic, "map_Pm")];
@@ -144,13 +154,13 @@ impl Pictures {
                 lines.iter().for_each(|(line, key)| apart.add(*line, key));
             }
         }
-        let Some(opacity) = &self.opacity else { return Ok((maps, None)) };
-        let texture = map(opacity)?.texture;
+        let Some(opacity) = &self.opacity else { return (maps, None) };
+        let Some(Map { texture, placement }) = map(opacity) else { return (maps, None) };
         if texture.has_opacity() && self.base.is_some_and(|base| same(&base, opacity)) {
-            return Ok((maps, Some(Alpha::Blend)));
+            return (maps, Some(Alpha::Blend));
         }
-        let texture = images.opacity_at(&opacity.path)?;
-        maps.opacity = Some(Map { texture, placement: opacity.placement });
-        Ok((maps, Some(Alpha::Blend)))
+        let texture = images.opacity_of(&opacity.path, &texture);
+        maps.opacity = Some(Map { texture, placement });
+        (maps, Some(Alpha::Blend))
     }
 }

@@ -7,7 +7,6 @@ use super::super::{Alpha, Maps, material::Fields, physical};
 /// The numbers of one `newmtl`, by the statements' keys.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Statements {
-    pub ka: Option<Vec3>,
     pub kd: Option<Vec3>,
     pub ks: Option<Vec3>,
     /// And its line.
@@ -16,6 +15,8 @@ pub(super) struct Statements {
     pub ns: Option<f32>,
     pub ni: Option<f32>,
     pub d: Option<f32>,
+    /// 1 - d, and its line.
+    pub tr: Option<(f32, usize)>,
     pub pr: Option<f32>,
     pub pm: Option<f32>,
     pub illum: Option<u8>,
@@ -27,14 +28,25 @@ impl Statements {
         self.ke.filter(|&(ke, _)| ke != Vec3::ZERO && maps.emission.is_none()).map(|(_, line)| line)
     }
 
-    /// The material, with these maps.
-    pub fn fields(mut self, maps: Maps, alpha: Option<Alpha>) -> Fields {
+    /// Takes `Tr` where there is no `d`. Returns the line of one by which nothing would be seen, which is written for opaque.
+    pub fn take_transparency(&mut self) -> Option<usize> {
+        let (tr, line) = self.tr.filter(|_| self.d.is_none())?;
+        if tr < 1.0 {
+            self.d = Some(1.0 - tr);
+            return None;
+        }
+        Some(line)
+    }
+
+    /// The material, with these maps; does `Ke` shine without a picture of it?
+    pub fn fields(mut self, maps: Maps, alpha: Option<Alpha>, shines: bool) -> Fields {
         // A picture on black is none, and exporters write black beside pictures.
         let white = |colour: Option<Vec3>| colour.filter(|&colour| colour != Vec3::ZERO).or(Some(Vec3::ONE));
         if maps.base.is_some() {
             self.kd = white(self.kd);
         }
         let emission = maps.emission.as_ref().and_then(|_| white(self.ke.map(|(ke, _)| ke)));
+        let emission = emission.or(self.ke.filter(|(ke, _)| shines && *ke != Vec3::ZERO).map(|(ke, _)| ke));
         let opacity = alpha.and(self.d);
         if alpha.is_some() {
             // What is cut out is no glass.
@@ -42,7 +54,6 @@ impl Statements {
         }
         let rough = maps.metallic_roughness.as_ref().map(|_| 1.0);
         let surface = Fields {
-            ambient: self.ka,
             diffuse: self.kd,
             specular: self.ks.filter(|_| !matches!(self.illum, Some(0 | 1))),
             shininess: self.ns,
@@ -84,7 +95,6 @@ impl Statements {
         let hue = if brightest > 0.0 { kd / brightest } else { Vec3::ONE };
         let bending = matches!(self.illum, Some(4 | 6 | 7 | 9));
         Fields {
-            ambient: self.ka.map(|ka| ka * (1.0 - share)),
             diffuse: Some(kd * (1.0 - share)),
             transmission: Some(self.tf.unwrap_or(hue) * share),
             ior: Some(self.ni.unwrap_or(if bending { 1.5 } else { 1.0 })),

@@ -5,6 +5,8 @@ use std::path::Path;
 
 use glam::{DVec3, Vec2, Vec3};
 
+use crate::image::srgb_to_linear;
+
 use super::super::Unplaced;
 use super::super::lines::{self, Lines, NOT_UTF8};
 use super::super::normal::unit;
@@ -60,6 +62,8 @@ pub(super) struct Event {
 pub(super) enum About {
     Material(String),
     Libraries(String),
+    /// The smoothing group of the next faces, 0 for flat ones.
+    Smoothing(u32),
 }
 
 /// What is ignored of a file.
@@ -67,7 +71,9 @@ pub(super) enum About {
 pub(super) struct Notes {
     latin: Tally,
     unknown: Tally,
+    bad: Tally,
     absent: Tally,
+    lost: Tally,
     crossing: Tally,
 }
 
@@ -76,22 +82,30 @@ impl Notes {
     pub fn append(&mut self, notes: Notes, faces: Faces) {
         self.latin.append(notes.latin);
         self.unknown.append(notes.unknown);
+        self.bad.append(notes.bad);
         self.absent.append(faces.absent);
+        self.lost.append(faces.lost);
         self.crossing.append(faces.crossing);
     }
 
-    /// The faces that cannot be drawn, if there were any.
-    pub fn left_out(&self, path: &Path) -> Option<Error> {
+    /// Why there is no face, if any was left out.
+    pub fn no_face(&self, path: &Path) -> Option<Error> {
+        self.bad.fault(path, "left out, and no face is left").or_else(|| self.crossing(path))
+    }
+
+    fn crossing(&self, path: &Path) -> Option<Error> {
         self.crossing.fault(path, "left out: the outline crosses itself; split it into simple polygons")
     }
 
     /// One warning each.
-    pub fn warnings(&self, path: &Path) -> [Option<String>; 4] {
+    pub fn warnings(&self, path: &Path) -> [Option<String>; 6] {
         [
             self.latin.warn(path, NOT_UTF8),
             self.unknown.warn(path, "ignored: only polygons are read"),
-            self.absent.warn(path, "ignored: none precede the face"),
-            self.left_out(path).map(|fault| fault.to_string()),
+            self.bad.warn(path, "left out"),
+            self.absent.warn(path, "ignored: none of this number precedes the face"),
+            self.lost.warn(path, "left out: a vertex of it makes no sense"),
+            self.crossing(path).map(|fault| fault.to_string()),
         ]
     }
 }
@@ -99,13 +113,15 @@ impl Notes {
 /// What a block holds.
 pub(super) struct Block {
     pub positions: Vec<Vec3>,
+    /// Linear RGB of the vertices, white for those without; none at all as long as no vertex has one.
+    pub colours: Vec<Vec3>,
     pub normals: Vec<Vec3>,
     /// Of textures, down.
     pub coordinates: Vec<Vec2>,
     pub faces: Faces,
     pub events: Vec<Event>,
     pub notes: Notes,
-    /// What makes no sense ends a block.
+    /// What cannot be read ends a block.
     pub fault: Option<Error>,
 }
 
@@ -114,6 +130,7 @@ impl Block {
     pub fn read(path: &Path, text: &[u8], before: Before) -> Self {
         let mut block = Block {
             positions: Vec::new(),
+            colours: Vec::new(),
             normals: Vec::new(),
             coordinates: Vec::new(),
             faces: Faces::after(before),
@@ -121,46 +138,68 @@ impl Block {
             notes: Notes::default(),
             fault: None,
         };
-        block.fault = block.lines(Lines::after(path, text, before.lines), path).err();
+        block.fault = block.lines(Lines::after(path, text, before.lines)).err();
         block
     }
 
-    fn lines(&mut self, mut lines: Lines<'_, &[u8]>, path: &Path) -> Result<()> {
+    fn lines(&mut self, mut lines: Lines<'_, &[u8]>) -> Result<()> {
         while let Some((number, line)) = lines.advance()? {
-            self.line(number, line).map_err(|fault| Error::line(path, number, fault))?;
+            self.line(number, line);
         }
         Ok(())
     }
 
-    fn line(&mut self, line: usize, bytes: &[u8]) -> Unplaced<()> {
+    fn line(&mut self, line: usize, bytes: &[u8]) {
         let text = lines::text(bytes);
         if let Cow::Owned(_) = text {
             self.notes.latin.add(line, "line");
         }
         let Some((key, rest)) = lines::split(&text) else {
-            return Ok(());
+            return;
         };
         let event = |what| Event { line, face: self.faces.len(), what };
         match key {
             "v" => {
-                self.positions.push(position(rest)?);
+                // The place of one that makes no sense is kept: faces count them.
+                let position = self.good(line, key, position(rest)).unwrap_or(Vec3::NAN);
+                self.positions.push(position);
+                self.add_colour(rest);
                 self.faces.before.positions += 1;
             }
             "vn" => {
-                self.normals.push(normal(rest)?);
+                let normal = self.good(line, key, normal(rest)).unwrap_or(Vec3::ZERO);
+                self.normals.push(normal);
                 self.faces.before.normals += 1;
             }
             "vt" => {
-                self.coordinates.push(coordinates(rest)?);
+                let coordinates = self.good(line, key, coordinates(rest)).unwrap_or(Vec2::ZERO);
+                self.coordinates.push(coordinates);
                 self.faces.before.textures += 1;
             }
-            "f" | "fo" => self.faces.read(line, rest)?,
+            "f" | "fo" => {
+                let read = self.faces.read(line, rest);
+                self.good(line, key, read);
+            }
             "usemtl" => self.events.push(event(About::Material(rest.to_owned()))),
             "mtllib" => self.events.push(event(About::Libraries(rest.to_owned()))),
-            "o" | "g" | "s" | "l" | "p" => {}
+            "s" => self.events.push(event(About::Smoothing(group(rest)))),
+            "o" | "g" | "l" | "p" => {}
             _ => self.notes.unknown.add(line, format_args!("statement {key:?}")),
         }
-        Ok(())
+    }
+
+    /// What a statement says, or nothing where it makes no sense.
+    fn good<T>(&mut self, line: usize, key: &str, read: Unplaced<T>) -> Option<T> {
+        read.map_err(|fault| self.notes.bad.add(line, format_args!("{key} ({fault})"))).ok()
+    }
+
+    /// The colour of the vertex that was read last, if it has one.
+    fn add_colour(&mut self, rest: &str) {
+        let colour = colour(rest);
+        if colour.is_some() || !self.colours.is_empty() {
+            self.colours.resize(self.positions.len() - 1, Vec3::ONE);
+            self.colours.push(colour.unwrap_or(Vec3::ONE));
+        }
     }
 
     /// Ends the block at the line from which on so many of its triangles and vertices do not fit.
@@ -196,6 +235,25 @@ fn position(rest: &str) -> Unplaced<Vec3> {
     // What follows is a weight or a colour.
     let [x, y, z] = three("v", rest)?.map(|word| lines::number("v", word));
     Ok(Vec3::new(x?, y?, z?))
+}
+
+/// Three numbers behind a position are an sRGB colour (a single one is a weight), which stands for itself if it is one.
+fn colour(rest: &str) -> Option<Vec3> {
+    let mut words = lines::words(rest).skip(3);
+    let rgb = [words.next()?, words.next()?, words.next()?];
+    let mut linear = [0.0; 3];
+    for (word, to) in rgb.into_iter().zip(&mut linear) {
+        *to = srgb_to_linear(f64::from(lines::number("v", word).ok()?.clamp(0.0, 1.0))) as f32;
+    }
+    Some(linear.into())
+}
+
+/// A smoothing group; `off` is 0.
+fn group(rest: &str) -> u32 {
+    match lines::words(rest).next() {
+        Some("on") => 1,
+        word => word.and_then(|word| word.parse().ok()).unwrap_or(0),
+    }
 }
 
 /// A normal of unit length, or zero.

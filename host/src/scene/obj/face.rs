@@ -30,6 +30,8 @@ pub(super) struct Faces {
     pub triangles: Vec<[Corner; 3]>,
     /// What corners name of which there is nothing.
     pub absent: Tally,
+    /// Faces of vertices that make no sense.
+    pub lost: Tally,
     /// Faces that no triangles fill.
     pub crossing: Tally,
     corners: Vec<Corner>,
@@ -43,6 +45,7 @@ impl Faces {
             before,
             triangles: Vec::new(),
             absent: Tally::default(),
+            lost: Tally::default(),
             crossing: Tally::default(),
             corners: Vec::new(),
             faces: Vec::new(),
@@ -62,31 +65,42 @@ impl Faces {
     /// Checks the face on a line.
     ///
     /// # Errors
-    /// Fewer than three corners, or a corner that names what there is not.
+    /// Fewer than three corners, or a corner that names what there is not. The face counts, and has no corners.
     pub fn read(&mut self, line: usize, rest: &str) -> Unplaced<()> {
+        let first = self.corners.len();
+        let read = self.corners(line, rest);
+        if read.is_err() {
+            self.corners.truncate(first);
+        }
+        self.faces.push(Face { line, corners: self.corners.len(), triangles: 0 });
+        read
+    }
+
+    fn corners(&mut self, line: usize, rest: &str) -> Unplaced<()> {
         let first = self.corners.len();
         for word in lines::words(rest) {
             let corner = self.corner(line, word)?;
             self.corners.push(corner);
         }
-        let count = self.corners.len() - first;
-        if count < 3 {
-            return Err(format!("a face has at least 3 corners, not {count}; remove it"));
+        match self.corners.len() - first {
+            count @ 0..3 => Err(format!("a face has at least 3 corners, not {count}; remove it")),
+            _ => Ok(()),
         }
-        self.faces.push(Face { line, corners: self.corners.len(), triangles: 0 });
-        Ok(())
     }
 
     /// Cuts all into triangles, given the positions up to the end of the block.
     pub fn cut(&mut self, positions: &[Vec3], effort: &Effort) {
-        self.triangles.reserve(self.corners.len() - 2 * self.faces.len());
+        self.triangles.reserve(self.corners.len().saturating_sub(2 * self.faces.len()));
         let (mut first, mut places): (usize, Vec<DVec3>) = (0, Vec::new());
         for face in &mut self.faces {
             let corners = &self.corners[first..face.corners];
             first = face.corners;
-            if let [a, b, c] = *corners {
+            let is_lost = |corner: &Corner| !positions[corner.position as usize - 1].is_finite();
+            if corners.iter().any(is_lost) {
+                self.lost.add(face.line, "face");
+            } else if let [a, b, c] = *corners {
                 self.triangles.push([a, b, c]);
-            } else {
+            } else if !corners.is_empty() {
                 places.clear();
                 places.extend(corners.iter().map(|corner| positions[corner.position as usize - 1].as_dvec3()));
                 match effort.cut(&places) {
@@ -116,15 +130,15 @@ impl Faces {
         Ok(Corner { position, normal, coordinates })
     }
 
-    /// As [`index`], of what a face can do without: exporters number normals that they do not write.
+    /// As [`index`], of what a face can do without: exporters number normals that they do not write, or all by 0.
     fn extra(&mut self, line: usize, what: &str, word: Option<&str>, count: usize) -> Unplaced<u32> {
-        match word {
-            Some(word) if count == 0 && word.parse().is_ok_and(|number: i64| number != 0) => {
+        index(what, word, count).or_else(|fault| match word {
+            Some(word) if word.parse::<i64>().is_ok() => {
                 self.absent.add(line, format_args!("{what} {word}"));
                 Ok(0)
             }
-            _ => index(what, word, count),
-        }
+            _ => Err(fault),
+        })
     }
 }
 

@@ -5,10 +5,11 @@ use std::path::{Path, PathBuf};
 
 use super::super::map::Images;
 use super::super::material::{DEFAULT, Fields};
+use super::super::mtl;
+use super::super::neighbours::Neighbours;
 use super::super::tally::Tally;
-use super::super::{file, mtl};
 use super::block::About;
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// Materials by number, and the files that they are from.
 pub(super) struct Materials {
@@ -29,11 +30,15 @@ pub(super) struct Libraries<'p> {
     /// The mesh file.
     path: &'p Path,
     images: &'p mut Images,
+    neighbours: Neighbours,
     materials: Vec<(String, Fields)>,
     by_name: HashMap<String, u32>,
+    /// Numbers of materials that no file had when they were named; one may still come.
+    waiting: HashMap<String, u32>,
+    /// Where they were named, and their numbers.
+    named: Vec<(usize, u32)>,
     paths: HashSet<PathBuf>,
     missing: Tally,
-    lost: Tally,
     nameless: Tally,
     warnings: Vec<String>,
 }
@@ -50,12 +55,14 @@ impl<'p> Libraries<'p> {
     pub fn new(path: &'p Path, images: &'p mut Images) -> Self {
         Libraries {
             path,
+            neighbours: Neighbours::new(path, images.loading.allow_outside),
             images,
             materials: vec![(DEFAULT.to_owned(), Fields::default())],
             by_name: HashMap::new(),
+            waiting: HashMap::new(),
+            named: Vec::new(),
             paths: HashSet::new(),
             missing: Tally::default(),
-            lost: Tally::default(),
             nameless: Tally::default(),
             warnings: Vec::new(),
         }
@@ -64,58 +71,71 @@ impl<'p> Libraries<'p> {
     /// Follows a statement. Returns the number of the material from there on, which was `material`.
     ///
     /// # Errors
-    /// A material file that makes no sense, or a name that is none.
-    pub fn event(&mut self, line: usize, what: About, material: u32) -> Result<u32> {
+    /// A material file that cannot be read.
+    pub fn event(&mut self, line: usize, what: &About, material: u32) -> Result<u32> {
         match what {
-            About::Material(name) => Ok(self.material(line, &name)),
-            About::Libraries(names) => self.library(line, &names).map(|()| material),
+            About::Material(name) => Ok(self.material(line, name)),
+            About::Libraries(names) => self.library(line, names).map(|()| material),
+            About::Smoothing(_) => Ok(material),
         }
     }
 
     fn material(&mut self, line: usize, name: &str) -> u32 {
-        let number = self.by_name.get(name).copied();
-        match number {
-            None => self.lost.add(line, format_args!("material {name:?}")),
-            Some(_) if name.is_empty() => self.nameless.add(line, "usemtl"),
-            Some(_) => {}
+        if let Some(&number) = self.by_name.get(name) {
+            if name.is_empty() {
+                self.nameless.add(line, "usemtl");
+            }
+            return number;
         }
-        number.unwrap_or(0)
+        let number = match self.waiting.get(name) {
+            Some(&number) => number,
+            None => {
+                let number = self.materials.len() as u32;
+                self.materials.push((DEFAULT.to_owned(), Fields::default()));
+                self.waiting.insert(name.to_owned(), number);
+                number
+            }
+        };
+        self.named.push((line, number));
+        number
     }
 
     fn library(&mut self, line: usize, names: &str) -> Result<()> {
-        if names.is_empty() {
-            let fault = "mtllib names no file; add a name";
-            return Err(Error::line(self.path, line, fault));
-        }
         // The format lists files between blanks, but exporters write names that hold blanks.
-        if self.material_file(line, names)? {
-            return Ok(());
-        }
-        for name in names.split_whitespace() {
-            if !self.material_file(line, name)? {
-                self.missing.add(line, format_args!("material file {name:?}"));
+        if names.is_empty() {
+            self.missing.add(line, "material file \"\"");
+        } else if !self.material_file(names)? {
+            for name in listed(names) {
+                if !self.material_file(&name)? {
+                    self.missing.add(line, format_args!("material file {name:?}"));
+                }
             }
         }
         Ok(())
     }
 
     /// Reads a material file once; false if there is none.
-    fn material_file(&mut self, line: usize, name: &str) -> Result<bool> {
-        let path = file::inside(file::folder(self.path), name).map_err(|fault| Error::line(self.path, line, fault))?;
+    fn material_file(&mut self, name: &str) -> Result<bool> {
+        let Some(path) = self.neighbours.find(name) else { return Ok(false) };
         if self.paths.contains(&path) {
             return Ok(true);
-        }
-        if !path.exists() {
-            return Ok(false);
         }
         let library = mtl::load(&path, self.images)?;
         // Paths that differ in dots and slashes are equal.
         self.paths.insert(path);
         self.warnings.extend(library.warnings);
         for (name, fields) in library.materials {
-            let number = self.materials.len() as u32;
-            self.by_name.insert(name.clone(), number);
-            self.materials.push((name, fields));
+            let number = match self.waiting.remove(&name) {
+                Some(number) => {
+                    self.materials[number as usize] = (name.clone(), fields);
+                    number
+                }
+                None => {
+                    self.materials.push((name.clone(), fields));
+                    self.materials.len() as u32 - 1
+                }
+            };
+            self.by_name.insert(name, number);
         }
         Ok(true)
     }
@@ -123,12 +143,26 @@ impl<'p> Libraries<'p> {
     /// All materials, and what is to be said of them.
     pub fn finish(self) -> (Materials, Warnings) {
         let missing = self.missing.warn(self.path, "not found: its surfaces are grey");
+        let names: HashMap<u32, &str> = self.waiting.iter().map(|(name, &number)| (number, name.as_str())).collect();
+        let mut lost = Tally::default();
+        for (line, number) in &self.named {
+            if let Some(name) = names.get(number) {
+                lost.add(*line, format_args!("material {name:?}"));
+            }
+        }
         // A missing file explains the missing materials.
-        let lost = self.lost.warn(self.path, "in none of its material files: drawn grey");
+        let lost = lost.warn(self.path, "in none of its material files: drawn grey");
         let nameless = self.nameless.warn(self.path, "without a name: it means the material without one");
         let mut paths: Vec<PathBuf> = self.paths.into_iter().collect();
         paths.sort();
         let warnings = Warnings { warnings: self.warnings, faults: [missing.or(lost), nameless] };
         (Materials { materials: self.materials, paths }, warnings)
     }
+}
+
+/// The names of a list between blanks that no backslash stands before.
+fn listed(names: &str) -> Vec<String> {
+    const BLANK: &str = "\u{0}";
+    let words = names.replace("\\ ", BLANK);
+    words.split_whitespace().map(|word| word.replace(BLANK, " ")).collect()
 }

@@ -16,12 +16,14 @@ use glam::{Vec2, Vec3};
 use memmap2::Mmap;
 use rayon::prelude::*;
 
-use self::block::{Before, Block, Event, Notes};
+use self::block::{About, Before, Block, Event, Notes};
 use self::blocks::Sizes;
 use self::library::Libraries;
-use self::vertices::Corners;
+use self::vertices::{Attributes, Corners};
 use super::budget::Budget;
 use super::lines::MOST_LINE;
+#[cfg(test)]
+use super::load::Loading;
 use super::map::Images;
 use super::material::Fields;
 use super::polygon::Effort;
@@ -42,8 +44,8 @@ pub struct Obj {
 /// coordinates where a material of its own files has a texture, or where it `is_covered` by those of others.
 ///
 /// # Errors
-/// A file that cannot be read, is no mesh, names what does not exist, holds no triangle, or more than the budget
-/// has room for.
+/// A file that cannot be read, is no mesh, holds no triangle, or more than the budget has room for. A statement that makes no
+/// sense is left out with a warning.
 pub fn load(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
     let map = || {
         let file = file::open(path, file::MOST_MESH)?;
@@ -58,7 +60,11 @@ pub fn load(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) 
 /// The mesh of a text, with texture coordinates.
 #[cfg(test)]
 pub(super) fn parse(path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
-    parse_by(Sizes::USUAL, text, Found::new(path, budget, &mut Images::new(file::folder(path)), true))
+    parse_by(
+        Sizes::USUAL,
+        text,
+        Found::new(path, budget, &mut Images::new(file::folder(path), Loading::default()), true),
+    )
 }
 
 fn parse_by(sizes: Sizes, text: &[u8], mut found: Found) -> Result<Obj> {
@@ -84,9 +90,13 @@ struct Found<'p> {
     is_covered: bool,
     before: Before,
     positions: Vec<Vec3>,
+    /// Of every position, or none at all.
+    colours: Vec<Vec3>,
     normals: Vec<Vec3>,
     coordinates: Vec<Vec2>,
     corners: Corners,
+    /// The smoothing group of the next faces.
+    group: u32,
     /// Of every triangle.
     materials: Vec<u32>,
     /// That of the next faces.
@@ -104,9 +114,11 @@ impl<'p> Found<'p> {
             is_covered,
             before: Before::default(),
             positions: Vec::new(),
+            colours: Vec::new(),
             normals: Vec::new(),
             coordinates: Vec::new(),
             corners: Corners::default(),
+            group: 0,
             materials: Vec::new(),
             material: 0,
             effort: Effort::default(),
@@ -131,6 +143,10 @@ impl<'p> Found<'p> {
             blocks.truncate(last + 1);
         }
         for block in &blocks {
+            if !block.colours.is_empty() || !self.colours.is_empty() {
+                self.colours.resize(self.positions.len(), Vec3::ONE);
+                self.colours.extend_from_slice(&block.colours);
+            }
             self.positions.extend_from_slice(&block.positions);
             self.normals.extend_from_slice(&block.normals);
             self.coordinates.extend_from_slice(&block.coordinates);
@@ -157,8 +173,12 @@ impl<'p> Found<'p> {
             // Those of the faces before.
             let triangles = self.corners.len() - triangles + block.faces.triangles_before(face);
             self.materials.resize(triangles, self.material);
-            self.material = self.libraries.event(line, what, self.material)?;
+            self.material = self.libraries.event(line, &what, self.material)?;
+            if let About::Smoothing(group) = what {
+                self.corners.group(triangles, std::mem::replace(&mut self.group, group));
+            }
         }
+        self.corners.group(self.corners.len(), self.group);
         self.materials.resize(self.corners.len(), self.material);
         self.notes.append(block.notes, block.faces);
         block.fault.map_or(Ok(()), Err)
@@ -170,21 +190,39 @@ impl<'p> Found<'p> {
     /// There was no face.
     fn finish(self) -> Result<Obj> {
         let Found {
-            path, is_covered, positions, normals, coordinates, mut corners, materials, libraries, notes, ..
+            path,
+            is_covered,
+            positions,
+            mut colours,
+            mut normals,
+            coordinates,
+            mut corners,
+            materials,
+            libraries,
+            notes,
+            ..
         } = self;
         if corners.len() == 0 {
             let none = || Error::file(path, "there is no face in it; is it a Wavefront OBJ mesh?");
-            return Err(notes.left_out(path).unwrap_or_else(none));
+            return Err(notes.no_face(path).unwrap_or_else(none));
         }
-        let (libraries, of_libraries) = libraries.finish();
+        let (mut libraries, of_libraries) = libraries.finish();
         if !is_covered && !libraries.has_maps() {
             corners.uncover();
         }
+        corners.smooth(&positions, &mut normals);
+        if !colours.is_empty() {
+            colours.resize(positions.len(), Vec3::ONE);
+            // Vertices say what colour it is.
+            libraries.materials[0].1.diffuse = Some(Vec3::ONE);
+        }
+        let attributes =
+            Attributes { positions: &positions, colours: &colours, normals: &normals, coordinates: &coordinates };
         let [latin, others @ ..] = notes.warnings(path);
         let [missing, nameless] = of_libraries.faults;
         let warnings = [latin, missing, nameless].into_iter().chain(others).flatten();
         Ok(Obj {
-            mesh: corners.mesh(&positions, &normals, &coordinates, materials),
+            mesh: corners.mesh(attributes, materials),
             materials: libraries.materials,
             warnings: of_libraries.warnings.into_iter().chain(warnings).collect(),
             libraries: libraries.paths,

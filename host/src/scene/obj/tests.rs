@@ -6,7 +6,7 @@ use super::*;
 use crate::scene::tests::{Folder, budget};
 
 fn parse_whole(sizes: Sizes, path: &Path, text: &[u8], bytes: u64) -> Result<Obj> {
-    parse_by(sizes, text, Found::new(path, budget(bytes), &mut Images::new(Path::new("")), true))
+    parse_by(sizes, text, Found::new(path, budget(bytes), &mut Images::new(Path::new(""), Loading::default()), true))
 }
 
 /// What was read, or why not, as text.

@@ -3,10 +3,11 @@
 use std::collections::HashMap;
 use std::hash::Hash;
 
-use glam::{Vec2, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 use super::super::Mesh;
+use super::super::normal::unit;
 use super::face::Corner;
 
 /// The corners of triangles, as the file numbers them.
@@ -18,6 +19,20 @@ pub(super) struct Corners {
     normals: Option<Vec<[u32; 3]>>,
     /// Texture coordinates, likewise.
     coordinates: Option<Vec<[u32; 3]>>,
+    /// Smoothing groups, 0 for none; none at all as long as no triangle has one.
+    groups: Option<Vec<u32>>,
+    /// Of how many triangles the group was said.
+    said: usize,
+}
+
+/// What corners number, as the file holds it.
+#[derive(Clone, Copy)]
+pub(super) struct Attributes<'f> {
+    pub positions: &'f [Vec3],
+    /// Linear RGB of every position, or none at all.
+    pub colours: &'f [Vec3],
+    pub normals: &'f [Vec3],
+    pub coordinates: &'f [Vec2],
 }
 
 /// No vertex yet.
@@ -37,6 +52,40 @@ impl Corners {
         extend(&mut self.coordinates, before, triangles, |corner| corner.coordinates);
     }
 
+    /// Says the smoothing group of all triangles before this one of which none was said.
+    pub fn group(&mut self, triangles: usize, group: u32) {
+        if group != 0 || self.groups.is_some() {
+            let said = self.said;
+            self.groups.get_or_insert_with(|| vec![0; said]).resize(triangles, group);
+        }
+        self.said = triangles;
+    }
+
+    /// Gives corners without a normal the mean of the faces of their smoothing group around their position, weighted by areas.
+    pub fn smooth(&mut self, positions: &[Vec3], normals: &mut Vec<Vec3>) {
+        let Some(groups) = self.groups.take() else { return };
+        let mut sums: HashMap<(u32, u32), (DVec3, u32)> = HashMap::new();
+        let grouped = || self.positions.iter().zip(&groups).enumerate().filter(|(_, (_, group))| **group != 0);
+        for (_, (corners, &group)) in grouped() {
+            let [a, b, c] = corners.map(|corner| positions[corner as usize - 1].as_dvec3());
+            let area = (b - a).cross(c - a);
+            for &corner in corners {
+                sums.entry((corner, group)).or_default().0 += area;
+            }
+        }
+        let numbers = self.normals.get_or_insert_with(|| vec![[0; 3]; self.positions.len()]);
+        for (triangle, (corners, &group)) in grouped() {
+            for (number, &corner) in numbers[triangle].iter_mut().zip(corners).filter(|(number, _)| **number == 0) {
+                let (sum, made) = sums.get_mut(&(corner, group)).expect("its own face is summed");
+                if *made == 0 {
+                    normals.push(unit(*sum));
+                    *made = normals.len() as u32;
+                }
+                *number = *made;
+            }
+        }
+    }
+
     /// Forgets texture coordinates.
     pub fn uncover(&mut self) {
         self.coordinates = None;
@@ -44,11 +93,13 @@ impl Corners {
 
     /// The mesh of them, whose vertices are those that are used, each once. Where there is none, a normal is zero, and texture
     /// coordinates are.
-    pub fn mesh(self, positions: &[Vec3], normals: &[Vec3], coordinates: &[Vec2], materials: Vec<u32>) -> Mesh {
-        let Corners { positions: mut triangles, normals: of_normals, coordinates: of_coordinates } = self;
+    pub fn mesh(self, of: Attributes, materials: Vec<u32>) -> Mesh {
+        let Corners { positions: mut triangles, normals: of_normals, coordinates: of_coordinates, .. } = self;
+        let Attributes { positions, colours, normals, coordinates } = of;
         let normal = |triangle: usize, corner: usize| of_normals.as_ref().map_or(0, |all| all[triangle][corner]);
         let place = |number: u32| positions[number as usize - 1];
         let upright = |number: u32| number.checked_sub(1).map_or(Vec3::ZERO, |i| normals[i as usize]);
+        let coloured = |number: u32| colours.get(number as usize - 1).map(|colour| colour.extend(1.0));
         let covered = |number: u32| number.checked_sub(1).map_or(Vec2::ZERO, |i| coordinates[i as usize]);
         let mut mesh = Mesh { materials, ..Mesh::default() };
         // Pairs take less than triples of which one number is always 0.
@@ -56,11 +107,13 @@ impl Corners {
             let rest = |triangle: usize, corner: usize| (normal(triangle, corner), of_coordinates[triangle][corner]);
             let vertices = numbered(&mut triangles, positions.len(), rest);
             mesh.positions = vertices.iter().map(|&(position, _)| place(position)).collect();
+            mesh.colours = vertices.iter().filter_map(|&(position, _)| coloured(position)).collect();
             mesh.normals = of_normals.iter().flat_map(|_| vertices.iter().map(|&(_, (n, _))| upright(n))).collect();
             mesh.coordinates[0] = vertices.iter().map(|&(_, (_, c))| covered(c)).collect();
         } else {
             let vertices = numbered(&mut triangles, positions.len(), normal);
             mesh.positions = vertices.iter().map(|&(position, _)| place(position)).collect();
+            mesh.colours = vertices.iter().filter_map(|&(position, _)| coloured(position)).collect();
             mesh.normals = of_normals.iter().flat_map(|_| vertices.iter().map(|&(_, n)| upright(n))).collect();
         }
         if mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {

@@ -2,7 +2,7 @@
 
 use ply_rs_bw::ply::{ElementDef, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType};
 
-use crate::image::byte_to_linear;
+use crate::image::srgb_to_linear;
 use crate::scene::Unplaced;
 
 /// Names of texture coordinates.
@@ -14,6 +14,8 @@ pub(super) struct Has {
     pub normals: bool,
     pub coordinates: bool,
     pub colours: bool,
+    /// Colours of faces, which count where vertices have none.
+    pub face_colours: bool,
     /// Colours of which nothing says how bright they are.
     pub foreign_colours: bool,
 }
@@ -25,13 +27,19 @@ impl Has {
         let has_colours = Has::all(element, &names);
         let is_light = |name: &&str| {
             let kind = element.properties.get(*name).map(|property| &property.data_type);
-            matches!(kind, Some(PropertyType::Scalar(ScalarType::UChar | ScalarType::Float | ScalarType::Double)))
+            matches!(
+                kind,
+                Some(PropertyType::Scalar(
+                    ScalarType::UChar | ScalarType::UShort | ScalarType::Float | ScalarType::Double
+                ))
+            )
         };
         let colours = has_colours && names.iter().all(is_light);
         Has {
             normals: Has::all(element, &["nx", "ny", "nz"]),
             coordinates: COORDINATES.iter().any(|names| Has::all(element, names)),
             colours,
+            face_colours: false,
             foreign_colours: has_colours && !colours,
         }
     }
@@ -68,11 +76,7 @@ impl PropertyAccess for Vertex {
             "nz" => &mut self.normal[2],
             "s" | "u" | "texture_u" => &mut self.coordinates[0],
             "t" | "v" | "texture_v" => &mut self.coordinates[1],
-            "red" => return put(&mut self.colour[0], &value, byte_to_linear),
-            "green" => return put(&mut self.colour[1], &value, byte_to_linear),
-            "blue" => return put(&mut self.colour[2], &value, byte_to_linear),
-            "alpha" => return put(&mut self.colour[3], &value, |byte| f32::from(byte) / 255.0),
-            _ => return PropertyAccessResult::Ignored,
+            _ => return put_colour(&mut self.colour, name, &value),
         };
         let Some(number) = value.to_f32_lossy() else { return PropertyAccessResult::Ignored };
         *to = number;
@@ -80,10 +84,23 @@ impl PropertyAccess for Vertex {
     }
 }
 
+/// Sets the channel of this name; bytes and numbers of 16 bits are sRGB.
+fn put_colour(colour: &mut [f32; 4], name: &str, value: &Property) -> PropertyAccessResult {
+    let light = |share| srgb_to_linear(share) as f32;
+    match name {
+        "red" => put(&mut colour[0], value, light),
+        "green" => put(&mut colour[1], value, light),
+        "blue" => put(&mut colour[2], value, light),
+        "alpha" => put(&mut colour[3], value, |share| share as f32),
+        _ => PropertyAccessResult::Ignored,
+    }
+}
+
 /// Sets a channel; what is beyond [0, 1] becomes the nearest value.
-fn put(channel: &mut f32, value: &Property, of_byte: impl Fn(u8) -> f32) -> PropertyAccessResult {
+fn put(channel: &mut f32, value: &Property, of_share: impl Fn(f64) -> f32) -> PropertyAccessResult {
     *channel = match *value {
-        Property::UChar(byte) => of_byte(byte),
+        Property::UChar(byte) => of_share(f64::from(byte) / 255.0),
+        Property::UShort(number) => of_share(f64::from(number) / 65535.0),
         Property::Float(light) => share(light),
         Property::Double(light) => share(light as f32),
         _ => return PropertyAccessResult::Ignored,
@@ -96,9 +113,12 @@ fn share(light: f32) -> f32 {
     if light > 0.0 { light.min(1.0) } else { 0.0 }
 }
 
-/// The corners of a face, or of strips.
-#[derive(Default)]
-pub(super) struct Corners(pub Vec<i64>);
+/// The corners of a face, or of strips, and its colour.
+pub(super) struct Corners {
+    pub list: Vec<i64>,
+    /// Linear RGB and opacity in [0, 1].
+    pub colour: [f32; 4],
+}
 
 impl Corners {
     /// Is this the list's name? Both are in use.
@@ -126,17 +146,17 @@ impl Corners {
 
 impl PropertyAccess for Corners {
     fn new() -> Self {
-        Corners::default()
+        Corners { list: Vec::new(), colour: [1.0; 4] }
     }
 
     fn set_property(&mut self, name: &str, value: Property) -> PropertyAccessResult {
         if !Corners::is(name) {
-            return PropertyAccessResult::Ignored;
+            return put_colour(&mut self.colour, name, &value);
         }
         fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
             list.into_iter().map(Into::into).collect()
         }
-        self.0 = match value {
+        self.list = match value {
             Property::ListChar(list) => wide(list),
             Property::ListUChar(list) => wide(list),
             Property::ListShort(list) => wide(list),

@@ -14,15 +14,40 @@ const MOST: u64 = 1 << 20;
 /// Elements, of which each that is not read is warned of.
 const MOST_ELEMENTS: usize = 64;
 
-/// Reads it, and the number of its lines.
+/// Keywords that its lines begin with.
+const KEYWORDS: [&str; 7] = ["ply", "format", "comment", "obj_info", "element", "property", "end_header"];
+
+/// What is found of it.
+pub(super) struct Found {
+    pub header: Header,
+    /// How many lines it has.
+    pub lines: usize,
+    /// A warning of lines that are none of a header.
+    pub stray: Option<String>,
+}
+
+/// Reads it.
 ///
 /// # Errors
 /// What is no header, ends within it, is too long, or names something twice.
-pub(super) fn read(reader: &mut impl BufRead) -> Checked<(Header, usize)> {
-    let text = text(reader)?;
+pub(super) fn read(reader: &mut impl BufRead) -> Checked<Found> {
+    let (text, stray) = without_strays(&text(reader)?);
     check_names(&text)?;
     let header = Parser::<Ignored>::new().read_header(&mut Reader::new(text.as_bytes()));
-    Ok((header.map_err(|error| fault(&error, &text))?, text.lines().count()))
+    Ok(Found { header: header.map_err(|error| fault(&error, &text))?, lines: text.lines().count(), stray })
+}
+
+/// The text with comments in place of lines that begin with no keyword, which some programs write of their own.
+fn without_strays(text: &str) -> (String, Option<String>) {
+    let is_stray = |line: &&str| !line.split_ascii_whitespace().next().is_some_and(|word| KEYWORDS.contains(&word));
+    let strays: Vec<(usize, &str)> = (1..).zip(text.lines()).filter(|(_, line)| is_stray(line)).collect();
+    let lines = text.lines().map(|line| if is_stray(&line) { "comment\n".into() } else { format!("{line}\n") });
+    let warning = strays.first().map(|(number, line)| {
+        let start: String = line.trim().chars().take(60).collect();
+        let more = if strays.len() > 1 { format!(" and {} more", strays.len() - 1) } else { String::new() };
+        format!("line {number} of its header, {start:?}{more}, is ignored: it begins with no keyword")
+    });
+    (lines.collect(), warning)
 }
 
 /// All of its lines. Comments need not be UTF-8.

@@ -6,6 +6,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::budget;
+use crate::scene::load::Loading;
 use crate::scene::map::Images;
 use crate::scene::{load, mtl, obj, xyzr};
 
@@ -80,7 +81,7 @@ proptest! {
 
     #[test]
     fn a_material_file_is_refused_or_in_range(bytes in text()) {
-        if let Ok(library) = mtl::parse(Path::new("/nowhere/a.mtl"), &bytes, &mut Images::new(Path::new("/nowhere"))) {
+        if let Ok(library) = mtl::parse(Path::new("/nowhere/a.mtl"), &bytes, &mut Images::new(Path::new("/nowhere"), Loading::default())) {
             for (name, fields) in library.materials {
                 let material = fields.finish(&name);
                 let share = |colour: Vec3| colour == colour.clamp(Vec3::ZERO, Vec3::ONE);
@@ -92,7 +93,7 @@ proptest! {
 
     #[test]
     fn a_scene_file_is_refused_in_one_line(bytes in changed()) {
-        if let Err(error) = load::parse(Path::new("/nowhere/a.toml"), &bytes, budget(1 << 30)) {
+        if let Err(error) = load::parse(Path::new("/nowhere/a.toml"), &bytes, budget(1 << 30), Loading::default()) {
             prop_assert!(!error.to_string().contains('\n'));
         }
     }

@@ -148,7 +148,7 @@ fn what_makes_no_sense_is_refused_in_a_line() {
     for (bytes, why) in [
         (b"ply\n".to_vec(), "ends within its header; write it again"),
         (b"solid thing\n".to_vec(), "is no PLY file: its first line is not \"ply\""),
-        (spoiled("property float y", "propperty float y"), "\"propperty float y\" makes no sense here in a header"),
+        (spoiled("property float y", "propperty float y"), "have no numbers x, y and z"),
         (spoiled("property float y", "property float x"), "a second property \"x\"; remove one"),
         (spoiled("element face 5", "element vertex 5"), "a second element \"vertex\"; remove one"),
         (spoiled("format ascii 1.0\n", ""), "its header has no line \"format ascii 1.0\""),
@@ -160,9 +160,6 @@ fn what_makes_no_sense_is_refused_in_a_line() {
             "there are more than 64 elements; remove some",
         ),
         (spoiled("made by hand", &"x".repeat(1 << 20)), "its header has more than 1048576 bytes"),
-        (spoiled("4 0 1 2 3", "4 0 1 2 9"), "face 0 names vertex 9, but 6 precede it"),
-        (spoiled("4 0 1 2 3", "4 0 1 2 -3"), "face 0 names vertex -3"),
-        (spoiled("3 0 5 1", "2 0 5"), "face 1 has 2 corners"),
         (nowhere, "vertex 5, counted from 0, is at [1.0, NaN, 1.0]"),
         (spoiled("1 1.5 1 7", "1 1.5 x 7"), "is not the x y z quality of a vertex; correct the line"),
         (spoiled("element vertex 6", "element vertex 1000000000"), "take about"),
@@ -187,7 +184,82 @@ fn what_makes_no_sense_is_refused_in_a_line() {
     }
     let none = [header("ascii").replace("face 5", "face 0").into_bytes(), b"0 0 0 1\n".repeat(6)].concat();
     let error = ply::parse(Path::new("a.ply"), &none[..], budget(1 << 20)).unwrap_err();
-    assert_refused(&error, "a.ply", None, "there is no face in it");
+    assert_refused(&error, "a.ply", None, "a point cloud: 6 vertices and no faces; make a mesh of it");
+    let bad = String::from_utf8(as_text()).unwrap().replace(" 5", " 9").replace("4 0 1 2 3", "2 0 1");
+    let error =
+        ply::parse(Path::new("a.ply"), bad.replace("element face 9", "element face 5").as_bytes(), budget(1 << 20));
+    assert_refused(
+        &error.unwrap_err(),
+        "a.ply",
+        None,
+        "face 0 has 2 corners, and a face has at least 3, and no face is left",
+    );
+}
+
+#[test]
+fn faces_that_make_no_sense_are_left_out_with_one_warning() {
+    for (face, why) in [
+        ("4 0 1 2 9", "face 0 names vertex 9, but 6 precede it, counted from 0; correct it: left out"),
+        ("4 0 1 2 -3", "face 0 names vertex -3"),
+        ("2 0 1", "face 0 has 2 corners, and a face has at least 3: left out"),
+    ] {
+        let ply = read(String::from_utf8(as_text()).unwrap().replace("4 0 1 2 3", face).as_bytes());
+        assert_eq!((ply.mesh.triangles.len(), ply.warnings.len()), (4, 1));
+        assert!(ply.warnings[0].starts_with(&format!("a.ply: {why}")), "{:?}", ply.warnings);
+    }
+    let more = String::from_utf8(as_text()).unwrap().replace("4 0 1 2 3", "0").replace("3 0 5 1", "1 0");
+    assert!(
+        read(more.as_bytes()).warnings[0]
+            .ends_with("face 0 has 0 corners, and a face has at least 3 and 1 more: left out")
+    );
+}
+
+#[test]
+fn vertices_may_follow_their_faces_and_lines_may_hold_several() {
+    let text = String::from_utf8(as_text()).unwrap();
+    let mesh = read(text.as_bytes()).mesh;
+    let (head, body) = text.split_once("end_header\n").unwrap();
+    let (head, face) = head.split_at(head.find("element face").unwrap());
+    let (top, vertex) = head.split_at(head.find("element vertex").unwrap());
+    let (vertices, faces) = body.split_at(body.find("4 0 1").unwrap());
+    let turned = format!("{top}{face}{vertex}end_header\n{faces}{vertices}");
+    assert_eq!(read(turned.as_bytes()).mesh, mesh);
+    let wrapped = format!("{head}{face}end_header\n{}\n{faces}", vertices.replace("7\n0 0 2", "7 0 0 2").trim_end());
+    let wrapped = wrapped.replace("0 0 0 7\n", "0 0 0\n7\n").replace("2 0 0 7\n2 0", "2 0 0 7 2 0");
+    assert_ne!(wrapped, text);
+    assert_eq!(read(wrapped.as_bytes()).mesh, mesh);
+}
+
+#[test]
+fn a_line_of_a_header_without_a_keyword_is_ignored_with_a_warning() {
+    let text = String::from_utf8(as_text()).unwrap().replace("comment made", "made");
+    let ply = read(text.as_bytes());
+    assert_eq!(ply.mesh, read(&as_text()).mesh);
+    assert_eq!(ply.warnings, ["a.ply: line 3 of its header, \"made by hand\", is ignored: it begins with no keyword"]);
+}
+
+#[test]
+fn faces_have_colours_where_vertices_have_none() {
+    let text = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n\
+                element face 2\nproperty list uchar int vertex_indices\nproperty uchar red\nproperty uchar green\n\
+                property uchar blue\nend_header\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 255 0 0\n3 0 2 3 0 0 255\n";
+    let mesh = read(text.as_bytes()).mesh;
+    let colours = |triangle: usize| mesh.triangles[triangle].map(|corner| mesh.colours[corner as usize]);
+    assert_eq!(colours(0), [Vec4::new(1.0, 0.0, 0.0, 1.0); 3]);
+    assert_eq!(colours(1), [Vec4::new(0.0, 0.0, 1.0, 1.0); 3]);
+    assert_eq!(
+        mesh.triangles[1].map(|corner| mesh.positions[corner as usize]),
+        [Vec3::ZERO, Vec3::new(1.0, 1.0, 0.0), Vec3::Y]
+    );
+}
+
+#[test]
+fn colours_of_sixteen_bits_are_srgb() {
+    let colours = "property ushort red\nproperty ushort green\nproperty ushort blue\n";
+    let mesh = with(colours, ["65535 0 0", "32896 32896 32896", "0 0 65535"]).mesh;
+    let grey = mesh.colours[1].x;
+    assert!((grey - 0.215_860_5).abs() < 1e-6, "{grey}");
+    assert_eq!((mesh.colours[0], mesh.colours[2]), (Vec4::new(1.0, 0.0, 0.0, 1.0), Vec4::new(0.0, 0.0, 1.0, 1.0)));
 }
 
 /// Any number of records without properties takes no byte, and so no time.

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, assert_refused, budget};
+use crate::scene::load::Loading;
 use crate::scene::{Disk, Primitives, Scene, Sphere, default_camera, load::load_within, xyzr};
 
 fn load(mesh: &str) -> Scene {
@@ -182,7 +183,8 @@ fn spheres_are_counted_before_they_are_placed_and_while_they_are_read() {
         ("many.toml", "[[mesh]]\nshape = \"sphere\"\n".repeat(9).as_bytes()),
         ("heap.xyzr", "0 0 0 1\n".repeat(4).as_bytes()),
     ]);
-    let refuse = |name: &str, bytes| load_within(&folder.path(name), None, budget(bytes)).expect_err("accepted");
+    let refuse =
+        |name: &str, bytes| load_within(&folder.path(name), budget(bytes), Loading::default()).expect_err("accepted");
     assert_refused(&refuse("twice.toml", 2700), "twice.toml", Some(3), "8 spheres and disks take about 0 MB");
     assert_refused(&refuse("twice.toml", 1300), "heap.xyzr", Some(3), "3 spheres and disks");
     assert_refused(&refuse("many.toml", 2700), "many.toml", Some(11), "6 spheres and disks");

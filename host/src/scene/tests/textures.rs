@@ -5,7 +5,7 @@ use std::io::Cursor;
 use glam::{Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
-use super::{Folder, assert_refused};
+use super::Folder;
 use crate::scene::{Alpha, Integrator, Maps, Material, Scene, Texels, Wrap};
 
 /// A square of two triangles, with the first corner's texture coordinates on a seam.
@@ -31,7 +31,7 @@ fn folder(mtl: &str) -> Folder {
         ("a.png", &opaque()),
         ("b c.png", &clear),
         ("damaged.png", &opaque()[..40]),
-        ("old.tga", b"not read"),
+        ("old.webp", b"not read"),
     ];
     Folder::new(&files)
 }
@@ -142,14 +142,14 @@ fn roughness_and_metalness_are_of_microfacets() {
 #[test]
 fn what_is_not_drawn_is_warned_of_once_a_file() {
     let statements =
-        "map_Kd no.png\nmap_d\nKe 1 1 1\nKe 0 0 2\nmap_Kd old.tga\nbump a.png\nmap_Bump a.png\nmap_Ks a.png\n";
+        "map_Kd no.png\nmap_d\nKe 1 1 1\nKe 0 0 2\nmap_Kd old.webp\nbump a.png\nmap_Bump a.png\nmap_Ks a.png\n";
     let (scene, warnings) = loaded(statements);
     assert_eq!(scene.materials[0], Material { name: "m".into(), ..Material::default() });
     let wanted = [
         "a.mtl:2: map_Kd \"no.png\" and 1 more not found: surfaces are drawn without",
-        "a.mtl:6: map_Kd \"old.tga\" is no .png, .jpg, .exr or .hdr",
+        "a.mtl:6: map_Kd \"old.webp\" is no .png, .jpg, .tga, .bmp, .tif, .exr or .hdr",
         "a.mtl:7: bump and 2 more ignored: pictures are drawn of",
-        "a.mtl:5: Ke ignored: give the material an emission",
+        "a.mtl:5: Ke ignored: add --integrator path, or give the material an emission",
     ];
     assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");
     for (warning, want) in warnings.iter().zip(wanted) {
@@ -158,6 +158,28 @@ fn what_is_not_drawn_is_warned_of_once_a_file() {
 }
 
 #[test]
-fn a_damaged_picture_is_refused_where_it_is_named() {
-    assert_refused(&folder("newmtl m\nmap_Kd damaged.png\n").refuse("a.obj"), "a.mtl", Some(2), "damaged.png");
+fn surfaces_are_drawn_without_damaged_pictures_with_one_warning() {
+    let (scene, warnings) = loaded("map_Kd damaged.png\nmap_Ke damaged.png\nnorm a.png\n");
+    assert_eq!(scene.materials[0].maps.all().count(), 1);
+    let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+    assert!(warning.contains("a.mtl:2: ") && warning.contains("damaged.png: "), "{warning}");
+    assert!(warning.ends_with(" and 1 more left out: surfaces are drawn without"), "{warning}");
+}
+
+#[test]
+fn pictures_of_old_kinds_are_read() {
+    for kind in [ImageFormat::Tga, ImageFormat::Bmp, ImageFormat::Tiff] {
+        let name = format!("old.{}", kind.extensions_str()[0]);
+        let mut bytes = Cursor::new(Vec::new());
+        let picture = image::RgbImage::from_fn(2, 1, |x, _| image::Rgb([255, 128 * x as u8, 0]));
+        picture.write_to(&mut bytes, kind).unwrap();
+        let folder = folder(&format!("newmtl m\nmap_Kd {name}\n"));
+        std::fs::write(folder.path(&name), bytes.into_inner()).unwrap();
+        let (scene, warnings) = folder.load("a.obj").unwrap();
+        assert!(warnings.is_empty(), "{warnings:?}");
+        let Texels::Bytes(texels) = &scene.materials[0].maps.base.as_ref().unwrap().texture.texels else {
+            panic!("{name}")
+        };
+        assert_eq!(texels[..], [[255, 0, 0, 255], [255, 128, 0, 255]], "{name}");
+    }
 }

@@ -5,6 +5,7 @@ use std::path::Path;
 use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
+use crate::scene::load::Loading;
 use crate::scene::{Background, Direct, Falloff, Integrator, Light, Primitives, Sampler, Scene, Settings, Transport};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
@@ -309,7 +310,7 @@ fn spheres_and_files_placed_again_are_counted_before_they_are_made() {
         ("a.obj", TRIANGLE),
     ]);
     let refuse = |name: &str, bytes| {
-        let scene = crate::scene::load::load_within(&folder.path(name), None, budget(bytes));
+        let scene = crate::scene::load::load_within(&folder.path(name), budget(bytes), Loading::default());
         scene.expect_err("accepted")
     };
     let why = "1310720 triangles with 655362 vertices take about 652 MB of memory, and the test leaves 600 MB";

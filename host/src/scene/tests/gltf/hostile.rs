@@ -6,7 +6,7 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::model::{F32, Model, U16, data, floats, parse, picture, shorts};
-use crate::scene::gltf;
+use crate::scene::{Loading, gltf};
 use crate::scene::tests::{Folder, budget};
 
 /// Asserts why a file is refused.
@@ -144,11 +144,11 @@ fn too_many_triangles_are_refused_before_they_are_made() {
 #[test]
 fn json_that_there_is_no_memory_for_is_refused_before_it_is_read() {
     let json = format!("{{\"asset\": {{}}, \"materials\": [{{}}{}]}}", ",{}".repeat(500_000));
-    let error = gltf::parse(Path::new("/nowhere/a.gltf"), json.as_bytes(), None, budget(1 << 28)).unwrap_err();
+    let error = gltf::parse(Path::new("/nowhere/a.gltf"), json.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
     assert!(error.message().starts_with("its JSON would take about"), "{error}");
     // A long text is no table.
     let data = format!("{{\"asset\": {{\"generator\": \"{}\"}}}}", "A".repeat(1 << 24));
-    let error = gltf::parse(Path::new("/nowhere/a.gltf"), data.as_bytes(), None, budget(1 << 28)).unwrap_err();
+    let error = gltf::parse(Path::new("/nowhere/a.gltf"), data.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
     assert!(error.message().starts_with("there is no triangle"), "{error}");
 }
 
@@ -173,11 +173,10 @@ fn only_files_in_the_folder_are_read() {
     for (uri, why) in [
         ("https://example.org/a.bin", "buffers[0].uri: \"https://example.org/a.bin\" is an address and is not fetched"),
         ("file:///a.bin", "is an address"),
-        ("/a.bin", "lies outside this file's folder"),
-        ("b/%2e%2e/../a.bin", "lies outside this file's folder"),
-        ("b/%2e%2e/a.bin", "goes back by \"..\"; name the file without it"),
-        ("%2Fa.bin", "lies outside this file's folder"),
-        ("C:/a.bin", "lies outside this file's folder"),
+        ("/a.bin", "there is no such file in this file's folder or below; copy it there, or add --allow-outside"),
+        ("b/%2e%2e/../a.bin", "there is no such file in this file's folder"),
+        ("%2Fa.bin", "there is no such file in this file's folder"),
+        ("C:/a.bin", "there is no such file in this file's folder"),
         ("none.bin", "buffers[0].uri: \"none.bin\": there is no such file"),
         ("data:;base64,AAAA", "buffers[0].byteLength: it claims 36 bytes and there are 3"),
         ("data:;base64,!", "is not base64"),
@@ -191,6 +190,32 @@ fn only_files_in_the_folder_are_read() {
 }
 
 #[test]
+fn surfaces_are_drawn_without_pictures_that_cannot_be_read_with_a_warning() {
+    for (path, value, why) in [
+        ("/images/0/uri", json!("missing.png"), "images[0].uri: \"missing.png\": there is no such file"),
+        ("/images/0/uri", json!("https://example.org/a.png"), "is an address and is not fetched"),
+        (
+            "/images/0/uri",
+            json!(data(b"GIF picture")),
+            "images[0].uri: the image is not a PNG, JPEG, TGA, BMP, TIFF, EXR or HDR",
+        ),
+        ("/images/0/uri", json!(data(&picture()[..40])), "images[0].uri: the image "),
+        ("/images/0", json!({}), "images[0]: there is neither a uri nor a bufferView"),
+    ] {
+        let mut model = Model::everything();
+        set(&mut model.json, path, value);
+        let obj = parse(&model.glb()).unwrap().obj;
+        assert!(obj.materials.iter().all(|(_, fields)| fields.maps.all().count() == 0), "{why}");
+        let told: Vec<_> = obj.warnings.iter().filter(|warning| warning.contains(why)).collect();
+        assert!(
+            told.len() == 1 && told[0].ends_with("surfaces are drawn without"),
+            "{:?}, wanted: {why}",
+            obj.warnings
+        );
+    }
+}
+
+#[test]
 fn textures_that_make_no_sense_are_refused() {
     let textured = |path: &str, value: Value| {
         let mut model = Model::everything();
@@ -198,9 +223,6 @@ fn textures_that_make_no_sense_are_refused() {
         model.glb()
     };
     for (path, value, why) in [
-        ("/images/0/uri", json!(data(b"BM picture")), "images[0].uri: the image is not a PNG, JPEG, EXR or HDR image"),
-        ("/images/0/uri", json!(data(&picture()[..40])), "images[0].uri: the image "),
-        ("/images/0", json!({}), "images[0]: there is neither a uri nor a bufferView"),
         ("/textures/0/source", json!(2), "textures[0].source: there is no image 2; the file has 1"),
         ("/textures/0/sampler", json!(2), "textures[0].sampler: there is no sampler 2"),
         ("/materials/0/normalTexture/index", json!(2), "materials[0].normalTexture.index: there is no texture 2"),

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::error::Result;
-use crate::scene::Mesh;
+use crate::scene::{Loading, Mesh};
 use crate::scene::gltf::{self, Gltf};
 use crate::scene::tests::budget;
 
@@ -127,7 +127,7 @@ impl Model {
 
 /// Reads a file that names no others.
 pub fn parse(bytes: &[u8]) -> Result<Gltf> {
-    gltf::parse(Path::new("/nowhere/a.glb"), bytes, None, budget(1 << 34))
+    gltf::parse(Path::new("/nowhere/a.glb"), bytes, budget(1 << 34), Loading::default())
 }
 
 pub fn floats(numbers: &[f32]) -> Vec<u8> {

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::super::Folder;
 use super::model::{F32, Model, floats, parse};
-use crate::scene::{Background, Falloff, Light, LightUnit, Scene, load_with};
+use crate::scene::{Background, Falloff, Light, LightUnit, Loading, Scene, load_as};
 
 fn load(model: &Model) -> Scene {
     Folder::new(&[("a.glb", &model.glb())]).load("a.glb").unwrap().0
@@ -91,7 +91,7 @@ fn lamps_of_blenders_exporter_have_the_watts_of_blender() {
 #[test]
 fn a_unit_that_is_asked_for_is_taken_without_a_word() {
     let folder = Folder::new(&[("a.glb", &of_lights("Khronos glTF Blender I/O v5.0.21").glb())]);
-    let of = |unit| load_with(&folder.path("a.glb"), Some(unit)).unwrap();
+    let of = |unit| load_as(&folder.path("a.glb"), Loading { light_unit: Some(unit), ..Loading::default() }).unwrap();
     let (scene, warnings) = of(LightUnit::Gltf);
     assert_eq!((brightness(&scene.lights)[1], warnings.len()), (2049.0, 0));
     let (scene, _) = of(LightUnit::Raw);

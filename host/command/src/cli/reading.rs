@@ -1,0 +1,56 @@
+//! Reading a scene for a command.
+
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use clap::Args;
+use eyerays::scene::{self, Integrator, LightUnit, Loading, Scene};
+
+use super::choice::choice;
+use super::progress;
+use crate::error::Result;
+use crate::output::{self, Destination};
+
+/// How a scene's files are read.
+#[derive(Args, Clone, Copy)]
+pub(super) struct Reading {
+    /// Read what models name outside their folders too, for files that you trust
+    #[arg(long, help_heading = "View")]
+    allow_outside: bool,
+    /// In what unit a glTF file has its lights [default: that of what wrote it]
+    #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>(), help_heading = "View")]
+    light_unit: Option<LightUnit>,
+}
+
+impl Reading {
+    /// For an integrator, if it is known before the scene is.
+    pub fn loading(self, integrator: Option<Integrator>) -> Loading {
+        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator }
+    }
+}
+
+/// A scene that was read, from which file, and what that took.
+pub(super) struct Read<'a> {
+    pub path: &'a Path,
+    pub scene: Scene,
+    /// How many warnings were given.
+    pub warnings: usize,
+    pub time: Duration,
+}
+
+impl<'a> Read<'a> {
+    /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
+    pub fn scene(path: &'a Path, outputs: &[Destination], loading: Loading, quiet: bool) -> Result<Self> {
+        let start = Instant::now();
+        let (scene, warnings) = progress::stage("reading", quiet, || scene::load_as(path, loading))?;
+        let time = start.elapsed();
+        super::warn(&warnings, quiet);
+        output::check_apart(outputs, &scene.files)?;
+        Ok(Read { path, scene, warnings: warnings.len(), time })
+    }
+
+    /// The scene without a hierarchy that it may bring along, for those who measure what building takes.
+    pub fn unbuilt(self) -> Scene {
+        Scene { hierarchy: None, ..self.scene }
+    }
+}

@@ -10,6 +10,7 @@ use eyerays_shader::data::{
 };
 use eyerays_shader::material::ALBEDOS;
 
+mod alias;
 mod check;
 mod environment;
 mod feature;

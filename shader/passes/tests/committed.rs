@@ -106,6 +106,7 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
         Effects::DIRECTIONAL,
         Effects::SPHERE,
         Effects::DISK,
+        Effects::MANY_LIGHTS,
     ] {
         assert!(count(effects(effect | Effects::LIT)) > count(lit), "{effect:#x}");
     }

@@ -1,6 +1,7 @@
 //! Lights without extent: how they reach a place, and the shadow rays that ask whether they do (thesis 3.1, 3.2). Those with
 //! extent, and the choice among all, are in a file of their own.
 
+mod choice;
 mod emitter;
 mod environment;
 mod tree;

@@ -2,6 +2,8 @@
 
 mod cone;
 mod split;
+#[cfg(test)]
+mod tests;
 
 use eyerays_shader::data::{LightNode, pack};
 use glam::DVec3;

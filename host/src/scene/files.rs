@@ -46,7 +46,7 @@ impl<'p> Files<'p> {
         Files {
             folder,
             budget,
-            images: Images::new(folder),
+            images: Images::within(folder, budget),
             is_covered: false,
             has: Own::default(),
             meshes: HashMap::new(),

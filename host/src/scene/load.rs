@@ -56,7 +56,7 @@ pub(super) fn load_within(path: &Path, budget: Budget) -> Result<(Scene, Vec<Str
 }
 
 fn load_mesh(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let mut images = Images::new(file::folder(path));
+    let mut images = Images::within(file::folder(path), budget);
     let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
@@ -144,7 +144,7 @@ fn load_toml(path: &Path, budget: Budget) -> Result<(Scene, Vec<String>)> {
 /// No readable TOML file, and those of `make`.
 pub fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    make(Source::new(path, text(path, &bytes)?).parse()?)
+    make(Source::new(path, text(path, &bytes)?).parse(&Budget::new(Room::now()))?)
 }
 
 fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
@@ -157,7 +157,7 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
 
 /// The scene of a TOML text, whose meshes are relative to the folder of `path`.
 pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget) -> Result<(Scene, Vec<String>)> {
-    let mut table = Source::new(path, text(path, bytes)?).parse()?;
+    let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
     let mut files = Files::new(file::folder(path), budget);

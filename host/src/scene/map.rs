@@ -6,16 +6,20 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
+use super::budget::Budget;
 use super::range::Range;
 use super::table::Table;
 use super::texture::{Map, Maps, Placement, Texture, Wrap};
 use crate::error::Result;
 use crate::image::{TextureBudget, read_texture};
+use crate::memory::Room;
 
 /// Pictures already read, since materials share them.
 pub struct Images {
     folder: PathBuf,
     budget: TextureBudget,
+    /// For what is read beside them.
+    pub room: Budget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
 }
@@ -23,9 +27,15 @@ pub struct Images {
 impl Images {
     /// The pictures that a file in `folder` names, and those that its meshes do.
     pub fn new(folder: &Path) -> Self {
+        Images::within(folder, Budget::new(Room::now()))
+    }
+
+    /// The same, and what there is room for beside them.
+    pub fn within(folder: &Path, room: Budget) -> Self {
         Images {
             folder: folder.to_owned(),
             budget: TextureBudget::default(),
+            room,
             textures: HashMap::new(),
             opacities: HashMap::new(),
         }

@@ -29,7 +29,7 @@ fn binary(scene: &Scene) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) -> Unplaced<Scene> {
-    parse(Arc::new(bytes.to_vec()), Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
+    parse(bytes, Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
 }
 
 /// Gives a file the hash of what it holds, if it is whole.
@@ -185,7 +185,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
 #[test]
 fn a_file_for_which_there_is_no_memory_is_refused_before_any_is_taken() {
     let fault =
-        parse(Arc::new(EXAMPLE.clone()), Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
+        parse(&EXAMPLE, Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
     assert!(fault.ends_with("this test leaves 0 MB; use fewer"), "{fault}");
 }
 

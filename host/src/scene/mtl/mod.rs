@@ -40,7 +40,7 @@ use super::lines::{self, Lines, NOT_UTF8};
 use super::map::Images;
 use super::material::Fields;
 use super::tally::Tally;
-use super::{Unplaced, file};
+use super::{Material, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// The materials of a file in its order, by name, and what of it was ignored or clamped.
@@ -62,6 +62,9 @@ pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
 
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Library> {
+    images.room.check_bytes(memory(bytes)).map_err(|why| {
+        Error::file(path, format!("its materials may {why}; remove those that no surface has"))
+    })?;
     let mut lines = Lines::new(path, bytes);
     let mut reader = Reader::new(path);
     while let Some((number, line)) = lines.advance()? {
@@ -69,6 +72,15 @@ pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Li
         reader.read(line).map_err(|fault| Error::line(path, number, fault))?;
     }
     reader.finish(images)
+}
+
+/// What the materials of a text take of memory at most, in bytes: what is read of each, what its fields are, and what it is in
+/// a scene, in lists that double as they grow.
+fn memory(bytes: &[u8]) -> u64 {
+    const EACH: usize = 2 * (size_of::<(String, New)>() + size_of::<(String, Fields)>() + size_of::<Material>());
+    const WORD: &[u8] = b"newmtl";
+    let starts = bytes.split(|&byte| byte == b'\n' || byte == b'\r').map(<[u8]>::trim_ascii_start);
+    starts.filter(|line| line.starts_with(WORD)).count() as u64 * EACH as u64
 }
 
 /// What a `newmtl` says.

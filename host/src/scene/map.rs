@@ -12,6 +12,7 @@ use super::table::Table;
 use super::texture::{Map, Maps, Placement, Texture, Wrap};
 use crate::error::Result;
 use crate::image::{TextureBudget, read_texture};
+#[cfg(test)]
 use crate::memory::Room;
 
 /// Pictures already read, since materials share them.
@@ -25,12 +26,13 @@ pub struct Images {
 }
 
 impl Images {
-    /// The pictures that a file in `folder` names, and those that its meshes do.
+    /// The pictures that a file in `folder` names, and those that its meshes do, with all the room that there is.
+    #[cfg(test)]
     pub fn new(folder: &Path) -> Self {
         Images::within(folder, Budget::new(Room::now()))
     }
 
-    /// The same, and what there is room for beside them.
+    /// The pictures that a file in `folder` names, and those that its meshes do, and what there is room for beside them.
     pub fn within(folder: &Path, room: Budget) -> Self {
         Images {
             folder: folder.to_owned(),

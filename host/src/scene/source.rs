@@ -49,8 +49,8 @@ impl<'s> Source<'s> {
     }
 }
 
-/// What a TOML text may take of memory at most while it is parsed, in bytes: lists of `0,` took 190 a comma, tables of `a.b = 0`
-/// 360 a sign.
+/// What a TOML text may take of memory at most while it is parsed, in bytes: lists of `0,` took 156 a comma. Tables take
+/// more, by their keys.
 pub fn memory(text: &str) -> u64 {
     const VALUE: u64 = 512;
     let values = text.bytes().filter(|byte| matches!(byte, b',' | b'=' | b'[' | b'{' | b'.')).count() as u64;

@@ -46,7 +46,14 @@ impl Cursor {
     /// # Safety
     /// That of [`Cursor::pop`].
     #[inline(always)]
-    pub unsafe fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
+    pub unsafe fn descend(
+        &mut self,
+        pair: &CentredPair,
+        left: bool,
+        right: bool,
+        right_first: bool,
+        stack: &mut Stack,
+    ) {
         let (left_child, right_child) = (pair.left(), pair.right());
         if cfg!(target_arch = "spirv") {
             // Few and short branches, since lanes of a subgroup that take different ones wait for each other.

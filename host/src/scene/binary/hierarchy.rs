@@ -34,6 +34,9 @@ impl Hierarchy {
 
 impl fmt::Debug for Hierarchy {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.debug_struct("Hierarchy").field("quality", &self.quality).field("bytes", &self.sections.each_ref().map(Vec::len)).finish()
+        out.debug_struct("Hierarchy")
+            .field("quality", &self.quality)
+            .field("bytes", &self.sections.each_ref().map(Vec::len))
+            .finish()
     }
 }

@@ -94,3 +94,20 @@ fn word(bytes: &[u8], at: usize) -> Option<usize> {
     let word = bytes.get(at..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_le_bytes(*word)).ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_refused_by_its_first_bytes_before_the_rest_is_read() {
+        let start =
+            |json: u32| [MAGIC, &2u32.to_le_bytes(), &(1u32 << 30).to_le_bytes(), &json.to_le_bytes(), JSON].concat();
+        assert_eq!(check(&start(1000), 1 << 30), Ok(()));
+        assert_eq!(check(b"{\"asset\"", file::MOST_TEXT), Ok(()));
+        let too_much = "and 67108864 is the most that is read; split the file";
+        assert!(check(&start(1 << 27), 1 << 30).unwrap_err().ends_with(too_much));
+        assert!(check(b"{", file::MOST_TEXT + 1).unwrap_err().ends_with(too_much));
+        assert_eq!(check(&start(1000), 1 << 20), Err(ends()));
+    }
+}

@@ -62,9 +62,10 @@ pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
 
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Library> {
-    images.room.check_bytes(memory(bytes)).map_err(|why| {
-        Error::file(path, format!("its materials may {why}; remove those that no surface has"))
-    })?;
+    images
+        .room
+        .check_bytes(memory(bytes))
+        .map_err(|why| Error::file(path, format!("its materials may {why}; remove those that no surface has")))?;
     let mut lines = Lines::new(path, bytes);
     let mut reader = Reader::new(path);
     while let Some((number, line)) = lines.advance()? {
@@ -269,4 +270,20 @@ fn numbers(key: &str, rest: &str) -> Unplaced<Vec<f32>> {
 /// `d -halo 0.5` would fade glass towards its rim; the number counts all the same.
 fn without_halo(rest: &str) -> &str {
     rest.strip_prefix("-halo").map_or(rest, str::trim_start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::tests::budget;
+
+    #[test]
+    fn materials_that_there_is_no_memory_for_are_refused_before_they_are_read() {
+        let text = "newmtl a\n".repeat(1000);
+        let within =
+            |bytes| parse(Path::new("a.mtl"), text.as_bytes(), &mut Images::within(Path::new(""), budget(bytes)));
+        let refused = within(100_000).unwrap_err().to_string();
+        assert!(refused.starts_with("a.mtl: its materials may take about ") && refused.contains("0 MB"), "{refused}");
+        assert_eq!(within(1 << 30).unwrap().materials.len(), 1000);
+    }
 }

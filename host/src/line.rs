@@ -16,12 +16,18 @@ pub fn one_line(text: &str) -> String {
     printable(text)
 }
 
+/// Does a character steer a terminal, or is it a mark that turns the text after it around or breaks its line?
+fn steers(c: char) -> bool {
+    let is_mark = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    c.is_control() || is_mark
+}
+
 /// Escapes what would break a line or steer a terminal.
 pub fn printable(text: &str) -> String {
     text.chars()
         .flat_map(|c| {
             let escaped: Box<dyn Iterator<Item = char>> =
-                if c.is_control() { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) };
+                if steers(c) { Box::new(c.escape_default()) } else { Box::new(std::iter::once(c)) };
             escaped
         })
         .collect()
@@ -33,6 +39,16 @@ mod tests {
 
     use super::*;
     use crate::error::Error;
+
+    #[test]
+    fn marks_that_turn_text_around_are_escaped_and_other_letters_are_not() {
+        assert_eq!(
+            one_line("a\u{202e}gpj.\u{2066}b\u{2069}\u{200f}\u{2028}"),
+            "a\\u{202e}gpj.\\u{2066}b\\u{2069}\\u{200f}\\u{2028}"
+        );
+        let plain = "\u{e9}\u{5d0}\u{200d}\u{1f600} \u{6f22}";
+        assert_eq!(one_line(plain), plain);
+    }
 
     #[test]
     fn a_long_message_keeps_its_beginning_and_its_remedy() {

@@ -12,6 +12,7 @@ mod encode;
 mod exr;
 mod hdr;
 mod jpeg;
+mod png;
 mod read;
 mod texels;
 mod tone;

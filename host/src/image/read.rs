@@ -11,7 +11,7 @@ use image::{
 
 use super::bounded::{Allowance, Bounded};
 use super::transfer::{byte_to_linear, linear_table};
-use super::{hdr, jpeg};
+use super::{hdr, jpeg, png};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::memory::Room;
@@ -113,12 +113,16 @@ pub(super) fn pixels_of(
     let allowance = Allowance::new(MOST_HEADER);
     // A JPEG is looked through to its end, which is no further than the largest has it.
     let most = if format == ImageFormat::Jpeg { kinds.most_pixels * most_per_pixel } else { 0 };
+    let most_taken = match format {
+        ImageFormat::Png => png::most_taken(&mut reader).map_err(unreadable)?,
+        // The widest pixel is one of four floats.
+        _ => kinds.most_pixels * 16,
+    };
     let exposure = check_header(Bounded::new(&mut reader, Allowance::new(MOST_HEADER + most)), format)?;
     reader.rewind().map_err(unreadable)?;
     let mut reader = ImageReader::with_format(Bounded::new(reader, allowance.clone()), format);
     let mut limits = Limits::default();
-    // The widest pixel is one of four floats.
-    limits.max_alloc = Some(kinds.most_pixels * 16);
+    limits.max_alloc = Some(most_taken);
     reader.limits(limits);
     let decoder = reader.into_decoder().map_err(decode_error)?;
     let (width, height) = decoder.dimensions();

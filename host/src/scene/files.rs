@@ -47,7 +47,7 @@ impl<'p> Files<'p> {
         Files {
             folder,
             budget,
-            images: Images::new(folder, loading),
+            images: Images::within(folder, budget, loading),
             is_covered: false,
             has: Own::default(),
             meshes: HashMap::new(),

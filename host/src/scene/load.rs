@@ -79,7 +79,7 @@ pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Resu
 }
 
 fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
-    let mut images = Images::new(file::folder(path), loading);
+    let mut images = Images::within(file::folder(path), budget, loading);
     let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
@@ -163,7 +163,7 @@ fn load_toml(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Ve
 /// No readable TOML file, and those of `make`.
 pub fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
     let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
-    make(Source::new(path, text(path, &bytes)?).parse()?)
+    make(Source::new(path, text(path, &bytes)?).parse(&Budget::new(Room::now()))?)
 }
 
 fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
@@ -176,7 +176,7 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
 
 /// The scene of a TOML text, whose meshes are relative to the folder of `path`.
 pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
-    let mut table = Source::new(path, text(path, bytes)?).parse()?;
+    let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
     let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));

@@ -6,12 +6,15 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
+use super::budget::Budget;
 use super::load::Loading;
 use super::range::Range;
 use super::table::Table;
 use super::texture::{Map, Maps, Placement, Texture, Wrap};
 use crate::error::Result;
 use crate::image::{TextureBudget, read_texture};
+#[cfg(test)]
+use crate::memory::Room;
 
 /// Pictures already read, since materials share them.
 pub struct Images {
@@ -19,17 +22,26 @@ pub struct Images {
     /// How the meshes that name some of them are read.
     pub loading: Loading,
     budget: TextureBudget,
+    /// For what is read beside them.
+    pub room: Budget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
 }
 
 impl Images {
-    /// The pictures that a file in `folder` names, and those that its meshes do.
+    /// The pictures that a file in `folder` names, and those that its meshes do, with all the room that there is.
+    #[cfg(test)]
     pub fn new(folder: &Path, loading: Loading) -> Self {
+        Images::within(folder, Budget::new(Room::now()), loading)
+    }
+
+    /// The pictures that a file in `folder` names, and those that its meshes do, and what there is room for beside them.
+    pub fn within(folder: &Path, room: Budget, loading: Loading) -> Self {
         Images {
             folder: folder.to_owned(),
             loading,
             budget: TextureBudget::default(),
+            room,
             textures: HashMap::new(),
             opacities: HashMap::new(),
         }

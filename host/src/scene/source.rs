@@ -5,6 +5,7 @@ use std::rc::Rc;
 
 use toml::de::DeTable;
 
+use super::budget::Budget;
 use super::table::Table;
 use crate::error::{Error, Result};
 
@@ -27,8 +28,10 @@ impl<'s> Source<'s> {
         Source { path, text, ends: ends.collect() }
     }
 
-    /// The file's tables. The error is a fault of the syntax or a key given twice.
-    pub fn parse(&self) -> Result<Table<'s>> {
+    /// The file's tables. The error is a fault of the syntax, a key given twice, or more values than there is memory for.
+    pub fn parse(&self, budget: &Budget) -> Result<Table<'s>> {
+        let fits = budget.check_bytes(memory(self.text));
+        fits.map_err(|why| Error::file(self.path, format!("its values may {why}; write fewer")))?;
         let table = DeTable::parse(self.text).map_err(|error| {
             let at = error.span().map_or(0, |span| span.start);
             self.fault(at, error.message())
@@ -44,6 +47,14 @@ impl<'s> Source<'s> {
         let line = 1 + before + line_ends(&self.text.as_bytes()[block * BLOCK..at]);
         Error::line(self.path, line, message)
     }
+}
+
+/// What a TOML text may take of memory at most while it is parsed, in bytes: lists of `0,` took 156 a comma. Tables take
+/// more, by their keys.
+pub fn memory(text: &str) -> u64 {
+    const VALUE: u64 = 512;
+    let values = text.bytes().filter(|byte| matches!(byte, b',' | b'=' | b'[' | b'{' | b'.')).count() as u64;
+    values * VALUE + 2 * text.len() as u64
 }
 
 fn line_ends(text: &[u8]) -> usize {

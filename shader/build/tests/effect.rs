@@ -44,7 +44,11 @@ const DUMMY: [Edit; 6] = [
     ),
     // Of both kernels that shade.
     ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
-    ("src/entry/mod.rs", "colours tangents environment albedos light_nodes] {", "colours tangents environment albedos light_nodes dummy] {"),
+    (
+        "src/entry/mod.rs",
+        "colours tangents environment albedos light_nodes] {",
+        "colours tangents environment albedos light_nodes dummy] {",
+    ),
     (
         "src/entry/mod.rs",
         "let shading = ShadingData { normals, materials, tangents, maps, textures };",

@@ -3,7 +3,7 @@
 use crate::real::{Real, Scalar, V3};
 
 /// A place, and the side of it that light may come from.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 pub struct Viewpoint<R: Real> {
     /// Where it is.
     pub origin: V3<R>,

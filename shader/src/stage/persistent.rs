@@ -53,7 +53,8 @@ pub fn persistent<R: Scalar, M: Resumable<R>, L: Leaf, Q: Query, W: Warp>(
         let least = if more { enough } else { 1 };
         while W::count(!cursor.is_done()) >= least {
             if !cursor.is_done() {
-                M::step::<Q, L>(context, &ray, &mut hit, &mut cursor, &mut stack);
+                // SAFETY: it is not done, and every traversal starts and ends with this stack.
+                unsafe { M::step::<Q, L>(context, &ray, &mut hit, &mut cursor, &mut stack) };
             }
         }
     }

@@ -4,7 +4,7 @@ use super::resumable::Progress;
 use crate::data::{CentredPair, NodeRef, STACK};
 
 /// Nodes still to visit. Kept beside its [`Cursor`], since rust-gpu allows no pointer in a struct that
-/// lives across a loop. A packet's stack is replicated in every lane, so its hits are right even where a
+/// lives across a loop: that the two belong together is the promise of who calls. A packet's stack is replicated in every lane, so its hits are right even where a
 /// driver lets the lanes diverge.
 pub type Stack = super::stack::Stack<NodeRef, STACK>;
 
@@ -42,8 +42,18 @@ impl Cursor {
     }
 
     /// Goes to the nearer child that is hit and pushes the other if it is hit too; pops if none is hit.
+    ///
+    /// # Safety
+    /// That of [`Cursor::pop`].
     #[inline(always)]
-    pub fn descend(&mut self, pair: &CentredPair, left: bool, right: bool, right_first: bool, stack: &mut Stack) {
+    pub unsafe fn descend(
+        &mut self,
+        pair: &CentredPair,
+        left: bool,
+        right: bool,
+        right_first: bool,
+        stack: &mut Stack,
+    ) {
         let (left_child, right_child) = (pair.left(), pair.right());
         if cfg!(target_arch = "spirv") {
             // Few and short branches, since lanes of a subgroup that take different ones wait for each other.
@@ -56,7 +66,8 @@ impl Cursor {
             if left | right {
                 self.node = near;
             } else {
-                self.pop(stack);
+                // SAFETY: the caller's.
+                unsafe { self.pop(stack) };
             }
         } else if left && right {
             // A CPU predicts branches, and continues before the box tests are done.
@@ -68,7 +79,8 @@ impl Cursor {
         } else if right {
             self.node = right_child;
         } else {
-            self.pop(stack);
+            // SAFETY: the caller's.
+            unsafe { self.pop(stack) };
         }
     }
 
@@ -80,13 +92,16 @@ impl Cursor {
     }
 
     /// Pops the next node; ends the traversal if there is none.
+    ///
+    /// # Safety
+    /// The stack is the one that this cursor has pushed to, or one that has all that is on it.
     #[inline(always)]
-    pub fn pop(&mut self, stack: &Stack) {
+    pub unsafe fn pop(&mut self, stack: &Stack) {
         if self.depth == 0 {
             self.node = NodeRef::NONE;
         } else {
             self.depth -= 1;
-            // SAFETY: every index below the depth has been set.
+            // SAFETY: every index below the depth has been set, in this stack by the caller's promise.
             self.node = unsafe { stack.get(self.depth) };
         }
     }

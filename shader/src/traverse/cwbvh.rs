@@ -97,8 +97,11 @@ impl Progress for Groups {
 impl Groups {
     /// Takes the nearest node and pushes the rest of its group. Slots are XORed with `inverted` to get the ray's
     /// order.
+    ///
+    /// # Safety
+    /// A node or a group is left, and all groups that were pushed are on this stack.
     #[inline(always)]
-    fn take(&mut self, inverted: u32, stack: &mut Stack) -> u32 {
+    unsafe fn take(&mut self, inverted: u32, stack: &mut Stack) -> u32 {
         let mut group = self.nodes;
         if !group.any() {
             self.depth -= 1;
@@ -133,7 +136,7 @@ impl<R: Scalar> Resumable<R> for CwbvhMethod {
     }
 
     #[inline(always)]
-    fn step<Q: Query, L: Leaf>(
+    unsafe fn step<Q: Query, L: Leaf>(
         context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
@@ -141,7 +144,8 @@ impl<R: Scalar> Resumable<R> for CwbvhMethod {
         stack: &mut Self::Stack,
     ) {
         if cursor.primitives.waiting == 0 {
-            let node = cursor.take(inverted(ray), stack);
+            // SAFETY: it is not done, and no primitive waits.
+            let node = unsafe { cursor.take(inverted(ray), stack) };
             let node = read(context.wide, node);
             Q::on_boxes(CwbvhNode::ARITY as u32);
             (cursor.nodes, cursor.primitives) = open(&node, ray, hit);

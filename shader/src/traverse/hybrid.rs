@@ -90,13 +90,16 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
             if S::full(context, cursor.depth()) {
                 if T::REJOINS {
                     alone::<Q, L, R>(context, cursor.node, everyone::<R>(), ray, hit);
-                    cursor.pop(&stack);
+                    // SAFETY: it pushes to no other stack.
+                    unsafe { cursor.pop(&stack) };
                 } else {
-                    part::<Q, L, R>(context, &cursor, &stack, ray, hit);
+                    // SAFETY: likewise.
+                    unsafe { part::<Q, L, R>(context, &cursor, &stack, ray, hit) };
                     cursor.finish();
                 }
             } else if cursor.node.is_leaf() {
-                visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack);
+                // SAFETY: likewise.
+                unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
                 let pair = context.pair(cursor.node.index());
                 Q::on_boxes(2);
@@ -105,7 +108,8 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
                 let right =
                     together::<Q, L, R, W, S, T>(context, pair.right(), wanted.right, ray, (hit, &mut deferred));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
-                cursor.descend(&pair, left, right, right_first, &mut stack);
+                // SAFETY: likewise.
+                unsafe { cursor.descend(&pair, left, right, right_first, &mut stack) };
             }
         }
         while deferred.count > 0 {
@@ -170,14 +174,18 @@ fn alone<Q: Query, L: Leaf, R: RayLanes>(
     Q::on_parted(true);
     R::each_lane(ray, hit, rays, |ray, hit| {
         let mut stack = Stack::new();
-        finish::<Q, L, R::Lane, IfIf>(context, ray, hit, Cursor::at(node), &mut stack);
+        // SAFETY: a cursor at a node has pushed nothing.
+        unsafe { finish::<Q, L, R::Lane, IfIf>(context, ray, hit, Cursor::at(node), &mut stack) };
     });
     Q::on_parted(false);
 }
 
 /// Traces every ray by itself through what the packet has left to visit.
+///
+/// # Safety
+/// All that the cursor has pushed is on the shared stack.
 #[inline(always)]
-fn part<Q: Query, L: Leaf, R: RayLanes>(
+unsafe fn part<Q: Query, L: Leaf, R: RayLanes>(
     context: &TraceContext<'_>,
     cursor: &Cursor,
     shared: &Stack,
@@ -193,7 +201,8 @@ fn part<Q: Query, L: Leaf, R: RayLanes>(
             stack.put(i, unsafe { shared.get(i) });
             i += 1;
         }
-        finish::<Q, L, R::Lane, IfIf>(context, ray, hit, *cursor, &mut stack);
+        // SAFETY: all that is on the shared stack is on this one.
+        unsafe { finish::<Q, L, R::Lane, IfIf>(context, ray, hit, *cursor, &mut stack) };
     });
     Q::on_parted(false);
 }

@@ -27,7 +27,7 @@ impl<R: Scalar> Resumable<R> for IfIf {
 
     /// The two ifs.
     #[inline(always)]
-    fn step<Q: Query, L: Leaf>(
+    unsafe fn step<Q: Query, L: Leaf>(
         context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
@@ -35,7 +35,8 @@ impl<R: Scalar> Resumable<R> for IfIf {
         stack: &mut Stack,
     ) {
         if !cursor.node.is_leaf() {
-            pair::<Q, R>(context, ray, hit, cursor, stack);
+            // SAFETY: the caller's.
+            unsafe { pair::<Q, R>(context, ray, hit, cursor, stack) };
         }
         if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
             L::intersect::<Q, R>(context, cursor.node.index(), ray, hit);
@@ -43,7 +44,8 @@ impl<R: Scalar> Resumable<R> for IfIf {
             if Q::ANY && occluded(hit) {
                 cursor.finish();
             } else if !cursor.node.is_leaf() {
-                cursor.pop(stack);
+                // SAFETY: the caller's.
+                unsafe { cursor.pop(stack) };
             }
         }
     }

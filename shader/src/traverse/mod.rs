@@ -6,7 +6,7 @@
 
 #[cfg(not(target_arch = "spirv"))]
 mod bvh8;
-pub mod cursor;
+mod cursor;
 mod cwbvh;
 mod hybrid;
 mod if_if;

@@ -25,14 +25,16 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
             if cursor.node.is_leaf() {
-                visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack);
+                // SAFETY: it pushes to no other stack.
+                unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
                 let pair = context.pair(cursor.node.index());
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
-                cursor.descend(&pair, left, right, right_first, &mut stack);
+                // SAFETY: likewise.
+                unsafe { cursor.descend(&pair, left, right, right_first, &mut stack) };
             }
         }
     }
@@ -59,8 +61,11 @@ pub(super) fn goes<Q: Query, R: Real, W: Warp>(wanting: R::Mask) -> bool {
 }
 
 /// All rays test the current leaf; an any-hit packet is done once all its rays have found something.
+///
+/// # Safety
+/// That of [`Cursor::pop`].
 #[inline(always)]
-pub(super) fn visit_leaf<Q: Query, L: Leaf, R: Real, W: Warp>(
+pub(super) unsafe fn visit_leaf<Q: Query, L: Leaf, R: Real, W: Warp>(
     context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
@@ -71,6 +76,7 @@ pub(super) fn visit_leaf<Q: Query, L: Leaf, R: Real, W: Warp>(
     if Q::ANY && !W::any(!occluded(hit)) {
         cursor.finish();
     } else {
-        cursor.pop(stack);
+        // SAFETY: the caller's.
+        unsafe { cursor.pop(stack) };
     }
 }

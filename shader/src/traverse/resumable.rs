@@ -28,7 +28,10 @@ pub trait Resumable<R: Scalar> {
     fn stack() -> Self::Stack;
 
     /// One step of a traversal that is not done.
-    fn step<Q: Query, L: Leaf>(
+    ///
+    /// # Safety
+    /// The traversal is not [done](Progress::is_done), and all of its steps since it started were given this stack.
+    unsafe fn step<Q: Query, L: Leaf>(
         context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
@@ -45,7 +48,8 @@ pub fn follow<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
     hit: &mut Hit<R>,
 ) {
     let mut stack = M::stack();
-    finish::<Q, L, R, M>(context, ray, hit, M::Cursor::start(), &mut stack);
+    // SAFETY: a traversal that starts has pushed nothing.
+    unsafe { finish::<Q, L, R, M>(context, ray, hit, M::Cursor::start(), &mut stack) };
 }
 
 /// Makes methods that trace a ray from the root by their steps. Not all at once: other crates may make steps of types that
@@ -63,8 +67,11 @@ macro_rules! stepwise {
 pub(super) use stepwise;
 
 /// From the traversal's current state to its end.
+///
+/// # Safety
+/// All that the cursor has pushed is on this stack.
 #[inline(always)]
-pub fn finish<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
+pub unsafe fn finish<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
     context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
@@ -72,10 +79,12 @@ pub fn finish<Q: Query, L: Leaf, R: Scalar, M: Resumable<R>>(
     stack: &mut M::Stack,
 ) {
     while !cursor.is_done() {
-        M::step::<Q, L>(context, ray, hit, &mut cursor, stack);
+        // SAFETY: it is not done, and the stack is the caller's.
+        unsafe { M::step::<Q, L>(context, ray, hit, &mut cursor, stack) };
         // Two steps, since loop iterations are expensive on a GPU.
         if !cursor.is_done() {
-            M::step::<Q, L>(context, ray, hit, &mut cursor, stack);
+            // SAFETY: likewise.
+            unsafe { M::step::<Q, L>(context, ray, hit, &mut cursor, stack) };
         }
     }
 }

@@ -28,9 +28,11 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
             while !(cursor.is_done() || cursor.node.is_leaf() && aside.is_leaf()) {
                 if cursor.node.is_leaf() {
                     aside = cursor.node;
-                    cursor.pop(&stack);
+                    // SAFETY: it pushes to no other stack.
+                    unsafe { cursor.pop(&stack) };
                 } else {
-                    pair::<Q, R>(context, ray, hit, &mut cursor, &mut stack);
+                    // SAFETY: likewise.
+                    unsafe { pair::<Q, R>(context, ray, hit, &mut cursor, &mut stack) };
                 }
                 if !W::any(!aside.is_leaf()) {
                     break;

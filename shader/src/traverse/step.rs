@@ -45,8 +45,11 @@ pub fn inside<R: Real>(centre: UVec4, half: UVec4, ray: &Ray<R>, limit: R) -> Sp
 }
 
 /// A single ray's visit of its current pair.
+///
+/// # Safety
+/// That of [`Cursor::pop`].
 #[inline(always)]
-pub fn pair<Q: Query, R: Scalar>(
+pub(super) unsafe fn pair<Q: Query, R: Scalar>(
     context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &Hit<R>,
@@ -56,7 +59,8 @@ pub fn pair<Q: Query, R: Scalar>(
     let pair = context.pair(cursor.node.index());
     Q::on_boxes(2);
     let wanted = children(&pair, ray, hit);
-    cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack);
+    // SAFETY: the caller's.
+    unsafe { cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack) };
 }
 
 /// Tests all that a leaf holds. Returns whether this is an any-hit query all of whose rays have found something.

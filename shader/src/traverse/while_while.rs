@@ -33,7 +33,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
 
     /// The two inner whiles.
     #[inline(always)]
-    fn step<Q: Query, L: Leaf>(
+    unsafe fn step<Q: Query, L: Leaf>(
         context: &TraceContext<'_>,
         ray: &Ray<R>,
         hit: &mut Hit<R>,
@@ -42,10 +42,13 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
     ) {
         let all = W::count(true);
         while !cursor.node.is_leaf() {
-            pair::<Q, R>(context, ray, hit, cursor, stack);
             // Three pairs per iteration: iterations are expensive on a GPU, and votes more so.
-            inner::<Q, R>(context, ray, hit, cursor, stack);
-            inner::<Q, R>(context, ray, hit, cursor, stack);
+            // SAFETY: the caller's.
+            unsafe {
+                pair::<Q, R>(context, ray, hit, cursor, stack);
+                inner::<Q, R>(context, ray, hit, cursor, stack);
+                inner::<Q, R>(context, ray, hit, cursor, stack);
+            }
             if W::SHARED && 100 * W::count(!cursor.node.is_leaf()) < context.base.spec.tuning.cut() * all {
                 break;
             }
@@ -54,15 +57,19 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
             if leaf::<Q, L, R>(context, cursor.node, ray, hit) {
                 cursor.finish();
             } else {
-                cursor.pop(stack);
+                // SAFETY: the caller's.
+                unsafe { cursor.pop(stack) };
             }
         }
     }
 }
 
 /// Visits a pair, unless the traversal is at a leaf.
+///
+/// # Safety
+/// That of [`Cursor::pop`].
 #[inline(always)]
-fn inner<Q: Query, R: Scalar>(
+unsafe fn inner<Q: Query, R: Scalar>(
     context: &TraceContext<'_>,
     ray: &Ray<R>,
     hit: &Hit<R>,
@@ -70,6 +77,7 @@ fn inner<Q: Query, R: Scalar>(
     stack: &mut Stack,
 ) {
     if !cursor.node.is_leaf() {
-        pair::<Q, R>(context, ray, hit, cursor, stack);
+        // SAFETY: the caller's.
+        unsafe { pair::<Q, R>(context, ray, hit, cursor, stack) };
     }
 }

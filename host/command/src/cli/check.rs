@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use clap::Args;
 use eyerays_bvh::Quality;
 
-use super::reading::{Read, Reading};
 use super::outline::Outline;
+use super::reading::{Read, Reading};
 use super::{console, plural, progress};
 use crate::error::{Error, Result};
 use eyerays::device_scene::DeviceScene;

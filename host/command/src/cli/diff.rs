@@ -9,8 +9,8 @@ use serde_json::json;
 
 use super::console;
 use super::options::{DeviceArgs, Effort, View};
-use super::reading::{Read, Reading};
 use super::progress;
+use super::reading::{Read, Reading};
 use crate::error::{Error, Result};
 use crate::flip::Flip;
 use crate::output::{self, Destination};

@@ -12,8 +12,8 @@ use serde_json::{Value, json};
 
 use super::choice::choice;
 use super::footprint::Footprint;
-use super::reading::{Read, Reading};
 use super::outline::Outline;
+use super::reading::{Read, Reading};
 use super::{console, progress};
 use crate::error::Result;
 use eyerays::choice::Named;

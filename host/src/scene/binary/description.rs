@@ -5,6 +5,8 @@ use serde::{Deserialize, Serialize};
 
 use super::textures::Pictures;
 use crate::quality;
+use crate::scene::budget::Budget;
+use crate::scene::source;
 use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Part, Scene, Settings, Sphere, Unplaced};
 
 /// The fields of a [`Scene`] but for its geometry, the texels of its textures and the files that it came from.
@@ -42,9 +44,10 @@ impl Description {
     /// Reads one.
     ///
     /// # Errors
-    /// No TOML, or other fields.
-    pub fn parse(text: &[u8]) -> Unplaced<Self> {
+    /// No TOML, other fields, or more of them than the budget has room for.
+    pub fn parse(text: &[u8], budget: &Budget) -> Unplaced<Self> {
         let text = std::str::from_utf8(text).map_err(|_| "its description is not UTF-8".to_owned())?;
+        budget.check_bytes(source::memory(text)).map_err(|why| format!("its description may {why}; write less"))?;
         toml::from_str(text).map_err(|error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
             format!("line {line} of its description: {}", error.message().replace('\n', " "))

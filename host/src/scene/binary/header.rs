@@ -109,6 +109,9 @@ impl Header {
             let version = header.version;
             return Err(format!("version {version} of the binary form, and {VERSION} is what is read; {AGAIN}"));
         }
+        if header.reserved != 0 {
+            return Err(format!("its header has other than zeros in its spare bytes; {AGAIN}"));
+        }
         let sections = header.counts.lengths().and_then(|lengths| sections(lengths, file.len()));
         sections.map(|sections| (header, sections)).ok_or_else(|| {
             format!("its {} bytes are not what its header tells, as if it were cut off; {AGAIN}", file.len())

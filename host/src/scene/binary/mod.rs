@@ -3,7 +3,7 @@
 //! A file is a [`Header`], then sections that each begin at a multiple of 64 bytes: the description (TOML: all of a
 //! [`Scene`](super::Scene) but its geometry and texels), positions, normals, two sets of texture coordinates, tangents, colours,
 //! triangles, their materials, spheres, disks and the texels of each texture once, as [`Scene`](super::Scene) has them, and pairs, order and own boxes of a hierarchy, as
-//! [`Bvh`](eyerays_bvh::Bvh) has them; little-endian, zeros between. A file is mapped, its hash and every number in it are
+//! [`Bvh`](eyerays_bvh::Bvh) has them; little-endian, zeros between. Its hash and every number in it are
 //! checked, and nothing is parsed but the description.
 
 mod description;

@@ -1,15 +1,13 @@
 //! Reading binary scenes.
 
 use std::path::Path;
-use std::sync::Arc;
 
 use bytemuck::Pod;
-use memmap2::Mmap;
 use rayon::prelude::*;
 
 use super::description::Description;
 use super::header::Header;
-use super::hierarchy::{Bytes, Hierarchy};
+use super::hierarchy::Hierarchy;
 use crate::error::{Error, Result};
 use crate::scene::{Mesh, Scene, Unplaced, budget::Budget, file};
 
@@ -18,20 +16,14 @@ use crate::scene::{Mesh, Scene, Unplaced, budget::Budget, file};
 /// # Errors
 /// A file that cannot be read, is not of this form, or is damaged; one that holds what no scene may, whatever its hash.
 pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
-    let scene = || {
-        let file = file::open(path, u64::MAX)?;
-        // SAFETY: the mapping is read-only. Another process that changes the file meanwhile changes what is read, and what
-        // is read is copied before it is checked.
-        let bytes = unsafe { Mmap::map(&file) }.map_err(|error| file::explain(&error))?;
-        parse(Arc::new(bytes), budget)
-    };
-    scene().map_err(|fault: String| Error::file(path, fault))
+    let scene = file::read(path, u64::MAX).and_then(|bytes| parse(&bytes, budget));
+    scene.map_err(|fault| Error::file(path, fault))
 }
 
 /// The scene in these bytes.
-pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
-    let (header, sections) = Header::read((*bytes).as_ref())?;
-    let all = sections.clone().map(|section| &(*bytes).as_ref()[section]);
+pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
+    let (header, sections) = Header::read(bytes)?;
+    let all = sections.map(|section| &bytes[section]);
     header.check(&all)?;
     let counts = header.counts;
     budget.check(counts.triangles as usize, counts.positions as usize)?;
@@ -48,9 +40,9 @@ pub fn parse(bytes: Bytes, budget: Budget) -> Unplaced<Scene> {
         tangents: list(tangents),
         colours: list(colours),
     };
-    let description = Description::parse(description)?;
-    let [.., pairs, order, bounds] = sections;
-    let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, bytes.clone(), [pairs, order, bounds]));
+    let description = Description::parse(description, &budget)?;
+    let [.., pairs, order, bounds] = all;
+    let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, [pairs, order, bounds]));
     let scene = description.scene(mesh, list(spheres), list(disks), texels)?;
     let scene = Scene { hierarchy: kept, ..scene };
     if scene.cameras.is_empty() {

@@ -29,7 +29,7 @@ fn binary(scene: &Scene) -> Vec<u8> {
 }
 
 fn read(bytes: &[u8]) -> Unplaced<Scene> {
-    parse(Arc::new(bytes.to_vec()), Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
+    parse(bytes, Budget::new(Room { bytes: 1 << 30, limit: "this test" }))
 }
 
 /// Gives a file the hash of what it holds, if it is whole.
@@ -175,6 +175,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
     assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 4 is what is read"));
+    assert!(refused(|b| b[12] = 1).starts_with("its header has other than zeros in its spare bytes"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));
     assert!(refused(|b| b.push(0)).contains("are not what its header tells"));
     assert!(refused(|b| b[55] = 0xff).contains("are not what its header tells"));
@@ -184,8 +185,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
 
 #[test]
 fn a_file_for_which_there_is_no_memory_is_refused_before_any_is_taken() {
-    let fault =
-        parse(Arc::new(EXAMPLE.clone()), Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
+    let fault = parse(&EXAMPLE, Budget::new(Room { bytes: 1000, limit: "this test" })).expect_err("accepted");
     assert!(fault.ends_with("this test leaves 0 MB; use fewer"), "{fault}");
 }
 

@@ -17,6 +17,44 @@ const BINARY: &[u8] = b"BIN\0";
 /// Magic, version and length.
 const HEADER: usize = 12;
 
+/// The bytes that tell how long the JSON is.
+pub const START: usize = HEADER + 8;
+
+/// Refuses a file for its first bytes and its length, before the rest of it is read.
+///
+/// # Errors
+/// A binary file of another version or longer than it is, and more JSON than [`file::MOST_TEXT`].
+pub fn check(start: &[u8], length: u64) -> Unplaced<()> {
+    if !start.starts_with(MAGIC) {
+        return check_json(length);
+    }
+    check_version(start)?;
+    match (word(start, 8), word(start, HEADER)) {
+        (Some(claimed), Some(json)) if claimed as u64 <= length => check_json(json as u64),
+        _ => Err(ends()),
+    }
+}
+
+fn check_json(length: u64) -> Unplaced<()> {
+    let most = file::MOST_TEXT;
+    if length > most {
+        return Err(format!("the JSON holds {length} bytes and {most} is the most that is read; split the file"));
+    }
+    Ok(())
+}
+
+fn check_version(bytes: &[u8]) -> Unplaced<()> {
+    match word(bytes, 4) {
+        Some(2) => Ok(()),
+        Some(version) => Err(format!("this is a binary glTF of version {version}; convert it to version 2")),
+        None => Err(ends()),
+    }
+}
+
+fn ends() -> String {
+    "the file ends early; was it written to the end?".to_owned()
+}
+
 /// Finds the chunks of a binary file, or takes all of it for JSON. It goes by the first bytes: names may lie.
 ///
 /// # Errors
@@ -24,19 +62,12 @@ const HEADER: usize = 12;
 pub fn open(bytes: &[u8]) -> Unplaced<Container> {
     let container =
         if bytes.starts_with(MAGIC) { chunks(bytes)? } else { Container { json: 0..bytes.len(), chunk: None } };
-    let (length, most) = (container.json.len(), file::MOST_TEXT);
-    if length as u64 > most {
-        return Err(format!("the JSON holds {length} bytes and {most} is the most that is read; split the file"));
-    }
+    check_json(container.json.len() as u64)?;
     Ok(container)
 }
 
 fn chunks(bytes: &[u8]) -> Unplaced<Container> {
-    let ends = || "the file ends early; was it written to the end?".to_owned();
-    let version = word(bytes, 4).ok_or_else(ends)?;
-    if version != 2 {
-        return Err(format!("this is a binary glTF of version {version}; convert it to version 2"));
-    }
+    check_version(bytes)?;
     let length = word(bytes, 8).ok_or_else(ends)?;
     let bytes = bytes.get(..length).ok_or_else(ends)?;
     let (json, kind) = chunk(bytes, HEADER)?.ok_or_else(ends)?;
@@ -62,4 +93,21 @@ fn chunk(bytes: &[u8], at: usize) -> Unplaced<Option<(Range<usize>, &[u8])>> {
 fn word(bytes: &[u8], at: usize) -> Option<usize> {
     let word = bytes.get(at..)?.first_chunk::<4>()?;
     usize::try_from(u32::from_le_bytes(*word)).ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_refused_by_its_first_bytes_before_the_rest_is_read() {
+        let start =
+            |json: u32| [MAGIC, &2u32.to_le_bytes(), &(1u32 << 30).to_le_bytes(), &json.to_le_bytes(), JSON].concat();
+        assert_eq!(check(&start(1000), 1 << 30), Ok(()));
+        assert_eq!(check(b"{\"asset\"", file::MOST_TEXT), Ok(()));
+        let too_much = "and 67108864 is the most that is read; split the file";
+        assert!(check(&start(1 << 27), 1 << 30).unwrap_err().ends_with(too_much));
+        assert!(check(b"{", file::MOST_TEXT + 1).unwrap_err().ends_with(too_much));
+        assert_eq!(check(&start(1000), 1 << 20), Err(ends()));
+    }
 }

@@ -69,7 +69,14 @@ pub struct Gltf {
 /// A file that cannot be read, is no glTF 2.0, requires an extension that is not read, names what does not exist, holds no
 /// triangle, or more than the budget has room for: each says where in the JSON.
 pub fn load(path: &Path, budget: Budget, loading: Loading) -> Result<Gltf> {
-    let bytes = file::read(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
+    let read = || {
+        let mut file = file::open(path, file::MOST_MESH)?;
+        let length = file.length();
+        let start = file.start(container::START)?;
+        container::check(&start, length)?;
+        file.whole_after(start)
+    };
+    let bytes = read().map_err(|fault: String| Error::file(path, fault))?;
     parse(path, &bytes, budget, loading)
 }
 

@@ -42,7 +42,7 @@ use super::map::Images;
 use super::material::Fields;
 use super::neighbours::Neighbours;
 use super::tally::Tally;
-use super::{Integrator, Unplaced, file};
+use super::{Integrator, Material, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// The materials of a file in its order, by name, and what of it was ignored or clamped.
@@ -64,6 +64,10 @@ pub fn load(path: &Path, images: &mut Images) -> Result<Library> {
 
 /// The materials of a text.
 pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Library> {
+    images
+        .room
+        .check_bytes(memory(bytes))
+        .map_err(|why| Error::file(path, format!("its materials may {why}; remove those that no surface has")))?;
     let mut lines = Lines::new(path, bytes);
     let mut reader = Reader::new(path, images.loading.allow_outside);
     while let Some((number, line)) = lines.advance()? {
@@ -71,6 +75,15 @@ pub(super) fn parse(path: &Path, bytes: &[u8], images: &mut Images) -> Result<Li
         reader.read(line);
     }
     Ok(reader.finish(images))
+}
+
+/// What the materials of a text take of memory at most, in bytes: what is read of each, what its fields are, and what it is in
+/// a scene, in lists that double as they grow.
+fn memory(bytes: &[u8]) -> u64 {
+    const EACH: usize = 2 * (size_of::<(String, New)>() + size_of::<(String, Fields)>() + size_of::<Material>());
+    const WORD: &[u8] = b"newmtl";
+    let starts = bytes.split(|&byte| byte == b'\n' || byte == b'\r').map(<[u8]>::trim_ascii_start);
+    starts.filter(|line| line.starts_with(WORD)).count() as u64 * EACH as u64
 }
 
 /// What a `newmtl` says.
@@ -291,4 +304,26 @@ fn numbers(key: &str, rest: &str) -> Unplaced<Vec<f32>> {
 /// `d -halo 0.5` would fade glass towards its rim; the number counts all the same.
 fn without_halo(rest: &str) -> &str {
     rest.strip_prefix("-halo").map_or(rest, str::trim_start)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::Loading;
+    use crate::scene::tests::budget;
+
+    #[test]
+    fn materials_that_there_is_no_memory_for_are_refused_before_they_are_read() {
+        let text = "newmtl a\n".repeat(1000);
+        let within = |bytes| {
+            parse(
+                Path::new("a.mtl"),
+                text.as_bytes(),
+                &mut Images::within(Path::new(""), budget(bytes), Loading::default()),
+            )
+        };
+        let refused = within(100_000).unwrap_err().to_string();
+        assert!(refused.starts_with("a.mtl: its materials may take about ") && refused.contains("0 MB"), "{refused}");
+        assert_eq!(within(1 << 30).unwrap().materials.len(), 1000);
+    }
 }

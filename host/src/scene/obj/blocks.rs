@@ -1,5 +1,9 @@
 //! Pieces of a file that end where a line does.
 
+use std::io::{self, Read};
+
+use super::super::lines::MOST_LINE;
+
 /// How many bytes are read at a time.
 #[derive(Clone, Copy)]
 pub(super) struct Sizes {
@@ -12,6 +16,43 @@ pub(super) struct Sizes {
 impl Sizes {
     /// Far more than a line, and little beside what a mesh takes.
     pub const USUAL: Sizes = Sizes { window: 64 << 20, block: 1 << 20 };
+}
+
+/// A file's text as windows of about a size, one after the other.
+pub(super) struct Windows<R> {
+    source: R,
+    size: usize,
+    /// Read, but behind the last end of a line.
+    rest: Vec<u8>,
+}
+
+impl<R: Read> Windows<R> {
+    /// The windows of what `source` gives.
+    pub fn new(source: R, size: usize) -> Self {
+        Windows { source, size, rest: Vec::new() }
+    }
+
+    /// Reads the next window in place of what is there; it is empty after the last. Only a window that is longer than
+    /// a line may be ends within one.
+    ///
+    /// # Errors
+    /// Those of the source.
+    pub fn read(&mut self, window: &mut Vec<u8>) -> io::Result<()> {
+        window.clear();
+        window.append(&mut self.rest);
+        loop {
+            let wanted = self.size.saturating_sub(window.len()).max(self.size / 16 + 1);
+            let count = self.source.by_ref().take(wanted as u64).read_to_end(window)?;
+            if count < wanted || window.len() > self.size + MOST_LINE {
+                return Ok(());
+            }
+            if let Some(end) = last_end(window) {
+                self.rest.extend_from_slice(&window[end..]);
+                window.truncate(end);
+                return Ok(());
+            }
+        }
+    }
 }
 
 /// A text as blocks of about a size.

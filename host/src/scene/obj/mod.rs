@@ -1,4 +1,5 @@
-//! Wavefront meshes, read by all threads: a window of the file at a time, cut into blocks of whole lines.
+//! Wavefront meshes, read by all threads: a window of the file at a time, cut into blocks of whole lines, while the next
+//! window is read.
 //!
 //! The lines of a block are counted first, so that each statement knows its line, and what its numbers may name. Blocks
 //! are then read side by side, and what they hold is put together in their order: a file gives the same mesh, or the same
@@ -10,14 +11,14 @@ mod face;
 mod library;
 mod vertices;
 
+use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 
 use glam::{Vec2, Vec3};
-use memmap2::Mmap;
 use rayon::prelude::*;
 
 use self::block::{About, Before, Block, Event, Notes};
-use self::blocks::Sizes;
+use self::blocks::{Sizes, Windows};
 use self::library::Libraries;
 use self::vertices::{Attributes, Corners};
 use super::budget::Budget;
@@ -47,14 +48,8 @@ pub struct Obj {
 /// A file that cannot be read, is no mesh, holds no triangle, or more than the budget has room for. A statement that makes no
 /// sense is left out with a warning.
 pub fn load(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
-    let map = || {
-        let file = file::open(path, file::MOST_MESH)?;
-        // SAFETY: the mapping is read-only. Another process that changes the file meanwhile changes what is read, and what
-        // is read is copied before it is looked at, but for where lines end.
-        unsafe { Mmap::map(&file) }.map_err(|error| file::explain(&error))
-    };
-    let text = map().map_err(|fault: String| Error::file(path, fault))?;
-    parse_by(Sizes::USUAL, &text, Found::new(path, budget, images, is_covered))
+    let file = file::open(path, file::MOST_MESH).map_err(|fault| Error::file(path, fault))?;
+    parse_by(Sizes::USUAL, file, Found::new(path, budget, images, is_covered))
 }
 
 /// The mesh of a text, with texture coordinates.
@@ -67,18 +62,21 @@ pub(super) fn parse(path: &Path, text: &[u8], budget: Budget) -> Result<Obj> {
     )
 }
 
-fn parse_by(sizes: Sizes, text: &[u8], mut found: Found) -> Result<Obj> {
+fn parse_by(sizes: Sizes, source: impl Read + Send, mut found: Found) -> Result<Obj> {
+    let path = found.path;
+    let unread = |error: io::Error| Error::file(path, file::explain(&error));
+    let mut windows = Windows::new(source, sizes.window);
     // Memory that was used before is there sooner than new one.
-    let mut copies: Vec<Vec<u8>> = Vec::new();
-    for window in blocks::of(text, sizes.window) {
-        let blocks = blocks::of(window, sizes.block);
-        copies.resize_with(copies.len().max(blocks.len()), Vec::new);
-        copies.par_iter_mut().zip(&blocks).for_each(|(copy, block)| {
-            copy.clear();
-            // A block is longer only if it is one line, which is refused for it.
-            copy.extend_from_slice(&block[..block.len().min(sizes.block + MOST_LINE + 1)]);
-        });
-        found.read(copies[..blocks.len()].iter().map(Vec::as_slice).collect())?;
+    let (mut window, mut next) = (Vec::new(), Vec::new());
+    windows.read(&mut window).map_err(unread)?;
+    while !window.is_empty() {
+        let blocks = blocks::of(&window, sizes.block);
+        // A block is longer only if it is one line, which is refused for it.
+        let texts = blocks.iter().map(|block| &block[..block.len().min(sizes.block + MOST_LINE + 1)]).collect();
+        let (found, read) = rayon::join(|| found.read(texts), || windows.read(&mut next));
+        found?;
+        read.map_err(unread)?;
+        std::mem::swap(&mut window, &mut next);
     }
     found.finish()
 }

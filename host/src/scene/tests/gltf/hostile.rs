@@ -6,8 +6,8 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::model::{F32, Model, U16, data, floats, parse, picture, shorts};
-use crate::scene::{Loading, gltf};
 use crate::scene::tests::{Folder, budget};
+use crate::scene::{Loading, gltf};
 
 /// Asserts why a file is refused.
 fn assert_refused(bytes: &[u8], why: &str) {
@@ -144,11 +144,13 @@ fn too_many_triangles_are_refused_before_they_are_made() {
 #[test]
 fn json_that_there_is_no_memory_for_is_refused_before_it_is_read() {
     let json = format!("{{\"asset\": {{}}, \"materials\": [{{}}{}]}}", ",{}".repeat(500_000));
-    let error = gltf::parse(Path::new("/nowhere/a.gltf"), json.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
+    let error =
+        gltf::parse(Path::new("/nowhere/a.gltf"), json.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
     assert!(error.message().starts_with("its JSON would take about"), "{error}");
     // A long text is no table.
     let data = format!("{{\"asset\": {{\"generator\": \"{}\"}}}}", "A".repeat(1 << 24));
-    let error = gltf::parse(Path::new("/nowhere/a.gltf"), data.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
+    let error =
+        gltf::parse(Path::new("/nowhere/a.gltf"), data.as_bytes(), budget(1 << 28), Loading::default()).unwrap_err();
     assert!(error.message().starts_with("there is no triangle"), "{error}");
 }
 

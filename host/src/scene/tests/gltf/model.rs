@@ -5,9 +5,9 @@ use std::path::Path;
 use serde_json::{Value, json};
 
 use crate::error::Result;
-use crate::scene::{Loading, Mesh};
 use crate::scene::gltf::{self, Gltf};
 use crate::scene::tests::budget;
+use crate::scene::{Loading, Mesh};
 
 /// A file that is put together: its JSON, and its bytes, which become the first buffer.
 pub struct Model {

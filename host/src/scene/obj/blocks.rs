@@ -32,8 +32,8 @@ impl<R: Read> Windows<R> {
         Windows { source, size, rest: Vec::new() }
     }
 
-    /// Reads the next window in place of what is there; it is empty after the last. Only a window that is longer than
-    /// a line may be ends within one.
+    /// Reads the next window in place of what is there; it is empty after the last. Only one that is longer
+    /// than the longest line may end within a line.
     ///
     /// # Errors
     /// Those of the source.
@@ -41,7 +41,8 @@ impl<R: Read> Windows<R> {
         window.clear();
         window.append(&mut self.rest);
         loop {
-            let wanted = self.size.saturating_sub(window.len()).max(self.size / 16 + 1);
+            // At least doubled, so that a line of many windows is looked through few times.
+            let wanted = self.size.saturating_sub(window.len()).max(window.len());
             let count = self.source.by_ref().take(wanted as u64).read_to_end(window)?;
             if count < wanted || window.len() > self.size + MOST_LINE {
                 return Ok(());

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, CwbvhNode, Effects, Frame, Launch, Layout, Light as LightRecord, Material as MaterialRecord,
-    Normals, Physical as PhysicalRecord, Primitive, Specialisation, pack,
+    Bounds, CentredPair, CwbvhNode, Effects, Launch, Layout, Light as LightRecord, Material as MaterialRecord, Normals,
+    Physical as PhysicalRecord, Primitive, Specialisation,
 };
 use eyerays_shader::material::ALBEDOS;
 
@@ -14,6 +14,7 @@ mod alias;
 mod check;
 mod environment;
 mod feature;
+mod frame;
 mod hierarchy;
 mod levels;
 mod light_tree;
@@ -42,9 +43,6 @@ use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::method::{Method, Traversal};
 use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
-
-/// A corner beyond every scene.
-const EVERYWHERE: Vec3 = Vec3::splat((1u64 << 40) as f32);
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
@@ -232,16 +230,6 @@ impl DeviceScene {
         &self.lighting
     }
 
-    /// The least and the greatest corner of all light that rays may find, which are far away where the background is light.
-    pub(crate) fn found_light(&self) -> Option<[Vec3; 2]> {
-        let is_black = match self.background {
-            Background::Colour(colour) => colour == Vec3::ZERO,
-            Background::Gradient { horizon, zenith } => horizon == Vec3::ZERO && zenith == Vec3::ZERO,
-        };
-        let is_black = is_black && self.environment.is_empty();
-        if is_black { self.lamps.bounds } else { Some([-EVERYWHERE, EVERYWHERE]) }
-    }
-
     /// The effects that the scene asks for.
     pub fn effects(&self) -> Effects {
         let effects = records::asked(self.effects, &self.settings);
@@ -354,42 +342,6 @@ impl DeviceScene {
         }
         let lighting = Lighting::new((others, &records), &self.lamps, &self.normalisation);
         Ok((records, lighting))
-    }
-
-    /// The record of a launch that follows `count` rays of a stream.
-    pub fn stream_frame(&self, count: usize) -> Frame {
-        Frame { slots: count as u32, vertices: self.primitives.len() as u32, ..Frame::default() }
-    }
-
-    /// Every launch's record but for what a view says.
-    pub(crate) fn frame(&self) -> Frame {
-        let (horizon, zenith) = match self.background {
-            Background::Colour(colour) => (colour, colour),
-            Background::Gradient { horizon, zenith } => (horizon, zenith),
-        };
-        let lights = self.lights.len() as u32;
-        let Transport { seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
-        let [least, greatest] = self.found_light().unwrap_or([Vec3::ONE, Vec3::NEG_ONE]);
-        let reach = (f64::from(ao_distance) * self.normalisation.scale).min(f32::MAX.into()) as f32;
-        Frame {
-            lamps: pack(flushed((least + greatest) * 0.5), 0),
-            lamps_half: pack(flushed((greatest - least) * 0.5), 0),
-            horizon: records::colour(horizon, 0),
-            zenith: records::colour(zenith, 0),
-            bounces: self.settings.bounces,
-            min_contribution: self.settings.min_contribution,
-            lights,
-            shadow_rays: if self.is_sampled() { 1 } else { lights },
-            seed,
-            emitters: self.lighting.emitters.len() as u32,
-            roulette,
-            clamp,
-            reach,
-            environment: self.lighting.environment,
-            far: self.lighting.far,
-            vertices: self.primitives.len() as u32,
-            ..Frame::default()
-        }
     }
 }
 

@@ -80,6 +80,8 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
         assert_eq!(count("exact::shade", effects(effect)), bare, "{effect:#x} without a light");
         assert!(count("exact::shade", effects(Effects::LIT | effect)) > lit, "{effect:#x}");
     }
+    let spot = Effects::LIT | Effects::SPOT;
+    assert!(count("exact::shade", effects(spot | Effects::RAMP)) > count("exact::shade", effects(spot)));
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
     assert_ne!(trace(split), trace(effects(0)));
     // Only what is not opaque everywhere is asked where rays meet it.
@@ -122,6 +124,8 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
     ] {
         assert!(count(effects(physical | effect)) > count(effects(physical)), "{effect:#x}");
     }
+    let glowing = Effects::EMISSIVE | Effects::COLOURED;
+    assert!(count(effects(glowing | Effects::GLOWING_COLOURS)) > count(effects(glowing)));
     let compensated = physical | Effects::COMPENSATED;
     assert!(count(effects(compensated)) > count(effects(physical)));
     assert_eq!(count(effects(Effects::LIT | Effects::COMPENSATED)), count(lit), "nothing has facets");

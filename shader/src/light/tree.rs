@@ -167,7 +167,8 @@ fn steps_of_first<R: Scalar>(first: R, second: R) -> u32 {
 /// The probability of so many steps.
 #[inline(always)]
 pub(super) fn probability<R: Scalar>(steps: u32) -> R {
-    R::splat(steps as f32) * R::splat(1.0 / STEPS as f32)
+    const STEP: f32 = 1.0 / STEPS as f32;
+    R::splat(steps as f32) * R::splat(STEP)
 }
 
 /// The way to a leaf: by a draw or, for the same bits of its probability, by its trail. `start` is the probability of the root.

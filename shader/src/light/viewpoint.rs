@@ -31,9 +31,11 @@ impl<R: Scalar> Viewpoint<R> {
     /// Its normal, to a hundredth.
     #[inline(always)]
     pub(super) fn normal(&self) -> V3<R> {
+        const ZERO: f32 = MIDDLE - 0.5;
+        const STEP: f32 = 1.0 / STEPS;
         let number = |shift: u32| {
             let byte = (self.side >> shift) & 0xff;
-            (R::splat(byte as f32) - R::splat(MIDDLE - 0.5)) * R::splat(1.0 / STEPS)
+            (R::splat(byte as f32) - R::splat(ZERO)) * R::splat(STEP)
         };
         V3::new(number(0), number(8), number(16))
     }

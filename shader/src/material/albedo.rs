@@ -164,8 +164,9 @@ impl<R: Scalar> FacetAlbedo<R> {
     /// The same of glass, whose facets refract too.
     #[inline(always)]
     pub fn glass(&self, eta: R) -> GlassAlbedo<R> {
+        const OVER: f32 = 1.0 / MOST_BEND;
         let one = R::splat(1.0);
-        let bend = (one - eta).abs().div(one + eta) * R::splat(1.0 / MOST_BEND);
+        let bend = (one - eta).abs().div(one + eta) * R::splat(OVER);
         GlassAlbedo {
             own: self.rough,
             bend: Axis::new(bend, GLASS[0]),

@@ -2,6 +2,7 @@
 
 use super::{fresnel, refract};
 use crate::real::{Real, SMALL, Scalar, V3};
+#[cfg(not(target_arch = "spirv"))]
 use glam::Vec3;
 
 /// A facet's reflectance.

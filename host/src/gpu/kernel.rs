@@ -3,8 +3,8 @@
 use eyerays_passes::Kernel as Cut;
 use eyerays_shader::launch::WORKGROUP;
 use eyerays_shader::resources::{Access, RESOURCES, binding};
-use rayon::prelude::*;
 
+use super::deep::on_deep_stacks;
 use super::device::Gpu;
 use super::hush::Hush;
 use super::module;
@@ -86,7 +86,7 @@ impl Kernel {
 /// Compiles kernels, all at once: drivers take most of the time to a first picture.
 pub(super) fn compile(gpu: &Gpu, recipes: &[Recipe]) -> Vec<Kernel> {
     let _hush = Hush::new();
-    recipes.par_iter().map(|recipe| one(gpu, recipe)).collect()
+    on_deep_stacks(recipes, |recipe| one(gpu, recipe))
 }
 
 fn one(gpu: &Gpu, recipe: &Recipe) -> Kernel {

@@ -4,6 +4,7 @@ mod adapter;
 mod bands;
 mod cast;
 mod cost;
+mod deep;
 mod device;
 mod hush;
 mod kernel;

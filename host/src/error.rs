@@ -189,6 +189,9 @@ impl Error {
             }
             ErrorKind::IsADirectory => "is a directory; name a file".to_owned(),
             ErrorKind::InvalidFilename => "the name is too long or invalid; choose another".to_owned(),
+            ErrorKind::FileTooLarge => {
+                "it would be larger than files may be; raise the limit (ulimit -f) or write elsewhere".to_owned()
+            }
             ErrorKind::BrokenPipe => "the reading program has ended".to_owned(),
             _ => format!("cannot be written: {error}"),
         })

@@ -307,3 +307,19 @@ fn a_time_limit_gives_the_bits_of_the_samples_that_it_tells() {
     let other = place.succeed(&[&common[..], &["c.exr", "--spp", &samples, "--seed", "1"]].concat()).json();
     assert_ne!(limited["film_hash"], other["film_hash"]);
 }
+
+#[cfg(unix)]
+#[test]
+fn a_link_to_nothing_is_not_replaced() {
+    let place = Place::new(&[("mesh.obj", TRIANGLE)]);
+    std::os::unix::fs::symlink("nowhere.png", place.path("p.png")).unwrap();
+    place.refuse(&["render", "mesh.obj", "--device", "cpu", "-o", "p.png"], &["p.png", "is a link to a file"]);
+    assert_eq!(fs::read_link(place.path("p.png")).unwrap().to_str(), Some("nowhere.png"));
+}
+
+#[test]
+fn too_many_threads_of_the_environment_are_refused_before_they_are_started() {
+    let place = Place::new(&[("mesh.obj", TRIANGLE)]);
+    let mut many = place.command(&["check", "mesh.obj"]);
+    place.refuse_run(many.env("RAYON_NUM_THREADS", "99999"), &["RAYON_NUM_THREADS is 99999", "1024"]);
+}

@@ -82,3 +82,14 @@ fn a_signal_that_was_ignored_stays_so() {
     assert!(interrupted(child, "HUP").success());
     assert_eq!(place.names(), ["hall.mtl", "hall.obj", "hall.toml"]);
 }
+
+/// The system lets it write 8 KiB; a picture of noise takes more.
+#[test]
+fn a_picture_that_is_larger_than_files_may_be_is_refused_and_leaves_nothing() {
+    let place = Place::new(&[("mesh.obj", TRIANGLE)]);
+    let program = place.command(&["render", "mesh.obj", "--device", "cpu", "--size", "300x300", "-o", "p.hdr", "-q"]);
+    let mut limited = Command::new("bash");
+    limited.args(["-c", "ulimit -f 8; exec \"$0\" \"$@\""]).arg(program.get_program()).args(program.get_args());
+    limited.current_dir(place.path("")).env_remove("RUST_LOG");
+    place.refuse_run(&mut limited, &["p.hdr", "ulimit -f"]);
+}

@@ -98,6 +98,7 @@ fn explain(said: &clap::Error) -> Result<ExitCode> {
 
 fn execute(cli: Cli) -> Result<ExitCode> {
     log(cli.verbose);
+    options::check_environment()?;
     #[cfg(unix)]
     signals::watch()
         .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;

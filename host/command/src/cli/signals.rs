@@ -2,19 +2,23 @@
 
 use std::fs;
 use std::io;
+use std::sync::Arc;
 use std::thread;
 
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
-use signal_hook::low_level;
+use signal_hook::{flag, low_level};
 
 use crate::output;
 
-/// Ends the process on an interrupt, a request to terminate or a terminal that hangs up, whatever it does then.
+/// Ends the process on an interrupt, a request to terminate or a terminal that hangs up, whatever it does then. A file that would be
+/// larger than the system lets it is an error of writing, not a signal that ends the process at once.
 ///
 /// # Errors
 /// If the system gives no thread to wait in.
 pub(super) fn watch() -> io::Result<()> {
+    // With a handler, whatever it does, the write that was too much fails.
+    flag::register(SIGXFSZ, Arc::default())?;
     let ignored = ignored();
     // Whoever started the process with a signal ignored, as `nohup` does, wants it to go on.
     let watched = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);

@@ -35,6 +35,11 @@ impl Target {
                 if name.last().is_some_and(|&c| std::path::is_separator(c.into())) {
                     return Err(fault(ErrorKind::IsADirectory.into()));
                 }
+                // What is renamed to it would replace the link, not make the file that it names.
+                if fs::symlink_metadata(path).is_ok() {
+                    let fault = "is a link to a file that does not exist; remove it or write elsewhere";
+                    return Err(Error::file(path, fault.to_owned()));
+                }
                 Ok(Target::Regular { place: path.to_owned(), permissions: None })
             }
             Err(error) => Err(fault(error)),

@@ -135,7 +135,7 @@ fn brushed(i: u32) -> Row {
 }
 
 /// The mean of rows over evenly spaced cosines of the azimuth, linear between them.
-fn mean_over_azimuths(rows: &[Row]) -> (f64, f64) {
+fn mean_over_azimuths(rows: &[&Row]) -> (f64, f64) {
     const COUNT: u32 = 1024;
     let means: Vec<(f64, f64)> = rows.iter().map(|row| mean(&row.entries, row.roughness)).collect();
     let mut sum = (0.0, 0.0);
@@ -156,29 +156,54 @@ fn passed(i: u32) -> f64 {
     1.0 - (0..4096).map(share).sum::<f64>() / 4096.0
 }
 
+/// A table by its rows, of which some are not made.
+struct Table {
+    rows: Vec<Option<Row>>,
+    length: u32,
+}
+
+impl Table {
+    fn new(count: u32, length: u32, takes: &impl Fn(u32) -> bool, of: impl Fn(u32) -> Row) -> Self {
+        Table { rows: (0..count).map(|i| takes(i).then(|| of(i))).collect(), length }
+    }
+
+    fn entries(&self) -> Vec<Option<(f64, f64)>> {
+        let of = |row: &Option<Row>| match row {
+            Some(row) => row.entries.iter().copied().map(Some).collect(),
+            None => vec![None; self.length as usize],
+        };
+        self.rows.iter().flat_map(of).collect()
+    }
+
+    fn means(&self) -> Vec<Option<(f64, f64)>> {
+        self.rows.iter().map(|row| row.as_ref().map(Row::mean)).collect()
+    }
+
+    /// The means of so many rows each, unless one of them is not made.
+    fn means_over_azimuths(&self, count: u32) -> Vec<Option<(f64, f64)>> {
+        let of = |rows: &[Option<Row>]| {
+            let made: Option<Vec<&Row>> = rows.iter().map(Option::as_ref).collect();
+            made.map(|rows| mean_over_azimuths(&rows))
+        };
+        self.rows.chunks(count as usize).map(of).collect()
+    }
+}
+
 /// All tables, of some of their rows only.
 fn tables(takes: impl Fn(u32) -> bool) -> Vec<Option<(f64, f64)>> {
-    let rows = |count: u32, length: u32, of: &dyn Fn(u32) -> Row| -> (Vec<Option<(f64, f64)>>, Vec<Option<Row>>) {
-        let rows: Vec<Option<Row>> = (0..count).map(|i| takes(i).then(|| of(i))).collect();
-        let entries = rows.iter().flat_map(|row| match row {
-            Some(row) => row.entries.iter().copied().map(Some).collect::<Vec<_>>(),
-            None => vec![None; length as usize],
-        });
-        (entries.collect(), rows)
-    };
-    let means = |rows: &[Option<Row>]| rows.iter().map(|row| row.as_ref().map(Row::mean)).collect::<Vec<_>>();
-    let (even_entries, even_rows) = rows(EVEN[0], EVEN[1], &even);
-    let (glass_entries, glass_rows) = rows(2 * GLASS[0] * GLASS[1], GLASS[2], &glass);
-    let (brushed_entries, brushed_rows) = rows(BRUSHED[0] * BRUSHED[1] * BRUSHED[2], BRUSHED[3], &brushed);
-    let whole = |rows: &[Option<Row>]| {
-        let rows: Option<Vec<Row>> =
-            rows.iter().map(|row| row.as_ref().map(|r| Row { entries: r.entries.clone(), ..*r })).collect();
-        rows.map(|rows| mean_over_azimuths(&rows))
-    };
-    let brushed_means: Vec<_> = brushed_rows.chunks(BRUSHED[2] as usize).map(whole).collect();
+    let even = Table::new(EVEN[0], EVEN[1], &takes, even);
+    let glass = Table::new(2 * GLASS[0] * GLASS[1], GLASS[2], &takes, glass);
+    let brushed = Table::new(BRUSHED[0] * BRUSHED[1] * BRUSHED[2], BRUSHED[3], &takes, brushed);
     let smooth = (0..GLASS[0]).map(|i| Some(rounded((passed(i), 0.0)))).collect();
-    let parts =
-        [even_entries, means(&even_rows), glass_entries, means(&glass_rows), smooth, brushed_entries, brushed_means];
+    let parts = [
+        even.entries(),
+        even.means(),
+        glass.entries(),
+        glass.means(),
+        smooth,
+        brushed.entries(),
+        brushed.means_over_azimuths(BRUSHED[2]),
+    ];
     parts.concat()
 }
 

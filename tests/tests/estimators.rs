@@ -154,8 +154,10 @@ fn colours_that_walls_throw() {
 #[test]
 fn lights_without_extent_beside_a_lamp() {
     let mut scene = shipped("lights");
-    let lamp = scene.materials.iter_mut().find(|material| material.reflection == Vec3::ZERO);
-    lamp.expect("one is no mirror").emission = Vec3::splat(0.5);
+    // Not the stage: what stands on it gets light from however near, which is rare and bright where lights alone are sampled, so
+    // that so few pictures tell its error badly.
+    let lamp = scene.materials.iter_mut().find(|material| material.name == "piece");
+    lamp.expect("there are pieces").emission = Vec3::splat(0.5);
     scene.settings.transport.integrator = Integrator::Path;
     assert_scene(&scene);
 }

@@ -30,7 +30,7 @@ impl Exposure {
     }
 }
 
-/// The brightest channel of each pixel that has light, in rising order.
+/// The brightest channel of each pixel that has light.
 pub(super) struct Brightness(Vec<f32>);
 
 /// The share of the pixels with light that are no brighter than white at [`Brightness::exposure`].
@@ -40,15 +40,13 @@ impl Brightness {
     /// That of a picture.
     pub fn of(film: &Film) -> Self {
         let greatest = film.pixels.iter().map(|pixel| pixel.iter().copied().fold(0.0, f32::max));
-        let mut light: Vec<f32> = greatest.filter(|light| light.is_finite() && *light > 0.0).collect();
-        light.sort_unstable_by(f32::total_cmp);
-        Brightness(light)
+        Brightness(greatest.filter(|light| light.is_finite() && *light > 0.0).collect())
     }
 
     /// The share of it that is beyond white where a picture is brightened by so many stops; 0 of a black picture.
     pub fn beyond_white(&self, stops: f32) -> f64 {
         let white = math::exp2(-f64::from(stops));
-        let within = self.0.partition_point(|&light| f64::from(light) <= white);
+        let within = self.0.iter().filter(|&&light| f64::from(light) <= white).count();
         if self.0.is_empty() { 0.0 } else { 1.0 - within as f64 / self.0.len() as f64 }
     }
 
@@ -56,7 +54,11 @@ impl Brightness {
     /// picture.
     pub fn exposure(&self) -> f32 {
         let place = (self.0.len() as f64 * SHOWN).ceil() as usize;
-        let Some(&light) = self.0.get(place.saturating_sub(1)) else { return 0.0 };
+        if self.0.is_empty() {
+            return 0.0;
+        }
+        let mut light = self.0.clone();
+        let (_, &mut light, _) = light.select_nth_unstable_by(place.saturating_sub(1), f32::total_cmp);
         ((-math::log2(f64::from(light)) * 10.0).floor() / 10.0) as f32
     }
 }

@@ -164,9 +164,9 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             assert!(old.words() == new.words(), "{scene}: {name} has other words");
             // And the effect is there for those that ask for it.
             if stage == Stage::Shade {
-                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 24), ..spec };
+                let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 31), ..spec };
                 let dummy = cut(&after, &name, asked);
-                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&29), "{scene}: {name}");
+                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&31), "{scene}: {name}");
             }
         }
     }

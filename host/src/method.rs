@@ -1,5 +1,6 @@
 //! Traversal methods by name, and their options.
 
+use eyerays_kernels_cpu::Way;
 use eyerays_shader::data::{Launch, Layout as LayoutBits, Order as OrderBits, Tuning};
 
 use crate::choice::choices;
@@ -31,6 +32,14 @@ macro_rules! methods {
             /// Can it go on with another ray at any step, as persistent subgroups ask?
             pub fn is_resumable(self) -> bool {
                 !self.row().2.is_empty()
+            }
+
+            /// Its kernels for a CPU.
+            pub(crate) fn way(self) -> Way {
+                match self {
+                    Method::Auto => Way::IfIf,
+                    $(Method::$variant => Way::$variant,)*
+                }
             }
 
             /// Its part of its kernels' paths, whose lanes vote, and the type of persistent subgroups.

@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::real::{Fast, Scalar};
+use eyerays_shader::real::Fast;
 
 use crate::choice::choices;
 use crate::cpu;
@@ -306,7 +306,7 @@ impl Backend {
 }
 
 /// A picture, its rays and the samples of each pixel.
-fn rendered<R: Scalar<Record: Send + Sync>>(
+fn rendered<R: cpu::Number>(
     renderer: &cpu::Renderer<'_>,
     view: &View,
     limit: Option<Duration>,

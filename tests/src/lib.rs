@@ -23,7 +23,6 @@ use eyerays::scene::{self, Camera, Direct, Scene, Settings, Transport};
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
-use eyerays_shader::real::Scalar;
 
 /// The scenes that the project ships for Whitted's model.
 pub const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
@@ -159,7 +158,7 @@ pub fn in_double_precision(posed: &Posed) -> (Film, Rays) {
     rendered::<f64>(posed)
 }
 
-fn rendered<R: Scalar<Record: Send + Sync>>(posed: &Posed) -> (Film, Rays) {
+fn rendered<R: cpu::Number>(posed: &Posed) -> (Film, Rays) {
     cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
 }
 

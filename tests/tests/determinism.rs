@@ -15,12 +15,12 @@ use eyerays_tests::{Posed, SAMPLED, SHIPPED, assert_same_bits, pack, pack_in, se
 /// Edges that no tile's edge divides.
 const SIZE: (u32, u32) = (83, 61);
 
-fn render<R: Scalar<Record: Send + Sync>>(posed: &Posed, threads: usize) -> (Film, Rays) {
+fn render<R: cpu::Number>(posed: &Posed, threads: usize) -> (Film, Rays) {
     cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), threads, &|_| ()).unwrap()
 }
 
 /// The same film at 1, 2 and 7 threads, and twice with each.
-fn any_number_of_threads<R: Scalar<Record: Send + Sync>>() {
+fn any_number_of_threads<R: cpu::Number>() {
     for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));

@@ -39,7 +39,7 @@ struct Log<'a> {
     stories: Mutex<Vec<Story>>,
 }
 
-impl<R: Scalar> Observer<R> for Log<'_> {
+impl<R: cpu::Number> Observer<R> for Log<'_> {
     fn wave(&self, geometry: &TraceContext<'_>, slots: &[u32], records: &Records<R>) {
         let mut stories = self.stories.lock().unwrap();
         let frame = geometry.base.frame;
@@ -99,7 +99,7 @@ fn cone<R: Scalar>(effects: Effects, light: &Light, contact: &SurfaceInteraction
     }
 }
 
-fn render<R: Scalar<Record: Send + Sync>>(packed: &Posed) -> (Film, Vec<Story>) {
+fn render<R: cpu::Number>(packed: &Posed) -> (Film, Vec<Story>) {
     let (width, height) = packed.view.size();
     let log = Log { packed, stories: Mutex::new(vec![Story::default(); (width * height) as usize]) };
     let renderer = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap();

@@ -2,15 +2,14 @@
 
 use std::time::{Duration, Instant};
 
+use eyerays_kernels_cpu::{Isa, Job, Number};
 use eyerays_shader::data::numbers;
-use eyerays_shader::real::{Scalar, V3};
+use eyerays_shader::real::V3;
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::ShadowInputs;
 use glam::UVec4;
 use rayon::prelude::*;
 
-use super::follow::{Job, follow};
-use super::isa::Isa;
 use super::pool::pool;
 use crate::device_scene::{DeviceScene, SceneView};
 use crate::error::Result;
@@ -60,7 +59,7 @@ pub fn cast_by(
         match &mut answers {
             Answers::Closest(hits) => trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), hits),
             Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
-                follow::<f32>(isa, traversal.method, &geometry, slots, Job::Shadow(asking, 0, shadows));
+                f32::follow(isa, traversal.method.way(), &geometry, slots, Job::Shadow(asking, 0, shadows));
             }),
         }
         start.elapsed()
@@ -75,7 +74,7 @@ pub fn cast_by(
 /// As [`cast`].
 pub fn closest<R>(packed: &DeviceScene, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
 where
-    R: Scalar<Record: Send + Sync>,
+    R: Number,
 {
     let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
@@ -94,9 +93,9 @@ fn trace<R>(
     rays: &[R::Record],
     hits: &mut [R::Record],
 ) where
-    R: Scalar<Record: Send + Sync>,
+    R: Number,
 {
-    tasks(slots, hits, |slots, hits| follow::<R>(isa, method, geometry, slots, Job::Trace(rays, hits)));
+    tasks(slots, hits, |slots, hits| R::follow(isa, method.way(), geometry, slots, Job::Trace(rays, hits)));
 }
 
 /// Neighbours a task, so that no thread waits long for the last.

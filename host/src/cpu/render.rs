@@ -3,11 +3,10 @@
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-use eyerays_shader::real::Scalar;
+use eyerays_kernels_cpu::{Isa, Number};
 use eyerays_shader::resources::binding;
 use rayon::prelude::*;
 
-use super::isa::Isa;
 use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::device_scene::{DeviceScene, SceneView};
@@ -48,13 +47,13 @@ pub struct Renderer<'a> {
 }
 
 /// A picture that samples are added to: [`Renderer::start`].
-pub struct Picture<R: Scalar> {
+pub struct Picture<R: Number> {
     view: View,
     tiles: Vec<Tile<R>>,
     samples: u32,
 }
 
-struct Tile<R: Scalar> {
+struct Tile<R: Number> {
     region: Region,
     film: Vec<R::Record>,
     secondary: u64,
@@ -93,7 +92,7 @@ impl<'a> Renderer<'a> {
         observer: &dyn Observer<R>,
     ) -> Result<(Film, Rays)>
     where
-        R: Scalar<Record: Send + Sync>,
+        R: Number,
     {
         let (width, height) = view.size();
         let result = Mutex::new((Film::new(width, height)?, Rays::default()));
@@ -111,7 +110,7 @@ impl<'a> Renderer<'a> {
     }
 
     /// Starts a picture without any sample.
-    pub fn start<R: Scalar>(&self, view: &View) -> Picture<R> {
+    pub fn start<R: Number>(&self, view: &View) -> Picture<R> {
         let tile = |region| Tile { region, film: self.planned.film::<R>(region), secondary: 0 };
         Picture { view: *view, tiles: self.tiles(view).into_iter().map(tile).collect(), samples: 0 }
     }
@@ -120,7 +119,7 @@ impl<'a> Renderer<'a> {
     /// bits of 2n at once.
     pub fn add<R>(&self, picture: &mut Picture<R>, count: u32)
     where
-        R: Scalar<Record: Send + Sync>,
+        R: Number,
     {
         let end = picture.samples.saturating_add(count).min(picture.view.samples());
         let samples = picture.samples..end;
@@ -147,7 +146,7 @@ impl<'a> Renderer<'a> {
     }
 }
 
-impl<R: Scalar> Tile<R> {
+impl<R: Number> Tile<R> {
     fn add(&mut self, planned: &Planned<'_>, view: &View, samples: Range<u32>, observer: &dyn Observer<R>) {
         self.secondary += planned.add(view, self.region, samples, &mut self.film, observer);
     }
@@ -159,7 +158,7 @@ impl<R: Scalar> Tile<R> {
     }
 }
 
-impl<R: Scalar> Picture<R> {
+impl<R: Number> Picture<R> {
     /// How many samples of each pixel it has.
     pub fn samples(&self) -> u32 {
         self.samples
@@ -191,7 +190,7 @@ pub fn render<R>(
     done: &(dyn Fn(u64) + Sync),
 ) -> Result<(Film, Rays)>
 where
-    R: Scalar<Record: Send + Sync>,
+    R: Number,
 {
     Renderer::new(packed, traversal, threads)?.render::<R>(view, done, &())
 }

@@ -2,16 +2,14 @@
 
 use std::ops::Range;
 
+use eyerays_kernels_cpu::{Isa, Job, Number, Records, Shown, Slots};
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
-use eyerays_shader::integrator::{self, Exchange, Wave};
-use eyerays_shader::real::{Scalar, SimdIsa, Task, V3};
+use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{self, ShadowInputs};
+use eyerays_shader::stage::ShadowInputs;
 
-use super::follow::{Job, follow};
-use super::isa::Isa;
 use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::method::{Method, Processor};
@@ -19,41 +17,26 @@ use crate::plan::{self, Executor, Plan, Stage, Step};
 use crate::view::{Region, View};
 
 /// Where a launch's rays are after a wave; tests read it to see why two pictures differ.
-pub trait Observer<R: Scalar>: Sync {
+pub trait Observer<R: Number>: Sync {
     /// Is called when a wave has been traced and before it is shaded.
     fn wave(&self, scene: &TraceContext<'_>, slots: &[u32], records: &Records<R>);
 }
 
 /// Looks at nothing.
-impl<R: Scalar> Observer<R> for () {
+impl<R: Number> Observer<R> for () {
     fn wave(&self, _: &TraceContext<'_>, _: &[u32], _: &Records<R>) {}
 }
 
-/// The memory that the stages of a launch exchange.
-pub struct Records<R: Scalar> {
-    /// Paths by level, record and slot; empty without secondary rays.
-    pub paths: Vec<R::Record>,
-    /// (t, u, v) and triangle by slot.
-    pub hits: Vec<R::Record>,
-    /// Answers of the shadow stage by light and slot.
-    pub shadows: Vec<u32>,
-    /// Shadow rays by record and slot, where the integrator samples.
-    pub segments: Vec<R::Record>,
-    /// Colour and counts by slot.
-    pub sums: Vec<R::Record>,
-}
-
-impl<R: Scalar> Records<R> {
-    fn new(plan: &Plan, slots: u32) -> Self {
-        let count = |binding, bytes| (plan.bytes_of(binding) / bytes) as usize * slots as usize;
-        let records = |binding| vec![R::store(V3::zero(), 0); count(binding, 16)];
-        Records {
-            paths: records(binding::PATHS),
-            hits: records(binding::HITS),
-            shadows: vec![0; count(binding::SHADOWS, 4)],
-            segments: records(binding::SEGMENTS),
-            sums: records(binding::SUMS),
-        }
+/// Empty records for the slots of a launch.
+fn records<R: Number>(plan: &Plan, slots: u32) -> Records<R> {
+    let count = |binding, bytes| (plan.bytes_of(binding) / bytes) as usize * slots as usize;
+    let records = |binding| vec![R::store(V3::zero(), 0); count(binding, 16)];
+    Records {
+        paths: records(binding::PATHS),
+        hits: records(binding::HITS),
+        shadows: vec![0; count(binding::SHADOWS, 4)],
+        segments: records(binding::SEGMENTS),
+        sums: records(binding::SUMS),
     }
 }
 
@@ -74,7 +57,7 @@ impl<'a> Planned<'a> {
     }
 
     /// An empty film for a region.
-    pub fn film<R: Scalar>(&self, region: Region) -> Vec<R::Record> {
+    pub fn film<R: Number>(&self, region: Region) -> Vec<R::Record> {
         let records = self.plan.film_bytes / Plan::RECORD_BYTES;
         vec![R::store(V3::zero(), 0); (records * region.pixels()) as usize]
     }
@@ -85,7 +68,7 @@ impl<'a> Planned<'a> {
     ///
     /// # Panics
     /// If the film is not the region's.
-    pub fn add<R: Scalar>(
+    pub fn add<R: Number>(
         &self,
         view: &View,
         region: Region,
@@ -95,7 +78,7 @@ impl<'a> Planned<'a> {
     ) -> u64 {
         let order = self.laid.specialisation().order;
         let slots = view.launch(self.laid.packed, region, 0, 1, order).slots;
-        let mut records = Records::new(&self.plan, slots);
+        let mut records = records(&self.plan, slots);
         let mut secondary = 0;
         for sample in samples.start..samples.end.min(view.samples()) {
             let frame = view.launch(self.laid.packed, region, sample, 1, order);
@@ -112,7 +95,7 @@ impl<'a> Planned<'a> {
 }
 
 /// One sample of a region.
-struct Launch<'l, 'a, R: Scalar> {
+struct Launch<'l, 'a, R: Number> {
     planned: &'l Planned<'a>,
     frame: &'l Frame,
     /// Slots of the wave.
@@ -125,7 +108,7 @@ struct Launch<'l, 'a, R: Scalar> {
     secondary: u64,
 }
 
-impl<R: Scalar> Executor for Launch<'_, '_, R> {
+impl<R: Number> Executor for Launch<'_, '_, R> {
     fn step(&mut self, _: usize, step: &Step) -> Result<()> {
         let scene = self.planned.laid.context(self.frame, step.spec);
         let method = step.traversal.map(|traversal| traversal.method).unwrap_or_default();
@@ -138,23 +121,10 @@ impl<R: Scalar> Executor for Launch<'_, '_, R> {
             Stage::Trace => self.trace(&scene, method),
             Stage::Shadow => self.shadow(&scene, method),
             Stage::Shade => self.shade(&scene),
-            Stage::Generate => {
-                for &slot in &self.queue {
-                    stage::generate::<R>(self.frame, step.spec, slot, &mut self.records.paths);
-                }
-            }
+            Stage::Generate => R::generate(self.frame, step.spec, &self.queue, &mut self.records.paths),
             Stage::Scatter => self.scatter(&scene),
-            Stage::Gather => {
-                for slot in 0..self.frame.pixel_slots {
-                    stage::gather::<R>(self.frame, step.spec.order, slot, &self.records.sums, self.film);
-                }
-            }
-            Stage::Accumulate => {
-                let Records { shadows, segments, sums, .. } = &self.records;
-                for slot in 0..self.frame.pixel_slots {
-                    stage::accumulate::<R>(self.frame, step.spec.order, slot, (sums, shadows, segments), self.film);
-                }
-            }
+            Stage::Gather => R::gather(self.frame, step.spec.order, &self.records, self.film),
+            Stage::Accumulate => R::accumulate(self.frame, step.spec.order, &self.records, self.film),
         }
         Ok(())
     }
@@ -164,11 +134,11 @@ impl<R: Scalar> Executor for Launch<'_, '_, R> {
     }
 }
 
-impl<R: Scalar> Launch<'_, '_, R> {
+impl<R: Number> Launch<'_, '_, R> {
     fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
         let mut hits = vec![R::store(V3::zero(), 0); self.queue.len()];
         let job = Job::Trace(&self.records.paths, &mut hits);
-        follow::<R>(self.planned.isa, method, scene, &self.queue, job);
+        R::follow(self.planned.isa, method.way(), scene, &self.queue, job);
         for (&slot, hit) in self.queue.iter().zip(hits) {
             self.records.hits[slot as usize] = hit;
         }
@@ -181,7 +151,7 @@ impl<R: Scalar> Launch<'_, '_, R> {
         for light in 0..self.frame.shadow_rays {
             let asking = ShadowInputs { lights: self.planned.laid.lights(), paths, hits };
             let job = Job::Shadow(asking, light, &mut answers);
-            follow::<R>(self.planned.isa, method, scene, &self.queue, job);
+            R::follow(self.planned.isa, method.way(), scene, &self.queue, job);
             for (&slot, &answer) in self.queue.iter().zip(&answers) {
                 shadows[(light * self.frame.slots + slot) as usize] = answer;
             }
@@ -191,43 +161,17 @@ impl<R: Scalar> Launch<'_, '_, R> {
     /// Puts the slots that go on in the next queue.
     fn shade(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
-        let Records { paths, hits, shadows, sums, .. } = &mut self.records;
-        let (lights, shading) = (self.planned.laid.lights(), self.planned.laid.shading());
-        let environment = self.planned.laid.packed.environment();
-        self.next.extend(self.queue.iter().filter(|&&slot| {
-            let wave = Wave::<R> { paths: &mut *paths, hits, shadows, lights, environment, sums: &mut *sums };
-            integrator::shade(&scene.base, &shading, slot, wave)
-        }));
+        let laid = &self.planned.laid;
+        let (lights, environment) = (laid.lights(), laid.packed.environment());
+        let shown = Shown { launch: scene.base, shading: laid.shading(), lights, environment };
+        R::shade(&shown, Slots { now: &self.queue, next: &mut self.next }, &mut self.records);
     }
 
     /// Likewise.
     fn scatter(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
-        let (queue, next, records) = (&self.queue[..], &mut self.next, &mut self.records);
-        self.planned.isa.run(Scatter { scene, laid: &self.planned.laid, queue, next, records });
-    }
-}
-
-/// The scattering of a wave's paths, for the instructions of an ISA.
-struct Scatter<'t, 'a, R: Scalar> {
-    scene: &'t TraceContext<'t>,
-    laid: &'t SceneView<'a>,
-    queue: &'t [u32],
-    next: &'t mut Vec<u32>,
-    records: &'t mut Records<R>,
-}
-
-impl<R: Scalar> Task<R> for Scatter<'_, '_, R> {
-    #[inline(always)]
-    fn run<V: SimdIsa<R>>(self) {
-        let Records { paths, hits, shadows, segments, sums } = self.records;
-        let context = self.laid.scattering();
-        for &slot in self.queue {
-            let exchange =
-                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
-            if integrator::scatter(&self.scene.base, &context, slot, exchange) {
-                self.next.push(slot);
-            }
-        }
+        let (isa, context) = (self.planned.isa, self.planned.laid.scattering());
+        let slots = Slots { now: &self.queue, next: &mut self.next };
+        R::scatter(isa, &scene.base, &context, slots, &mut self.records);
     }
 }

@@ -12,7 +12,6 @@ use eyerays::method::Traversal;
 use eyerays::render::{Backend, Precision};
 use eyerays::scene::{Sampler, Settings, Transport};
 use eyerays::view::View;
-use eyerays_shader::real::Scalar;
 
 /// The most accurate picture, and others as far as they are of use.
 pub struct References {
@@ -42,7 +41,7 @@ impl Studio<'_> {
     }
 
     /// On the CPU.
-    fn on_cpu<R: Scalar<Record: Send + Sync>>(&self, view: &View) -> Result<Film> {
+    fn on_cpu<R: cpu::Number>(&self, view: &View) -> Result<Film> {
         let threads = self.device.choice().threads;
         Ok(cpu::render::<R>(self.packed, view, Traversal::default(), threads, &|_| ())?.0)
     }

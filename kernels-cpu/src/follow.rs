@@ -12,8 +12,8 @@ use eyerays_shader::traverse::{
 };
 use eyerays_shader::warp::Alone;
 
-use super::isa::Isa;
-use crate::method::Method;
+use crate::isa::Isa;
+use crate::way::Way;
 
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.
 pub enum Job<'a, R: Scalar> {
@@ -23,33 +23,32 @@ pub enum Job<'a, R: Scalar> {
     Shadow(ShadowInputs<'a, R>, u32, &'a mut [u32]),
 }
 
-/// The way of a method on a CPU, from the shader's table.
-macro_rules! way {
-    ([$method:ident $R:ident $L:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
-        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
-        match $method {
-            Method::Auto => alone::<$R, $L, IfIf>,
-            $(Method::$variant => $way::<$R, $L $(, $type)?>,)*
+/// How a CPU follows rays by a method, from the shader's table.
+macro_rules! follows {
+    ([$way:ident $R:ident $L:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
+        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($how:ident $(, $type:ty)?);)*) => {
+        match $way {
+            $(Way::$variant => $how::<$R, $L $(, $type)?>,)*
         }
     };
 }
 
 /// Follows the rays of slots by a method, with the instructions of an [`Isa`].
-pub fn follow<R: Scalar>(isa: Isa, method: Method, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    let way = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK) {
-        way::<R, Primitives>(method)
+pub fn follow<R: Scalar>(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    let follows = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK) {
+        among::<R, Primitives>(way)
     } else {
-        way::<R, Triangles>(method)
+        among::<R, Triangles>(way)
     };
-    way(isa, geometry, slots, job);
+    follows(isa, geometry, slots, job);
 }
 
 /// How slots' rays are followed: see [`follow`].
-type Way<R> = fn(Isa, &TraceContext<'_>, &[u32], Job<'_, R>);
+type Follows<R> = fn(Isa, &TraceContext<'_>, &[u32], Job<'_, R>);
 
-/// The way of a method among leaves of these.
-fn way<R: Scalar, L: Leaf>(method: Method) -> Way<R> {
-    eyerays_shader::for_each_method!(way method R L)
+/// Follows rays by a method among leaves of these.
+fn among<R: Scalar, L: Leaf>(way: Way) -> Follows<R> {
+    eyerays_shader::for_each_method!(follows way R L)
 }
 
 /// The slots of a task.

@@ -1,0 +1,133 @@
+//! The numbers that pictures are rendered with, and the stages over them.
+
+use eyerays_shader::data::{Frame, Light, Order, Specialisation};
+use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
+use eyerays_shader::real::{Fast, Scalar, SimdIsa, Task};
+use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
+use eyerays_shader::stage;
+
+use crate::follow::{Job, follow};
+use crate::isa::Isa;
+use crate::records::Records;
+use crate::way::Way;
+
+/// The slots of a wave.
+pub struct Slots<'a> {
+    /// Those of this one.
+    pub now: &'a [u32],
+    /// Those of the next are added here.
+    pub next: &'a mut Vec<u32>,
+}
+
+/// What shading sees of a scene.
+pub struct Shown<'a> {
+    /// The launch.
+    pub launch: LaunchContext<'a>,
+    /// What surfaces look like.
+    pub shading: ShadingData<'a>,
+    /// Lights in file order.
+    pub lights: &'a [Light],
+    /// Light from far away.
+    pub environment: &'a [u32],
+}
+
+/// A number that every stage is compiled for: `f32` (exact), [`Fast`] and `f64` (reference).
+///
+/// Slots are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
+pub trait Number: Scalar<Record: Send + Sync> {
+    /// Starts the paths of some slots.
+    fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]);
+
+    /// Follows the rays of some slots, with the instructions of an [`Isa`].
+    fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, Self>);
+
+    /// Shades a wave.
+    fn shade(scene: &Shown<'_>, slots: Slots<'_>, records: &mut Records<Self>);
+
+    /// Scatters the paths of a wave, with the instructions of an [`Isa`].
+    fn scatter(
+        isa: Isa,
+        launch: &LaunchContext<'_>,
+        context: &ScatterContext<'_>,
+        slots: Slots<'_>,
+        records: &mut Records<Self>,
+    );
+
+    /// Folds the sums of slots into pixels.
+    fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]);
+
+    /// Folds the sums of slots into pixels, and keeps what rounding takes off.
+    fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]);
+}
+
+/// Compiles every stage for a number.
+macro_rules! number {
+    ($($number:ty)*) => {
+        $(impl Number for $number {
+            fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]) {
+                for &slot in slots {
+                    stage::generate::<Self>(frame, spec, slot, paths);
+                }
+            }
+
+            fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, Self>) {
+                follow(isa, way, geometry, slots, job);
+            }
+
+            fn shade(scene: &Shown<'_>, slots: Slots<'_>, records: &mut Records<Self>) {
+                let Shown { launch, shading, lights, environment } = scene;
+                let Records { paths, hits, shadows, sums, .. } = records;
+                slots.next.extend(slots.now.iter().filter(|&&slot| {
+                    let wave = Wave::<Self> { paths: &mut *paths, hits, shadows, lights, environment, sums: &mut *sums };
+                    integrator::shade(launch, shading, slot, wave)
+                }));
+            }
+
+            fn scatter(
+                isa: Isa,
+                launch: &LaunchContext<'_>,
+                context: &ScatterContext<'_>,
+                slots: Slots<'_>,
+                records: &mut Records<Self>,
+            ) {
+                isa.run(Scatter { launch, context, slots, records });
+            }
+
+            fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]) {
+                for slot in 0..frame.pixel_slots {
+                    stage::gather::<Self>(frame, order, slot, &records.sums, film);
+                }
+            }
+
+            fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]) {
+                let Records { shadows, segments, sums, .. } = records;
+                for slot in 0..frame.pixel_slots {
+                    stage::accumulate::<Self>(frame, order, slot, (sums, shadows, segments), film);
+                }
+            }
+        })*
+    };
+}
+number!(f32 Fast f64);
+
+/// The scattering of a wave's paths, for the instructions of an ISA.
+struct Scatter<'t, R: Scalar> {
+    launch: &'t LaunchContext<'t>,
+    context: &'t ScatterContext<'t>,
+    slots: Slots<'t>,
+    records: &'t mut Records<R>,
+}
+
+impl<R: Scalar> Task<R> for Scatter<'_, R> {
+    #[inline(always)]
+    fn run<V: SimdIsa<R>>(self) {
+        let Records { paths, hits, shadows, segments, sums } = self.records;
+        for &slot in self.slots.now {
+            let exchange =
+                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
+            if integrator::scatter(self.launch, self.context, slot, exchange) {
+                self.slots.next.push(slot);
+            }
+        }
+    }
+}

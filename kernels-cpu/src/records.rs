@@ -1,0 +1,17 @@
+//! What the stages of a launch exchange.
+
+use eyerays_shader::real::Scalar;
+
+/// The memory that the stages of a launch exchange.
+pub struct Records<R: Scalar> {
+    /// Paths by level, record and slot; empty without secondary rays.
+    pub paths: Vec<R::Record>,
+    /// (t, u, v) and triangle by slot.
+    pub hits: Vec<R::Record>,
+    /// Answers of the shadow stage by light and slot.
+    pub shadows: Vec<u32>,
+    /// Shadow rays by record and slot, where the integrator samples.
+    pub segments: Vec<R::Record>,
+    /// Colour and counts by slot.
+    pub sums: Vec<R::Record>,
+}

@@ -8,7 +8,7 @@ use crate::device_scene::{DeviceScene, flushed};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::math;
-use crate::scene::{Camera, Settings};
+use crate::scene::{Camera, Projection, Settings};
 
 /// A rectangle of the image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,14 +71,23 @@ impl View {
             let message = format!("camera \"{}\" looks along its up vector or at itself", camera.name);
             return Err(Error::new(format!("{message}: move its target or turn its up")));
         }
-        let eye = packed.normalisation().place_anywhere(camera.eye).ok_or_else(|| {
+        let normalisation = packed.normalisation();
+        let eye = normalisation.place_anywhere(camera.eye).ok_or_else(|| {
             Error::new(format!("camera \"{}\" is too far away: move it nearer to the scene", camera.name))
         })?;
-        let half_height = math::tan(f64::from(camera.fov).to_radians() / 2.0);
+        let half_height = match camera.projection {
+            Projection::Perspective { fov } => math::tan(f64::from(fov).to_radians() / 2.0),
+            Projection::Orthographic { .. } if !packed.has_orthographic_cameras() => {
+                let message = format!("camera \"{}\" is orthographic, and no camera of the scene was", camera.name);
+                return Err(Error::new(format!("{message}: add it to the scene's cameras before it is packed")));
+            }
+            Projection::Orthographic { height } => f64::from(height) / 2.0 * normalisation.scale,
+        };
         // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
         let step = half_height / f64::from(height * grid);
         let vector = |v: DVec3| flushed(v.as_vec3());
-        let lens = Lens::new(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
+        let lens = if camera.projection.is_orthographic() { Lens::parallel } else { Lens::new };
+        let lens = lens(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
         Ok(View { lens, width, height, grid, samples: settings.samples_a_pixel() })
     }
 

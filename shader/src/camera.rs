@@ -1,6 +1,6 @@
 //! Pixels to rays.
 
-use crate::data::{Frame, Launch, Order, numbers};
+use crate::data::{Frame, Launch, Order};
 use crate::real::{Scalar, V3};
 use crate::sampler::{self, Key, Sample};
 
@@ -105,8 +105,8 @@ pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3
         right = half_cells(x, frame.width, pixel.sample % samples, 1);
         down = half_cells(y, frame.height, pixel.sample / samples, 1);
     }
-    let direction = frame.lens.direction(R::splat(right), -R::splat(down));
-    (V3::splat(numbers(frame.lens.eye)), direction.normalised().0)
+    let (origin, direction) = frame.lens.ray(launch, R::splat(right), -R::splat(down));
+    (origin, direction.normalised().0)
 }
 
 #[cfg(test)]
@@ -171,6 +171,17 @@ mod tests {
             .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
             .collect();
         assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);
+    }
+
+    #[test]
+    fn parallel_rays_start_side_by_side() {
+        let lens = Lens::parallel(Vec3::new(0.5, 0.0, 0.0), Vec3::X * 0.25, Vec3::Y * 0.125, -Vec3::Z);
+        let two = Frame { lens, ..frame(2, 2, 1, 0, Order(0), 1) };
+        let at = |launch| ray::<f64>(&two, Launch(launch), pixel(&two, Order(0), 1));
+        let (origin, d) = at(Launch::PARALLEL);
+        assert_eq!((origin.x, origin.y, origin.z), (0.75, 0.125, 0.0));
+        assert_eq!((d.x, d.y, d.z), (0.0, 0.0, -1.0));
+        assert_eq!(at(0).0.x, 0.5, "where no camera is, none are");
     }
 
     /// Wherever in the image, and whichever region a launch renders.

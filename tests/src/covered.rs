@@ -4,7 +4,7 @@
 use std::sync::Arc;
 
 use eyerays::scene::{
-    Absorption, Alpha, Conductor, Environment, Map, Maps, Physical, Placement, Scene, Texels, Texture, Wrap,
+    Absorption, Alpha, Conductor, Environment, Map, Maps, Physical, Placement, Scene, Texels, Texture, Wall, Wrap,
 };
 use glam::{Vec2, Vec3, Vec4};
 
@@ -47,7 +47,7 @@ fn kinds() -> [Physical; 6] {
         Physical { metallic: 1.0, anisotropy: 0.8, anisotropy_rotation: 20.0, ..base },
         Physical { conductor: Some(gold), roughness: 0.2, ..base },
         glass,
-        Physical { thin: true, absorption: None, ..glass },
+        Physical { wall: Wall::Interface, absorption: None, ..glass },
         Physical { roughness: 0.0, specular_weight: 0.8, specular_tint: Vec3::new(1.0, 0.8, 0.6), ..base },
     ]
 }

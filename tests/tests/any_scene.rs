@@ -3,12 +3,13 @@
 
 use std::sync::Arc;
 
+use eyerays::choice::Named;
 use eyerays::device_scene::Feature;
 use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
     Absorption, Alpha, Conductor, Direct, Environment, Filter, Integrator, Map, Maps, Material, Physical, Placement,
-    Sampler, Scene, Settings, Texels, Texture, Transport, Wrap,
+    Sampler, Scene, Settings, Texels, Texture, Transport, Wall, Wrap,
 };
 use eyerays_tests::random::Random;
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
@@ -92,7 +93,7 @@ fn physical(random: &mut Random) -> Physical {
         specular_tint: 4.0 * colour(random),
         transmission: colour(random),
         ior: one(random, &[1.0, 1.001, 1.5, 4.0]),
-        thin: chance(random, 0.5),
+        wall: one(random, Wall::VARIANTS),
         absorption: chance(random, 0.5).then(|| Absorption { colour: colour(random), distance: 1e-3 }),
         conductor: chance(random, 0.2).then_some(gold),
     }

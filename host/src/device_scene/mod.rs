@@ -66,6 +66,7 @@ pub struct DeviceScene {
     background: Background,
     settings: Settings,
     feature: Option<Feature>,
+    has_orthographic_cameras: bool,
     normalisation: Normalisation,
     statistics: Statistics,
     build_time: Duration,
@@ -142,6 +143,7 @@ impl DeviceScene {
             background: scene.background,
             settings,
             feature: None,
+            has_orthographic_cameras: scene.cameras.iter().any(|camera| camera.projection.is_orthographic()),
             normalisation,
             build_time,
             bvh8: OnceLock::new(),
@@ -290,13 +292,21 @@ impl DeviceScene {
         self.effects().has(Effects::REFLECTION | Effects::REFRACTION | Effects::PHYSICAL)
     }
 
+    /// May it be seen by an orthographic camera?
+    pub fn has_orthographic_cameras(&self) -> bool {
+        self.has_orthographic_cameras
+    }
+
     /// What kernels are compiled for that follow the camera's rays by a traversal.
     pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
         let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
+        let parallel = if self.has_orthographic_cameras { Launch::PARALLEL } else { 0 };
         let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
-            launch: Launch(traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter),
+            launch: Launch(
+                traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter | parallel,
+            ),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings};
+use crate::scene::{Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Wall};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {
@@ -76,9 +76,9 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     let physical = |m: &dyn Fn(&Physical) -> bool| scene.materials.iter().filter_map(|m| m.physical.as_ref()).any(m);
     ask(Effects::PHYSICAL, physical(&|_| true));
     ask(Effects::CONDUCTOR, physical(&|p| p.conductor.is_some()));
-    ask(Effects::THIN, physical(&|p| p.is_transparent() && p.thin));
+    ask(Effects::THIN, physical(&|p| p.is_transparent() && p.wall != Wall::Body));
     ask(Effects::ABSORBING, physical(&absorbs));
-    ask(Effects::REFRACTION, physical(&|p| p.is_transparent() && !p.thin));
+    ask(Effects::REFRACTION, physical(&|p| p.is_transparent() && p.wall == Wall::Body));
     ask(Effects::ANISOTROPIC, physical(&|p| p.anisotropy > 0.0));
     ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
     ask(Effects::COLOURED, !scene.mesh.colours.is_empty());
@@ -99,7 +99,7 @@ fn is_cutout(m: &Material) -> bool {
 }
 
 fn absorbs(p: &Physical) -> bool {
-    p.is_transparent() && !p.thin && p.absorption.is_some()
+    p.is_transparent() && p.wall == Wall::Body && p.absorption.is_some()
 }
 
 /// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
@@ -180,7 +180,8 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
     let flag = |flag: u32, holds: bool| if holds { flag } else { 0 };
     let flags = PhysicalRecord::IS_PHYSICAL
         | flag(PhysicalRecord::CONDUCTOR, p.conductor.is_some())
-        | flag(PhysicalRecord::THIN, p.thin);
+        | flag(PhysicalRecord::THIN, p.wall != Wall::Body)
+        | flag(PhysicalRecord::TWO_FACES, p.wall == Wall::Pane);
     let turns = f64::from(p.anisotropy_rotation).to_radians();
     let turned = |number: f64| flushed_number(number as f32).to_bits();
     // A conductor's facets do not ask for its base, which is what it looks like.

@@ -6,7 +6,8 @@ use std::fmt::{Debug, Write};
 use glam::Vec3;
 
 use super::{
-    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Transport,
+    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Projection, Scene, Settings,
+    Transport, Wall,
 };
 use super::{physical, studio};
 use crate::choice::Named;
@@ -170,7 +171,10 @@ fn camera(text: &mut Text, of: &Camera) {
     text.key("eye", triple(of.eye));
     text.key("target", triple(of.target));
     text.colour("up", of.up, Vec3::Y);
-    text.value("fov", of.fov);
+    match of.projection {
+        Projection::Perspective { fov } => text.value("fov", fov),
+        Projection::Orthographic { height } => text.value("orthographic", height),
+    }
 }
 
 fn light(text: &mut Text, of: &Light) {
@@ -240,7 +244,11 @@ fn physical(text: &mut Text, of: &Physical) {
     text.value("metallic", of.metallic);
     text.other("specular_weight", of.specular_weight, default.specular_weight);
     text.colour("specular_tint", of.specular_tint, default.specular_tint);
-    text.other("thin", of.thin, default.thin);
+    match of.wall {
+        Wall::Body => {}
+        Wall::Pane => text.key("thin", "true".to_owned()),
+        Wall::Interface => text.key("thin", quoted(of.wall.name())),
+    }
     if let Some(physical::Absorption { colour, distance }) = of.absorption {
         text.key("absorption", format!("{{ color = {}, distance = {distance:?} }}", triple(colour)));
     }

@@ -8,7 +8,7 @@ use super::map::Images;
 use super::range::Range;
 use super::studio;
 use super::table::Table;
-use super::{Background, Camera, Environment, Light, Settings, Transport};
+use super::{Background, Camera, Environment, Light, Projection, Settings, Transport};
 use crate::error::Result;
 use crate::film::Film;
 
@@ -116,6 +116,16 @@ pub fn cameras(tables: Vec<Table>) -> Result<Vec<Camera>> {
     Ok(cameras)
 }
 
+fn projection(table: &mut Table) -> Result<Projection> {
+    let fov = table.number("fov", Range::CONE)?;
+    let height = table.number("orthographic", Range::LENGTH)?;
+    match (fov, height) {
+        (Some(_), Some(_)) => Err(table.fault_of("fov", "an orthographic camera has no fov; remove one of both")),
+        (_, Some(height)) => Ok(Projection::Orthographic { height }),
+        (fov, None) => Ok(Projection::Perspective { fov: fov.unwrap_or(45.0) }),
+    }
+}
+
 fn camera(table: &mut Table) -> Result<Camera> {
     let name = table.name("name")?;
     let eye = table.triple("eye", Range::ANY)?;
@@ -125,7 +135,7 @@ fn camera(table: &mut Table) -> Result<Camera> {
         eye: table.need("eye", eye)?,
         target: table.need("target", target)?,
         up: table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y),
-        fov: table.number("fov", Range::CONE)?.unwrap_or(45.0),
+        projection: projection(table)?,
     };
     let named = format!("camera {:?}", camera.name);
     let view = camera.target.as_dvec3() - camera.eye.as_dvec3();

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{Background, Camera, Integrator, Light, Scene, Settings};
+use super::{Background, Camera, Integrator, Light, Projection, Scene, Settings};
 use crate::math;
 
 /// From the mesh to the eye: right, above and in front of it.
@@ -20,7 +20,8 @@ pub fn default_camera(scene: &Scene, aspect: f64) -> Option<Camera> {
     let across = math::atan(math::tan(half) * aspect);
     let distance = MARGIN * radius / math::sin(half.min(across));
     let eye = (center + THREE_QUARTER.normalize() * distance).as_vec3();
-    let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, fov: FOV };
+    let projection = Projection::Perspective { fov: FOV };
+    let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, projection };
     (eye.is_finite() && camera.target.is_finite()).then_some(camera)
 }
 

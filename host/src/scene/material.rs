@@ -126,7 +126,7 @@ impl Fields {
         if maps.transmission.is_some() {
             transmission.get_or_insert(Vec3::ONE);
             // The thesis' model has no such picture.
-            physical.thin.get_or_insert(false);
+            physical.wall.get_or_insert_default();
         }
         if maps.specular_tint.is_some() {
             physical.specular_tint.get_or_insert(Vec3::ONE);

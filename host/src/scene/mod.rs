@@ -37,6 +37,7 @@ mod physical;
 mod ply;
 mod polygon;
 mod primitive;
+mod projection;
 mod range;
 mod sampler;
 mod shape;
@@ -61,8 +62,9 @@ pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
 pub use light_unit::LightUnit;
 pub use load::{Loading, load, load_as, read_table};
-pub use physical::{Absorption, Conductor, Physical};
+pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use primitive::{Disk, Primitives, Sphere};
+pub use projection::Projection;
 pub use range::Range;
 pub use sampler::Sampler;
 pub use suggest::suggest;
@@ -270,7 +272,7 @@ pub enum Light {
     },
 }
 
-/// A pinhole camera.
+/// A camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Camera {
     /// By this name the command line picks it.
@@ -281,8 +283,8 @@ pub struct Camera {
     pub target: Vec3,
     /// Not along the view.
     pub up: Vec3,
-    /// Vertical field of view in degrees, in (0, 180).
-    pub fov: f32,
+    /// What its image holds.
+    pub projection: Projection,
 }
 
 impl Camera {

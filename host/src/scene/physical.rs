@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::range::Range;
 use super::table::Table;
+use crate::choice::choices;
 use crate::error::Result;
 
 /// How a surface scatters light by microfacets (glTF 2.0, appendix B). Colours are linear RGB in [0, 1].
@@ -29,12 +30,26 @@ pub struct Physical {
     pub transmission: Vec3,
     /// Index of refraction of what is no metal, in [1, 4].
     pub ior: f32,
-    /// Is what lets light pass a wall too thin to bend it, instead of a body?
-    pub thin: bool,
+    /// What lets light pass.
+    pub wall: Wall,
     /// What a body takes of light on its way inside.
     pub absorption: Option<Absorption>,
     /// A metal by its complex index of refraction, in place of all but roughness and anisotropy.
     pub conductor: Option<Conductor>,
+}
+
+choices! {
+    /// What lets light pass.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+    pub enum Wall {
+        /// A body, whose surface bends it
+        #[default]
+        Body = "body",
+        /// A pane too thin to bend it, of two faces
+        Pane = "pane",
+        /// One interface that does not bend it, as glTF has it where it has no volume
+        Interface = "interface",
+    }
 }
 
 /// What a body absorbs (KHR_materials_volume).
@@ -68,7 +83,7 @@ impl Default for Physical {
             specular_tint: Vec3::ONE,
             transmission: Vec3::ZERO,
             ior: 1.5,
-            thin: false,
+            wall: Wall::Body,
             absorption: None,
             conductor: None,
         }
@@ -86,7 +101,7 @@ impl Physical {
         if self.conductor.is_some() && self.transmission != Vec3::ZERO {
             return Some("no light passes a conductor; remove conductor or transmission");
         }
-        let has_inside = self.is_transparent() && !self.thin;
+        let has_inside = self.is_transparent() && self.wall == Wall::Body;
         let absorbs_nothing = self.absorption.is_some() && !has_inside;
         absorbs_nothing.then_some("absorption is of light that passes inside; give it transmission and leave thin out")
     }
@@ -123,7 +138,7 @@ pub struct Fields {
     pub anisotropy_rotation: Option<f32>,
     pub specular_weight: Option<f32>,
     pub specular_tint: Option<Vec3>,
-    pub thin: Option<bool>,
+    pub wall: Option<Wall>,
     pub absorption: Option<Absorption>,
     pub conductor: Option<Conductor>,
 }
@@ -142,7 +157,7 @@ impl Fields {
             anisotropy_rotation: table.number("anisotropy_rotation", Range::ANY)?,
             specular_weight: table.number("specular_weight", Range::SHARE)?,
             specular_tint: table.triple("specular_tint", Range::AMOUNT)?,
-            thin: table.flag("thin")?,
+            wall: table.flag_or_choice("thin", [Wall::Body, Wall::Pane])?,
             absorption: table.table("absorption")?.map(absorption).transpose()?,
             conductor: table.table("conductor")?.map(conductor).transpose()?,
         })
@@ -158,7 +173,7 @@ impl Fields {
             anisotropy_rotation: self.anisotropy_rotation.or(under.anisotropy_rotation),
             specular_weight: self.specular_weight.or(under.specular_weight),
             specular_tint: self.specular_tint.or(under.specular_tint),
-            thin: self.thin.or(under.thin),
+            wall: self.wall.or(under.wall),
             absorption: self.absorption.or(under.absorption),
             conductor: self.conductor.or(under.conductor),
         }
@@ -180,7 +195,7 @@ impl Fields {
             specular_tint: self.specular_tint.unwrap_or(plain.specular_tint),
             transmission: transmission.unwrap_or(plain.transmission),
             ior,
-            thin: self.thin.unwrap_or(plain.thin),
+            wall: self.wall.unwrap_or(plain.wall),
             absorption: self.absorption,
             conductor: self.conductor,
         })

@@ -1,8 +1,7 @@
 //! What changes from launch to launch.
 
-use super::{numbers, pack};
-use crate::real::Scalar;
-use crate::real::V3;
+use super::{Launch, numbers, pack};
+use crate::real::{Scalar, TINY, V3};
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
@@ -62,7 +61,7 @@ pub struct Frame {
     pub clamp: f32,
     /// How far ambient occlusion looks, in the normalised scene.
     pub reach: f32,
-    /// How much wider a sample of the camera becomes on a unit of its way.
+    /// How much wider a sample of the camera becomes on a unit of its way, or how wide it is where rays are parallel.
     pub spread: f32,
     /// The probability that the environment is chosen of all lights.
     pub environment: f32,
@@ -70,29 +69,43 @@ pub struct Frame {
     pub far: u32,
 }
 
-/// A pinhole camera for an image of some size: vectors in the normalised scene, whose last integers are unused.
+/// A camera for an image of some size: vectors in the normalised scene. The last integer of `forward` is 1 where rays are parallel;
+/// the others are unused.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Lens {
     /// Where it is.
     pub eye: UVec4,
-    /// Step to the right for half a sample's width on the image plane.
+    /// Step to the right for half a sample's width on the image plane, at distance one or where the camera is.
     pub right: UVec4,
     /// Step up for half a sample's height.
     pub up: UVec4,
-    /// To the centre of the image plane, at distance one.
+    /// A unit vector to the centre of the image plane.
     pub forward: UVec4,
 }
 
 impl Lens {
-    /// From vectors in the normalised scene.
+    /// A pinhole camera, from vectors in the normalised scene.
     pub fn new(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
         Lens { eye: pack(eye, 0), right: pack(right, 0), up: pack(up, 0), forward: pack(forward, 0) }
     }
 
-    /// The direction, of no certain length, through a place on the image plane: so many steps right and up.
+    /// A camera whose rays are parallel, likewise.
+    pub fn parallel(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
+        Lens { forward: pack(forward, 1), ..Lens::new(eye, right, up, forward) }
+    }
+
+    /// Are rays parallel?
     #[inline(always)]
-    pub fn direction<R: Scalar>(&self, right: R, up: R) -> V3<R> {
-        V3::splat(numbers(self.forward)) + V3::splat(numbers(self.right)) * right + V3::splat(numbers(self.up)) * up
+    pub fn is_parallel(&self, launch: Launch) -> bool {
+        launch.has(Launch::PARALLEL) && self.forward.w != 0
+    }
+
+    /// Origin and direction, of no certain length, of the ray through a place on the image plane: so many steps right and up.
+    #[inline(always)]
+    pub fn ray<R: Scalar>(&self, launch: Launch, right: R, up: R) -> (V3<R>, V3<R>) {
+        let (eye, forward) = (V3::splat(numbers(self.eye)), V3::splat(numbers(self.forward)));
+        let (right, up) = (V3::splat(numbers(self.right)) * right, V3::splat(numbers(self.up)) * up);
+        if self.is_parallel(launch) { ((eye + right + up).map(|c| c.flush(TINY)), forward) } else { (eye, forward + right + up) }
     }
 }

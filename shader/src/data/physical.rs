@@ -34,6 +34,8 @@ impl Physical {
     pub const CONDUCTOR: u32 = 2;
     /// What passes goes straight on, as through a pane that is thinner than anything else.
     pub const THIN: u32 = 4;
+    /// Such a pane has two faces, between which light goes to and fro; else it is one interface.
+    pub const TWO_FACES: u32 = 8;
 
     /// Is this flag set?
     #[inline(always)]

@@ -125,6 +125,8 @@ bits! {
         NORMAL = 15;
         /// Only where and which primitive it is.
         PLACE = 16;
+        /// Rays of the camera may be parallel ([`Lens::parallel`](super::Lens::parallel)).
+        PARALLEL = 17;
     }
 }
 

@@ -24,6 +24,10 @@ pub struct SurfaceInteraction<R: Real> {
     pub is_curved: bool,
     /// A sphere's radius, else zero.
     pub radius: R,
+    /// Does its triangle stand for a curved surface that lies above it?
+    pub is_lifted: bool,
+    /// How far, else zero; see [`lifted`](crate::material::lifted).
+    pub lift: R,
 }
 
 /// Bounds the error of a point and of the triangle test of a ray that starts there, in roundoffs times the
@@ -68,6 +72,8 @@ impl<R: Scalar> SurfaceInteraction<R> {
             number: primitive.number(),
             is_curved,
             radius: if is_curved { R::splat(primitive.radius()) } else { R::splat(0.0) },
+            is_lifted: false,
+            lift: R::splat(0.0),
         }
     }
 
@@ -97,6 +103,24 @@ impl<R: Scalar> SurfaceInteraction<R> {
     pub fn offset_ray_origin(&self, direction: V3<R>) -> V3<R> {
         let side = R::select(self.faces(direction), self.error_offset, -self.error_offset);
         (self.position + self.normal * side).map(|x| x.flush(TINY))
+    }
+
+    /// May it scatter light of the viewer's side from there? A triangle that stands for a curved surface gets light from behind its
+    /// own plane, too.
+    #[inline(always)]
+    pub fn receives(&self, direction: V3<R>) -> bool {
+        self.is_lifted || self.faces(direction)
+    }
+
+    /// The origin of a ray that what is rough scatters towards `direction`: as [`SurfaceInteraction::offset_ray_origin`], but from the
+    /// curved surface that a triangle stands for.
+    #[inline(always)]
+    pub fn scattered_ray_origin(&self, direction: V3<R>) -> V3<R> {
+        if self.is_lifted {
+            let above = self.normal * (self.error_offset + self.lift);
+            return (self.position + above).map(|x| x.flush(TINY));
+        }
+        self.offset_ray_origin(direction)
     }
 
     /// As [`SurfaceInteraction::offset_ray_origin`], but offset along the unit direction itself, unless that grazes the surface: a ray that is

@@ -7,7 +7,7 @@ use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, LightSample, Lighting, Viewpoint, glowing};
-use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong};
+use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong, lifted};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
@@ -25,9 +25,10 @@ pub(super) fn at<R: Scalar>(
     let ScatterContext { shading, lighting, physicals, .. } = context;
     let seen = vertex.met(launch);
     let vertex = &vertex.arrived(effects, physicals, &seen);
-    let (path, interaction) = (vertex.path, seen.interaction);
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
+    let seen = Seen { interaction: lifted(effects, shading, &seen), ..seen };
+    let (path, interaction) = (vertex.path, seen.interaction);
     if effects.has(Effects::PHYSICAL) {
         let closure = closure(effects, context, (&seen, &surface), &covering);
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
@@ -88,19 +89,17 @@ fn branched<R: Scalar>(
     }
 }
 
-/// A sample of one light as seen from a vertex, and where its shadow ray starts.
+/// A sample of one light as seen from a vertex.
 #[inline(always)]
 fn drawn_light<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, passes): (&SurfaceInteraction<R>, bool),
-) -> (EmitterSample<R>, V3<R>) {
+    view: &Viewpoint<R>,
+) -> EmitterSample<R> {
     let number = vertex.path.counts().1;
     let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
-    let origin = interaction.offset_ray_origin(interaction.normal);
-    let view = Viewpoint::new(origin, interaction.normal, passes);
-    (EmitterSample::new(launch, lighting, &view, decisions.x, (places.z, places.w)), origin)
+    EmitterSample::new(launch, lighting, view, decisions.x, (places.z, places.w))
 }
 
 /// The light of one light, by a closure: of one that rays find, what the base scatters alone, since facets send rays of their own.
@@ -115,15 +114,16 @@ fn light_by_closure<R: Scalar>(
         return ShadowRay::none();
     }
     let interaction = &seen.interaction;
-    let (sample, origin) = drawn_light(launch, lighting, vertex, (interaction, seen.primitive.is_transparent()));
+    let view = Viewpoint::on(interaction, closure.normal(), seen.primitive.is_transparent());
+    let sample = drawn_light(launch, lighting, vertex, &view);
     let value = if sample.density.over.eq(R::splat(0.0)) {
         closure.eval(interaction, sample.direction).value
     } else {
         closure.eval_base(interaction, sample.direction)
     };
     let light = value.times(sample.light).map(|c| c.flush(FAINT));
-    let passes = !interaction.faces(sample.direction);
-    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { origin };
+    let passes = !interaction.receives(sample.direction);
+    let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { view.origin };
     vertex.asks(launch, (interaction, origin), &sample, light)
 }
 
@@ -140,14 +140,15 @@ fn sampled_light<R: Scalar>(
     if !is_lit(launch) {
         return ShadowRay::none();
     }
-    let (sample, origin) = drawn_light(launch, lighting, vertex, (interaction, false));
-    if !interaction.faces(sample.direction) {
+    let view = Viewpoint::on(interaction, surface.normal, false);
+    let sample = drawn_light(launch, lighting, vertex, &view);
+    if !interaction.receives(sample.direction) {
         return ShadowRay::none();
     }
     let incidence = LightSample { direction: sample.direction, colour: sample.light };
     let light = eval_phong(effects, surface, path.direction, &incidence);
     let light = (light * R::splat(INVERSE_PI)).map(|c| c.flush(FAINT));
-    vertex.asks(launch, (interaction, origin), &sample, light)
+    vertex.asks(launch, (interaction, view.origin), &sample, light)
 }
 
 /// The reflected and the refracted ray; a zero weight is none.

@@ -1,7 +1,7 @@
 //! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
 
 use super::sampled::{Scattered, Vertex};
-use crate::material::{Surface, cosine_direction};
+use crate::material::{Surface, cosine_direction, lifted};
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{Segment, ShadowRay};
@@ -10,15 +10,16 @@ use crate::stage::{Segment, ShadowRay};
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let seen = vertex.met(launch);
-    let (interaction, covering) = (seen.interaction, seen.covering(launch, shading, false));
+    let covering = seen.covering(launch, shading, false);
+    let interaction = lifted(launch.spec.effects, shading, &seen);
     let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
     let draws = vertex.draws.set(0);
     let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
     let mut shadow = ShadowRay::none();
     // A direction about an interpolated normal may lie below the surface, where nothing is seen.
-    if interaction.faces(direction) {
+    if interaction.receives(direction) {
         let segment = Segment {
-            origin: interaction.offset_ray_origin(direction),
+            origin: interaction.scattered_ray_origin(direction),
             direction,
             limit: R::splat(launch.frame.reach),
             source_primitive: interaction.source_primitive(direction),

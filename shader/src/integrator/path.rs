@@ -6,7 +6,7 @@ use crate::buffer::read;
 use crate::data::{Effects, Frame, Launch, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
-use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure};
+use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
@@ -32,6 +32,7 @@ pub(super) fn at<R: Scalar>(
         return Scattered::once(light, ShadowRay::none(), path, false);
     }
     let surface = Surface::new(effects, shading, &seen, &covering);
+    let seen = Seen { interaction: lifted(effects, shading, &seen), ..seen };
     if effects.has(Effects::PHYSICAL) {
         let closure = closure(effects, context, (&seen, &surface), &covering);
         return scattered(launch, lighting, vertex, (&seen, &closure), light);
@@ -51,13 +52,12 @@ fn scattered<R: Scalar>(
     light: V3<R>,
 ) -> Scattered<R> {
     let interaction = seen.interaction;
-    let origin = interaction.offset_ray_origin(interaction.normal);
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let view = Viewpoint::new(origin, interaction.normal, seen.primitive.is_transparent());
+    let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent());
     let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, &view), decisions.x);
     let draws = (decisions.y, decisions.w);
-    let sample = closure.sample((&interaction, origin), draws, || vertex.draws.set(bounces + 1));
+    let sample = closure.sample((&interaction, view.origin), draws, || vertex.draws.set(bounces + 1));
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let is_wide = launch.spec.launch.has(Launch::MIPMAPPED) && sample.density.eq(R::splat(0.0));
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
@@ -147,7 +147,7 @@ fn sampled_light<R: Scalar>(
         let share = weight(launch.spec.launch, Launch::BY_LIGHT, own.flush(FAINT), sample.density.over);
         light = (light * share).map(|c| c.flush(FAINT));
     }
-    let passes = effects.has(Effects::PHYSICAL) && !interaction.faces(sample.direction);
+    let passes = effects.has(Effects::PHYSICAL) && !interaction.receives(sample.direction);
     let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { view.origin };
     vertex.asks(launch, (interaction, origin), &sample, light)
 }

@@ -7,7 +7,8 @@ use crate::data::{Effects, Emission, Emitter, Primitive};
 use crate::real::{FAINT, Scalar};
 use crate::scene::LaunchContext;
 
-/// An emitter by draws, with its probability, which is 0 if there is nothing to choose.
+/// An emitter by draws, with its probability, which is 0 if there is nothing to choose. Of many it is one of those that are far away,
+/// or one that has a place.
 #[inline(always)]
 pub(super) fn picked<R: Scalar>(
     launch: &LaunchContext<'_>,
@@ -16,11 +17,21 @@ pub(super) fn picked<R: Scalar>(
     choice: u32,
     place: (u32, u32),
 ) -> (Emitter, R) {
-    if launch.spec.effects.has(Effects::MANY_LIGHTS) {
-        return of_many(launch, lighting, view, choice, place);
+    let of_table = |count, draw| {
+        let emitter = chosen(lighting.emitters, count, draw);
+        (emitter, R::splat(f32::from_bits(emitter.choice.z)))
+    };
+    if !launch.spec.effects.has(Effects::MANY_LIGHTS) {
+        return of_table(launch.frame.emitters, choice);
     }
-    let emitter = chosen(lighting.emitters, launch.frame.emitters, choice);
-    (emitter, R::splat(f32::from_bits(emitter.choice.z)))
+    let steps = read(lighting.emitters, 0).choice.w;
+    let mut guide = Guide::draw(choice, place);
+    if !guide.is_second(steps) {
+        let (emitter, own) = of_table(launch.frame.far, guide.word());
+        return (emitter, (own * probability(steps)).flush(FAINT));
+    }
+    let found = descend(lighting.nodes, view, probability(STEPS - steps), guide);
+    (read(lighting.emitters, found.emitter), found.probability)
 }
 
 /// The emitter that a draw means: an entry of the table by its upper digits, that one or its alias by the digits below.
@@ -40,26 +51,6 @@ fn product(a: u32, b: u32) -> (u32, u32) {
     let other = a0.wrapping_mul(b1).wrapping_add(middle & 0xffff);
     let high = a1.wrapping_mul(b1).wrapping_add(middle >> 16).wrapping_add(other >> 16);
     (high, (other << 16) | (low & 0xffff))
-}
-
-/// One of many: one of those that are far away, or one that has a place.
-#[inline(always)]
-fn of_many<R: Scalar>(
-    launch: &LaunchContext<'_>,
-    lighting: &Lighting<'_>,
-    view: &Viewpoint<R>,
-    choice: u32,
-    place: (u32, u32),
-) -> (Emitter, R) {
-    let steps = read(lighting.emitters, 0).choice.w;
-    let mut guide = Guide::draw(choice, place);
-    if !guide.is_second(steps) {
-        let emitter = chosen(lighting.emitters, launch.frame.far, guide.word());
-        let likely = R::splat(f32::from_bits(emitter.choice.z)) * probability(steps);
-        return (emitter, likely.flush(FAINT));
-    }
-    let found = descend(lighting.nodes, view, probability(STEPS - steps), guide);
-    (read(lighting.emitters, found.emitter), found.probability)
 }
 
 /// The density over area with which a place on an emitter is chosen.

@@ -154,6 +154,8 @@ mod tests {
             number: 0,
             is_curved: false,
             radius: 0.0,
+            is_lifted: false,
+            lift: 0.0,
         };
         let beside = V3::splat(Vec3::new(3.0, 0.0, 0.0));
         let (origin, direction, _) = ray_to_light(

@@ -1,5 +1,6 @@
 //! From where lights are chosen.
 
+use crate::geometry::SurfaceInteraction;
 use crate::real::{Real, Scalar, V3};
 
 /// A place, and the side of it that light may come from.
@@ -17,6 +18,14 @@ const MIDDLE: f32 = 128.0;
 const STEPS: f32 = 127.0;
 
 impl<R: Scalar> Viewpoint<R> {
+    /// Where rays start that a surface scatters, whose shading normal is given. Light from behind the plane of a triangle reaches
+    /// only a curved surface, and never one from behind its shading normal.
+    #[inline(always)]
+    pub fn on(interaction: &SurfaceInteraction<R>, normal: V3<R>, passes: bool) -> Self {
+        let origin = interaction.scattered_ray_origin(interaction.normal);
+        Self::new(origin, if interaction.is_lifted { normal } else { interaction.normal }, passes)
+    }
+
     /// On an opaque surface, or on one that lets light pass.
     #[inline(always)]
     pub fn new(origin: V3<R>, normal: V3<R>, passes: bool) -> Self {

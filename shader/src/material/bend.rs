@@ -54,6 +54,8 @@ mod tests {
             number: 0,
             is_curved: false,
             radius: 0.0,
+            is_lifted: false,
+            lift: 0.0,
         }
     }
 

@@ -58,7 +58,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         let left = if is_compensated { energy.left } else { facet.rest };
         let base = if layers.is_coated { layers.diffuse * left } else { layers.diffuse };
         let under =
-            if layers.is_coated { facet.rest.div((one - layers.reflectance.mean()).max(R::splat(SMALL))) } else { one };
+            if layers.is_coated { facet.rest.div((one - layers.reflectance.mean(effects)).max(R::splat(SMALL))) } else { one };
         let facets = facet.reflected.greatest() + (layers.through * facet.rest).greatest();
         let (near, far) = ((energy.near * energy.lost).greatest(), (energy.far * energy.lost).greatest());
         let least = if zero.lt(base.greatest()) { LEAST } else { LEAST_LOST };
@@ -108,7 +108,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     fn matt(&self, to: V3<R>) -> V3<R> {
         let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
         if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
-            let (out, left) = self.energy.near_side(self.albedos, to);
+            let (out, left) = self.energy.near_side(self.effects, self.albedos, to);
             let left = if self.layers.is_coated { left } else { R::splat(1.0) };
             return (self.layers.diffuse * left + out) * cosine;
         }
@@ -209,7 +209,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     /// Is a direction of the frame on its side of the surface, too?
     #[inline(always)]
     fn agrees(&self, interaction: &SurfaceInteraction<R>, local: V3<R>, world: V3<R>) -> bool {
-        R::splat(0.0).lt(local.z) == interaction.faces(world)
+        R::splat(0.0).lt(local.z) == interaction.receives(world)
     }
 
     #[inline(always)]
@@ -248,7 +248,7 @@ impl<R: Scalar> Bsdf<'_, R> {
     #[inline(always)]
     pub fn eval_base(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
         let to = self.local(direction);
-        let is_lit = R::splat(0.0).lt(to.z) && interaction.faces(direction);
+        let is_lit = R::splat(0.0).lt(to.z) && interaction.receives(direction);
         if is_lit { self.matt(to) } else { V3::zero() }
     }
 
@@ -302,6 +302,11 @@ impl<R: Scalar> Closure<R> for Bsdf<'_, R> {
     }
 
     #[inline(always)]
+    fn normal(&self) -> V3<R> {
+        self.axes[2]
+    }
+
+    #[inline(always)]
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
         let to = self.local(direction);
         if self.agrees(interaction, to, direction) { self.scattering(to) } else { Scattering::none() }
@@ -335,7 +340,7 @@ impl<R: Scalar> Closure<R> for Bsdf<'_, R> {
         let counts = is_right && zero.lt(density) && self.agrees(interaction, to, direction);
         let over = R::select(counts, density, R::splat(1.0)).reciprocal();
         let factor = V3::select(counts, (value * over).map(|c| c.flush(FAINT)), V3::zero());
-        ClosureSample { direction, factor, density, origin: interaction.offset_ray_origin(direction) }
+        ClosureSample { direction, factor, density, origin: interaction.scattered_ray_origin(direction) }
     }
 }
 

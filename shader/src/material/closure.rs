@@ -31,6 +31,9 @@ pub trait Closure<R: Scalar> {
     /// May it scatter light of any other direction than those of mirrors and lenses?
     fn is_rough(&self) -> bool;
 
+    /// The unit normal that light sees, on the viewer's side.
+    fn normal(&self) -> V3<R>;
+
     /// How it scatters light from a unit direction, towards the light; of mirrors and lenses nothing.
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R>;
 

@@ -5,6 +5,7 @@
 //! reciprocal. A base gets what all of that leaves by the same form.
 
 use super::albedo::{Albedos, FacetAlbedo, GlassAlbedo};
+use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
 use crate::data::Effects;
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
@@ -16,9 +17,8 @@ pub struct Energy<R: Real> {
     glass: GlassAlbedo<R>,
     /// The share of facets that refract: 1 of clear glass, 0 where none do.
     bends: R,
-    /// Reflectances of facets at normal incidence and at grazing angles but for glass.
-    normal: V3<R>,
-    grazing: V3<R>,
+    /// What one facet reflects.
+    reflectance: Reflectance<R>,
     /// The share of the exact reflectance of a dielectric.
     dielectric: R,
     /// The share of lost light that leaves on the near side, linear RGB.
@@ -45,8 +45,7 @@ impl<R: Scalar> Energy<R> {
             facets,
             glass: facets.glass(R::splat(1.0)),
             bends: zero,
-            normal: black,
-            grazing: black,
+            reflectance: layers.reflectance,
             dielectric: zero,
             near: black,
             far: black,
@@ -69,15 +68,14 @@ impl<R: Scalar> Energy<R> {
         let has_glass = effects.has(Effects::REFRACTION | Effects::THIN);
         let dielectric = if has_glass && !is_conductor { reflectance.glass } else { zero };
         let bends = if effects.has(Effects::REFRACTION) && layers.way == Way::BODY { dielectric } else { zero };
-        let (normal, grazing) = (reflectance.normal, reflectance.grazing);
-        let partial = Energy { facets, glass, bends, normal, grazing, dielectric, ..Self::none(layers) };
+        let partial = Energy { facets, glass, bends, dielectric, ..Self::none(layers) };
         let means = facets.mean(albedos);
         let sum = means.0 + means.1;
         let again = |f: R| (f * f * sum).flush(SMALL).div(one - f * (one - sum));
         let mean = if is_conductor { reflectance.mean_colour } else { reflectance.schlick_mean() };
         let reflected = mean.map(|f| again(f.min(one)).min(one));
         let (mean_near, mean_far) = (partial.mean_loss(albedos, means, false), partial.mean_loss(albedos, means, true));
-        let passed = if has_glass { dielectric * partial.passed(albedos, layers, (mean_near, mean_far)) } else { zero };
+        let passed = if has_glass { dielectric * partial.passed(effects, albedos, layers, (mean_near, mean_far)) } else { zero };
         let far = if effects.has(Effects::REFRACTION | Effects::THIN) && layers.way != Way::OPAQUE {
             layers.through * passed
         } else {
@@ -85,11 +83,16 @@ impl<R: Scalar> Energy<R> {
         };
         let near = reflected + V3::new(one, one, one) * (dielectric - passed).max(zero);
         let partial = Energy { near, far, ..partial };
-        let (lost, spent) = partial.at(albedos, viewer);
+        let (lost, spent) = partial.at(effects, albedos, viewer);
         let left = (one - spent).max(zero);
         let greatest = near.greatest();
-        let mean_glass = if has_glass { glass.mean(albedos, false).0 * dielectric } else { zero };
-        let mean_spent = (normal * means.0 + grazing * means.1).greatest() + mean_glass + greatest * mean_near;
+        let mean_glass = if has_glass {
+            reflectance.of_faces(effects, glass.mean(albedos, false).0) * dielectric
+        } else {
+            zero
+        };
+        let mirrored = (reflectance.normal * means.0 + reflectance.grazing * means.1).greatest();
+        let mean_spent = mirrored + mean_glass + greatest * mean_near;
         let over = |mean: R| lost.div(mean.max(R::splat(SMALL)));
         Energy {
             lost,
@@ -116,11 +119,11 @@ impl<R: Scalar> Energy<R> {
     /// The share of what glass loses that leaves on its far side: what a smooth interface lets pass, and less where the far side
     /// loses less, so that both ways are alike but for the compression of radiance.
     #[inline(always)]
-    fn passed(&self, albedos: Albedos<'_>, layers: &Layers<R>, (near, far): (R, R)) -> R {
+    fn passed(&self, effects: Effects, albedos: Albedos<'_>, layers: &Layers<R>, (near, far): (R, R)) -> R {
         let (zero, one, eta) = (R::splat(0.0), R::splat(1.0), layers.reflectance.eta);
         let outside = self.glass.passed(albedos);
         if layers.way != Way::BODY {
-            return outside;
+            return one - layers.reflectance.of_faces(effects, one - outside);
         }
         let over = one.div(eta * eta);
         let passed = R::select(one.lt(eta), outside * over, outside);
@@ -129,17 +132,18 @@ impl<R: Scalar> Energy<R> {
     }
 
     /// What facets lose of light from a unit direction on the near side, and what of it they send on there in all, of the channel
-    /// of which that is most.
+    /// of which that is most. A pane's mean over facets is taken for what a facet of the mean reflectance would reflect, which is at
+    /// least that, so that no light is made.
     #[inline(always)]
-    fn at(&self, albedos: Albedos<'_>, w: V3<R>) -> (R, R) {
+    fn at(&self, effects: Effects, albedos: Albedos<'_>, w: V3<R>) -> (R, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (a, b) = self.facets.reflected(albedos, w);
-        let (mut lost, mut spent) = ((one - a - b).max(zero), (self.normal * a + self.grazing * b).greatest());
+        let (mut lost, mut spent) = ((one - a - b).max(zero), (self.reflectance.normal * a + self.reflectance.grazing * b).greatest());
         if zero.lt(self.dielectric) {
             let (reflected, passed) = self.glass.shares(albedos, w.z, false);
             let glass = (one - reflected - passed).max(zero);
             lost = lost + (glass - lost) * self.bends;
-            spent = spent + reflected * self.dielectric;
+            spent = spent + self.reflectance.of_faces(effects, reflected) * self.dielectric;
         }
         (lost, spent + lost * self.near.greatest())
     }
@@ -147,8 +151,8 @@ impl<R: Scalar> Energy<R> {
     /// What comes out again on the near side, over the cosine and 1 / pi, of light from a unit direction there; and what is left for
     /// a base, likewise.
     #[inline(always)]
-    pub fn near_side(&self, albedos: Albedos<'_>, to: V3<R>) -> (V3<R>, R) {
-        let (lost, spent) = self.at(albedos, to);
+    pub fn near_side(&self, effects: Effects, albedos: Albedos<'_>, to: V3<R>) -> (V3<R>, R) {
+        let (lost, spent) = self.at(effects, albedos, to);
         let left = (R::splat(1.0) - spent).max(R::splat(0.0));
         (self.near * (self.over.0 * lost).flush(FAINT), (left * self.left_over).flush(FAINT))
     }

@@ -38,9 +38,7 @@ pub fn passes<R: Scalar>(effects: Effects, layers: &Layers<R>) -> bool {
 #[inline(always)]
 pub fn reflected<R: Scalar>(effects: Effects, layers: &Layers<R>, w: V3<R>, h: V3<R>) -> V3<R> {
     let cosine = w.dot(h).max(R::splat(0.0)).min(R::splat(1.0)).flush(SMALL);
-    let has_conductors = effects.has(Effects::CONDUCTOR);
-    let has_glass = effects.has(Effects::REFRACTION | Effects::THIN);
-    layers.reflectance.at(has_conductors, has_glass, (w, h, cosine))
+    layers.reflectance.at(effects, (w, h, cosine))
 }
 
 /// The share of light that is not reflected.

@@ -1,6 +1,7 @@
 //! What an interface reflects of unpolarised light, by the cosine of the angle of incidence.
 
 use super::{fresnel, refract};
+use crate::data::Effects;
 use crate::real::{Real, SMALL, Scalar, V3};
 #[cfg(not(target_arch = "spirv"))]
 use glam::Vec3;
@@ -20,32 +21,42 @@ pub struct Reflectance<R: Real> {
     pub glass: R,
     /// The index of refraction on the near side of the glass over that on the far side.
     pub eta: R,
+    /// Does the glass have two faces, as a pane?
+    pub has_two_faces: bool,
 }
 
 impl<R: Scalar> Reflectance<R> {
     /// Of light along the unit vector `-w` at a facet of unit normal `h`, whose cosine is given. Linear RGB.
     #[inline(always)]
-    pub fn at(&self, has_conductors: bool, has_glass: bool, (w, h, cosine): (V3<R>, V3<R>, R)) -> V3<R> {
-        if has_conductors && self.is_conductor {
+    pub fn at(&self, effects: Effects, (w, h, cosine): (V3<R>, V3<R>, R)) -> V3<R> {
+        if effects.has(Effects::CONDUCTOR) && self.is_conductor {
             return conductors(cosine, self.normal, self.grazing);
         }
         let share = self.normal + (self.grazing - self.normal) * schlick(cosine);
-        if has_glass && R::splat(0.0).lt(self.glass) {
-            let exact = self.glass * glass(w, h, self.eta);
+        if effects.has(Effects::REFRACTION | Effects::THIN) && R::splat(0.0).lt(self.glass) {
+            let exact = self.glass * self.of_faces(effects, glass(w, h, self.eta));
             return share + V3::new(exact, exact, exact);
         }
         share
     }
-}
 
-impl<R: Scalar> Reflectance<R> {
+    /// What all faces of the glass reflect, where one reflects a share of light: of two f + (1 - f)^2 (f + f^3 + ...).
+    #[inline(always)]
+    pub fn of_faces(&self, effects: Effects, share: R) -> R {
+        if effects.has(Effects::THIN) && self.has_two_faces {
+            (share + share).div(R::splat(1.0) + share)
+        } else {
+            share
+        }
+    }
+
     /// The greatest channel's mean over all directions of a hemisphere by their cosine, of what is no conductor. That of the glass'
     /// share is Schlick's, too.
     #[inline(always)]
-    pub fn mean(&self) -> R {
+    pub fn mean(&self, effects: Effects) -> R {
         let one = R::splat(1.0);
         let root = (one - self.eta).div(one + self.eta);
-        let normal = self.normal.greatest() + self.glass * (root * root).flush(SMALL);
+        let normal = self.normal.greatest() + self.glass * self.of_faces(effects, (root * root).flush(SMALL));
         let grazing = self.grazing.greatest() + self.glass;
         normal + (grazing - normal) * R::splat(MEAN)
     }
@@ -165,6 +176,30 @@ mod tests {
         }
     }
 
+    fn at(r: &Reflectance<f64>, cosine: f64) -> V3<f64> {
+        let w = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
+        r.at(Effects(u32::MAX), (w, V3::splat(Vec3::Z), cosine))
+    }
+
+    /// By Fresnel's equations for an index of 1.5 at 0, 60 and 80 degrees.
+    #[test]
+    fn a_pane_of_two_faces_lets_less_pass_than_one() {
+        let black = V3::splat(Vec3::ZERO);
+        let of = |has_two_faces| Reflectance::<f64> {
+            normal: black,
+            grazing: black,
+            is_conductor: false,
+            mean_colour: black,
+            glass: 1.0,
+            eta: 1.0 / 1.5,
+            has_two_faces,
+        };
+        for (degrees, one, two) in [(0.0f64, 0.960, 0.923), (60.0, 0.911, 0.836), (80.0, 0.612, 0.441)] {
+            let passed = |has_two_faces| 1.0 - at(&of(has_two_faces), degrees.to_radians().cos()).x;
+            assert!((passed(false) - one).abs() < 6e-4 && (passed(true) - two).abs() < 6e-4, "{degrees}");
+        }
+    }
+
     /// Gold is yellow, and everything is white at grazing angles.
     #[test]
     fn reflectance_turns_white_where_light_grazes() {
@@ -175,10 +210,7 @@ mod tests {
             mean_colour: V3::splat(Vec3::ZERO),
             glass: 0.0,
             eta: 1.0,
-        };
-        let at = |r: &Reflectance<f64>, cosine: f64| {
-            let w = V3::new((1.0 - cosine * cosine).sqrt(), 0.0, cosine);
-            r.at(true, true, (w, V3::splat(Vec3::Z), cosine))
+            has_two_faces: false,
         };
         let gold = of(Vec3::new(0.143, 0.375, 1.442), Vec3::new(3.983, 2.386, 1.603), true);
         let seen = at(&gold, 1.0);

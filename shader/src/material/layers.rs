@@ -11,7 +11,7 @@ pub struct Way(u32);
 impl Way {
     /// There is none.
     pub const OPAQUE: Way = Way(0);
-    /// It goes on behind a thin wall as if it were mirrored there.
+    /// It goes on behind a thin wall, of one interface or two, as if it were mirrored there.
     pub const THIN: Way = Way(1);
     /// It is refracted into a body, or out of it.
     pub const BODY: Way = Way(2);

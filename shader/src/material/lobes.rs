@@ -78,9 +78,14 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
     }
 
     #[inline(always)]
+    fn normal(&self) -> V3<R> {
+        self.normal
+    }
+
+    #[inline(always)]
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
         let cosine = self.normal.dot(direction);
-        if !R::splat(0.0).lt(cosine) || !interaction.faces(direction) {
+        if !R::splat(0.0).lt(cosine) || !interaction.receives(direction) {
             return Scattering::none();
         }
         let factor = (cosine * R::splat(INVERSE_PI)).flush(FAINT);
@@ -100,7 +105,7 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
             let (direction, cosine) = cosine_direction(self.normal, (pair.x, pair.y));
             let probability = self.diffuse_probability();
             // About an interpolated normal a direction may lie below the surface.
-            let factor = V3::select(interaction.faces(direction), self.colour * probability.reciprocal(), V3::zero());
+            let factor = V3::select(interaction.receives(direction), self.colour * probability.reciprocal(), V3::zero());
             let density = probability * cosine * R::splat(INVERSE_PI);
             return ClosureSample { direction, factor, density, origin };
         }

@@ -16,6 +16,7 @@ mod phong;
 mod physical;
 mod refraction;
 mod specular;
+mod terminator;
 
 #[cfg(not(target_arch = "spirv"))]
 pub use albedo::ALBEDOS;
@@ -33,6 +34,7 @@ pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
 pub use physical::{closure, transmittance};
 pub use specular::Specular;
+pub use terminator::lifted;
 
 use crate::buffer::read;
 use crate::data::{Effects, Launch, Maps, Material, Normals, Primitive, numbers};
@@ -261,6 +263,8 @@ mod tests {
             number: 0,
             is_curved: false,
             radius: 0.0,
+            is_lifted: false,
+            lift: 0.0,
         }
     }
 

@@ -118,6 +118,7 @@ fn physical<R: Scalar>(
             mean_colour: V3::splat(numbers(material.dielectric)),
             glass: zero,
             eta: one,
+            has_two_faces: false,
         },
         is_coated: true,
         way: Way::OPAQUE,
@@ -138,8 +139,10 @@ fn physical<R: Scalar>(
         Way::BODY
     };
     let is_body = effects.has(Effects::REFRACTION) && way == Way::BODY;
+    let is_thin = effects.has(Effects::THIN) && way == Way::THIN;
+    let is_glass = is_body || is_thin;
     let ior = number(material.shape.w);
-    let dielectric = if is_body { zero } else { rest };
+    let dielectric = if is_glass { zero } else { rest };
     let grazing = at.grazing * dielectric + metal;
     Layers {
         diffuse: base.times(white - transmission),
@@ -149,8 +152,15 @@ fn physical<R: Scalar>(
             grazing: V3::new(grazing, grazing, grazing),
             is_conductor: false,
             mean_colour: V3::zero(),
-            glass: if is_body { at.grazing * rest } else { zero },
-            eta: if is_body { interaction.relative_ior(ior) } else { one },
+            glass: if is_glass { at.grazing * rest } else { zero },
+            eta: if is_body {
+                interaction.relative_ior(ior)
+            } else if is_thin {
+                one.div(ior)
+            } else {
+                one
+            },
+            has_two_faces: material.has(Physical::TWO_FACES),
         },
         way,
         // Facets of glass that hardly bends light have directions that rounding loses.
@@ -178,6 +188,7 @@ fn whitted<R: Scalar>(effects: Effects, surface: &Surface<R>, interaction: &Surf
             mean_colour: V3::zero(),
             glass: if is_lens { one } else { zero },
             eta: if is_lens { interaction.relative_ior(surface.ior) } else { one },
+            has_two_faces: false,
         },
         is_coated: false,
         way: if is_lens { Way::BODY } else { Way::OPAQUE },

@@ -13,20 +13,23 @@ pub struct Cone<R: Real> {
 }
 
 impl<R: Scalar> Cone<R> {
-    /// That of a ray as it leaves the camera.
+    /// That of a ray that no texture asks for, and of one as it leaves a pinhole.
     #[inline(always)]
     pub fn none() -> Self {
         Cone { width: R::splat(0.0) }
     }
 
-    /// Where it has gone so far, wider by its share of a pixel there; as it was where no texture asks for that. The pixel's sample of
-    /// that number is its ray.
+    /// Where it has gone so far, wider by its share of a pixel there, or as wide as that where rays are parallel; as it was where no
+    /// texture asks for that. The pixel's sample of that number is its ray.
     #[inline(always)]
     pub fn after(self, launch: &LaunchContext<'_>, distance: R, sample: u32) -> Self {
         if !launch.spec.launch.has(Launch::MIPMAPPED) {
             return self;
         }
         let spread = R::splat(launch.frame.spread) * share_of_pixel(sample);
+        if launch.frame.lens.is_parallel(launch.spec.launch) {
+            return Cone { width: spread };
+        }
         Cone { width: (self.width + spread * distance).flush(SMALL) }
     }
 

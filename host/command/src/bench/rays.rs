@@ -126,7 +126,7 @@ impl<'a> PrimaryHits<'a> {
         let rays: Vec<StreamRay> = pixels
             .par_iter()
             .map(|&pixel| {
-                let (origin, direction) = camera::ray::<f32>(&view.frame, Launch::default(), pixel);
+                let (origin, direction) = camera::ray::<f32>(&view.frame, Launch(Launch::PARALLEL), pixel);
                 let (origin, direction) = (vector(Ray::from_afar(origin, direction).origin), vector(direction));
                 StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })

@@ -19,7 +19,7 @@ use eyerays::film::Film;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
-use eyerays::scene::{self, Camera, Filter, Integrator, Sampler, Scene, Settings};
+use eyerays::scene::{self, Camera, Filter, Integrator, Projection, Sampler, Scene, Settings};
 
 /// The most threads.
 const MOST_THREADS: usize = 1024;
@@ -231,7 +231,7 @@ impl View {
         let mut camera = match (&self.camera, self.eye, self.target) {
             (_, Some(eye), Some(target)) => {
                 let up = if (target - eye).cross(Vec3::Y).length() == 0.0 { Vec3::Z } else { Vec3::Y };
-                Camera { name: "--eye".to_owned(), eye, target, up, fov: 60.0 }
+                Camera { name: "--eye".to_owned(), eye, target, up, projection: Projection::Perspective { fov: 60.0 } }
             }
             (Some(wish), ..) => pick(&scene.cameras, wish)?.clone(),
             _ => scene.cameras[0].clone(),
@@ -243,7 +243,7 @@ impl View {
             if !(fov > 0.0 && fov < 180.0) {
                 return Err(Error::new(format!("--fov {fov} is not between 0 and 180 degrees")));
             }
-            camera.fov = fov;
+            camera.projection = Projection::Perspective { fov };
         }
         Ok(camera)
     }

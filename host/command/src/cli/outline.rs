@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::plural;
 use crate::error::printable;
-use eyerays::scene::{Camera, Scene, default_camera};
+use eyerays::scene::{Camera, Projection, Scene, default_camera};
 
 /// The most meshes and the most materials that are told one by one as text.
 const MOST: usize = 50;
@@ -38,7 +38,7 @@ impl<'a> Outline<'a> {
             })
         });
         let camera = self.camera.as_ref().map(
-            |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.fov }),
+            |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.projection.fov() }),
         );
         let materials = self.scene.materials.iter().map(|material| &material.name);
         json!({
@@ -54,9 +54,13 @@ impl fmt::Display for Outline<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let range = |[least, greatest]: [Vec3; 2]| format!("{:?} to {:?}", least.to_array(), greatest.to_array());
         writeln!(out, "bounds: {}", range(self.scene.bounds()))?;
-        if let Some(Camera { eye, target, fov, .. }) = &self.camera {
+        if let Some(camera @ Camera { eye, target, .. }) = &self.camera {
             let (eye, target) = (eye.to_array(), target.to_array());
-            writeln!(out, "default camera: eye = {eye:?}, target = {target:?}, fov = {fov:?}")?;
+            write!(out, "default camera: eye = {eye:?}, target = {target:?}")?;
+            match camera.projection {
+                Projection::Perspective { fov } => writeln!(out, ", fov = {fov:?}")?,
+                Projection::Orthographic { height } => writeln!(out, ", orthographic = {height:?}")?,
+            }
         }
         let parts = &self.scene.parts;
         for (number, part) in parts.iter().enumerate().take(MOST) {

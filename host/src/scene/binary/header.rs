@@ -13,7 +13,7 @@ use crate::scene::{Disk, Sphere, Unplaced};
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.

@@ -6,7 +6,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::range::Range;
-use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Scene, Sphere, Unplaced};
+use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere, Unplaced};
 use crate::error::{Error, Result};
 
 impl Scene {
@@ -142,7 +142,10 @@ fn camera(camera: &Camera) -> Unplaced<()> {
     owner.place("eye", camera.eye)?;
     owner.place("target", camera.target)?;
     owner.place("up", camera.up)?;
-    owner.number("fov", camera.fov, Range::CONE)?;
+    match camera.projection {
+        Projection::Perspective { fov } => owner.number("fov", fov, Range::CONE)?,
+        Projection::Orthographic { height } => owner.number("orthographic height", height, Range::LENGTH)?,
+    }
     if camera.eye == camera.target {
         return owner.refuse("looks at its own eye; move its target");
     }

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use super::document::{Document, pick};
+use super::document::{self, Document, pick};
 use super::light::View;
 use super::node::Placed;
 use super::notes::Notes;
 use crate::scene::range::Range;
-use crate::scene::{Camera, Unplaced};
+use crate::scene::{Camera, Projection, Unplaced};
 
 /// The cameras of a scene so far, each with a name of its own.
 #[derive(Default)]
@@ -20,6 +20,23 @@ pub struct Cameras {
     next: HashMap<String, u32>,
 }
 
+/// What a camera's image holds, and how many times it is as wide as high, if it says so.
+fn projection(of: &document::Camera, number: usize) -> Unplaced<Option<(Projection, Option<f64>)>> {
+    if let Some(perspective) = &of.perspective {
+        let fov = perspective.yfov.to_degrees() as f32;
+        if !Range::CONE.holds(fov) {
+            let says = Range::CONE.says();
+            return Err(format!("cameras[{number}].perspective.yfov: {fov} degrees must be {says}; repair it"));
+        }
+        return Ok(Some((Projection::Perspective { fov }, perspective.aspect_ratio)));
+    }
+    // Negative ones are of exporters that mirror the image; no reader does.
+    let whole = |of: &document::Orthographic| (2.0 * of.xmag.abs(), 2.0 * of.ymag.abs());
+    let (width, height) = of.orthographic.as_ref().map(whole).unwrap_or_default();
+    let is_good = Range::LENGTH.holds(width as f32) && Range::LENGTH.holds(height as f32);
+    Ok(is_good.then(|| (Projection::Orthographic { height: height as f32 }, Some(width / height))))
+}
+
 impl Cameras {
     /// Adds that of a node, if it has one that is drawn with.
     ///
@@ -29,18 +46,18 @@ impl Cameras {
         let Some(number) = placed.node.camera else { return Ok(()) };
         let here = format!("nodes[{}].camera", placed.number);
         let of = pick(&document.cameras, number, &here, "camera")?;
-        let Some(perspective) = &of.perspective else {
-            notes.once("orthographic", "orthographic cameras are left out: only those with perspective are read");
+        let Some((projection, aspect)) = projection(of, number)? else {
+            notes.once("camera", &format!("{here}: it is left out, as it has neither a field of view nor a size"));
             return Ok(());
         };
-        let fov = perspective.yfov.to_degrees() as f32;
-        if !Range::CONE.holds(fov) {
-            let says = Range::CONE.says();
-            return Err(format!("cameras[{number}].perspective.yfov: {fov} degrees must be {says}; repair it"));
-        }
         let view = View::of(placed);
-        let camera =
-            view.map(|view| Camera { name: String::new(), eye: view.eye, target: view.target(), up: view.up, fov });
+        let camera = view.map(|view| Camera {
+            name: String::new(),
+            eye: view.eye,
+            target: view.target(),
+            up: view.up,
+            projection,
+        });
         let is_good = |camera: &Camera| {
             camera.eye.is_finite() && camera.target.is_finite() && camera.eye != camera.target && camera.is_upright()
         };
@@ -51,7 +68,7 @@ impl Cameras {
         let name = placed.node.name.as_deref().or(of.name.as_deref());
         let name = self.name(name.filter(|name| !name.trim().is_empty()).unwrap_or("camera"));
         if self.all.is_empty() {
-            self.aspect = perspective.aspect_ratio.filter(|aspect| aspect.is_finite() && *aspect > 0.0);
+            self.aspect = aspect.filter(|aspect| aspect.is_finite() && *aspect > 0.0);
         }
         self.all.push(Camera { name, ..camera });
         Ok(())

@@ -237,6 +237,17 @@ pub struct Sampler {
 pub struct Camera {
     pub name: Option<String>,
     pub perspective: Option<Perspective>,
+    pub orthographic: Option<Orthographic>,
+}
+
+/// Both in units.
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Orthographic {
+    /// Half of the width.
+    pub xmag: f64,
+    /// Half of the height.
+    pub ymag: f64,
 }
 
 #[derive(Deserialize)]

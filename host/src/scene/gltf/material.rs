@@ -7,7 +7,7 @@ use super::picture::Pictures;
 use super::shading::{Anisotropy, Extensions, Gloss, Info, Material, Metal, Specular, Transmission, Volume};
 use crate::scene::material::Fields;
 use crate::scene::range::Range;
-use crate::scene::{Absorption, Alpha, Maps, Unplaced, physical};
+use crate::scene::{Absorption, Alpha, Maps, Unplaced, Wall, physical};
 
 /// The material of what names none: that of an empty one in the file.
 pub fn plain() -> Fields {
@@ -151,7 +151,7 @@ impl Reader<'_, '_, '_> {
     /// An index of refraction. One that is too great to bend light here still reflects as much as it says: by the tint, which the
     /// reflection at normal incidence is multiplied with.
     fn ior(&mut self, ior: f64) -> Unplaced<()> {
-        let bends = self.fields.transmission.is_some() && self.fields.physical.thin == Some(false);
+        let bends = self.fields.transmission.is_some() && self.fields.physical.wall == Some(Wall::Body);
         if ior == MIRROR || ior > MOST_IOR && !bends {
             let root = |ior: f64| (ior - 1.0) / (ior + 1.0);
             let reflectance = |ior: f64| root(ior) * root(ior);
@@ -173,7 +173,7 @@ impl Reader<'_, '_, '_> {
         self.fields.transmission = Some(Vec3::splat(factor));
         self.fields.maps.transmission = self.map(of.transmission_texture.as_ref(), &key("transmissionTexture"))?;
         let volume = volume.filter(|volume| volume.thickness_factor.is_some_and(|thickness| thickness > 0.0));
-        self.fields.physical.thin = Some(volume.is_none());
+        self.fields.physical.wall = Some(if volume.is_none() { Wall::Interface } else { Wall::Body });
         let Some(Volume { attenuation_distance: Some(distance), attenuation_color, .. }) = volume else {
             return Ok(());
         };
@@ -195,7 +195,7 @@ impl Reader<'_, '_, '_> {
         let of_tint = key("specularColorFactor");
         let [red, green, blue] = tint.map(|number| self.number(number, &of_tint, Range::AMOUNT));
         self.fields.physical.specular_tint = Some(Vec3::new(red?, green?, blue?));
-        let is_glass = self.fields.transmission.is_some() && self.fields.physical.thin == Some(false);
+        let is_glass = self.fields.transmission.is_some() && self.fields.physical.wall == Some(Wall::Body);
         if is_glass && (tint != [1.0; 3] || of.specular_color_texture.is_some()) {
             let text = format!("{}.{of_tint}: bodies of glass reflect without a tint", self.owner);
             self.notes.once("glass", &text);

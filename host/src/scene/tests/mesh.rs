@@ -182,7 +182,7 @@ fn the_framing_camera_sees_every_vertex() {
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
-        let high = (camera.fov / 2.0).to_radians().tan();
+        let high = (camera.projection.fov().unwrap() / 2.0).to_radians().tan();
         let mut widest = 0f32;
         for &position in &ball.positions {
             let view = position - camera.eye;

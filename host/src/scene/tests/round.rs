@@ -119,7 +119,7 @@ fn the_bounds_and_the_framing_camera_are_of_all_surfaces() {
     for Sphere { center, radius, .. } in &scene.spheres {
         let view = *center - camera.eye;
         let angle = view.normalize().dot(forward).acos() + (radius / view.length()).asin();
-        assert!(angle.to_degrees() < camera.fov / 2.0);
+        assert!(angle.to_degrees() < camera.projection.fov().unwrap() / 2.0);
     }
 }
 

@@ -6,7 +6,7 @@ use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::load::Loading;
-use crate::scene::{Background, Direct, Falloff, Integrator, Light, Primitives, Sampler, Scene, Settings, Transport};
+use crate::scene::{Background, Direct, Falloff, Integrator, Light, Primitives, Projection, Sampler, Scene, Settings, Transport};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 
@@ -34,7 +34,7 @@ fn the_documented_example_loads_as_documented() {
     assert_eq!((integrator, direct), (Integrator::Path, Direct::Power));
     assert_eq!((seed, roulette, clamp, ao_distance), (1, 4, 20.0, 2.0));
     assert_eq!((scene.materials[3].emission, scene.materials[3].two_sided), (Vec3::new(4.0, 3.5, 3.0), true));
-    assert_eq!(scene.cameras[0].fov, 40.0);
+    assert_eq!(scene.cameras[0].projection, Projection::Perspective { fov: 40.0 });
     assert_eq!(scene.ambient, Vec3::splat(0.1));
     assert_eq!(
         scene.lights[0],

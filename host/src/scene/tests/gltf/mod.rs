@@ -13,7 +13,7 @@ use serde_json::json;
 use self::model::{F32, Model, U16, data, floats, picture, shorts};
 use super::Folder;
 use crate::scene::gltf::Gltf;
-use crate::scene::{Alpha, Background, Integrator, Light, Primitives, Texels, Wrap};
+use crate::scene::{Alpha, Background, Integrator, Light, Primitives, Texels, Wall, Wrap};
 
 #[test]
 fn a_triangle_is_a_scene_in_a_studio_and_a_mesh_of_a_scene() {
@@ -164,7 +164,7 @@ fn materials_take_textures_and_extensions() {
     assert_eq!((physical.base, physical.roughness), (Some(Vec3::new(0.5, 0.25, 1.0)), Some(0.25)));
     assert_eq!((fields.emission, fields.two_sided), (Some(Vec3::new(4.0, 2.0, 0.0)), Some(true)));
     assert_eq!((fields.alpha, fields.ior), (Some(Alpha::Mask(0.5)), Some(1.25)));
-    assert_eq!((fields.transmission, physical.thin), (Some(Vec3::splat(0.5)), Some(false)));
+    assert_eq!((fields.transmission, physical.wall), (Some(Vec3::splat(0.5)), Some(Wall::Body)));
     assert_eq!(physical.absorption.unwrap().distance, 2.0);
     assert_eq!((physical.anisotropy_rotation, physical.specular_tint), (Some(90.0), Some(Vec3::new(2.0, 1.0, 1.0))));
     let base = fields.maps.base.as_ref().unwrap();
@@ -292,10 +292,10 @@ fn lights_and_cameras_stand_where_their_nodes_are() {
     );
     assert!(matches!(lights[2], Light::Directional { direction, .. } if direction.abs_diff_eq(Vec3::Z, 1e-6)));
     assert_eq!(cameras.iter().map(|camera| camera.name.as_str()).collect::<Vec<_>>(), ["front", "front 2"]);
-    assert_eq!((cameras[0].eye, cameras[0].fov, cameras[0].up), (position, 45.0, Vec3::Y));
+    assert_eq!((cameras[0].eye, cameras[0].projection.fov(), cameras[0].up), (position, Some(45.0), Vec3::Y));
     assert_eq!(
         obj.warnings,
-        ["/nowhere/a.glb: orthographic cameras are left out: only those with perspective are read"]
+        ["/nowhere/a.glb: nodes[5].camera: it is left out, as it has neither a field of view nor a size"]
     );
 }
 

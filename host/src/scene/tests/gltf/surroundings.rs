@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::super::Folder;
 use super::model::{F32, Model, floats, parse};
-use crate::scene::{Background, Falloff, Light, LightUnit, Loading, Scene, load_as};
+use crate::scene::{Background, Falloff, Light, LightUnit, Loading, Projection, Scene, load_as};
 
 fn load(model: &Model) -> Scene {
     Folder::new(&[("a.glb", &model.glb())]).load("a.glb").unwrap().0
@@ -117,6 +117,18 @@ fn the_first_cameras_aspect_ratio_shapes_the_picture() {
     }
     model.json["cameras"] = camera(json!(0));
     assert_eq!(load(&model).settings.size, (512, 512), "no shape at all");
+}
+
+#[test]
+fn an_orthographic_camera_has_a_height_and_a_shape() {
+    let mut model = Model::triangle();
+    model.json["nodes"][0]["camera"] = json!(0);
+    model.json["cameras"] = json!([{ "type": "orthographic", "orthographic": { "xmag": 6, "ymag": 1.5 } }]);
+    let scene = load(&model);
+    assert_eq!(scene.cameras[0].projection, Projection::Orthographic { height: 3.0 });
+    assert_eq!(scene.settings.size, (1024, 256));
+    model.json["cameras"][0]["orthographic"]["ymag"] = json!(0);
+    assert_eq!(load(&model).cameras[0].name, "default", "it is left out");
 }
 
 #[test]

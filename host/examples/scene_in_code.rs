@@ -5,7 +5,7 @@ use eyerays::device_scene::DeviceScene;
 use eyerays::error::{Error, Result};
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish, Rendering};
-use eyerays::scene::{Background, Camera, Light, Material, Mesh, Scene, Settings};
+use eyerays::scene::{Background, Camera, Light, Material, Mesh, Projection, Scene, Settings};
 use eyerays::view::View;
 use glam::{Vec3, vec3};
 
@@ -70,7 +70,7 @@ fn scene() -> Scene {
             eye: vec3(0.5, 1.5, 4.0),
             target: vec3(0.0, 0.5, 0.0),
             up: Vec3::Y,
-            fov: 50.0,
+            projection: Projection::Perspective { fov: 50.0 },
         }],
         background: Background::Colour(vec3(0.2, 0.3, 0.5)),
         ambient: Vec3::ONE,

@@ -1,6 +1,6 @@
 //! Scenes made by code, so that a test knows every number in them.
 
-use eyerays::scene::{Background, Camera, Light, Material, Mesh, Scene, Settings};
+use eyerays::scene::{Background, Camera, Light, Material, Mesh, Projection, Scene, Settings};
 use glam::Vec3;
 
 /// A scene without surfaces or lights before black, seen from the origin along -z, a pixel large.
@@ -13,7 +13,13 @@ pub fn empty() -> Scene {
         files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),
-        cameras: vec![Camera { name: "front".into(), eye: Vec3::ZERO, target: Vec3::NEG_Z, up: Vec3::Y, fov: 1.0 }],
+        cameras: vec![Camera {
+            name: "front".into(),
+            eye: Vec3::ZERO,
+            target: Vec3::NEG_Z,
+            up: Vec3::Y,
+            projection: Projection::Perspective { fov: 1.0 },
+        }],
         background: Background::Colour(Vec3::ZERO),
         ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },

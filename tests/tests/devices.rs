@@ -5,7 +5,7 @@ use eyerays::error::{Content, Error};
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::integrator;
 use eyerays::method::{Method, Order, Traversal};
-use eyerays::scene::{Background, Light, Material, Sampler, Scene, Settings};
+use eyerays::scene::{Background, Light, Material, Projection, Sampler, Scene, Settings};
 use eyerays::view::View;
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{Posed, assert_same_bits, gpu, on_cpu, pack, settings, shipped, traversals};
@@ -111,7 +111,7 @@ fn still_life() -> Scene {
     scene.background = Background::Gradient { horizon: Vec3::splat(0.6), zenith: Vec3::new(0.2, 0.3, 0.7) };
     scene.ambient = Vec3::splat(0.2);
     scene.lights = vec![lamp(Vec3::new(2.0, 3.0, 0.0)), sun(Vec3::new(-1.0, -2.0, -0.5))];
-    scene.cameras[0].fov = 60.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 60.0 };
     scene.settings = Settings { size: (61, 45), bounces: 8, min_contribution: 0.001, ..scene.settings };
     scene
 }
@@ -181,7 +181,7 @@ fn ten_thousand_bounces() {
     add_box(&mut scene, inside, Vec3::new(-1.1, -0.7, -1.3), Vec3::new(0.9, 1.2, 0.8));
     scene.ambient = Vec3::ONE;
     scene.background = Background::Colour(Vec3::splat(1e6));
-    scene.cameras[0].fov = 70.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 70.0 };
     let settings = Settings { size: (9, 5), bounces: BOUNCES, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
     let (film, rays) = on_cpu(&packed);
@@ -303,7 +303,7 @@ fn cameras_from_afar() {
         let aside = Vec3::new(0.4, 0.6, 1.0).normalize();
         let camera = &mut scene.cameras[0];
         (camera.eye, camera.target) = (ahead + aside * distance, ahead);
-        camera.fov = 2.0 * (4.0 / distance).atan().to_degrees();
+        camera.projection = Projection::Perspective { fov: 2.0 * (4.0 / distance).atan().to_degrees() };
         let packed = pack(&scene, &scene.cameras[0], scene.settings);
         assert_same(&gpu, &packed, &format!("{distance} away"));
         let (film, rays) = on_cpu(&packed);

@@ -70,7 +70,7 @@ fn rays(scene: &Scene) -> Vec<(Ray, f64)> {
     let forward = (target - eye).normalize();
     let right = forward.cross(up).normalize();
     let up = right.cross(forward);
-    let half = (f64::from(camera.fov).to_radians() / 2.0).tan();
+    let half = (f64::from(camera.projection.fov().unwrap()).to_radians() / 2.0).tan();
     let (width, height) = (f64::from(SIZE.0), f64::from(SIZE.1));
     let place = |x: u32, y: u32| {
         let across = (f64::from(2 * x + 1) - width) / height * half;

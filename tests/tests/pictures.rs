@@ -1,6 +1,6 @@
 //! Pictures whose pixels a person can calculate: exact precision on the CPU against the formulas.
 
-use eyerays::scene::{Background, Checker, Falloff, Light, Material, Scene, Settings};
+use eyerays::scene::{Background, Checker, Falloff, Light, Material, Projection, Scene, Settings};
 use eyerays_tests::model::{add, add_box, add_wall, black, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{on_cpu, pack};
 use glam::Vec3;
@@ -230,7 +230,7 @@ fn glass_in_an_even_light_cannot_be_seen() {
         let clear = Material { ior, ..glass(Vec3::ONE) };
         add_box(&mut scene, clear, Vec3::new(-1.0, -0.8, -4.0), Vec3::new(0.6, 1.0, -2.0));
         scene.background = Background::Colour(Vec3::new(0.3, 0.5, 0.7));
-        scene.cameras[0].fov = 60.0;
+        scene.cameras[0].projection = Projection::Perspective { fov: 60.0 };
         scene.settings = Settings { size: (32, 24), bounces: 60, min_contribution: 1e-6, ..scene.settings };
         for got in render(&scene) {
             let lost = (got / Vec3::new(0.3, 0.5, 0.7) - 1.0).abs().max_element();
@@ -347,7 +347,7 @@ fn the_camera_frames_what_it_says() {
     }
     scene.ambient = Vec3::ONE;
     // The four walls, 4 by 4 at a distance of 2, fill a square picture of 90 degrees and half of a wide one.
-    scene.cameras[0].fov = 90.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 90.0 };
     scene.settings.size = (2, 2);
     assert_eq!(render(&scene), [Vec3::X, Vec3::Y, Vec3::Z, Vec3::ONE]);
     scene.settings.size = (4, 2);
@@ -367,7 +367,7 @@ fn units_do_not_matter() {
         add_box(&mut scene, glass(Vec3::ONE), Vec3::new(-0.5, -0.4, -2.5) * scale, Vec3::new(0.4, 0.3, -2.0) * scale);
         scene.lights = vec![lamp(Vec3::new(1.0, 2.0, 3.0) * scale)];
         scene.cameras[0].target *= scale;
-        scene.cameras[0].fov = 50.0;
+        scene.cameras[0].projection = Projection::Perspective { fov: 50.0 };
         scene.settings.size = (24, 18);
         render(&scene)
     };

@@ -5,7 +5,8 @@ use std::f32::consts::PI;
 
 use eyerays::film::Film;
 use eyerays::scene::{
-    Background, Camera, Direct, Disk, Integrator, Light, Material, Sampler, Scene, Settings, Sphere, Transport,
+    Background, Camera, Direct, Disk, Integrator, Light, Material, Projection, Sampler, Scene, Settings, Sphere,
+    Transport,
 };
 use eyerays_tests::model::{add_quad, black, empty, matt};
 use eyerays_tests::{by, on_cpu, pack};
@@ -31,7 +32,13 @@ fn once() -> Settings {
 
 /// A camera that sees almost nothing but one point.
 fn at(eye: Vec3, target: Vec3) -> Camera {
-    Camera { name: "spot".into(), eye, target, up: Vec3::new(0.1, 0.2, 1.0), fov: 0.01 }
+    Camera {
+        name: "spot".into(),
+        eye,
+        target,
+        up: Vec3::new(0.1, 0.2, 1.0),
+        projection: Projection::Perspective { fov: 0.01 },
+    }
 }
 
 fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Film {
@@ -116,7 +123,8 @@ fn between_parallel_squares() {
     };
     let middle = Vec3::new(0.5, 0.0, 0.5);
     let away = Vec3::new(0.9, 0.42, 0.1).normalize() * 2000.0;
-    let camera = Camera { fov: 0.045, up: Vec3::Y, ..at(middle + away, middle) };
+    let camera =
+        Camera { projection: Projection::Perspective { fov: 0.045 }, up: Vec3::Y, ..at(middle + away, middle) };
     let mut lit = receiver(matt(Vec3::ONE));
     add_square(&mut lit, 0.0, 0.0);
     // The lamp is seen from behind, where it is black.
@@ -140,7 +148,13 @@ fn between_parallel_squares() {
 
 /// A camera inside a unit sphere.
 fn inside() -> Camera {
-    Camera { name: "inside".into(), eye: Vec3::new(0.1, -0.2, 0.5), target: Vec3::NEG_X, up: Vec3::Y, fov: 80.0 }
+    Camera {
+        name: "inside".into(),
+        eye: Vec3::new(0.1, -0.2, 0.5),
+        target: Vec3::NEG_X,
+        up: Vec3::Y,
+        projection: Projection::Perspective { fov: 80.0 },
+    }
 }
 
 fn in_sphere(material: Material) -> Scene {
@@ -283,7 +297,12 @@ fn a_furnace() {
 fn a_ball_in_white_surroundings() {
     let mut scene = in_sphere(matt(Vec3::new(0.3, 0.5, 0.9)));
     scene.background = Background::Colour(Vec3::ONE);
-    let camera = Camera { eye: Vec3::Z * 3.0, fov: 25.0, target: Vec3::ZERO, ..inside() };
+    let camera = Camera {
+        eye: Vec3::Z * 3.0,
+        projection: Projection::Perspective { fov: 25.0 },
+        target: Vec3::ZERO,
+        ..inside()
+    };
     let film = render(&scene, &camera, Settings { spp: 16, ..once() });
     assert!(film.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
 }

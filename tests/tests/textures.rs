@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eyerays::film::Film;
 use eyerays::scene::{
     Absorption, Alpha, Background, Camera, Filter, Integrator, Light, Map, Maps, Material, Physical, Placement,
-    Sampler, Scene, Settings, Sphere, Texels, Texture, Transport,
+    Projection, Sampler, Scene, Settings, Sphere, Texels, Texture, Transport,
 };
 use eyerays_tests::model::{add_quad, add_wall, black, empty, matt};
 use eyerays_tests::{assert_same_bits, on_cpu, pack};
@@ -23,7 +23,13 @@ fn settings(integrator: Integrator) -> Settings {
 }
 
 fn camera(eye: Vec3, fov: f32) -> Camera {
-    Camera { name: "front".into(), eye, target: Vec3::ZERO, up: Vec3::new(0.1, 1.0, 0.0), fov }
+    Camera {
+        name: "front".into(),
+        eye,
+        target: Vec3::ZERO,
+        up: Vec3::new(0.1, 1.0, 0.0),
+        projection: Projection::Perspective { fov },
+    }
 }
 
 fn film(scene: &Scene, camera: &Camera, settings: Settings) -> Film {

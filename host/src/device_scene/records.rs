@@ -12,7 +12,9 @@ use rayon::prelude::*;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
-use crate::scene::{Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Wall};
+use crate::scene::{
+    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Wall,
+};
 
 /// A colour and an integer.
 pub(super) fn colour(c: Vec3, word: u32) -> UVec4 {

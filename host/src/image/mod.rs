@@ -7,6 +7,7 @@
 //! | OpenEXR, half | linear, 16-bit floats | what is beyond ±65504, and about 0.05 % |
 //! | Radiance HDR | linear, 8 bit and a shared exponent | negative values, and about 1 % |
 
+mod agx;
 mod bounded;
 mod encode;
 mod exr;

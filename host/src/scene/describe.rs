@@ -6,8 +6,8 @@ use std::fmt::{Debug, Write};
 use glam::Vec3;
 
 use super::{
-    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Projection, Scene, Settings,
-    Transport, Wall,
+    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Projection, Scene,
+    Settings, Transport, Wall,
 };
 use super::{physical, studio};
 use crate::choice::Named;

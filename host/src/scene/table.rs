@@ -130,10 +130,9 @@ impl<'s> Table<'s> {
 
     /// One of the values that have names; `false` and `true` are two of them, in this order.
     pub fn flag_or_choice<T: Named>(&mut self, key: &'static str, [no, yes]: [T; 2]) -> Result<Option<T>> {
-        let is_flag = self
-            .entries
-            .iter()
-            .any(|entry| entry.key == key && matches!(entry.value.as_ref().map(|v| v.get_ref()), Some(DeValue::Boolean(_))));
+        let is_flag = self.entries.iter().any(|entry| {
+            entry.key == key && matches!(entry.value.as_ref().map(|v| v.get_ref()), Some(DeValue::Boolean(_)))
+        });
         if is_flag { Ok(self.flag(key)?.map(|flag| if flag { yes } else { no })) } else { self.choice(key) }
     }
 

@@ -106,6 +106,10 @@ impl Lens {
     pub fn ray<R: Scalar>(&self, launch: Launch, right: R, up: R) -> (V3<R>, V3<R>) {
         let (eye, forward) = (V3::splat(numbers(self.eye)), V3::splat(numbers(self.forward)));
         let (right, up) = (V3::splat(numbers(self.right)) * right, V3::splat(numbers(self.up)) * up);
-        if self.is_parallel(launch) { ((eye + right + up).map(|c| c.flush(TINY)), forward) } else { (eye, forward + right + up) }
+        if self.is_parallel(launch) {
+            ((eye + right + up).map(|c| c.flush(TINY)), forward)
+        } else {
+            (eye, forward + right + up)
+        }
     }
 }

@@ -57,8 +57,11 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
             if is_compensated { Energy::new(effects, albedos, &layers, viewer) } else { Energy::none(&layers) };
         let left = if is_compensated { energy.left } else { facet.rest };
         let base = if layers.is_coated { layers.diffuse * left } else { layers.diffuse };
-        let under =
-            if layers.is_coated { facet.rest.div((one - layers.reflectance.mean(effects)).max(R::splat(SMALL))) } else { one };
+        let under = if layers.is_coated {
+            facet.rest.div((one - layers.reflectance.mean(effects)).max(R::splat(SMALL)))
+        } else {
+            one
+        };
         let facets = facet.reflected.greatest() + (layers.through * facet.rest).greatest();
         let (near, far) = ((energy.near * energy.lost).greatest(), (energy.far * energy.lost).greatest());
         let least = if zero.lt(base.greatest()) { LEAST } else { LEAST_LOST };

@@ -75,7 +75,8 @@ impl<R: Scalar> Energy<R> {
         let mean = if is_conductor { reflectance.mean_colour } else { reflectance.schlick_mean() };
         let reflected = mean.map(|f| again(f.min(one)).min(one));
         let (mean_near, mean_far) = (partial.mean_loss(albedos, means, false), partial.mean_loss(albedos, means, true));
-        let passed = if has_glass { dielectric * partial.passed(effects, albedos, layers, (mean_near, mean_far)) } else { zero };
+        let passed =
+            if has_glass { dielectric * partial.passed(effects, albedos, layers, (mean_near, mean_far)) } else { zero };
         let far = if effects.has(Effects::REFRACTION | Effects::THIN) && layers.way != Way::OPAQUE {
             layers.through * passed
         } else {
@@ -86,11 +87,8 @@ impl<R: Scalar> Energy<R> {
         let (lost, spent) = partial.at(effects, albedos, viewer);
         let left = (one - spent).max(zero);
         let greatest = near.greatest();
-        let mean_glass = if has_glass {
-            reflectance.of_faces(effects, glass.mean(albedos, false).0) * dielectric
-        } else {
-            zero
-        };
+        let mean_glass =
+            if has_glass { reflectance.of_faces(effects, glass.mean(albedos, false).0) * dielectric } else { zero };
         let mirrored = (reflectance.normal * means.0 + reflectance.grazing * means.1).greatest();
         let mean_spent = mirrored + mean_glass + greatest * mean_near;
         let over = |mean: R| lost.div(mean.max(R::splat(SMALL)));
@@ -138,7 +136,8 @@ impl<R: Scalar> Energy<R> {
     fn at(&self, effects: Effects, albedos: Albedos<'_>, w: V3<R>) -> (R, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let (a, b) = self.facets.reflected(albedos, w);
-        let (mut lost, mut spent) = ((one - a - b).max(zero), (self.reflectance.normal * a + self.reflectance.grazing * b).greatest());
+        let (mut lost, mut spent) =
+            ((one - a - b).max(zero), (self.reflectance.normal * a + self.reflectance.grazing * b).greatest());
         if zero.lt(self.dielectric) {
             let (reflected, passed) = self.glass.shares(albedos, w.z, false);
             let glass = (one - reflected - passed).max(zero);

@@ -105,7 +105,8 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
             let (direction, cosine) = cosine_direction(self.normal, (pair.x, pair.y));
             let probability = self.diffuse_probability();
             // About an interpolated normal a direction may lie below the surface.
-            let factor = V3::select(interaction.receives(direction), self.colour * probability.reciprocal(), V3::zero());
+            let factor =
+                V3::select(interaction.receives(direction), self.colour * probability.reciprocal(), V3::zero());
             let density = probability * cosine * R::splat(INVERSE_PI);
             return ClosureSample { direction, factor, density, origin };
         }

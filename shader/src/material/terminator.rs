@@ -43,7 +43,12 @@ mod tests {
     use proptest::prelude::*;
 
     /// A place on a triangle of these vertices and normals, seen from above or below.
-    fn lift(vertices: [Vec3; 3], normals: [Vec3; 3], coordinates: (f64, f64), from_above: bool) -> SurfaceInteraction<f64> {
+    fn lift(
+        vertices: [Vec3; 3],
+        normals: [Vec3; 3],
+        coordinates: (f64, f64),
+        from_above: bool,
+    ) -> SurfaceInteraction<f64> {
         let primitive = Primitive::triangle(vertices, 0, 0, 0);
         let direction = V3::new(0.0, 0.0, if from_above { -1.0 } else { 1.0 });
         let interaction = SurfaceInteraction::new(Effects(0), &primitive, coordinates, direction);

@@ -17,16 +17,15 @@ pub const BLACK: V = V { x: 0.0, y: 0.0, z: 0.0 };
 
 /// Facets of some roughness that reflect everything.
 pub fn facets(x: f64, y: f64) -> Layers<f64> {
-    let reflectance =
-        Reflectance {
-            normal: WHITE,
-            grazing: WHITE,
-            is_conductor: false,
-            mean_colour: BLACK,
-            glass: 0.0,
-            eta: 1.0,
-            has_two_faces: false,
-        };
+    let reflectance = Reflectance {
+        normal: WHITE,
+        grazing: WHITE,
+        is_conductor: false,
+        mean_colour: BLACK,
+        glass: 0.0,
+        eta: 1.0,
+        has_two_faces: false,
+    };
     let ggx = Ggx { x, y };
     Layers { diffuse: BLACK, through: BLACK, reflectance, is_coated: true, way: Way::OPAQUE, ggx }
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use eyerays::device_scene::DeviceScene;
-use eyerays::scene::{self, Scene, Settings};
+use eyerays::scene::{self, Projection, Scene, Settings};
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_tests::Posed;
@@ -46,7 +46,8 @@ fn scene(seed: u64) -> Scene {
     let mut scene = empty();
     let material = [matt(Vec3::ONE), mirror(Vec3::splat(0.9)), glass(Vec3::ONE)][seed as usize / 4 % 3].clone();
     add(&mut scene, material, &corners, &triangles);
-    (scene.cameras[0].eye, scene.cameras[0].target, scene.cameras[0].fov) = (corners[0], corners[1], 70.0);
+    (scene.cameras[0].eye, scene.cameras[0].target, scene.cameras[0].projection) =
+        (corners[0], corners[1], Projection::Perspective { fov: 70.0 });
     scene.lights = vec![lamp(corners[2]), sun(Vec3::new(0.3, -1.0, -0.2))];
     scene.ambient = Vec3::splat(0.1);
     scene.settings = Settings { size: (16, 12), bounces: 4, min_contribution: 0.01, ..scene.settings };

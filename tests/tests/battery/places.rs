@@ -7,7 +7,7 @@ use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
 use eyerays::film::Film;
 use eyerays::method::{Method, Order};
-use eyerays::scene::{Light, Scene};
+use eyerays::scene::{Light, Projection, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_command::bench::Kind;
 use eyerays_command::bench::rays::{CameraRays, PrimaryHits};
@@ -151,7 +151,8 @@ fn small_beside_large() -> Scene {
     let wall = [Vec3::new(-5e5, -5e5, -5e5), Vec3::new(5e5, -5e5, -5e5), Vec3::new(0.0, 5e5, -5e5)];
     add(&mut scene, glowing(Vec3::X), &wall, &[[0, 1, 2]]);
     let camera = &mut scene.cameras[0];
-    (camera.eye, camera.target, camera.fov) = (Vec3::new(1e-4, 2e-4, 5e-4), Vec3::ZERO, 50.0);
+    (camera.eye, camera.target, camera.projection) =
+        (Vec3::new(1e-4, 2e-4, 5e-4), Vec3::ZERO, Projection::Perspective { fov: 50.0 });
     scene.ambient = Vec3::splat(0.2);
     scene.lights = vec![sun(Vec3::new(-0.5, -1.0, -0.6)), lamp(Vec3::new(3e-4, 4e-4, 2e-4))];
     scene

@@ -1,7 +1,7 @@
 //! Rays that leave a surface do not meet it again (PBRT's reintersection test), and light does not leak.
 
 use eyerays::device_scene::{DeviceScene, SceneView};
-use eyerays::scene::{Scene, Settings};
+use eyerays::scene::{Projection, Scene, Settings};
 use eyerays::stream::StreamRay;
 use eyerays_shader::data::Primitive;
 use eyerays_shader::geometry::SurfaceInteraction;
@@ -143,7 +143,8 @@ fn assert_dark(what: &str, machine: Machine, light: Vec3, eye: Vec3, target: Vec
         placed(&mut scene.mesh.positions, turn, scale, offset);
         placed(&mut points, turn, scale, offset);
         scene.lights = vec![lamp(points[0])];
-        (scene.cameras[0].eye, scene.cameras[0].target, scene.cameras[0].fov) = (points[1], points[2], 80.0);
+        (scene.cameras[0].eye, scene.cameras[0].target, scene.cameras[0].projection) =
+            (points[1], points[2], Projection::Perspective { fov: 80.0 });
         let packed = pack(&scene, &scene.cameras[0], scene.settings);
         let (film, rays) = machine.render(&packed);
         assert!(rays.shadow > 0 && rays.non_finite == 0, "{what}, {machine}: {rays:?}");
@@ -174,7 +175,8 @@ fn no_acne() {
             add_box(&mut body, matt(Vec3::ONE), Vec3::new(-1.0, -0.5, -0.7), Vec3::new(1.0, 0.6, 0.8));
             placed(&mut body.mesh.positions, turn, scale, offset);
             let eye = (DVec3::new(1.7, 1.1, 2.1) * scale + offset).as_vec3();
-            (body.cameras[0].eye, body.cameras[0].target, body.cameras[0].fov) = (eye, offset.as_vec3(), 50.0);
+            (body.cameras[0].eye, body.cameras[0].target, body.cameras[0].projection) =
+                (eye, offset.as_vec3(), Projection::Perspective { fov: 50.0 });
             body.settings.size = (count::of(64, 512) as u32, count::of(48, 384) as u32);
             let mut shape = body.clone();
             shape.materials = vec![glowing(Vec3::ONE)];

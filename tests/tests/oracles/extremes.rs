@@ -2,7 +2,7 @@
 
 use eyerays::gpu::{AdapterRequest, Renderer};
 use eyerays::method::Traversal;
-use eyerays::scene::{self, Background, Light, Material, Scene, Settings};
+use eyerays::scene::{self, Background, Light, Material, Projection, Scene, Settings};
 use eyerays_shader::material::{fresnel, refract};
 use eyerays_shader::real::{Real, Scalar, V3};
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt};
@@ -70,7 +70,7 @@ fn panes(iors: [f32; 3]) -> Scene {
         }
     }
     scene.ambient = Vec3::ONE;
-    scene.cameras[0].fov = 50.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 50.0 };
     scene.settings = Settings { size: (61, 47), bounces: 6, min_contribution: 0.0, ..Settings::default() };
     scene
 }
@@ -118,7 +118,7 @@ fn highlight(shininess: f32) -> Scene {
     let mut scene = empty();
     add_wall(&mut scene, Material { specular: Vec3::ONE, shininess, ..black() }, Vec3::new(0.0, 0.0, -2.0), 2.0);
     scene.lights = vec![lamp(Vec3::new(0.0, 0.0, -1.0))];
-    scene.cameras[0].fov = 60.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 60.0 };
     scene.settings = Settings { size: (33, 33), ..Settings::default() };
     scene
 }
@@ -165,7 +165,7 @@ fn mirror_box(bounces: u32) -> Scene {
     eyerays_tests::model::add_box(&mut scene, mirror, least, greatest);
     scene.ambient = Vec3::ONE;
     scene.background = Background::Colour(Vec3::splat(1e6));
-    scene.cameras[0].fov = 90.0;
+    scene.cameras[0].projection = Projection::Perspective { fov: 90.0 };
     scene.settings = Settings { size: (8, 4), bounces, min_contribution: 0.0, ..Settings::default() };
     scene
 }

@@ -6,7 +6,9 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::range::Range;
-use super::{Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere, Unplaced};
+use super::{
+    Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere, Unplaced,
+};
 use crate::error::{Error, Result};
 
 impl Scene {

@@ -49,7 +49,10 @@ fn what_is_out_of_range_is_told_with_what_has_it() {
     assert!(spot(position, 20.0, 10.0).starts_with("light 0 shines at its own position"));
     assert!(spot(-position, 20.0, 30.0).starts_with("light 0 has the inner angle 30"));
     assert!(spot(-position, 90.0, 10.0).starts_with("light 0 has the angle 180"));
-    assert!(after(|s| s.cameras[0].projection = Projection::Perspective { fov: 180.0 }).starts_with("the camera \"front\" has the fov 180"));
+    assert!(
+        after(|s| s.cameras[0].projection = Projection::Perspective { fov: 180.0 })
+            .starts_with("the camera \"front\" has the fov 180")
+    );
     assert!(after(|s| s.cameras[0].up = s.cameras[0].target - s.cameras[0].eye).contains("has its up along its view"));
     let range = after(|s| s.parts[0].primitives = Primitives::Triangles(0..1_000_000));
     assert!(range.contains("is made of the triangles 0 to 1000000, but there are "), "{range}");

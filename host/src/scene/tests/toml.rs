@@ -6,7 +6,9 @@ use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::load::Loading;
-use crate::scene::{Background, Direct, Falloff, Integrator, Light, Primitives, Projection, Sampler, Scene, Settings, Transport};
+use crate::scene::{
+    Background, Direct, Falloff, Integrator, Light, Primitives, Projection, Sampler, Scene, Settings, Transport,
+};
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
 

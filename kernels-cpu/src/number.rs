@@ -1,6 +1,6 @@
 //! The numbers that pictures are rendered with, and the stages over them.
 
-use eyerays_shader::data::{Frame, Light, Order, Specialisation};
+use eyerays_shader::data::{Frame, Launch, Light, Order, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Fast, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
@@ -122,9 +122,10 @@ impl<R: Scalar> Task<R> for Scatter<'_, R> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
         let Records { paths, hits, shadows, segments, sums } = self.records;
+        let starts = !self.launch.spec.launch.has(Launch::SECONDARY);
         for &slot in self.slots.now {
             let exchange =
-                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums };
+                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums, starts };
             if integrator::scatter(self.launch, self.context, slot, exchange) {
                 self.slots.next.push(slot);
             }

@@ -3,6 +3,8 @@
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer, Route};
 use eyerays::method::{Method, Traversal};
 use eyerays::scene::Settings;
+use eyerays_passes::Kernels;
+use eyerays_shader::data::{Launch, Specialisation};
 use eyerays_shader::modules;
 use eyerays_tests::{Posed, SHIPPED, differences, gpu, on_cpu, pack, settings, shipped};
 
@@ -53,11 +55,17 @@ fn methods_through_naga() {
 #[test]
 fn naga_accepts_the_fast_modules() {
     use naga::valid::{Capabilities, ValidationFlags, Validator};
-    for (spirv, capabilities) in
-        [(modules::FAST, Capabilities::empty()), (modules::FAST_SUBGROUP, Capabilities::SUBGROUP)]
-    {
+    let check = |spirv: &[u8], capabilities| {
         let module = naga::front::spv::parse_u8_slice(spirv, &naga::front::spv::Options::default()).unwrap();
         assert!(!module.entry_points.is_empty());
         Validator::new(ValidationFlags::all(), capabilities).validate(&module).unwrap();
+    };
+    check(modules::FAST, Capabilities::SUBGROUP);
+    // What does not vote asks for no subgroups.
+    let kernels = Kernels::parse(modules::FAST).unwrap();
+    for name in kernels.names().iter().filter(|name| name.starts_with("fast::")) {
+        let spec = Specialisation::default().with_launch(Launch::GOES_ON);
+        let words = kernels.cut(name, &spec.constants()).unwrap().words();
+        check(bytemuck::cast_slice(&words), Capabilities::empty());
     }
 }

@@ -88,8 +88,8 @@ mod tests {
     }
 
     const TRACE: &str = "exact::while_while::trace";
-    const FIRST: [&str; 3] = [TRACE, "exact::if_if::shadow", "subgroup_exact::shade"];
-    const FURTHER: [&str; 4] = ["exact::advance", TRACE, "exact::while_while::shadow", "subgroup_exact::shade"];
+    const FIRST: [&str; 3] = [TRACE, "exact::if_if::shadow", "exact::shade"];
+    const FURTHER: [&str; 4] = ["exact::advance", TRACE, "exact::while_while::shadow", "exact::shade"];
     const LAST: [&str; 1] = ["exact::gather"];
 
     /// All of them have lights, and glass or mirrors that send rays on; some are smooth.

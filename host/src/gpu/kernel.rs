@@ -16,6 +16,7 @@ use crate::plan::{Plan, Stage};
 const RESIDENT: u32 = 4096;
 
 /// A step, compiled.
+#[derive(Clone)]
 pub(super) struct Kernel {
     pub stage: Stage,
     pipeline: wgpu::ComputePipeline,
@@ -83,10 +84,15 @@ impl Kernel {
     }
 }
 
-/// Compiles kernels, all at once: drivers take most of the time to a first picture.
+/// Compiles kernels, all at once and each once: drivers take most of the time to a first picture.
 pub(super) fn compile(gpu: &Gpu, recipes: &[Recipe]) -> Vec<Kernel> {
     let _hush = Hush::new();
-    on_deep_stacks(recipes, |recipe| one(gpu, recipe))
+    let first = |recipe: &Recipe| recipes.iter().position(|other| other.is_like(recipe)).expect("it is one of them");
+    let places: Vec<usize> = recipes.iter().map(first).collect();
+    let unlike: Vec<usize> = (0..recipes.len()).filter(|&i| places[i] == i).collect();
+    let compiled = on_deep_stacks(&unlike, |&i| one(gpu, &recipes[i]));
+    let at = |place| unlike.binary_search(&place).expect("it was compiled");
+    places.into_iter().map(|place| compiled[at(place)].clone()).collect()
 }
 
 fn one(gpu: &Gpu, recipe: &Recipe) -> Kernel {

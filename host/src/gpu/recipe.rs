@@ -3,7 +3,7 @@
 use std::sync::LazyLock;
 
 use eyerays_passes::{Kernel, Kernels};
-use eyerays_shader::data::Effects;
+use eyerays_shader::data::{Effects, Launch, Specialisation};
 use eyerays_shader::modules;
 
 use crate::method::Scheduling;
@@ -14,8 +14,6 @@ type Module = LazyLock<Kernels>;
 
 static EXACT: Module = LazyLock::new(|| parse(modules::EXACT));
 static FAST: Module = LazyLock::new(|| parse(modules::FAST));
-static EXACT_SUBGROUP: Module = LazyLock::new(|| parse(modules::EXACT_SUBGROUP));
-static FAST_SUBGROUP: Module = LazyLock::new(|| parse(modules::FAST_SUBGROUP));
 
 fn parse(module: &[u8]) -> Kernels {
     Kernels::parse(module).unwrap_or_else(|e| panic!("a committed module: {e}"))
@@ -37,25 +35,29 @@ pub struct Recipe {
     pub step: Step,
     /// The path of its entry point.
     pub name: String,
+    /// What it is compiled for.
+    pub spec: Specialisation,
     module: &'static Module,
 }
 
 impl Recipe {
     /// The kernel of a step.
     pub fn new(step: Step, target: Target) -> Self {
-        let votes = match step.traversal {
-            Some(traversal) => traversal.votes(),
-            // A subgroup adds its slots to the next wave at once.
-            None => target.subgroups && goes_on(&step),
-        };
-        let (module, precision) = match (target.exact, votes) {
-            (true, false) => (&EXACT, "exact"),
-            (false, false) => (&FAST, "fast"),
-            (true, true) => (&EXACT_SUBGROUP, "subgroup_exact"),
-            (false, true) => (&FAST_SUBGROUP, "subgroup_fast"),
-        };
+        let (module, precision) = if target.exact { (&EXACT, "exact") } else { (&FAST, "fast") };
+        let subgroup = if step.traversal.is_some_and(|traversal| traversal.votes()) { "subgroup_" } else { "" };
         let method = step.traversal.map(|traversal| traversal.path()).unwrap_or_default();
-        Recipe { step, name: format!("{precision}::{method}{}", step.stage.name()), module }
+        let name = format!("{subgroup}{precision}::{method}{}", step.stage.name());
+        // A subgroup adds its slots to the next wave at once.
+        let votes = if target.subgroups && goes_on(&step) { Launch::SUBGROUPS } else { 0 };
+        // Scattering is the same in every wave.
+        let same = if step.stage == Stage::Scatter { Launch::SECONDARY } else { 0 };
+        let spec = step.spec.with_launch(votes).without_launch(same);
+        Recipe { step, name, spec, module }
+    }
+
+    /// Is it the same kernel?
+    pub fn is_like(&self, other: &Recipe) -> bool {
+        (&self.name, self.spec, self.is_persistent()) == (&other.name, other.spec, other.is_persistent())
     }
 
     /// Does it take rays until none is left, instead of one a thread?
@@ -65,7 +67,7 @@ impl Recipe {
 
     /// The kernel as a module of its own: what the scene does not ask for is not in it.
     pub fn cut(&self) -> Kernel {
-        let constants = self.step.spec.constants();
+        let constants = self.spec.constants();
         self.module.cut(&self.name, &constants).unwrap_or_else(|e| panic!("a committed module: {e}"))
     }
 }
@@ -73,7 +75,7 @@ impl Recipe {
 fn goes_on(step: &Step) -> bool {
     match step.stage {
         Stage::Shade => step.spec.effects.has(Effects::REFLECTION | Effects::REFRACTION),
-        Stage::Scatter => true,
+        Stage::Scatter => step.spec.launch.has(Launch::GOES_ON),
         _ => false,
     }
 }

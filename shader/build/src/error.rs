@@ -30,8 +30,8 @@ pub enum Error {
     /// The compiler's module is not what a pass expects.
     #[error("unexpected SPIR-V: {0}")]
     Malformed(String),
-    /// No entry point has the prefix of a module.
-    #[error("no entry point begins with `{0}`; add one to shader/src/entry.rs or drop the module")]
+    /// No entry point has a prefix of a module.
+    #[error("no entry point is of the module `{0}`; add one to shader/src/entry/kernels.rs or drop the module")]
     NoEntry(&'static str),
     /// A pass cannot work on the compiler's module.
     #[error(transparent)]

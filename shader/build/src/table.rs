@@ -15,8 +15,8 @@ pub enum Policy {
 pub struct Module {
     /// The file's name without its ending.
     pub name: &'static str,
-    /// What the names of its entry points begin with.
-    pub prefix: &'static str,
+    /// What the names of its entry points begin with: any of these.
+    pub prefixes: &'static [&'static str],
     /// What it promises.
     pub policy: Policy,
     /// Ends of the paths of functions that must survive as protected ones: `#[inline(never)]` is
@@ -35,13 +35,9 @@ impl Module {
 /// The watertight test, whose proof counts on every rounding.
 const TRIANGLES: &[&str] = &["triangle::intersect_watertight", "triangle::straddles_origin"];
 
-/// Every committed module.
-///
-/// Methods that vote have modules of their own, so that a device without subgroups takes the others.
-pub const MODULES: [Module; 5] = [
-    Module { name: "exact", prefix: "exact::", policy: Policy::Exact, protects: &[] },
-    Module { name: "fast", prefix: "fast::", policy: Policy::Fast, protects: TRIANGLES },
-    Module { name: "exact_subgroup", prefix: "subgroup_exact::", policy: Policy::Exact, protects: &[] },
-    Module { name: "fast_subgroup", prefix: "subgroup_fast::", policy: Policy::Fast, protects: TRIANGLES },
-    Module { name: "numerics", prefix: "numerics::", policy: Policy::Exact, protects: &[] },
+/// Every committed module. A kernel that is cut out of one asks a device only for what it uses itself.
+pub const MODULES: [Module; 3] = [
+    Module { name: "exact", prefixes: &["exact::", "subgroup_exact::"], policy: Policy::Exact, protects: &[] },
+    Module { name: "fast", prefixes: &["fast::", "subgroup_fast::"], policy: Policy::Fast, protects: TRIANGLES },
+    Module { name: "numerics", prefixes: &["numerics::"], policy: Policy::Exact, protects: &[] },
 ];

@@ -123,16 +123,13 @@ fn copy_folder(from: &Path, to: &Path) {
     }
 }
 
-/// The exact kernels of a copy with these edits: those of lanes alone, and those that vote.
-fn kernels(compiler: &Compiler, edits: &[Edit]) -> [Kernels; 2] {
+/// The exact kernels of a copy with these edits.
+fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
     let folder = tempfile::tempdir().unwrap();
     let words = compile::compile(compiler, &copied(folder.path(), edits)).unwrap_or_else(|e| panic!("{e}"));
-    let of = |prefix: &str| {
-        let table: &Module = MODULES.iter().find(|module| module.prefix == prefix).expect("a module of exact kernels");
-        let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
-        Kernels::parse(&compile::bytes(&finished.words())).unwrap()
-    };
-    ["exact::", "subgroup_exact::"].map(of)
+    let table: &Module = MODULES.iter().find(|module| module.name == "exact").expect("a module of exact kernels");
+    let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
+    Kernels::parse(&compile::bytes(&finished.words())).unwrap()
 }
 
 /// What each step of a scene's pictures runs by default.
@@ -143,11 +140,12 @@ fn recipes(name: &str) -> Vec<(String, Specialisation, Stage)> {
     let traversal = Traversal::default();
     let plan = Plan::new(&scene, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence))).unwrap();
     let target = Target { exact: true, subgroups: true };
-    plan.steps().map(|&step| (Recipe::new(step, target).name, step.spec, step.stage)).collect()
+    let recipes = plan.steps().map(|&step| Recipe::new(step, target));
+    recipes.map(|recipe| (recipe.name.clone(), recipe.spec, recipe.step.stage)).collect()
 }
 
-fn cut(kernels: &[Kernels; 2], name: &str, spec: Specialisation) -> Kernel {
-    kernels[usize::from(name.starts_with("subgroup_"))].cut(name, &spec.constants()).unwrap_or_else(|e| panic!("{e}"))
+fn cut(kernels: &Kernels, name: &str, spec: Specialisation) -> Kernel {
+    kernels.cut(name, &spec.constants()).unwrap_or_else(|e| panic!("{e}"))
 }
 
 #[test]

@@ -4,7 +4,7 @@ use rspirv::binary::Assemble;
 use rspirv::dr::{self, Module, Operand};
 
 use crate::slice::Sliced;
-use crate::{Error, Result, bindings, fold, renumber, specialise};
+use crate::{Error, Result, bindings, capability, fold, renumber, specialise};
 
 /// A module of many kernels.
 #[derive(Debug, Clone)]
@@ -35,6 +35,7 @@ impl Kernels {
         module.entry_points.retain(|declared| declared.operands[2] == Operand::LiteralString(entry.to_owned()));
         specialise::write(&mut module, constants);
         fold::fold(&mut module);
+        capability::prune(&mut module);
         renumber::compact(&mut module);
         let bindings = bindings::close_up(&mut module);
         Ok(Kernel { module, bindings })

@@ -8,6 +8,7 @@
 
 pub mod bindings;
 pub mod body;
+pub mod capability;
 pub mod dead;
 pub mod error;
 pub mod fold;

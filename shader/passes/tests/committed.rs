@@ -7,7 +7,7 @@ use eyerays_passes::Kernels;
 use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
 use eyerays_shader::modules;
 
-const MODULES: [&[u8]; 4] = [modules::EXACT, modules::FAST, modules::EXACT_SUBGROUP, modules::FAST_SUBGROUP];
+const MODULES: [&[u8]; 2] = [modules::EXACT, modules::FAST];
 
 fn effects(bits: u32) -> Specialisation {
     Specialisation { effects: Effects(bits), ..Specialisation::default() }
@@ -30,6 +30,7 @@ fn specialisations() -> Vec<Specialisation> {
         layout(wave, Layout::SPLIT | Layout::INDEXED),
         layout(effects(0), Layout::COMPACT),
         path,
+        path.with_launch(Launch::SUBGROUPS),
         effects(Effects::DISK).with_launch(Launch::OCCLUSION | Launch::RANDOM),
         order,
     ]
@@ -169,15 +170,13 @@ fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
     for module in MODULES {
         let kernels = Kernels::parse(module).unwrap();
         for entry in kernels.names() {
-            let (votes, persistent) = (entry.starts_with("subgroup_"), entry.contains("::persistent::"));
+            let persistent = entry.contains("::persistent::");
             let named: &[&str] = match entry.rsplit("::").next().unwrap() {
                 "trace" if persistent => bound::persistent::trace,
                 "shadow" if persistent => bound::persistent::shadow,
                 "trace" => bound::trace,
                 "shadow" => bound::shadow,
-                "shade" if votes => bound::voting::shade,
                 "shade" => bound::shade,
-                "scatter" if votes => bound::voting::scatter,
                 "scatter" => bound::scatter,
                 "generate" => bound::generate,
                 "accumulate" => bound::accumulate,

@@ -127,6 +127,8 @@ bits! {
         PLACE = 16;
         /// Rays of the camera may be parallel ([`Lens::parallel`](super::Lens::parallel)).
         PARALLEL = 17;
+        /// Lanes of a subgroup vote where their slots join the next wave.
+        SUBGROUPS = 18;
     }
 }
 
@@ -217,6 +219,11 @@ pub struct Specialisation {
 }
 
 impl Specialisation {
+    /// The same for others of these rays.
+    pub fn without_launch(self, bits: u32) -> Self {
+        Specialisation { launch: Launch(self.launch.0 & !bits), ..self }
+    }
+
     /// The same for other rays.
     pub fn with_launch(self, bits: u32) -> Self {
         Specialisation { launch: self.launch.with(bits), ..self }

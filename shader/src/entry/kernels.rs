@@ -48,31 +48,20 @@ fn queued(spec: Specialisation, number: u32, queue: &[u32]) -> u32 {
     if spec.launch.has(Launch::SECONDARY) { read(queue, number) } else { number }
 }
 
-/// Adds a slot that goes on to the next wave, by an atomic of its own.
+/// Adds a slot that goes on to the next wave: by an atomic of its own, or the slots of a subgroup take their places at once.
 #[inline(always)]
-fn enqueue_alone(_: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
-    if goes_on {
-        // SAFETY: the host sizes the counters and gives the next wave room for every slot.
-        let position = unsafe {
+fn enqueue(spec: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
+    let position = if spec.launch.has(Launch::SUBGROUPS) {
+        append(goes_on, counters, counter::NEXT)
+    } else if goes_on {
+        // SAFETY: the host sizes the counters.
+        unsafe {
             let count = counters.index_unchecked_mut(counter::NEXT as usize);
             atomic_i_add::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(count, 1)
-        };
-        write(next, position, slot);
-    }
-}
-
-/// The same where lanes vote: the slots of a subgroup take their places at once.
-#[inline(always)]
-fn enqueue_together(spec: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
-    if spec.effects.has(Effects::REFLECTION | Effects::REFRACTION) {
-        append_together(spec, goes_on, slot, next, counters);
-    }
-}
-
-/// The same where any slot may go on.
-#[inline(always)]
-fn append_together(_: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], counters: &mut [u32]) {
-    let position = append(goes_on, counters, counter::NEXT);
+        }
+    } else {
+        0
+    };
     if goes_on {
         write(next, position, slot);
     }
@@ -127,10 +116,10 @@ macro_rules! methods {
     (@$($other:tt)*) => {};
 }
 
-/// A precision's kernels, those that vote apart: a device without subgroups takes the others.
+/// A precision's kernels, those that always vote apart: a device without subgroups takes the others.
 macro_rules! precision {
     ($R:ty, $alone:ident, $subgroup:ident) => {
-        /// Kernels whose lanes do not hear of each other.
+        /// Kernels whose lanes need not hear of each other.
         pub mod $alone {
             use super::*;
             shading!($R);
@@ -139,8 +128,6 @@ macro_rules! precision {
         /// Kernels whose lanes vote.
         pub mod $subgroup {
             use super::*;
-            shade!($R, enqueue_together);
-            scatter!($R, append_together);
             crate::for_each_method!(methods subgroup $R);
             /// Kernels of persistent subgroups.
             pub mod persistent {

@@ -67,9 +67,9 @@ macro_rules! entry {
     };
 }
 
-/// The shading of a wave over the numbers `R`; `$enqueue` adds its slots to the next wave.
-macro_rules! shade {
-    ($R:ty, $enqueue:ident) => {
+/// The stages that follow no ray, over the numbers `R`.
+macro_rules! shading {
+    ($R:ty) => {
         entry! {
             /// Shades the slots of a wave.
             shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
@@ -84,44 +84,34 @@ macro_rules! shade {
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let wave = Wave { paths, hits, shadows, lights, environment, sums };
                 let goes_on = integrator::shade::<$R>(&launch, &shading, slot, wave);
-                $enqueue(spec, goes_on, slot, next, counters);
+                enqueue(spec, goes_on, slot, next, counters);
             }
         }
-    };
-}
 
-/// The same where integrators sample.
-macro_rules! scatter {
-    ($R:ty, $enqueue:ident) => {
         entry! {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions
              physicals maps textures texels coordinates colours tangents environment albedos light_nodes] {
-                let slot = slot(spec, frame, id.x, queue, counters);
-                if slot == IDLE {
+                // One kernel for all waves, since it is the one that drivers take longest to compile.
+                let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
+                let count = if starts { frame.slots } else { read(counters, counter::COUNT) };
+                if id.x >= count {
                     return;
                 }
+                let slot = if starts { id.x } else { read(queue, id.x) };
                 let launch = LaunchContext { frame, spec, primitives };
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
                 let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting };
-                let exchange = Exchange { paths, hits, shadows, segments, sums };
+                let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
                 if spec.launch.has(Launch::GOES_ON) {
-                    $enqueue(spec, goes_on, slot, next, counters);
+                    enqueue(spec, goes_on, slot, next, counters);
                 }
             }
         }
-    };
-}
-
-/// The stages that follow no ray, over the numbers `R`.
-macro_rules! shading {
-    ($R:ty) => {
-        shade!($R, enqueue_alone);
-        scatter!($R, enqueue_alone);
 
         entry! {
             /// Starts the paths of a launch.
@@ -258,12 +248,6 @@ macro_rules! persistent_tracing {
 #[cfg(not(target_arch = "spirv"))]
 pub mod bound {
     shading!(f32);
-
-    /// Of subgroups that vote.
-    pub mod voting {
-        shade!(f32, enqueue_together);
-        scatter!(f32, append_together);
-    }
 
     tracing!(f32, ());
 

@@ -29,6 +29,8 @@ pub struct Exchange<'a, R: Scalar> {
     pub segments: &'a mut [R::Record],
     /// Linear RGB by slot; the integer counts shadow rays and holds [`NON_FINITE`].
     pub sums: &'a mut [R::Record],
+    /// Are they the camera's rays, before which there are neither sums nor shadow rays?
+    pub starts: bool,
 }
 
 /// What scatters in a scene, and what emits.
@@ -168,10 +170,10 @@ pub fn scatter<R: Scalar>(
     slot: u32,
     exchange: Exchange<'_, R>,
 ) -> bool {
-    let Exchange { paths, hits, shadows, segments, sums } = exchange;
-    let (slots, is_first) = (launch.frame.slots, !launch.spec.launch.has(Launch::SECONDARY));
+    let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
+    let slots = launch.frame.slots;
     let path = PathState::<R>::load(slots, slot, 0, paths);
-    let (sum, word) = if is_first {
+    let (sum, word) = if starts {
         (V3::zero(), 0)
     } else {
         let (sum, word) = R::load(read(sums, slot));

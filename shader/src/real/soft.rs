@@ -1,8 +1,10 @@
 //! Correctly rounded division and square root in integers, for devices that promise neither.
 //!
-//! The device's own quotient or root of the mantissas is an estimate within a few units in the last
-//! place; an exact integer remainder corrects it. Subnormal operands count as zero and subnormal
-//! results become zero. [`native`] gives the same bits from a CPU's instructions.
+//! The device's own quotient or root of the mantissas is an estimate within a few units in the last place: Vulkan allows 2.5 of a
+//! quotient, and about 7 of a root, which may be one over an inverse root. From below the least number that it may stand for, steps
+//! of powers of two by the exact remainder lead to the number itself: without a loop, which compilers unroll wherever one of these
+//! functions is called. Subnormal operands count as zero and subnormal results become zero. [`native`] gives the same bits from a
+//! CPU's instructions.
 
 use spirv_std::num_traits::Float;
 
@@ -20,21 +22,28 @@ fn exponent(bits: u32) -> u32 {
     (bits >> 23) & 255
 }
 
-/// The estimate's mantissa with one more bit, forced into [1, 2).
+/// How far a quotient's estimate may be above the quotient's whole part.
+const QUOTIENT_OFF: u32 = 4;
+/// The same of a root.
+const ROOT_OFF: u32 = 8;
+
+/// The estimate's mantissa, forced into [1, 2).
 #[inline(always)]
 fn mantissa_of_estimate(estimate: f32) -> u32 {
     let bits = estimate.to_bits();
     let bits = if bits < ONE { ONE } else { bits };
     let bits = if bits > BELOW_TWO { BELOW_TWO } else { bits };
-    ((bits & FRACTION) | HIDDEN) << 1
+    (bits & FRACTION) | HIDDEN
 }
 
-/// Rounds a 25-bit mantissa to nearest, ties to even; `rest` tells whether anything lies below it.
+/// A whole part that is up to 7 more, with the remainder of that.
 #[inline(always)]
-fn round(mantissa: u32, rest: bool) -> u32 {
-    let half = mantissa & 1 == 1;
-    let m = mantissa >> 1;
-    if half && (rest || m & 1 == 1) { m + 1 } else { m }
+fn settled(q: u32, rest: u32, divisor: u32) -> (u32, u32) {
+    let step = |(q, rest): (u32, u32), size: u32| {
+        let takes = size * divisor;
+        if rest >= takes { (q + size, rest - takes) } else { (q, rest) }
+    };
+    step(step(step((q, rest), 4), 2), 1)
 }
 
 /// Sign, biased exponent (out of range gives zero or infinity) and a mantissa of 2^23 to 2^24.
@@ -65,21 +74,12 @@ fn special_quotient(a: u32, b: u32, sign: u32) -> u32 {
     }
 }
 
-/// The quotient of two mantissas, the first not less, in 25 bits from an estimate; and whether there is a remainder.
+/// The whole part of the quotient of two mantissas, the first not less, in units of 2^-23, from an estimate; and its remainder.
 #[inline(always)]
-fn quotient(ma: u32, mb: u32, estimate: f32) -> (u32, bool) {
-    let mut q = mantissa_of_estimate(estimate);
+fn quotient(ma: u32, mb: u32, estimate: f32) -> (u32, u32) {
+    let q = mantissa_of_estimate(estimate) - QUOTIENT_OFF;
     // Only the low 32 bits: the true remainder of so close a quotient fits them.
-    let mut rest = (ma << 24).wrapping_sub(q.wrapping_mul(mb)) as i32;
-    while rest < 0 {
-        q -= 1;
-        rest += mb as i32;
-    }
-    while rest >= mb as i32 {
-        q += 1;
-        rest -= mb as i32;
-    }
-    (q, rest != 0)
+    settled(q, (ma << 23).wrapping_sub(q.wrapping_mul(mb)), mb)
 }
 
 /// `a / b`, rounded to nearest even.
@@ -97,10 +97,11 @@ pub fn div(a: f32, b: f32) -> f32 {
         let ma = if less { ma << 1 } else { ma };
         let biased = ea as i32 - eb as i32 + if less { 126 } else { 127 };
         let (q, rest) = quotient(ma, mb, ma as f32 / mb as f32);
-        // The one tie between the greatest subnormal and the least normal number rounds up to even.
-        let least = biased == 0 && q >= 0x01ff_fffe;
-        let q = if least { 1 << 24 } else { q };
-        assemble(sign, if least { 1 } else { biased }, round(q, rest))
+        // No quotient of two mantissas lies halfway between two numbers, but for those below the least normal one: the one halfway
+        // between that and the greatest subnormal rounds up to even.
+        let least = biased == 0 && q == HIDDEN + FRACTION;
+        let rounded = if 2 * rest > mb { q + 1 } else { q };
+        assemble(sign, if least { 1 } else { biased }, if least { HIDDEN } else { rounded })
     };
     f32::from_bits(bits)
 }
@@ -108,26 +109,11 @@ pub fn div(a: f32, b: f32) -> f32 {
 /// 2^47 over a mantissa, rounded, from an estimate of the reciprocal of the mantissa in [1, 2).
 #[inline(always)]
 fn inverse(m: u32, estimate: f32) -> u32 {
-    // In units of 2^-24, from 1/2 to 1; an estimate out of this range is corrected below.
-    let mut q = estimate.to_bits().wrapping_sub(HALF - HIDDEN);
-    let (m, twice) = (m as i32, 2 * m as i32);
-    // The low 32 bits of twice the remainder; no quotient lies halfway.
-    let mut rest = 0i32.wrapping_sub((q as i32).wrapping_mul(twice));
-    // Most estimates are off by one at most. Selections correct those, since some lane of a subgroup needs them anyway.
-    let (more, less) = (rest > m, rest < -m);
-    q = if more { q + 1 } else { q };
-    q = if less { q - 1 } else { q };
-    rest = if more { rest - twice } else { rest };
-    rest = if less { rest + twice } else { rest };
-    while rest > m {
-        q += 1;
-        rest -= twice;
-    }
-    while rest < -m {
-        q -= 1;
-        rest += twice;
-    }
-    q
+    // In units of 2^-24, from 1/2 to 1.
+    let q = estimate.to_bits().wrapping_sub(HALF - HIDDEN + QUOTIENT_OFF);
+    let (q, rest) = settled(q, 0u32.wrapping_sub(q.wrapping_mul(m)), m);
+    // No quotient lies halfway.
+    if 2 * rest > m { q + 1 } else { q }
 }
 
 /// One over a number, rounded to nearest: [`div`] where neither the number nor the result is zero, subnormal,
@@ -141,21 +127,15 @@ pub fn reciprocal(b: f32) -> f32 {
     f32::from_bits((bits & SIGN) | (252u32.wrapping_sub(exponent(bits)) << 23).wrapping_add(q))
 }
 
-/// The root of a mantissa in 25 bits, from the low 32 bits of its square and an estimate; and whether there is a
-/// remainder.
+/// The whole part of the root of a mantissa, from the low 32 bits of its square and an estimate; and its remainder.
 #[inline(always)]
-fn root(square: u32, estimate: f32) -> (u32, bool) {
-    let mut s = mantissa_of_estimate(estimate);
-    let mut rest = square.wrapping_sub(s.wrapping_mul(s)) as i32;
-    while rest < 0 {
-        rest += 2 * s as i32 - 1;
-        s -= 1;
-    }
-    while rest > 2 * s as i32 {
-        rest -= 2 * s as i32 + 1;
-        s += 1;
-    }
-    (s, rest != 0)
+fn root(square: u32, estimate: f32) -> (u32, u32) {
+    let s = mantissa_of_estimate(estimate) - ROOT_OFF;
+    let step = |(s, rest): (u32, u32), size: u32| {
+        let takes = size * (2 * s + size);
+        if rest >= takes { (s + size, rest - takes) } else { (s, rest) }
+    };
+    step(step(step(step((s, square.wrapping_sub(s.wrapping_mul(s))), 8), 4), 2), 1)
 }
 
 /// The square root, rounded to nearest even; NaN for a negative number, -0 for -0.
@@ -174,9 +154,10 @@ pub fn sqrt(a: f32) -> f32 {
         let odd = (ea & 1) ^ 1;
         let m = (ua & FRACTION) | HIDDEN;
         let v = f32::from_bits(((127 + odd) << 23) | (ua & FRACTION));
-        let (s, rest) = root(m << (25 + odd), Float::sqrt(v));
+        let (s, rest) = root(m << (23 + odd), Float::sqrt(v));
         let biased = ((ea as i32 - 127 - odd as i32) >> 1) + 127;
-        assemble(0, biased, round(s, rest))
+        // No root lies halfway: the square of that is no whole number.
+        assemble(0, biased, if rest > s { s + 1 } else { s })
     };
     f32::from_bits(bits)
 }
@@ -205,7 +186,7 @@ pub mod native {
 
 #[cfg(test)]
 mod tests {
-    use super::{FRACTION, HALF, HIDDEN, ONE, div, inverse, native, quotient, reciprocal, root, round, sqrt};
+    use super::{FRACTION, HALF, HIDDEN, ONE, div, inverse, native, quotient, reciprocal, root, sqrt};
     use proptest::prelude::*;
 
     /// Operands whose quotients lie on ties or at the ends of the range, and every special value.
@@ -289,31 +270,34 @@ mod tests {
         let beside = |x: f32, off| f32::from_bits(x.to_bits().wrapping_add_signed(off));
         for off in -3..=3 {
             for m in [HIDDEN, HIDDEN + 1, 2 * HIDDEN - 1] {
-                assert_eq!(quotient(m, m, beside(1.0, off)), (1 << 24, false));
+                assert_eq!(quotient(m, m, beside(1.0, off)), (1 << 23, 0));
             }
             let (most, least) = (2 * HIDDEN - 1, HIDDEN);
-            assert_eq!(quotient(most, least, beside(1.999_999_9, off)), (2 * most, false));
-            assert_eq!(root(HIDDEN << 25, beside(1.0, off)), (1 << 24, false));
+            assert_eq!(quotient(most, least, beside(1.999_999_9, off)), (most, 0));
+        }
+        for off in -7..=7 {
+            assert_eq!(root(HIDDEN << 23, beside(1.0, off)), (1 << 23, 0));
         }
     }
 
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(1 << 20))]
 
-        /// A device's own result may be off by some units: Vulkan allows 2.5 and more.
+        /// A device's own result may be off by some units: Vulkan allows a quotient 2.5.
         #[test]
         fn estimates_may_be_off(a in HIDDEN..2 * HIDDEN, b in HIDDEN..2 * HIDDEN, odd: bool, off in -3i32..=3) {
-            let beside = |x: f32| f32::from_bits(x.to_bits().wrapping_add_signed(off));
+            let beside = |x: f32, off| f32::from_bits(x.to_bits().wrapping_add_signed(off));
             let fraction = |m: u32| f32::from_bits(ONE | (m & FRACTION));
-            let (q, rest) = quotient(a.max(b), a.min(b), beside(fraction(a.max(b)) / fraction(a.min(b))));
-            prop_assert_eq!(u64::from(q), (u64::from(a.max(b)) << 24) / u64::from(a.min(b)));
-            prop_assert_eq!(rest, (u64::from(a.max(b)) << 24) % u64::from(a.min(b)) != 0);
+            let (more, less) = (a.max(b), a.min(b));
+            let (q, rest) = quotient(more, less, beside(fraction(more) / fraction(less), off));
+            let whole = u64::from(more) << 23;
+            prop_assert_eq!((u64::from(q), u64::from(rest)), (whole / u64::from(less), whole % u64::from(less)));
             let v = if odd { 2.0 * fraction(a) } else { fraction(a) };
-            let square = u64::from(a) << (25 + u32::from(odd));
-            let (s, rest) = root(square as u32, beside(v.sqrt()));
-            prop_assert_eq!((u64::from(s), rest), (square.isqrt(), square.isqrt().pow(2) != square));
-            prop_assert_eq!(round(s, rest) & FRACTION, v.sqrt().to_bits() & FRACTION);
-            prop_assert_eq!(inverse(a, beside(1.0 / fraction(a))), (1.0 / fraction(a)).to_bits() - (HALF - HIDDEN));
+            let square = u64::from(a) << (23 + u32::from(odd));
+            let (s, rest) = root(square as u32, beside(v.sqrt(), 2 * off));
+            prop_assert_eq!((u64::from(s), u64::from(rest)), (square.isqrt(), square - square.isqrt().pow(2)));
+            let reciprocal = 1.0 / fraction(a);
+            prop_assert_eq!(inverse(a, beside(reciprocal, off)), reciprocal.to_bits() - (HALF - HIDDEN));
         }
 
         #[test]

@@ -70,7 +70,8 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         let (base, wave) = (scene.context(&frame, spec).base, queue.clone());
         queue.retain(|&slot| {
             let (paths, segments, sums) = (&mut paths, &mut segments, &mut sums);
-            let exchange = Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums };
+            let starts = !spec.launch.has(Launch::SECONDARY);
+            let exchange = Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums, starts };
             integrator::scatter::<R>(&base, &scene.scattering(), slot, exchange)
         });
         for slot in wave {

@@ -1,6 +1,5 @@
 //! The rewrites and checks between the compiler's module and a committed one, a file each.
 
-pub mod capability;
 pub mod contraction;
 pub mod debug;
 pub mod forbidden;
@@ -9,10 +8,11 @@ pub mod memory;
 pub mod names;
 pub mod pointers;
 
-use eyerays_passes::{dead, renumber, select};
+use eyerays_passes::{capability, dead, renumber, select};
 use rspirv::binary::Assemble;
 use rspirv::dr;
 
+use crate::compile::FLOATS_AS_WRITTEN;
 use crate::table::{Module, Policy};
 use crate::{Error, Result};
 
@@ -36,9 +36,9 @@ impl Finished {
 pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
     let mut module = dr::load_words(words).map_err(|e| Error::Malformed(e.to_string()))?;
     debug::strip_lines(&mut module);
-    select::entries(&mut module, |name| name.starts_with(table.prefix))?;
+    select::entries(&mut module, |name| table.prefixes.iter().any(|prefix| name.starts_with(prefix)))?;
     if module.entry_points.is_empty() {
-        return Err(Error::NoEntry(table.prefix));
+        return Err(Error::NoEntry(table.name));
     }
     dead::remove(&mut module);
     pointers::check(&module)?;
@@ -49,6 +49,8 @@ pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
     let protected = inlining::release(&mut module);
     inlining::require(&protected, table.protects)?;
     memory::to_glsl450(&mut module)?;
+    // It has done its work.
+    module.capabilities.retain(|inst| inst.operands[0].unwrap_capability() != FLOATS_AS_WRITTEN);
     capability::prune(&mut module);
     debug::strip_local_names(&mut module);
     renumber::compact(&mut module);
@@ -81,8 +83,8 @@ mod tests {
         });
         let words = kernel.module().assemble();
         for (name, policy, protected) in [("exact", Policy::Exact, vec!["real::div"]), ("fast", Policy::Fast, vec![])] {
-            let table =
-                Module { name, prefix: if name == "exact" { "exact::" } else { "fast::" }, policy, protects: &[] };
+            let prefixes: &[&str] = if name == "exact" { &["exact::"] } else { &["fast::"] };
+            let table = Module { name, prefixes, policy, protects: &[] };
             let finished = finish(&words, &table).unwrap();
             assert_eq!(finished.protected, protected);
             let bytes = compile::bytes(&finished.words());

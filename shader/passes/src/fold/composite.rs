@@ -24,7 +24,7 @@ impl<'m> Composites<'m> {
                 Op::TypeVector => {
                     this.vectors.insert(id, literal(&inst.operands[1]) as usize);
                 }
-                Op::ConstantComposite | Op::CompositeConstruct | Op::CompositeInsert => {
+                Op::ConstantComposite | Op::CompositeConstruct | Op::CompositeInsert | Op::Phi => {
                     this.made.insert(id, inst);
                 }
                 _ => {}
@@ -33,16 +33,12 @@ impl<'m> Composites<'m> {
         this
     }
 
-    /// The id of what an instruction takes out of a composite, if it was put there as it is.
+    /// The id of what an instruction takes out of a composite, if it was put there as it is, whichever way led there.
     pub fn part(&self, extract: &Instruction) -> Option<Word> {
-        let mut id = extract.operands[0].id_ref_any()?;
-        let mut path = &extract.operands[1..];
-        while !path.is_empty() {
-            let from = self.made.get(&id)?;
-            (id, path) =
-                if from.class.opcode == Op::CompositeInsert { inserted(from, path)? } else { self.given(from, path)? };
-        }
-        Some(id)
+        let whole = extract.operands[0].id_ref_any()?;
+        let mut search = Search { composites: self, seen: Vec::new(), found: None };
+        search.part(whole, &extract.operands[1..])?;
+        search.found
     }
 
     /// The first step into a composite of parts.
@@ -53,6 +49,40 @@ impl<'m> Composites<'m> {
         }
         let part = from.operands.get(literal(&path[0]) as usize)?.id_ref_any()?;
         Some((part, &path[1..]))
+    }
+}
+
+/// A search for a part, which forks at phis.
+struct Search<'s, 'm> {
+    composites: &'s Composites<'m>,
+    /// Phis that were come by, and how many steps were left there: loops come back to them.
+    seen: Vec<(Word, usize)>,
+    /// What every way so far has led to.
+    found: Option<Word>,
+}
+
+impl Search<'_, '_> {
+    /// Follows all ways to the part at a path of a composite; none where it is not known, or they lead to several.
+    ///
+    /// One part on all ways is there wherever they join: it is older than any composite that holds it.
+    fn part(&mut self, mut id: Word, mut path: &[Operand]) -> Option<()> {
+        while !path.is_empty() {
+            let from = self.composites.made.get(&id)?;
+            (id, path) = match from.class.opcode {
+                Op::Phi => return self.fork(id, from, path),
+                Op::CompositeInsert => inserted(from, path)?,
+                _ => self.composites.given(from, path)?,
+            };
+        }
+        (*self.found.get_or_insert(id) == id).then_some(())
+    }
+
+    fn fork(&mut self, id: Word, phi: &Instruction, path: &[Operand]) -> Option<()> {
+        if self.seen.contains(&(id, path.len())) {
+            return Some(());
+        }
+        self.seen.push((id, path.len()));
+        phi.operands.iter().step_by(2).try_for_each(|source| self.part(source.id_ref_any()?, path))
     }
 }
 

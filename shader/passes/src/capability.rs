@@ -5,8 +5,6 @@ use std::collections::HashSet;
 use rspirv::dr::{Module, Operand};
 use rspirv::spirv::Capability;
 
-use crate::compile::FLOATS_AS_WRITTEN;
-
 const SUBGROUP: [Capability; 7] = [
     Capability::GroupNonUniformVote,
     Capability::GroupNonUniformBallot,
@@ -17,8 +15,7 @@ const SUBGROUP: [Capability; 7] = [
     Capability::GroupNonUniformQuad,
 ];
 
-/// Removes the capability that only guards the compilation, and those of subgroup operations that
-/// no instruction and no built-in variable needs.
+/// Removes the capabilities of subgroup operations that no instruction and no built-in variable needs.
 pub fn prune(module: &mut Module) {
     let mut needed = needed(module);
     if SUBGROUP.iter().any(|capability| needed.contains(capability)) {
@@ -27,7 +24,7 @@ pub fn prune(module: &mut Module) {
     module.capabilities.retain(|inst| {
         let capability = inst.operands[0].unwrap_capability();
         let is_subgroup = capability == Capability::GroupNonUniform || SUBGROUP.contains(&capability);
-        capability != FLOATS_AS_WRITTEN && (!is_subgroup || needed.contains(&capability))
+        !is_subgroup || needed.contains(&capability)
     });
 }
 
@@ -47,13 +44,12 @@ fn needed(module: &Module) -> HashSet<Capability> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays_passes::testing::{Body, Kernel};
+    use crate::testing::{Body, Kernel};
 
     /// The capabilities that remain of all, `Shader` aside.
     fn remaining(body: impl FnOnce(&mut Body)) -> Vec<Capability> {
         let mut kernel = Kernel::new();
         kernel.capability(Capability::GroupNonUniform);
-        kernel.capability(FLOATS_AS_WRITTEN);
         for capability in SUBGROUP {
             kernel.capability(capability);
         }

@@ -184,8 +184,8 @@ impl Mesh {
 pub struct Material {
     /// By this name a scene file overrides it.
     pub name: String,
-    /// Answer to the scene's ambient light.
-    pub ambient: Vec3,
+    /// Answer to the scene's ambient light, if it is not the diffuse colour.
+    pub ambient: Option<Vec3>,
     /// Lambert's diffuse colour.
     pub diffuse: Vec3,
     /// Phong's specular colour.

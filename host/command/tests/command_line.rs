@@ -212,6 +212,18 @@ fn layers_lie_beside_the_picture_in_one_file() {
 }
 
 #[test]
+fn the_summary_tells_what_layers_took_where_there_are_any() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = ["render", "scene.toml", "--device", "cpu", "-o", "out.exr"];
+    let with = |more: &[&str]| place.succeed(&[&render[..], more].concat());
+    assert!(!with(&[]).stderr.contains("layers"));
+    assert!(with(&["--json"]).json()["layers_ms"].is_null());
+    let said = with(&["--layers", "normal"]).stderr;
+    assert!(said.contains("s, layers ") && said.contains("s, write "), "{said}");
+    assert!(with(&["--layers", "normal", "--json"]).json()["layers_ms"].as_f64().is_some_and(|ms| ms > 0.0));
+}
+
+#[test]
 fn diff_returns_what_it_found() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {

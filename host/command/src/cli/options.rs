@@ -163,6 +163,7 @@ pub(super) struct Loaded {
     pub packed: DeviceScene,
     pub view: eyerays::view::View,
     pub read_time: Duration,
+    /// Of the hierarchy and of all else that is packed.
     pub build_time: Duration,
 }
 

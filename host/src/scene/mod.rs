@@ -65,7 +65,7 @@ pub use physical::{Absorption, Conductor, Physical};
 pub use primitive::{Disk, Primitives, Sphere};
 pub use range::Range;
 pub use sampler::Sampler;
-pub use suggest::suggest;
+pub use suggest::{nearest, suggest};
 pub use table::Table;
 pub use texture::{Alpha, Map, Maps, Placement, Texels, Texture, Wrap};
 pub use transport::{Direct, Integrator, Transport};

@@ -43,7 +43,7 @@ fn render(packed: &DeviceScene, view: &View, device: DeviceWish) -> Result<Rende
 fn scene() -> Scene {
     let plain = Material {
         name: "floor".to_owned(),
-        ambient: Vec3::splat(0.1),
+        ambient: Some(Vec3::splat(0.1)),
         diffuse: vec3(0.8, 0.2, 0.2),
         ..Material::default()
     };

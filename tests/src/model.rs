@@ -30,17 +30,17 @@ pub fn empty() -> Scene {
 
 /// A material that answers to nothing.
 pub fn black() -> Material {
-    Material { name: String::new(), ambient: Vec3::ZERO, diffuse: Vec3::ZERO, shininess: 1.0, ..Material::default() }
+    Material { ambient: Some(Vec3::ZERO), diffuse: Vec3::ZERO, shininess: 1.0, ..Material::default() }
 }
 
 /// Lambert's, with the same answer to ambient light.
 pub fn matt(colour: Vec3) -> Material {
-    Material { ambient: colour, diffuse: colour, ..black() }
+    Material { ambient: Some(colour), diffuse: colour, ..black() }
 }
 
 /// What has its colour in ambient light of 1 whatever else shines on it.
 pub fn glowing(colour: Vec3) -> Material {
-    Material { ambient: colour, ..black() }
+    Material { ambient: Some(colour), ..black() }
 }
 
 /// A mirror.

@@ -177,7 +177,7 @@ fn thousands_of_lights() {
 fn ten_thousand_bounces() {
     const BOUNCES: u32 = 10_000;
     let mut scene = empty();
-    let inside = Material { ambient: Vec3::splat(1e-4), ..mirror(Vec3::ONE) };
+    let inside = Material { ambient: Some(Vec3::splat(1e-4)), ..mirror(Vec3::ONE) };
     add_box(&mut scene, inside, Vec3::new(-1.1, -0.7, -1.3), Vec3::new(0.9, 1.2, 0.8));
     scene.ambient = Vec3::ONE;
     scene.background = Background::Colour(Vec3::splat(1e6));

@@ -231,7 +231,7 @@ fn distributed_trees_are_whitteds() {
         };
         // Nothing is seen from within glass, nor the inside of its surface: Whitted's model does not compress light there.
         for material in scene.materials.iter_mut().filter(|material| material.transmission != Vec3::ZERO) {
-            (material.ambient, material.diffuse, material.specular) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO);
+            (material.ambient, material.diffuse, material.specular) = (Some(Vec3::ZERO), Vec3::ZERO, Vec3::ZERO);
         }
         for camera in [0, 1] {
             let mut film = |integrator, light: f32| {

@@ -156,7 +156,7 @@ fn the_background_is_a_gradient_over_the_height() {
 fn a_mirror_shows_what_is_behind_the_camera() {
     let tint = Vec3::new(0.9, 0.5, 0.25);
     let mut scene = empty();
-    add_wall(&mut scene, Material { ambient: GREY, ..mirror(tint) }, Vec3::new(0.0, 0.0, -3.0), 1.0);
+    add_wall(&mut scene, Material { ambient: Some(GREY), ..mirror(tint) }, Vec3::new(0.0, 0.0, -3.0), 1.0);
     add_wall(&mut scene, glowing(Vec3::new(0.3, 0.7, 0.9)), Vec3::new(0.0, 0.0, 2.0), 1.0);
     scene.ambient = Vec3::ONE;
     assert_near(pixel(&scene), GREY + tint * Vec3::new(0.3, 0.7, 0.9));
@@ -180,7 +180,7 @@ fn mirrors_face_to_face_end_at_the_bounce_limit() {
     for bounces in 0..6 {
         let mut scene = empty();
         for z in [-2.0, 3.0] {
-            let half = Material { ambient: Vec3::ONE, ..mirror(Vec3::splat(0.5)) };
+            let half = Material { ambient: Some(Vec3::ONE), ..mirror(Vec3::splat(0.5)) };
             add_wall(&mut scene, half, Vec3::new(0.0, 0.0, z), 1.0);
         }
         scene.ambient = Vec3::ONE;
@@ -193,7 +193,7 @@ fn mirrors_face_to_face_end_at_the_bounce_limit() {
 fn the_least_contribution_ends_a_chain_of_mirrors() {
     let mut scene = empty();
     for z in [-2.0, 3.0] {
-        let half = Material { ambient: Vec3::ONE, ..mirror(Vec3::splat(0.5)) };
+        let half = Material { ambient: Some(Vec3::ONE), ..mirror(Vec3::splat(0.5)) };
         add_wall(&mut scene, half, Vec3::new(0.0, 0.0, z), 1.0);
     }
     scene.ambient = Vec3::ONE;

@@ -212,6 +212,18 @@ fn layers_lie_beside_the_picture_in_one_file() {
 }
 
 #[test]
+fn the_summary_tells_what_layers_took_where_there_are_any() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = ["render", "scene.toml", "--device", "cpu", "-o", "out.exr"];
+    let with = |more: &[&str]| place.succeed(&[&render[..], more].concat());
+    assert!(!with(&[]).stderr.contains("layers"));
+    assert!(with(&["--json"]).json()["layers_ms"].is_null());
+    let said = with(&["--layers", "normal"]).stderr;
+    assert!(said.contains("s, layers ") && said.contains("s, write "), "{said}");
+    assert!(with(&["--layers", "normal", "--json"]).json()["layers_ms"].as_f64().is_some_and(|ms| ms > 0.0));
+}
+
+#[test]
 fn diff_returns_what_it_found() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     for (name, eye) in [("a.exr", "0,0,4"), ("b.exr", "0,0,4"), ("c.exr", "0,0.2,4")] {
@@ -291,6 +303,50 @@ fn cameras_are_named_numbered_or_given() {
     assert_ne!(front, render("g.exr", &["--fov", "60"]));
     // Straight down, where the usual up has no direction.
     render("h.exr", &["--eye", "0,5,0", "--target", "0,0,0"]);
+}
+
+#[test]
+fn an_eye_or_a_target_replaces_that_of_the_camera_and_leaves_the_rest() {
+    let camera = |name: &str, eye: &str, target: &str| {
+        format!("\n[[camera]]\nname = \"{name}\"\neye = {eye}\ntarget = {target}\nup = [1, 1, 0]\nfov = 30\n")
+    };
+    let cameras = [("tilted", "[0, 0, 5]", "[0, 0.5, 0]"), ("nearer", "[1, 0, 3]", "[0, 0.5, 0]")];
+    let cameras = cameras.map(|(name, eye, target)| camera(name, eye, target)).concat();
+    let cameras = cameras + &camera("aside", "[0, 0, 5]", "[0.5, 0, 0]");
+    let place = Place::new(&[("scene.toml", &format!("{SCENE}{cameras}"))]);
+    let render = |more: &[&str]| {
+        place.succeed(&[&["render", "scene.toml", "--device", "cpu", "-o", "out.exr"], more].concat());
+        fs::read(place.path("out.exr")).unwrap()
+    };
+    let [nearer, aside] = ["nearer", "aside"].map(|name| render(&["--camera", name]));
+    assert_eq!(nearer, render(&["--camera", "tilted", "--eye", "1,0,3"]));
+    assert_eq!(aside, render(&["--camera", "1", "--target", "0.5,0,0"]));
+    assert_eq!(nearer, render(&["--camera", "aside", "--eye", "1,0,3", "--target", "0,0.5,0"]));
+    assert_ne!(nearer, render(&["--eye", "1,0,3", "--target", "0,0.5,0"]), "without a camera nothing is of one");
+    // Along the camera's own up.
+    render(&["--camera", "tilted", "--eye", "1,1,0", "--target", "-1,-1,0"]);
+    for alone in ["--eye", "--target"] {
+        let refused = place.run(&["render", "scene.toml", alone, "1,0,3"]);
+        assert_eq!(refused.code, Some(2));
+        assert!(refused.stderr.contains("--camera"), "{}", refused.stderr);
+    }
+}
+
+#[test]
+fn an_unknown_option_is_told_the_nearest_one_if_that_is_near_and_else_none() {
+    let place = Place::new(&[]);
+    let said = |option: &str| place.run(&["-q", "render", "scene.toml", option]).stderr;
+    for (option, meant) in [("--sampels", "--samples"), ("--exposur", "--exposure"), ("--quite", "--quiet")] {
+        let said = said(option);
+        assert!(said.contains(&format!("unexpected argument '{option}'")), "{said}");
+        assert!(said.contains("tip:") && said.contains(&format!("'{meant}'")), "{said}");
+    }
+    // Clap itself names --threads for the second and --size for the third.
+    for far in ["--zzzz", "--heard", "--sieze-it"] {
+        let said = said(far);
+        assert!(said.contains(&format!("unexpected argument '{far}'")), "{said}");
+        assert!(!said.contains("tip:") && said.contains("Usage: eyerays render [OPTIONS] <SCENE>"), "{said}");
+    }
 }
 
 /// However many samples fit, they are the first ones: as many give the same bits.

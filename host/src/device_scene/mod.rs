@@ -75,7 +75,7 @@ pub struct DeviceScene {
 
 impl DeviceScene {
     /// Normalises, builds the hierarchy or takes the one that the scene brings along, and packs. All methods follow rays through
-    /// it but [`Method::Wide`](crate::method::Method::Wide) on a GPU.
+    /// it but [`Method::Wide`] on a GPU.
     ///
     /// # Errors
     /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
@@ -85,7 +85,7 @@ impl DeviceScene {
     }
 
     /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
-    /// [`Method::Wide`](crate::method::Method::Wide).
+    /// [`Method::Wide`].
     ///
     /// # Errors
     /// As there.

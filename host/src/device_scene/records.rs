@@ -166,7 +166,7 @@ pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecor
         None => (colour(Vec3::ZERO, 0), colour(Vec3::ZERO, 0)),
     };
     MaterialRecord {
-        ambient: colour(m.ambient * ambient, 0),
+        ambient: colour(m.ambient() * ambient, 0),
         diffuse: colour(m.diffuse, 0),
         specular: colour(m.specular, flushed_number(m.shininess).to_bits()),
         reflection: colour(m.reflection, ior.to_bits()),

@@ -225,7 +225,7 @@ fn material(text: &mut Text, of: &Material) {
 fn plain(text: &mut Text, of: &Material) {
     let default = Material::default();
     text.key("diffuse", triple(of.diffuse));
-    text.colour("ambient", of.ambient, of.diffuse);
+    text.colour("ambient", of.ambient(), of.diffuse);
     text.colour("specular", of.specular, default.specular);
     text.other("shininess", of.shininess, default.shininess);
     text.colour("reflection", of.reflection, default.reflection);

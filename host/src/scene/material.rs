@@ -93,26 +93,25 @@ impl Fields {
         let ior = self.ior.unwrap_or(GLASS);
         let physical = self.physical.finish(self.diffuse, self.transmission, ior);
         let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
-        let diffuse = self.diffuse.unwrap_or(plain.diffuse);
         // Who gives an opacity means it.
         let is_blended = self.opacity.is_some() || self.maps.opacity.is_some();
         let alpha = if is_blended { Alpha::Blend } else { Alpha::Opaque };
         Material {
             name: name.to_owned(),
-            ambient: self.ambient.unwrap_or(diffuse),
-            diffuse,
+            ambient: self.ambient,
+            diffuse: self.diffuse.unwrap_or(plain.diffuse),
             specular: self.specular.unwrap_or(plain.specular),
             shininess: self.shininess.unwrap_or(plain.shininess),
             reflection: self.reflection.unwrap_or(plain.reflection),
             transmission: self.transmission.unwrap_or(plain.transmission),
             ior,
             checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
-            emission: self.emission.unwrap_or(Vec3::ZERO),
-            two_sided: self.two_sided.unwrap_or(false),
-            emission_is_coloured: self.emission_is_coloured.unwrap_or(false),
+            emission: self.emission.unwrap_or(plain.emission),
+            two_sided: self.two_sided.unwrap_or(plain.two_sided),
+            emission_is_coloured: self.emission_is_coloured.unwrap_or(plain.emission_is_coloured),
             physical,
             alpha: self.alpha.unwrap_or(alpha),
-            opacity: self.opacity.unwrap_or(1.0),
+            opacity: self.opacity.unwrap_or(plain.opacity),
             maps: self.maps,
         }
     }
@@ -150,12 +149,19 @@ impl Fields {
     }
 }
 
+impl Material {
+    /// Its answer to the scene's ambient light, linear RGB.
+    pub fn ambient(&self) -> Vec3 {
+        self.ambient.unwrap_or(self.diffuse)
+    }
+}
+
 impl Default for Material {
-    /// Grey and matt, without a name.
+    /// Grey and matt, without a name: what a scene file's material has that says nothing.
     fn default() -> Self {
         Material {
             name: String::new(),
-            ambient: GREY,
+            ambient: None,
             diffuse: GREY,
             specular: Vec3::ZERO,
             shininess: SHININESS,

@@ -67,7 +67,7 @@ pub use primitive::{Disk, Primitives, Sphere};
 pub use projection::Projection;
 pub use range::Range;
 pub use sampler::Sampler;
-pub use suggest::suggest;
+pub use suggest::{nearest, suggest};
 pub use table::Table;
 pub use texture::{Alpha, Map, Maps, Placement, Texels, Texture, Wrap};
 pub use transport::{Direct, Integrator, Transport};
@@ -186,8 +186,8 @@ impl Mesh {
 pub struct Material {
     /// By this name a scene file overrides it.
     pub name: String,
-    /// Answer to the scene's ambient light.
-    pub ambient: Vec3,
+    /// Answer to the scene's ambient light, if it is not the diffuse colour.
+    pub ambient: Option<Vec3>,
     /// Lambert's diffuse colour.
     pub diffuse: Vec3,
     /// Phong's specular colour.

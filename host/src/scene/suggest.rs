@@ -7,12 +7,17 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Stri
     let mut known: Vec<&str> = known.into_iter().collect();
     known.sort_unstable();
     known.dedup();
-    let near = known.iter().filter_map(|other| Some((distance(name, other)?, other)));
-    match near.min() {
-        Some((_, near)) => format!("did you mean {near:?}?"),
+    match nearest(name, known.iter().copied()) {
+        Some(near) => format!("did you mean {near:?}?"),
         None if known.is_empty() => "there are none".into(),
         None => format!("known are {}", known.join(", ")),
     }
+}
+
+/// The known name that `name` is probably a misspelling of.
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let near = known.into_iter().filter_map(|other| Some((distance(name, other)?, other)));
+    near.min().map(|(_, near)| near)
 }
 
 /// Is `name` probably a misspelling of `known`?

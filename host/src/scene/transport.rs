@@ -82,7 +82,7 @@ impl Integrator {
 
 fn path_ignores(scene: &Scene) -> Option<String> {
     let any = |of: &dyn Fn(&Material) -> bool| scene.materials.iter().any(of);
-    let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient != Vec3::ZERO);
+    let has_ambient = scene.ambient != Vec3::ZERO && any(&|m| m.ambient() != Vec3::ZERO);
     let has_highlights = !scene.lights.is_empty() && any(&|m| m.physical.is_none() && m.specular != Vec3::ZERO);
     let what = match (has_ambient, has_highlights) {
         (true, true) => "ambient light and Phong's highlights are",

@@ -2,7 +2,7 @@
 
 use super::{tangents, unit_of};
 use crate::data::{Effects, Primitive};
-use crate::ray::Ray;
+use crate::ray::{Hit, Ray};
 use crate::real::{Real, SMALL, Scalar, TINY, V3};
 
 /// A point on a surface.
@@ -77,9 +77,13 @@ impl<R: Scalar> SurfaceInteraction<R> {
         }
     }
 
-    /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`].
+    /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`]. One that leaves for what is behind its
+    /// triangle from above starts on nothing.
     #[inline(always)]
     pub fn source_primitive(&self, direction: V3<R>) -> u32 {
+        if self.is_lifted && !self.faces(direction) {
+            return Hit::<R>::NOTHING;
+        }
         let goes_inside = self.is_curved && self.faces(direction) != self.front;
         if goes_inside { self.number | Ray::<R>::INSIDE } else { self.number }
     }

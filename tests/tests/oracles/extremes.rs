@@ -161,7 +161,7 @@ fn mirror_box(bounces: u32) -> Scene {
     let mut scene = empty();
     let glow = Vec3::splat(1.0 / 16_384.0);
     let (least, greatest) = (Vec3::new(-1.1, -0.9, -1.3), Vec3::new(0.8, 1.2, 1.0));
-    let mirror = Material { ambient: glow, reflection: Vec3::ONE, ..black() };
+    let mirror = Material { ambient: Some(glow), reflection: Vec3::ONE, ..black() };
     eyerays_tests::model::add_box(&mut scene, mirror, least, greatest);
     scene.ambient = Vec3::ONE;
     scene.background = Background::Colour(Vec3::splat(1e6));

@@ -18,12 +18,13 @@ mod render;
 #[cfg(unix)]
 mod signals;
 mod summary;
+mod tip;
 mod tradeoff;
 mod transport;
 
 use std::process::ExitCode;
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::error::{Error, Result};
 use crate::output::Destination;
@@ -78,7 +79,7 @@ enum Command {
 
 /// Runs the command line of this process.
 pub fn run() -> ExitCode {
-    let outcome = Cli::try_parse().map_or_else(|said| explain(&said), execute);
+    let outcome = Cli::try_parse().map_or_else(explain, execute);
     outcome.unwrap_or_else(|error| {
         console::say(format_args!("error: {error}"));
         ExitCode::from(BAD_INPUT)
@@ -86,8 +87,10 @@ pub fn run() -> ExitCode {
 }
 
 /// Prints the help or version that was asked for, or says what is wrong with the command line.
-fn explain(said: &clap::Error) -> Result<ExitCode> {
+fn explain(said: clap::Error) -> Result<ExitCode> {
     if said.use_stderr() {
+        let arguments: Vec<String> = std::env::args_os().map(|a| a.to_string_lossy().into_owned()).collect();
+        let said = tip::mended(said, Cli::command(), &arguments);
         console::say_text(&said.render().to_string());
         return Ok(ExitCode::from(BAD_INPUT));
     }

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use clap::Args;
+use clap::{ArgGroup, Args};
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use glam::Vec3;
@@ -27,20 +27,23 @@ const MOST_THREADS: usize = 1024;
 /// The scene and how to see it.
 #[derive(Args)]
 #[command(next_help_heading = "View")]
+// An eye wants something to look at and a target something to look from: another option's, or a camera's.
+#[command(group = ArgGroup::new("looked at").args(["target", "camera"]).multiple(true))]
+#[command(group = ArgGroup::new("looked from").args(["eye", "camera"]).multiple(true))]
 pub(super) struct View {
     /// Image width and height in pixels, for example 1920x1080 [default: the scene's]
     #[arg(long, value_name = "WxH", value_parser = size)]
     size: Option<(u32, u32)>,
     /// One of the scene's cameras, by name or number from 0 [default: the first]
-    #[arg(long, value_name = "NAME|INDEX", conflicts_with = "eye")]
+    #[arg(long, value_name = "NAME|INDEX")]
     camera: Option<String>,
-    /// Look from here instead, in the scene's units
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "target", allow_hyphen_values = true)]
+    /// Look from here instead, in the scene's units; all else is that of --camera, if it is given
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "looked at", allow_hyphen_values = true)]
     eye: Option<Vec3>,
-    /// Look there
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "eye", allow_hyphen_values = true)]
+    /// Look there instead; likewise
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "looked from", allow_hyphen_values = true)]
     target: Option<Vec3>,
-    /// Vertical field of view in degrees [default: the camera's, 60 with --eye]
+    /// Vertical field of view in degrees [default: the camera's, 60 with --eye and no --camera]
     #[arg(long, value_name = "D")]
     fov: Option<f32>,
     /// Skip opaque triangles seen from behind [default: the scene's]
@@ -163,6 +166,7 @@ pub(super) struct Loaded {
     pub packed: DeviceScene,
     pub view: eyerays::view::View,
     pub read_time: Duration,
+    /// Of the hierarchy and of all else that is packed.
     pub build_time: Duration,
 }
 
@@ -229,13 +233,14 @@ impl View {
     /// The camera that was asked for.
     pub fn camera(&self, scene: &Scene) -> Result<Camera> {
         let mut camera = match (&self.camera, self.eye, self.target) {
-            (_, Some(eye), Some(target)) => {
-                let up = if (target - eye).cross(Vec3::Y).length() == 0.0 { Vec3::Z } else { Vec3::Y };
-                Camera { name: "--eye".to_owned(), eye, target, up, projection: Projection::Perspective { fov: 60.0 } }
-            }
             (Some(wish), ..) => pick(&scene.cameras, wish)?.clone(),
+            (None, Some(eye), Some(target)) => {
+                let projection = Projection::Perspective { fov: 60.0 };
+                Camera { name: "--eye".to_owned(), eye, target, up: Vec3::Y, projection }
+            }
             _ => scene.cameras[0].clone(),
         };
+        (camera.eye, camera.target) = (self.eye.unwrap_or(camera.eye), self.target.unwrap_or(camera.target));
         if camera.eye == camera.target {
             return Err(Error::new("--eye and --target are the same point: the camera looks at itself; move one"));
         }
@@ -244,6 +249,9 @@ impl View {
                 return Err(Error::new(format!("--fov {fov} is not between 0 and 180 degrees")));
             }
             camera.projection = Projection::Perspective { fov };
+        }
+        if self.eye.or(self.target).is_some() {
+            camera.up = upright(camera.up, camera.target - camera.eye);
         }
         Ok(camera)
     }
@@ -329,6 +337,11 @@ pub(super) fn tuning(stack_max: u32, cut: u32) -> Result<Tuning> {
     within("--stack-max", &[stack_max], 1..=63)?;
     within("--cut", &[cut], 0..=100)?;
     Ok(Tuning::new(stack_max, cut))
+}
+
+/// This way up, or another for who looks along it: no option can turn a camera that was given its place by one.
+fn upright(up: Vec3, along: Vec3) -> Vec3 {
+    [up, Vec3::Y, Vec3::Z].into_iter().find(|&up| along.cross(up).length() != 0.0).unwrap_or(up)
 }
 
 /// The camera with this name, or this number.

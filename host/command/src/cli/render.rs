@@ -119,6 +119,7 @@ impl Render {
         };
         progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
+        let start = Instant::now();
         let layers = match &kept {
             Some((scene, camera)) => progress::stage("rendering layers", quiet || self.json, || {
                 layers::render(&chosen, &mut loaded.packed, (scene, camera), &rendering, &layers)
@@ -126,6 +127,7 @@ impl Render {
             .map_err(|e| e.of(&self.scene))?,
             None => Vec::new(),
         };
+        let layers_time = kept.is_some().then(|| start.elapsed());
         let brightness = Brightness::of(&rendering.film);
         if self.exposure == Exposure::Auto {
             encoding.exposure_ev = brightness.exposure();
@@ -133,7 +135,7 @@ impl Render {
         super::warn(self.beyond_white(&brightness, &encoding, &destination)?.as_slice(), quiet);
         let start = Instant::now();
         progress::stage("writing", quiet, || output::write_layers(&rendering.film, &layers, &destination, &encoding))?;
-        let times = Times::new(&loaded, &rendering, start.elapsed());
+        let times = Times::new(&loaded, &rendering, layers_time, start.elapsed());
         let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
         if self.json {
             console::print_json(&summary.json())?;

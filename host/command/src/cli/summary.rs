@@ -14,22 +14,25 @@ use eyerays::render::{Choice, Rendering};
 /// Wall-clock times of the parts of a rendering, one after the other, and the device's beside its own.
 pub(super) struct Times {
     read: Duration,
+    /// The hierarchy, and packing the scene for a device.
     build: Duration,
     prepare: Duration,
     render: Duration,
     device: Option<Duration>,
+    layers: Option<Duration>,
     write: Duration,
 }
 
 impl Times {
-    /// With what writing the picture took.
-    pub fn new(loaded: &Loaded, rendering: &Rendering, write: Duration) -> Self {
+    /// With what the layers took, where there are any, and writing the picture.
+    pub fn new(loaded: &Loaded, rendering: &Rendering, layers: Option<Duration>, write: Duration) -> Self {
         Times {
             read: loaded.read_time,
             build: loaded.build_time,
             prepare: rendering.prepare_time,
             render: rendering.time,
             device: rendering.device_time,
+            layers,
             write,
         }
     }
@@ -37,10 +40,13 @@ impl Times {
 
 impl fmt::Display for Times {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "read {}, build {}, prepare {}", span(self.read), span(self.build), span(self.prepare))?;
+        write!(out, "read {}, build and pack {}, prepare {}", span(self.read), span(self.build), span(self.prepare))?;
         write!(out, ", render {}", span(self.render))?;
         if let Some(time) = self.device {
             write!(out, " ({} of it on the device)", span(time))?;
+        }
+        if let Some(time) = self.layers {
+            write!(out, ", layers {}", span(time))?;
         }
         write!(out, ", write {}", span(self.write))
     }
@@ -102,6 +108,7 @@ impl<'a> Summary<'a> {
             "prepare_ms": milliseconds(times.prepare),
             "render_ms": milliseconds(times.render),
             "device_ms": times.device.map(milliseconds),
+            "layers_ms": times.layers.map(milliseconds),
             "write_ms": milliseconds(times.write),
         })
     }

@@ -101,7 +101,7 @@ impl Recipe {
     /// folder in the last instant, none.
     ///
     /// # Errors
-    /// [`Recipe::check`]'s and [`Files::check_writable`]'s, or a full disk.
+    /// [`Recipe::check`]'s, files that are not to be replaced or can not be, or a full disk.
     pub fn write(&self, files: &Files) -> Result<()> {
         self.check()?;
         files.check_writable()?;

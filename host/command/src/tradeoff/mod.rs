@@ -1,7 +1,7 @@
 //! What speed costs: a scene rendered with the settings that trade speed for accuracy, the time and the error of
 //! each, the Pareto front of both, and the setting that serves a wish best.
 //!
-//! The data run one way: [`Axes`] say what is tried, [`search`] in which order, [`measure`] how long each takes and
+//! The data run one way: [`Axes`] say what is tried, [`search`] in which order, `measure` how long each takes and
 //! how far it is from the reference, and a [`Report`] of [`Record`]s is what tables and plots are made of.
 
 mod axes;

@@ -166,6 +166,14 @@ fn a_hierarchy_is_taken_as_it_was_built_unless_it_is_that_of_another_geometry() 
 }
 
 #[test]
+fn the_page_on_scene_files_tells_the_version_that_is_written() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/scene-format.md");
+    let page = std::fs::read_to_string(page).expect("the page");
+    let version = u32::from_le_bytes(EXAMPLE[8..12].try_into().expect("four bytes"));
+    assert!(page.contains(&format!("| 8 to 11 | the version, {version} |")), "version {version} is written");
+}
+
+#[test]
 fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so() {
     let refused = |spoil: fn(&mut Vec<u8>)| {
         let mut bytes = EXAMPLE.clone();

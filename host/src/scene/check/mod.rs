@@ -73,7 +73,7 @@ impl Owner {
 fn material(material: &Material) -> Unplaced<()> {
     let owner = Owner(format!("the material {:?}", material.name));
     let shares = [
-        ("ambient", material.ambient),
+        ("ambient", material.ambient()),
         ("diffuse", material.diffuse),
         ("specular", material.specular),
         ("reflection", material.reflection),

@@ -361,7 +361,7 @@ fn colours_of_vertices_are_srgb_and_white_is_beneath_them() {
 fn ambient_light_answers_to_the_diffuse_colour_whatever_ka_says() {
     let with = |ka: &str| with_material(&format!("newmtl m\n{ka}Kd 0.05 0 0\n")).0.materials[0].clone();
     assert_eq!(with("Ka 1 1 1\n"), with(""));
-    assert_eq!(with("Ka 1 1 1\n").ambient, Vec3::new(0.05, 0.0, 0.0));
+    assert_eq!(with("Ka 1 1 1\n").ambient(), Vec3::new(0.05, 0.0, 0.0));
 }
 
 #[test]
@@ -425,11 +425,11 @@ fn unused_pictures_and_clamped_numbers_are_warned_of_once_a_file() {
 fn materials_map_to_the_illumination_model() {
     let material = |text: &str| with_material(&format!("newmtl m\n{text}")).0.materials[0].clone();
     let matt = material("Kd 0.5 0 0\nKs 1 1 1\nillum 1\n");
-    assert_eq!(matt.ambient, matt.diffuse);
+    assert_eq!(matt.ambient(), matt.diffuse);
     assert_eq!((matt.specular, matt.transmission), (Vec3::ZERO, Vec3::ZERO));
     let mirror = material("Ka 0 0 1\nKd 0.5 0 0\nKs 0.9 0.8 0.7\nNs 90\nillum 3\n");
     assert_eq!(mirror.reflection, Vec3::new(0.9, 0.8, 0.7));
-    assert_eq!((mirror.ambient, mirror.shininess), (Vec3::X * 0.5, 90.0));
+    assert_eq!((mirror.ambient(), mirror.shininess), (Vec3::X * 0.5, 90.0));
     let stained = material("Kd 0.5 0.125 0\nKs 0.6 0.6 0.6\nNi 1.5\nd 0.25\nillum 7\n");
     assert_eq!(stained.transmission, Vec3::new(0.75, 0.1875, 0.0));
     assert_eq!(stained.diffuse, Vec3::new(0.125, 0.03125, 0.0));

@@ -7,7 +7,8 @@ use glam::Vec3;
 use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::load::Loading;
 use crate::scene::{
-    Background, Direct, Falloff, Integrator, Light, Primitives, Projection, Sampler, Scene, Settings, Transport,
+    Background, Direct, Falloff, Integrator, Light, Material, Primitives, Projection, Sampler, Scene, Settings,
+    Transport,
 };
 
 const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 0\n";
@@ -47,7 +48,7 @@ fn the_documented_example_loads_as_documented() {
     };
     assert_eq!((outer, inner), (20.0, 10.0));
     assert_eq!(scene.materials[0].checker.unwrap().size, 0.5);
-    assert_eq!(scene.materials[4].ambient, scene.materials[4].diffuse);
+    assert_eq!(scene.materials[4].ambient(), scene.materials[4].diffuse);
 }
 
 #[test]
@@ -60,6 +61,17 @@ fn what_is_not_said_has_defaults() {
     assert_eq!(scene.lights.len(), 2);
     let (scene, _) = load(&format!("light = []\n{BALL}"));
     assert!(scene.lights.is_empty());
+}
+
+#[test]
+fn a_material_of_code_that_says_its_colour_is_that_of_a_file_that_says_it() {
+    let material = |says: &str| load(&format!("{BALL}[[material]]\nname = \"m\"\n{says}")).0.materials[0].clone();
+    let name = || "m".to_owned();
+    let diffuse = Vec3::new(0.5, 0.25, 0.125);
+    let coloured = Material { name: name(), diffuse, ..Material::default() };
+    assert_eq!(coloured.ambient(), diffuse, "ambient light shows another colour than lamps do");
+    assert_eq!(material("diffuse = [0.5, 0.25, 0.125]\n"), coloured);
+    assert_eq!(material(""), Material { name: name(), ..Material::default() });
 }
 
 #[test]

@@ -25,7 +25,7 @@ use crate::scene::TraceContext;
 use glam::Vec3;
 
 /// What leaves hold, and how rays meet it. A leaf's box must contain the own box of all that it holds, and a hit must lie in
-/// the own box of what was hit, see [`accept`].
+/// the own box of what was hit, see `accept`.
 pub trait Leaf {
     /// Tests what is at an index in leaf order, and takes the hit if it is the best so far.
     fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>);

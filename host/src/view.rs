@@ -129,3 +129,56 @@ impl View {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec3;
+
+    use super::*;
+    use crate::method::Traversal;
+    use crate::quality::Bvh;
+    use crate::scene::{self, Background, Projection, Scene};
+    use crate::{cpu, device_scene};
+
+    /// A square of edge 1 seen from so far away before black, and how many of 64 x 64 pixels it covers.
+    fn covered(projection: Projection, distance: f32) -> usize {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
+        let (of, _) = scene::load(path.as_ref()).unwrap();
+        let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
+        let mut scene = Scene { background: Background::Colour(Vec3::ZERO), ambient: Vec3::ONE, ..of };
+        scene.mesh = scene::Mesh {
+            positions: vec![corner(-0.5, -0.5), corner(0.5, -0.5), corner(0.5, 0.5), corner(-0.5, 0.5)],
+            triangles: vec![[0, 1, 2], [0, 2, 3]],
+            materials: vec![0; 2],
+            ..scene::Mesh::default()
+        };
+        scene.parts.clear();
+        scene.spheres.clear();
+        scene.disks.clear();
+        let camera = &mut scene.cameras[0];
+        (camera.eye, camera.target, camera.projection) = (Vec3::Z * distance, Vec3::ZERO, projection);
+        let settings = Settings { size: (64, 64), samples: 1, bounces: 0, ..scene.settings };
+        let packed = device_scene::DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+        let view = View::new(&packed, &scene.cameras[0]).unwrap();
+        let film = cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).unwrap().0;
+        film.pixels.iter().filter(|pixel| pixel.iter().any(|&v| v > 0.0)).count()
+    }
+
+    #[test]
+    fn an_orthographic_camera_sees_a_thing_as_large_from_anywhere() {
+        let orthographic = Projection::Orthographic { height: 2.0 };
+        assert_eq!([0.5, 3.0, 1000.0].map(|distance| covered(orthographic, distance)), [32 * 32; 3]);
+        let [near, far] = [3.0, 12.0].map(|distance| covered(Projection::Perspective { fov: 30.0 }, distance));
+        assert!(near > 12 * far, "{near} {far}");
+    }
+
+    #[test]
+    fn a_scene_without_orthographic_cameras_has_no_kernel_for_one() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
+        let (scene, _) = scene::load(path.as_ref()).unwrap();
+        let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+        let camera = Camera { projection: Projection::Orthographic { height: 1.0 }, ..scene.cameras[0].clone() };
+        let message = View::new(&packed, &camera).unwrap_err().to_string();
+        assert!(message.contains("add it to the scene's cameras before it is packed"), "{message}");
+    }
+}

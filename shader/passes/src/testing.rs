@@ -214,6 +214,31 @@ impl Body<'_> {
         self.b.begin_block(Some(after)).unwrap();
     }
 
+    /// One of two structs of two numbers, by whether a bit is set in a word.
+    pub fn pair_if(
+        &mut self,
+        word: Word,
+        bit: u32,
+        then: impl FnOnce(&mut Body) -> Word,
+        other: impl FnOnce(&mut Body) -> Word,
+    ) -> Word {
+        let (uint, bool, kind) = (self.ids.uint, self.b.type_bool(), self.b.type_struct([self.ids.float; 2]));
+        let (bit, zero) = (self.constant_u32(bit), self.constant_u32(0));
+        let masked = self.b.bitwise_and(uint, None, word, bit).unwrap();
+        let has = self.b.i_not_equal(bool, None, masked, zero).unwrap();
+        let [inside, outside, after] = [0; 3].map(|_| self.b.id());
+        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
+        self.b.branch_conditional(has, inside, outside, []).unwrap();
+        self.b.begin_block(Some(inside)).unwrap();
+        let one = then(&mut Body { b: self.b, ids: self.ids });
+        self.b.branch(after).unwrap();
+        self.b.begin_block(Some(outside)).unwrap();
+        let two = other(&mut Body { b: self.b, ids: self.ids });
+        self.b.branch(after).unwrap();
+        self.b.begin_block(Some(after)).unwrap();
+        self.b.phi(kind, None, [(one, inside), (two, outside)]).unwrap()
+    }
+
     /// A loop that a word other than zero leaves in its first round, and whose way back has two blocks.
     pub fn leave_long_loop(&mut self, once: Word) {
         let (uint, bool) = (self.ids.uint, self.b.type_bool());

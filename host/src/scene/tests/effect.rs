@@ -6,7 +6,7 @@ use glam::Vec3;
 use image::{ImageFormat, RgbImage};
 
 use super::Folder;
-use crate::scene::{Integrator, Scene};
+use crate::scene::{Integrator, Scene, Wall};
 
 /// A triangle of the material `m`, with a picture beside it.
 fn load(text: &str) -> (Scene, Vec<String>) {
@@ -39,6 +39,16 @@ fn a_picture_whose_factor_is_not_given_is_taken_as_it_is() {
     }
     let (scene, _) = material("metallic_roughness_texture = \"a.png\"\nmetallic = 0.5\n");
     assert_eq!(scene.materials[0].physical.unwrap().metallic, 0.5);
+}
+
+#[test]
+fn a_thin_wall_is_a_pane_or_one_interface() {
+    let wall = |keys: &str| material(keys).0.materials[0].physical.unwrap().wall;
+    assert_eq!(wall("thin = true\n"), Wall::Pane);
+    assert_eq!((wall("thin = \"interface\"\n"), wall("thin = \"pane\"\n")), (Wall::Interface, Wall::Pane));
+    assert_eq!((wall("thin = false\n"), wall("roughness = 1\n")), (Wall::Body, Wall::Body));
+    let (scene, _) = material("thin = \"interface\"\ntransmission = [1, 1, 1]\n");
+    assert!(crate::scene::describe(&scene, "a.obj").contains("thin = \"interface\""));
 }
 
 #[test]

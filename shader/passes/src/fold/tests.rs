@@ -85,6 +85,32 @@ fn a_part_of_a_composite_is_what_was_put_there() {
     assert_eq!((stored(0, 0), stored(1, 1)), (stored(1, 1), vec![Op::Load, Op::FMul, Op::Store]));
 }
 
+/// Whichever way led there, a part that all have in common is known, and one that differs is not.
+#[test]
+fn a_part_that_every_way_has_in_common_is_known_where_they_join() {
+    let stored = |place: u32| {
+        folded(0, |b, _| {
+            let (x, one) = (b.load_input(), b.constant_f32(0x3f80_0000));
+            let word = b.load_counter(rspirv::spirv::MemoryAccess::NONE);
+            let sum = |b: &mut Body| {
+                let y = b.f_add(x, one);
+                b.pair(x, y)
+            };
+            let product = |b: &mut Body| {
+                let y = b.f_mul(x, one);
+                b.pair(x, y)
+            };
+            let pair = b.pair_if(word, 1, sum, product);
+            let again = b.pair_if(word, 2, |_| pair, |b| b.pair_with(pair, 1, one));
+            let part = b.part(again, place);
+            b.store_output(part);
+        })
+    };
+    let has = |ops: &[Op], op| ops.contains(&op);
+    assert!(!has(&stored(0), Op::CompositeExtract) && !has(&stored(0), Op::FAdd), "{:?}", stored(0));
+    assert!(has(&stored(1), Op::CompositeExtract) && has(&stored(1), Op::FAdd), "{:?}", stored(1));
+}
+
 /// Its places are not those of its parts.
 #[test]
 fn a_part_of_a_vector_of_vectors_is_taken_by_the_device() {

@@ -6,7 +6,6 @@ use eyerays_shader::resources::{Access, RESOURCES, binding};
 
 use super::deep::on_deep_stacks;
 use super::device::Gpu;
-use super::hush::Hush;
 use super::module;
 use super::recipe::Recipe;
 use crate::plan::{Plan, Stage};
@@ -85,7 +84,7 @@ impl Kernel {
 
 /// Compiles kernels, all at once: drivers take most of the time to a first picture.
 pub(super) fn compile(gpu: &Gpu, recipes: &[Recipe]) -> Vec<Kernel> {
-    let _hush = Hush::new();
+    let _around = gpu.around.map(|begin| begin());
     on_deep_stacks(recipes, |recipe| one(gpu, recipe))
 }
 

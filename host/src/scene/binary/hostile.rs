@@ -25,7 +25,7 @@ fn edges() -> Vec<usize> {
 fn every_byte_of_the_header_and_many_others_are_refused_if_they_are_changed_and_do_no_harm_if_signed() {
     let first = edges()[0];
     assert!(first > size_of::<Header>(), "something lies between");
-    let others = (first..EXAMPLE.len()).step_by(61).chain(edges()).filter(|&at| at < EXAMPLE.len());
+    let others = (first..EXAMPLE.len()).step_by(EXAMPLE.len() / 100).chain(edges()).filter(|&at| at < EXAMPLE.len());
     for at in (0..first).chain(others) {
         let old = EXAMPLE[at];
         for new in [old ^ 1, old ^ 0x80, 0, 0xff] {
@@ -41,7 +41,7 @@ fn every_byte_of_the_header_and_many_others_are_refused_if_they_are_changed_and_
 #[test]
 fn a_file_that_is_cut_anywhere_or_longer_is_refused() {
     let near = edges().into_iter().flat_map(|edge| [edge - 1, edge, edge + 1]);
-    for end in (0..300).chain(near).chain((300..EXAMPLE.len()).step_by(97)) {
+    for end in (0..300).chain(near).chain((300..EXAMPLE.len()).step_by(EXAMPLE.len() / 100)) {
         let mut bytes = EXAMPLE.clone();
         bytes.resize(end, 0);
         assert!(end == EXAMPLE.len() || read(&bytes).is_err(), "{end} bytes are accepted");

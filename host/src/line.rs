@@ -17,7 +17,7 @@ pub fn one_line(text: &str) -> String {
 }
 
 /// Does a character steer a terminal, or is it a mark that turns the text after it around or breaks its line?
-fn steers(c: char) -> bool {
+pub fn steers(c: char) -> bool {
     let is_mark = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || is_mark
 }

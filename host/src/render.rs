@@ -10,7 +10,7 @@ use crate::cpu;
 use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::gpu::{AdapterRequest, Gpu, Renderer, warm};
+use crate::gpu::{AdapterRequest, Around, Gpu, Renderer, warm};
 use crate::method::{Method, Processor, Traversal};
 use crate::rays::Rays;
 use crate::scene::{Scene, Settings};
@@ -61,6 +61,8 @@ pub struct Choice {
     pub no_passthrough: bool,
     /// CPU threads; 0 is one a core.
     pub threads: usize,
+    /// What is held around the work of a GPU's driver.
+    pub around: Option<Around>,
 }
 
 impl Choice {
@@ -156,6 +158,7 @@ impl Backend {
             software: asked || choice.adapter.is_some(),
             naga: choice.no_passthrough,
             exact: choice.precision == Precision::Exact,
+            around: choice.around,
         };
         match Gpu::open(&want) {
             Ok(gpu) => {

@@ -5,7 +5,7 @@ use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
 use eyerays::line::one_line;
-pub(crate) use eyerays::line::printable;
+pub(crate) use eyerays::line::{printable, steers};
 
 use crate::remedy;
 

@@ -35,13 +35,38 @@ fn another_ending_and_the_input_as_output_are_refused_and_nothing_is_written() {
 }
 
 #[test]
-fn a_damaged_file_is_refused_in_a_line_that_names_it() {
+fn a_damaged_file_is_refused_by_every_command_in_a_line_that_names_it_and_what_to_do() {
     let place = Place::new(&[]);
-    place.succeed(&["convert", &shipped("whitted"), "whole.eyerays"]);
-    let mut bytes = std::fs::read(place.path("whole.eyerays")).unwrap();
-    *bytes.last_mut().unwrap() ^= 1;
-    std::fs::write(place.path("whole.eyerays"), &bytes).unwrap();
-    place.refuse(&["check", "whole.eyerays"], &["whole.eyerays: its contents have another hash"]);
+    place.succeed(&["convert", &shipped("whitted"), "whole.eyerays", "-q"]);
+    let whole = std::fs::read(place.path("whole.eyerays")).unwrap();
+    let damaged = |damage: &dyn Fn(&mut Vec<u8>)| {
+        let mut bytes = whole.clone();
+        damage(&mut bytes);
+        bytes
+    };
+    let middle = whole.len() / 2;
+    for (bytes, why) in [
+        (damaged(&|bytes| bytes[middle] ^= 1), "its contents have another hash"),
+        (damaged(&|bytes| bytes.truncate(middle)), "are not what its header tells, as if it were cut off"),
+        (damaged(&|bytes| bytes.truncate(20)), "its 20 bytes are less than a header"),
+        (damaged(&|bytes| bytes[8] = 1), "version 1 of the binary form"),
+        (damaged(&|bytes| bytes[13] = 1), "its header has other than zeros in its spare bytes"),
+        (damaged(&|bytes| bytes[155] = 1), "its byte 155, which belongs to no section, is not zero"),
+        (b"[render]\n".to_vec(), "this is no binary scene"),
+    ] {
+        std::fs::write(place.path("bad.eyerays"), bytes).unwrap();
+        for arguments in [
+            &["check", "bad.eyerays"][..],
+            &["info", "bad.eyerays"],
+            &["render", "bad.eyerays", "--device", "cpu", "-o", "out.png"],
+            &["convert", "bad.eyerays", "again.eyerays"],
+            &["diff", "bad.eyerays"],
+            &["bench", "bad.eyerays", "--device", "cpu"],
+            &["tradeoff", "bad.eyerays", "--device", "cpu"],
+        ] {
+            place.refuse(arguments, &["bad.eyerays: ", why, "eyerays convert"]);
+        }
+    }
 }
 
 /// A mesh with a camera, a light, a texture and a material with most that there is.

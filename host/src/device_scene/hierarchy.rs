@@ -24,8 +24,10 @@ pub fn hierarchy(scene: &Scene, quality: Quality) -> Result<Bvh> {
 pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> Result<Bvh> {
     if let Some(kept) = scene.hierarchy.as_ref().filter(|kept| kept.quality().quality() == quality) {
         let bvh = kept.read();
-        let fault = |e: BuildError| format!("the hierarchy that the scene brings along is not its own: {e}");
-        return bvh.check(primitives).map(|()| bvh).map_err(|e| Error::new(fault(e)));
+        return bvh.check(primitives).map(|()| bvh).map_err(|e| {
+            let fault = format!("the hierarchy that the scene brings along is not its own: {e}");
+            Error::new(format!("{fault}; write its file again with eyerays convert"))
+        });
     }
     let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
     eyerays_bvh::build(&references, quality).map_err(refused)

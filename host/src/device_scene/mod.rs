@@ -11,7 +11,7 @@ use eyerays_shader::data::{
 use eyerays_shader::material::ALBEDOS;
 
 mod alias;
-mod check;
+pub(crate) mod check;
 mod environment;
 mod feature;
 mod frame;

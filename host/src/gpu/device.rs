@@ -1,9 +1,9 @@
 //! One GPU, opened.
 
+use std::any::Any;
 use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
-use super::hush::Hush;
 use super::recipe::Target;
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Method, Processor, Scheduling, Traversal};
@@ -17,6 +17,10 @@ pub enum Route {
     Naga,
 }
 
+/// Makes what a caller holds while a driver opens a GPU or compiles kernels. Drivers, layers and the libraries they load write to
+/// standard error whatever they like meanwhile: a command may keep it from its user, which is not for a library to do.
+pub type Around = fn() -> Box<dyn Any>;
+
 /// What a caller asks of a GPU.
 #[derive(Debug, Clone, Default)]
 pub struct AdapterRequest {
@@ -28,6 +32,8 @@ pub struct AdapterRequest {
     pub naga: bool,
     /// Must it render in exact precision?
     pub exact: bool,
+    /// What is held around the work of its driver.
+    pub around: Option<Around>,
 }
 
 /// An opened GPU.
@@ -38,6 +44,7 @@ pub struct Gpu {
     pub route: Route,
     pub(super) device: wgpu::Device,
     pub(super) queue: wgpu::Queue,
+    pub(super) around: Option<Around>,
     fault: Arc<Mutex<Option<String>>>,
 }
 
@@ -47,7 +54,7 @@ impl Gpu {
     /// # Errors
     /// If there is none.
     pub fn open(want: &AdapterRequest) -> Result<Gpu> {
-        let _hush = Hush::new();
+        let _around = want.around.map(|begin| begin());
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
         if report.is_software() && !want.software {
@@ -81,7 +88,7 @@ impl Gpu {
                 note(&lost, format!("the device was lost: {message}"));
             }
         });
-        Ok(Gpu { report, route, device, queue, fault })
+        Ok(Gpu { report, route, device, queue, around: want.around, fault })
     }
 
     /// The method and scheduling for rays of some coherence.
@@ -149,4 +156,37 @@ impl Gpu {
 fn note(fault: &Mutex<Option<String>>, message: String) {
     let lines: Vec<&str> = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
     fault.lock().unwrap_or_else(std::sync::PoisonError::into_inner).get_or_insert(lines.join("; "));
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::atomic::{AtomicU32, Ordering};
+
+    use super::*;
+
+    /// How many were made, and how many of them are gone.
+    static MADE: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];
+
+    struct Held;
+
+    impl Drop for Held {
+        fn drop(&mut self) {
+            MADE[1].fetch_add(1, Ordering::Relaxed);
+        }
+    }
+
+    #[test]
+    fn a_caller_holds_what_it_likes_while_a_driver_opens_a_gpu_or_finds_none() {
+        let around = || -> Box<dyn Any> {
+            MADE[0].fetch_add(1, Ordering::Relaxed);
+            Box::new(Held)
+        };
+        let opened = Gpu::open(&AdapterRequest {
+            adapter: Some("no such".to_owned()),
+            around: Some(around),
+            ..Default::default()
+        });
+        assert!(opened.is_err());
+        assert_eq!(MADE.each_ref().map(|count| count.load(Ordering::Relaxed)), [1, 1]);
+    }
 }

@@ -10,7 +10,7 @@ use eyerays_shader::data::Tuning;
 use super::choice::choice;
 use super::options;
 use super::reading::{Read, Reading};
-use super::{console, progress};
+use super::{console, hush, progress};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -290,7 +290,13 @@ impl Devices {
         }
         let asked = self.device.is_some() || self.adapter.is_some();
         let exact = self.precision.contains(&Precision::Exact);
-        let want = AdapterRequest { adapter: self.adapter.clone(), software: asked, naga: false, exact };
+        let want = AdapterRequest {
+            adapter: self.adapter.clone(),
+            software: asked,
+            naga: false,
+            exact,
+            around: Some(hush::around),
+        };
         match Gpu::open(&want) {
             Ok(gpu) => Ok(Some(gpu)),
             Err(error) if asked => Err(error.into()),

@@ -9,7 +9,7 @@ use std::io::{self, ErrorKind, Write};
 use indicatif::ProgressBar;
 use serde::Serialize;
 
-use crate::error::{Error, Result, printable};
+use crate::error::{Error, Result, printable, steers};
 use crate::output::{Destination, write_error};
 
 /// Says one line on standard error.
@@ -60,10 +60,10 @@ pub(super) fn printed(result: io::Result<()>) -> Result<()> {
     }
 }
 
-/// JSON to read, which holds no control character but its line ends.
+/// JSON to read, which holds no character that steers a terminal but its line ends.
 pub(super) fn json(value: &impl Serialize) -> Result<String> {
     let text = serde_json::to_string_pretty(value).map_err(|e| Error::new(e.to_string()))?;
-    let escape = |c: char| if c.is_control() && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
+    let escape = |c: char| if steers(c) && c != '\n' { format!("\\u{:04x}", u32::from(c)) } else { c.into() };
     Ok(text.chars().map(escape).collect::<String>() + "\n")
 }
 
@@ -98,10 +98,11 @@ mod tests {
     }
 
     #[test]
-    fn json_is_read_as_it_was_and_holds_no_control_character() {
-        let value = serde_json::json!({ "name": "a\x1b[2J\u{9b}1m\x7f\nb\u{e9}" });
+    fn json_is_read_as_it_was_and_steers_no_terminal() {
+        let value = serde_json::json!({ "name": "a\x1b[2J\u{9b}1m\x7f\u{202e}\u{2066}\nb\u{e9}" });
         let text = json(&value).unwrap();
-        assert!(text.chars().all(|c| !c.is_control() || c == '\n'), "{text:?}");
+        assert!(text.chars().all(|c| !steers(c) || c == '\n'), "{text:?}");
+        assert_eq!(lines(&text), text, "what is printed is JSON, too");
         assert_eq!(serde_json::from_str::<serde_json::Value>(&text).unwrap(), value);
     }
 }

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 
 use super::choice::choice;
 use super::footprint::Footprint;
+use super::hush::Hush;
 use super::outline::Outline;
 use super::reading::{Read, Reading};
 use super::{console, progress};
@@ -46,7 +47,10 @@ impl Info {
     }
 
     fn adapters(&self) -> Result<()> {
-        let adapters = adapters();
+        let adapters = {
+            let _hush = Hush::new();
+            adapters()
+        };
         if self.json {
             return console::print_json(&json!({ "adapters": adapters }));
         }

@@ -9,6 +9,7 @@ mod diff;
 mod exposure;
 mod footprint;
 mod generate;
+mod hush;
 mod info;
 mod options;
 mod outline;

@@ -8,6 +8,7 @@ use eyerays_shader::data::Tuning;
 use glam::Vec3;
 
 use super::choice::choice;
+use super::hush;
 use super::progress;
 use super::reading::Read;
 use super::transport::Transport;
@@ -301,7 +302,15 @@ impl DeviceArgs {
             triangle,
         };
         let adapter = self.adapter.clone();
-        Ok(Choice { device, precision, traversal, adapter, no_passthrough: self.no_passthrough, threads })
+        Ok(Choice {
+            device,
+            precision,
+            traversal,
+            adapter,
+            no_passthrough: self.no_passthrough,
+            threads,
+            around: Some(hush::around),
+        })
     }
 }
 

@@ -8,6 +8,7 @@ use clap::{Args, ValueEnum};
 
 use super::choice::choice;
 use super::console;
+use super::hush;
 use super::options::{self, Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
@@ -240,6 +241,7 @@ impl Tradeoff {
             precision: if self.tried.exact() { Default::default() } else { eyerays::render::Precision::Fast },
             adapter: self.on.adapter.clone(),
             threads: options::threads(self.on.threads)?,
+            around: Some(hush::around),
             ..Choice::default()
         })
     }

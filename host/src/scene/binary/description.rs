@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::header::AGAIN;
 use super::textures::Pictures;
 use crate::quality;
 use crate::scene::budget::Budget;
@@ -46,11 +47,11 @@ impl Description {
     /// # Errors
     /// No TOML, other fields, or more of them than the budget has room for.
     pub fn parse(text: &[u8], budget: &Budget) -> Unplaced<Self> {
-        let text = std::str::from_utf8(text).map_err(|_| "its description is not UTF-8".to_owned())?;
+        let text = std::str::from_utf8(text).map_err(|_| format!("its description is not UTF-8; {AGAIN}"))?;
         budget.check_bytes(source::memory(text)).map_err(|why| format!("its description may {why}; write less"))?;
         toml::from_str(text).map_err(|error| {
             let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            format!("line {line} of its description: {}", error.message().replace('\n', " "))
+            format!("line {line} of its description: {}; {AGAIN}", error.message().replace('\n', " "))
         })
     }
 

@@ -14,6 +14,8 @@ mod textures;
 mod write;
 
 #[cfg(test)]
+mod hostile;
+#[cfg(test)]
 mod tests;
 
 pub use hierarchy::Hierarchy;

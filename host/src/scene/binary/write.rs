@@ -7,6 +7,7 @@ use eyerays_bvh::Bvh;
 use super::description::Description;
 use super::header::{ALIGNMENT, Counts, Header};
 use super::textures::Pictures;
+use crate::device_scene::check;
 use crate::error::{Error, Result};
 use crate::quality;
 use crate::scene::Scene;
@@ -16,9 +17,10 @@ use crate::scene::Scene;
 /// ([`hierarchy`](crate::device_scene::hierarchy)) instead of [`Scene::hierarchy`].
 ///
 /// # Errors
-/// What [`Scene::check`] refuses, and what keeps `out` from being written.
+/// What [`Scene::check`] refuses, settings out of range, and what keeps `out` from being written.
 pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
+    check::settings(&scene.settings)?;
     let (pictures, texels) = Pictures::of(scene);
     let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));
     let description = description.text().map_err(Error::new)?;

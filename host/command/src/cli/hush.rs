@@ -1,6 +1,13 @@
 //! Drivers, layers and the libraries they load write to standard error whatever they like. It is kept from the user,
 //! unless warnings are asked for.
 
+use std::any::Any;
+
+/// For [`eyerays::gpu::Around`].
+pub(super) fn around() -> Box<dyn Any> {
+    Box::new(Hush::new())
+}
+
 /// Keeps silent whatever writes to standard error, until the last one is dropped.
 #[must_use]
 pub(super) struct Hush {
@@ -72,5 +79,27 @@ mod unix {
         let before = stderr().try_clone_to_owned()?;
         dup2_stderr(nowhere)?;
         Ok(before)
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use same_file::Handle;
+
+    use super::*;
+
+    #[test]
+    fn standard_error_goes_nowhere_until_the_last_of_many_at_once_is_gone() {
+        let before = Handle::stderr().unwrap();
+        let longest = Hush::new();
+        std::thread::scope(|scope| {
+            for _ in 0..4 {
+                scope.spawn(|| drop(Hush::new()));
+            }
+        });
+        let hushed = Handle::stderr().unwrap();
+        drop(longest);
+        assert_eq!(hushed, Handle::from_path("/dev/null").unwrap());
+        assert_eq!(Handle::stderr().unwrap(), before);
     }
 }

@@ -1,0 +1,145 @@
+//! Files of strangers: refused in a line, or whole, whatever their hash.
+
+use proptest::prelude::*;
+
+use super::header::Header;
+use super::tests::{EXAMPLE, packed, read, sign};
+
+/// Asserts that a file is a scene, which is packed or refused in a line, or is refused in a line itself.
+fn assert_tame(bytes: &[u8], what: &str) {
+    let fault = match read(bytes) {
+        // What there is of a hierarchy is checked with the primitives.
+        Ok(scene) => packed(&scene).err().map(|error| error.message()),
+        Err(fault) => Some(fault),
+    };
+    assert!(fault.as_ref().is_none_or(|fault| !fault.is_empty() && !fault.contains('\n')), "{what}: {fault:?}");
+}
+
+/// Where the example's sections begin and end.
+fn edges() -> Vec<usize> {
+    let (_, sections) = Header::read(&EXAMPLE).expect("a scene");
+    sections.iter().flat_map(|section| [section.start, section.end]).collect()
+}
+
+#[test]
+fn every_byte_of_the_header_and_many_others_are_refused_if_they_are_changed_and_do_no_harm_if_signed() {
+    let first = edges()[0];
+    assert!(first > size_of::<Header>(), "something lies between");
+    let others = (first..EXAMPLE.len()).step_by(EXAMPLE.len() / 100).chain(edges()).filter(|&at| at < EXAMPLE.len());
+    for at in (0..first).chain(others) {
+        let old = EXAMPLE[at];
+        for new in [old ^ 1, old ^ 0x80, 0, 0xff] {
+            let mut bytes = EXAMPLE.clone();
+            bytes[at] = new;
+            assert!(new == old || read(&bytes).is_err(), "byte {at} as {new} is accepted");
+            sign(&mut bytes);
+            assert_tame(&bytes, &format!("byte {at} as {new}"));
+        }
+    }
+}
+
+#[test]
+fn a_file_that_is_cut_anywhere_or_longer_is_refused() {
+    let near = edges().into_iter().flat_map(|edge| [edge - 1, edge, edge + 1]);
+    for end in (0..300).chain(near).chain((300..EXAMPLE.len()).step_by(EXAMPLE.len() / 100)) {
+        let mut bytes = EXAMPLE.clone();
+        bytes.resize(end, 0);
+        assert!(end == EXAMPLE.len() || read(&bytes).is_err(), "{end} bytes are accepted");
+        assert_tame(&bytes, &format!("{end} bytes"));
+    }
+}
+
+#[test]
+fn counts_beyond_the_file_or_all_numbers_are_refused_before_memory_is_taken() {
+    const FIRST: usize = 48;
+    for at in (FIRST..size_of::<Header>()).step_by(8) {
+        let old = u64::from_le_bytes(EXAMPLE[at..at + 8].try_into().expect("eight bytes"));
+        let with = |count: u64| {
+            let mut bytes = EXAMPLE.clone();
+            bytes[at..at + 8].copy_from_slice(&count.to_le_bytes());
+            bytes
+        };
+        for count in [u64::MAX, u64::MAX / 12 + 1, u64::MAX / 64 + 1, 1 << 63, 1 << 40, old + 1_000_000] {
+            let fault = read(&with(count)).expect_err("accepted");
+            assert!(fault.contains("are not what its header tells"), "{count} at byte {at}: {fault}");
+        }
+        // A few more or fewer may end at the same multiple of 64 bytes.
+        for count in [0, old.saturating_sub(1), old + 1, old + 2] {
+            let mut bytes = with(count);
+            sign(&mut bytes);
+            assert_tame(&bytes, &format!("{count} at byte {at}"));
+        }
+    }
+}
+
+/// A change to a file: bytes from `at` on, in shares of the file.
+#[derive(Debug, Clone)]
+enum Change {
+    Put(f64, Vec<u8>),
+    Flip(f64, u8),
+    Cut(f64),
+    Insert(f64, Vec<u8>),
+    Copy(f64, f64, usize),
+}
+
+fn change() -> impl Strategy<Value = Change> {
+    // The header and the description are a small part of a file, and where most can go wrong.
+    let at = || prop_oneof![0.0..0.03f64, 0.0..1.0f64];
+    let number = prop_oneof![Just(0u64), Just(1), Just(u64::MAX), Just(1 << 40), any::<u64>()];
+    let float = prop_oneof![Just(f32::NAN), Just(f32::INFINITY), Just(-1.0), Just(3e38), Just(1e-45)];
+    prop_oneof![
+        (at(), prop::collection::vec(any::<u8>(), 1..16)).prop_map(|(at, bytes)| Change::Put(at, bytes)),
+        (at(), number).prop_map(|(at, number)| Change::Put(at, number.to_le_bytes().into())),
+        (at(), float).prop_map(|(at, float)| Change::Put(at, float.to_le_bytes().into())),
+        (at(), "[-0-9a-z\"=\\[\\]\n]{1,8}").prop_map(|(at, text)| Change::Put(at, text.into())),
+        (at(), 0..8u8).prop_map(|(at, bit)| Change::Flip(at, bit)),
+        at().prop_map(Change::Cut),
+        (at(), prop::collection::vec(any::<u8>(), 1..200)).prop_map(|(at, bytes)| Change::Insert(at, bytes)),
+        (at(), at(), 1..300usize).prop_map(|(from, to, count)| Change::Copy(from, to, count)),
+    ]
+}
+
+fn changed(mut bytes: Vec<u8>, change: &Change) -> Vec<u8> {
+    let place = |at: f64, bytes: &[u8]| (at * bytes.len() as f64) as usize;
+    let put = |to: usize, new: &[u8], bytes: &mut [u8]| {
+        let end = (to + new.len()).min(bytes.len());
+        bytes[to..end].copy_from_slice(&new[..end - to]);
+    };
+    match change {
+        // On a word, where numbers are.
+        Change::Put(at, new) => put(place(*at, &bytes) & !3, new, &mut bytes),
+        Change::Flip(at, bit) => {
+            if let Some(byte) = bytes.get_mut(place(*at, &EXAMPLE)) {
+                *byte ^= 1 << bit;
+            }
+        }
+        Change::Cut(at) => bytes.truncate(place(*at, &bytes)),
+        Change::Insert(at, new) => {
+            let at = place(*at, &bytes);
+            bytes.splice(at..at, new.iter().copied());
+        }
+        Change::Copy(from, to, count) => {
+            let from = place(*from, &bytes);
+            let piece = bytes[from..(from + count).min(bytes.len())].to_vec();
+            put(place(*to, &bytes), &piece, &mut bytes);
+        }
+    }
+    bytes
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10_000, failure_persistence: None, ..Default::default() })]
+
+    /// Signed, so that the hash does not hide what comes after it; and unsigned.
+    #[test]
+    fn a_mutated_file_is_refused_in_a_line_or_whole(
+        changes in prop::collection::vec(change(), 1..4),
+        is_signed in prop::bool::weighted(0.8),
+    ) {
+        let mut bytes = changes.iter().fold(EXAMPLE.clone(), changed);
+        if is_signed {
+            sign(&mut bytes);
+        }
+        assert_tame(&bytes, "mutated");
+    }
+}

@@ -13,8 +13,6 @@ pub mod launch;
 pub mod light;
 pub mod material;
 pub mod methods;
-#[cfg(not(target_arch = "spirv"))]
-pub mod modules;
 pub mod numerics;
 pub mod ray;
 pub mod real;

@@ -5,7 +5,6 @@ use eyerays::method::{Method, Traversal};
 use eyerays::scene::Settings;
 use eyerays_passes::Kernels;
 use eyerays_shader::data::{Launch, Specialisation};
-use eyerays_shader::modules;
 use eyerays_tests::{Posed, SHIPPED, differences, gpu, on_cpu, pack, settings, shipped};
 
 /// At least 99.9 % of the pixels lie within 1e-4 of exact. (Measured with lavapipe at this size, over every scene
@@ -60,9 +59,9 @@ fn naga_accepts_the_fast_modules() {
         assert!(!module.entry_points.is_empty());
         Validator::new(ValidationFlags::all(), capabilities).validate(&module).unwrap();
     };
-    check(modules::FAST, Capabilities::SUBGROUP);
+    check(eyerays_modules::FAST, Capabilities::SUBGROUP);
     // What does not vote asks for no subgroups.
-    let kernels = Kernels::parse(modules::FAST).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::FAST).unwrap();
     for name in kernels.names().iter().filter(|name| name.starts_with("fast::")) {
         let spec = Specialisation::default().with_launch(Launch::GOES_ON);
         let words = kernels.cut(name, &spec.constants()).unwrap().words();

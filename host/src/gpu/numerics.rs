@@ -1,7 +1,6 @@
 //! The functions of exact arithmetic on the GPU, one at a time.
 
 use eyerays_shader::launch::WORKGROUP;
-use eyerays_shader::modules;
 use glam::UVec4;
 use wgpu::BufferUsages as Use;
 
@@ -65,7 +64,7 @@ fn layout(gpu: &Gpu) -> wgpu::BindGroupLayout {
 
 fn pipeline(gpu: &Gpu, bindings: &wgpu::BindGroupLayout) -> wgpu::ComputePipeline {
     let name = "numerics::evaluate";
-    let words: Vec<u32> = readback::words(modules::NUMERICS).collect();
+    let words: Vec<u32> = readback::words(eyerays_modules::NUMERICS).collect();
     let module = module::create(gpu, &words, name);
     let layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
         label: None,

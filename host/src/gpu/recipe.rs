@@ -4,7 +4,6 @@ use std::sync::LazyLock;
 
 use eyerays_passes::{Kernel, Kernels};
 use eyerays_shader::data::{Effects, Launch, Specialisation};
-use eyerays_shader::modules;
 
 use crate::method::Scheduling;
 use crate::plan::{Stage, Step};
@@ -12,8 +11,8 @@ use crate::plan::{Stage, Step};
 /// A committed module, parsed when the first kernel is cut out of it.
 type Module = LazyLock<Kernels>;
 
-static EXACT: Module = LazyLock::new(|| parse(modules::EXACT));
-static FAST: Module = LazyLock::new(|| parse(modules::FAST));
+static EXACT: Module = LazyLock::new(|| parse(eyerays_modules::EXACT));
+static FAST: Module = LazyLock::new(|| parse(eyerays_modules::FAST));
 
 fn parse(module: &[u8]) -> Kernels {
     Kernels::parse(module).unwrap_or_else(|e| panic!("a committed module: {e}"))

@@ -1,7 +1,10 @@
 //! One kernel as a module of its own.
 
+use std::collections::HashSet;
+
 use rspirv::binary::Assemble;
-use rspirv::dr::{self, Module, Operand};
+use rspirv::dr::{self, Instruction, Module, Operand};
+use rspirv::spirv::{Op, Word};
 
 use crate::slice::Sliced;
 use crate::{Error, Result, bindings, capability, fold, renumber, specialise};
@@ -53,6 +56,15 @@ impl Kernel {
     /// The words of the module's file.
     pub fn words(&self) -> Vec<u32> {
         self.module.assemble()
+    }
+
+    /// The paths of its functions in the source, as far as the module tells them.
+    pub fn functions(&self) -> Vec<&str> {
+        let ids: HashSet<Word> = self.module.functions.iter().filter_map(|function| function.def_id()).collect();
+        let named =
+            |inst: &Instruction| inst.class.opcode == Op::Name && ids.contains(&inst.operands[0].unwrap_id_ref());
+        let names = self.module.debug_names.iter().filter(|inst| named(inst));
+        names.map(|inst| inst.operands[1].unwrap_literal_string()).collect()
     }
 
     /// How many instructions its functions have.

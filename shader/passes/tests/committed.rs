@@ -5,9 +5,8 @@ use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
 use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
-use eyerays_shader::modules;
 
-const MODULES: [&[u8]; 2] = [modules::EXACT, modules::FAST];
+const MODULES: [&[u8]; 2] = [eyerays_modules::EXACT, eyerays_modules::FAST];
 
 fn effects(bits: u32) -> Specialisation {
     Specialisation { effects: Effects(bits), ..Specialisation::default() }
@@ -65,7 +64,7 @@ fn every_kernel_is_valid_whatever_is_folded() {
 /// Each stands for a branch in the source that a scene without the effect has no instruction of.
 #[test]
 fn an_effect_costs_instructions_only_where_it_is_asked_for() {
-    let kernels = Kernels::parse(modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
     let count = |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().instructions();
     let trace = |spec| count("exact::while_while::trace", spec);
     let bare = count("exact::shade", effects(0));
@@ -95,7 +94,7 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
 /// The same where paths are scattered.
 #[test]
 fn what_a_path_does_not_meet_is_not_in_its_kernel() {
-    let kernels = Kernels::parse(modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
     let count = |spec: Specialisation| kernels.cut("exact::scatter", &spec.constants()).unwrap().instructions();
     let lit = effects(Effects::LIT);
     for effect in [
@@ -147,7 +146,7 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
 #[test]
 fn a_kernel_binds_what_it_reads_and_writes() {
     use eyerays_shader::resources::binding::*;
-    let kernels = Kernels::parse(modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
     let bindings =
         |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().bindings().to_vec();
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };

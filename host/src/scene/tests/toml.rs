@@ -65,7 +65,10 @@ fn what_is_not_said_has_defaults() {
 
 #[test]
 fn a_material_of_code_that_says_its_colour_is_that_of_a_file_that_says_it() {
-    let material = |says: &str| load(&format!("{BALL}[[material]]\nname = \"m\"\n{says}")).0.materials[0].clone();
+    let material = |says: &str| {
+        let scene = load(&format!("{BALL}material = \"m\"\n[[material]]\nname = \"m\"\n{says}")).0;
+        scene.materials.into_iter().find(|material| material.name == "m").expect("it is used")
+    };
     let name = || "m".to_owned();
     let diffuse = Vec3::new(0.5, 0.25, 0.125);
     let coloured = Material { name: name(), diffuse, ..Material::default() };

@@ -70,7 +70,7 @@ impl Guide {
         self.word
     }
 
-    /// Is it the second of two, of which the first has so many of all [`STEPS`]?
+    /// Is it the second of two, of which the first has so many of all `STEPS`?
     #[inline(always)]
     pub fn is_second(&mut self, steps: u32) -> bool {
         if self.is_trail {

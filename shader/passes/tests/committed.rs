@@ -143,6 +143,34 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
     }
 }
 
+/// Functions of their own that one effect, or any of some, alone needs.
+#[test]
+fn a_kernel_reaches_no_function_of_an_effect_that_nothing_has() {
+    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
+    let all =
+        Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL | Effects::COMPENSATED | Effects::SPHERE | Effects::DISK;
+    let all = all | Effects::CONDUCTOR | Effects::REFRACTION | Effects::THIN | Effects::ANISOTROPIC;
+    for (entry, of, function) in [
+        ("exact::if_if::trace", Effects::SPHERE, "geometry::sphere::intersect_sphere"),
+        ("exact::if_if::trace", Effects::DISK, "geometry::disk::intersect_disk"),
+        ("exact::scatter", Effects::CONDUCTOR, "material::fresnel::conductors"),
+        ("exact::scatter", Effects::REFRACTION | Effects::THIN, "material::fresnel::glass"),
+        ("exact::scatter", Effects::REFRACTION, "material::refraction::refracted"),
+    ] {
+        let reached = |bits: u32| {
+            let kernel = kernels.cut(entry, &effects(bits).constants()).unwrap();
+            kernel
+                .functions()
+                .iter()
+                .filter(|name| name.contains(function))
+                .map(|&name| name.to_owned())
+                .collect::<Vec<_>>()
+        };
+        assert!(!reached(all).is_empty(), "no kernel has a function {function}");
+        assert_eq!(reached(all & !of), [""; 0], "{entry} without the effects {of:#x}");
+    }
+}
+
 #[test]
 fn a_kernel_binds_what_it_reads_and_writes() {
     use eyerays_shader::resources::binding::*;

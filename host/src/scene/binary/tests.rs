@@ -17,7 +17,7 @@ use crate::scene::{
 };
 
 /// A scene of a text form, and no files, as binary ones have none.
-fn text(path: &str) -> Scene {
+pub(super) fn text(path: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
     Scene { files: Vec::new(), ..load(&path).expect("a scene").0 }
 }

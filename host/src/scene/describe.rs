@@ -246,7 +246,7 @@ fn physical(text: &mut Text, of: &Physical) {
     text.colour("specular_tint", of.specular_tint, default.specular_tint);
     match of.wall {
         Wall::Body => {}
-        Wall::Pane => text.key("thin", "true".to_owned()),
+        Wall::Pane => text.key("thin", "true"),
         Wall::Interface => text.key("thin", quoted(of.wall.name())),
     }
     if let Some(physical::Absorption { colour, distance }) = of.absorption {

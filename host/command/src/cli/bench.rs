@@ -7,10 +7,11 @@ use std::slice;
 use clap::{Args, ValueEnum};
 use eyerays_shader::data::Tuning;
 
+use super::camera;
 use super::choice::choice;
 use super::options;
 use super::reading::{Read, Reading};
-use super::{console, hush, progress};
+use super::{console, hush, progress, threads};
 use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
@@ -233,7 +234,7 @@ impl Bench {
             tuning: options::tuning(ways.stack_max, ways.cut)?,
             exact: on.precision.contains(&Precision::Exact),
             fast: on.precision.contains(&Precision::Fast),
-            threads: options::threads(on.threads)?,
+            threads: threads::chosen(on.threads)?,
             size,
             repeat: self.repeat.unwrap_or(if self.quick { 3 } else { 10 }),
             ao_length: self.rays.ao_length,
@@ -261,7 +262,7 @@ impl Bench {
         }
         let mut cameras: Vec<Camera> = Vec::new();
         for wish in &self.rays.camera {
-            let camera = options::pick(&scene.cameras, wish)?;
+            let camera = camera::pick(&scene.cameras, wish)?;
             if !cameras.contains(camera) {
                 cameras.push(camera.clone());
             }

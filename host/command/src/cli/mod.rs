@@ -1,6 +1,7 @@
 //! The command line.
 
 mod bench;
+mod camera;
 mod check;
 mod choice;
 mod console;
@@ -19,6 +20,7 @@ mod render;
 #[cfg(unix)]
 mod signals;
 mod summary;
+mod threads;
 mod tip;
 mod tradeoff;
 mod transport;
@@ -102,7 +104,7 @@ fn explain(said: clap::Error) -> Result<ExitCode> {
 
 fn execute(cli: Cli) -> Result<ExitCode> {
     log(cli.verbose);
-    options::check_environment()?;
+    threads::check_environment()?;
     #[cfg(unix)]
     signals::watch()
         .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;

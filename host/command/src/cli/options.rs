@@ -7,10 +7,12 @@ use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
 use glam::Vec3;
 
+use super::camera;
 use super::choice::choice;
 use super::hush;
 use super::progress;
 use super::reading::Read;
+use super::threads;
 use super::transport::Transport;
 use crate::error::{Error, Result, within};
 use crate::preset::Preset;
@@ -21,9 +23,6 @@ use eyerays::method::{Layout, Method, Order, Scheduling, Traversal, TriangleTest
 use eyerays::quality::Bvh;
 use eyerays::render::{Choice, DeviceWish, Precision};
 use eyerays::scene::{self, Camera, Filter, Integrator, Projection, Sampler, Scene, Settings};
-
-/// The most threads.
-const MOST_THREADS: usize = 1024;
 
 /// The scene and how to see it.
 #[derive(Args)]
@@ -39,10 +38,10 @@ pub(super) struct View {
     #[arg(long, value_name = "NAME|INDEX")]
     camera: Option<String>,
     /// Look from here instead, in the scene's units; all else is that of --camera, if it is given
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "looked at", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = camera::vector, requires = "looked at", allow_hyphen_values = true)]
     eye: Option<Vec3>,
     /// Look there instead; likewise
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, requires = "looked from", allow_hyphen_values = true)]
+    #[arg(long, value_name = "X,Y,Z", value_parser = camera::vector, requires = "looked from", allow_hyphen_values = true)]
     target: Option<Vec3>,
     /// Vertical field of view in degrees [default: the camera's, 60 with --eye and no --camera]
     #[arg(long, value_name = "D")]
@@ -234,7 +233,7 @@ impl View {
     /// The camera that was asked for.
     pub fn camera(&self, scene: &Scene) -> Result<Camera> {
         let mut camera = match (&self.camera, self.eye, self.target) {
-            (Some(wish), ..) => pick(&scene.cameras, wish)?.clone(),
+            (Some(wish), ..) => camera::pick(&scene.cameras, wish)?.clone(),
             (None, Some(eye), Some(target)) => {
                 let projection = Projection::Perspective { fov: 60.0 };
                 Camera { name: "--eye".to_owned(), eye, target, up: Vec3::Y, projection }
@@ -252,7 +251,7 @@ impl View {
             camera.projection = Projection::Perspective { fov };
         }
         if self.eye.or(self.target).is_some() {
-            camera.up = upright(camera.up, camera.target - camera.eye);
+            camera.up = camera::upright(camera.up, camera.target - camera.eye);
         }
         Ok(camera)
     }
@@ -279,7 +278,7 @@ impl DeviceArgs {
 
     /// The choice of devices these options make.
     pub fn choice(&self, device: DeviceWish) -> Result<Choice> {
-        let (threads, precision) = (threads(self.threads)?, self.precision());
+        let (threads, precision) = (threads::chosen(self.threads)?, self.precision());
         let triangle = self.triangle.unwrap_or_default();
         if self.no_passthrough && precision != Precision::Fast {
             return Err(Error::new("--no-passthrough can't keep exact arithmetic: add --precision fast"));
@@ -314,25 +313,6 @@ impl DeviceArgs {
     }
 }
 
-/// The variable by which rayon, which spreads work over threads, takes their number.
-const THREADS: &str = "RAYON_NUM_THREADS";
-
-/// Refuses more threads than `--threads` would take, before any is started.
-pub(super) fn check_environment() -> Result<()> {
-    match std::env::var(THREADS).ok().and_then(|value| value.trim().parse::<u64>().ok()) {
-        Some(threads) if threads > MOST_THREADS as u64 => {
-            Err(Error::new(format!("{THREADS} is {threads}; set it to at most {MOST_THREADS}, or leave it out")))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// `--threads`; 0 is one a core.
-pub(super) fn threads(wish: Option<usize>) -> Result<usize> {
-    within("--threads", wish.as_slice(), 1..=MOST_THREADS)?;
-    Ok(wish.unwrap_or(0))
-}
-
 /// `--triangle`.
 pub(super) fn check_tests(tests: &[TriangleTest], fast: bool) -> Result<()> {
     if tests.contains(&TriangleTest::Moller) && !fast {
@@ -348,33 +328,8 @@ pub(super) fn tuning(stack_max: u32, cut: u32) -> Result<Tuning> {
     Ok(Tuning::new(stack_max, cut))
 }
 
-/// This way up, or another for who looks along it: no option can turn a camera that was given its place by one.
-fn upright(up: Vec3, along: Vec3) -> Vec3 {
-    [up, Vec3::Y, Vec3::Z].into_iter().find(|&up| along.cross(up).length() != 0.0).unwrap_or(up)
-}
-
-/// The camera with this name, or this number.
-pub(super) fn pick<'a>(cameras: &'a [Camera], wish: &str) -> Result<&'a Camera> {
-    let named = cameras.iter().find(|c| c.name == wish);
-    let numbered = || wish.parse::<usize>().ok().and_then(|i| cameras.get(i));
-    named.or_else(numbered).ok_or_else(|| {
-        let list: Vec<String> = cameras.iter().enumerate().map(|(i, c)| format!("{i} \"{}\"", c.name)).collect();
-        Error::new(format!("no camera is \"{wish}\": the scene has {}", list.join(", ")))
-    })
-}
-
 /// `WxH`.
 pub(super) fn size(text: &str) -> std::result::Result<(u32, u32), String> {
     let parts = text.split_once(['x', 'X']).and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     parts.ok_or_else(|| "write a width and a height in pixels, for example 640x480".to_owned())
-}
-
-/// `X,Y,Z`.
-fn vector(text: &str) -> std::result::Result<Vec3, String> {
-    let parts: Option<Vec<f32>> =
-        text.split(',').map(|p| p.trim().parse().ok().filter(|x: &f32| x.is_finite())).collect();
-    match parts.as_deref() {
-        Some([x, y, z]) => Ok(Vec3::new(*x, *y, *z)),
-        _ => Err("write three finite numbers, for example 1,2.5,-3".to_owned()),
-    }
 }

@@ -12,6 +12,7 @@ use super::hush;
 use super::options::{self, Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
+use super::threads;
 use crate::error::{Error, Result, within};
 use crate::output::{self, Destination, write_error};
 use crate::tradeoff::{self, Axes, Plan, Record, Report, Subject, Wish};
@@ -240,7 +241,7 @@ impl Tradeoff {
             device: self.on.device,
             precision: if self.tried.exact() { Default::default() } else { eyerays::render::Precision::Fast },
             adapter: self.on.adapter.clone(),
-            threads: options::threads(self.on.threads)?,
+            threads: threads::chosen(self.on.threads)?,
             around: Some(hush::around),
             ..Choice::default()
         })

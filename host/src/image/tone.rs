@@ -177,11 +177,13 @@ mod tests {
     #[test]
     fn a_brighter_grey_is_a_brighter_grey() {
         for tone in CURVES {
+            // Between two entries that are nearly white the sum of a table's steps is rounded.
+            let rounding = if tone == ToneMap::Agx { 1e-12 } else { 0.0 };
             let mut last = -1.0;
             for light in (-2000..=1200).map(|i| math::exp2(f64::from(i) / 100.0)) {
                 let [r, g, b] = tone.apply([light; 3]);
                 assert!((r - g).abs() < apart(tone) && (r - b).abs() < apart(tone), "{tone} {light}: {r} {g} {b}");
-                assert!(r >= last - 1e-12, "{tone} {light}: {r} after {last}");
+                assert!(r >= last - rounding, "{tone} {light}: {r} after {last}");
                 last = r;
             }
         }

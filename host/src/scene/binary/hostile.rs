@@ -14,7 +14,10 @@ use crate::quality::Bvh;
 fn assert_tame(bytes: &[u8], what: &str) {
     let fault = match read(bytes) {
         // What there is of a hierarchy is checked with the primitives.
-        Ok(scene) => packed(&scene).err().map(|error| error.message()),
+        Ok(scene) => {
+            assert_eq!(scene.check(), Ok(()), "{what}");
+            packed(&scene).err().map(|error| error.message())
+        }
         Err(fault) => Some(fault),
     };
     assert!(fault.as_ref().is_none_or(|fault| !fault.is_empty() && !fault.contains('\n')), "{what}: {fault:?}");

@@ -61,14 +61,14 @@ def texture(named, colour, folder):
 
 
 def sky(background, folder):
-    """An environment on Mitsuba's grid: its columns begin half a turn apart, and its rows lie on the poles. Twice as many of them have
-    all rows of ours among them, so that what is between two rows is the same."""
+    """An environment on Mitsuba's grid: its columns begin a quarter of a turn apart, and its rows lie on the poles. Twice as many of them
+    have all rows of ours among them, so that what is between two rows is the same."""
     picture = bitmap(folder / background["environment"]) * background.get("intensity", 1.0)
     height, width, _ = picture.shape
     rows = np.clip(np.arange(2 * height + 1) / 2 - 0.5, 0, height - 1)
     above, share = np.floor(rows).astype(int), (rows % 1)[:, None, None]
     below = np.minimum(above + 1, height - 1)
-    between = np.roll(picture[above] * (1 - share) + picture[below] * share, width // 2, axis=1)
+    between = np.roll(picture[above] * (1 - share) + picture[below] * share, -width // 4, axis=1)
     return {"type": "envmap", "bitmap": mi.Bitmap(between.astype(np.float32))}
 
 
@@ -194,7 +194,7 @@ def eyerays_picture(path, camera, options, seed):
         output = Path(folder) / "picture.exr"
         command = [options.eyerays, "render", path, "--integrator", "path", "--sampler", "random", "--device", "cpu"]
         command += ["--filter", "bilinear", "--roulette", NEVER, "--size", f"{options.size}x{options.size}", "--spp", options.spp]
-        command += ["--camera", camera, "--seed", seed, "--output", output, "--quiet"]
+        command += ["--no-compensation", "--camera", camera, "--seed", seed, "--output", output, "--quiet"]
         subprocess.run([str(word) for word in command], check=True)
         return np.array(mi.Bitmap(str(output)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
 

@@ -4,7 +4,7 @@ use crate::choice::choices;
 use crate::device_scene::{DeviceScene, Feature};
 use crate::error::Result;
 use crate::film::Film;
-use crate::render::{Backend, Rendering};
+use crate::render::{Backend, Choice, DeviceWish, Rendering};
 use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
 use crate::view::View;
 
@@ -77,6 +77,22 @@ pub fn render(
     packed.show(None);
     packed.set(settings)?;
     rendered
+}
+
+/// What can be seen before a GPU's driver has compiled the kernels of a picture: the colours of its surfaces at the middle of each
+/// pixel, by this many threads of the CPU, 0 for one a core. The scene's settings are left as they were.
+///
+/// # Errors
+/// As [`Backend::render`].
+pub fn preview(packed: &mut DeviceScene, camera: &Camera, threads: usize) -> Result<Film> {
+    let backend = &Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+    let settings = *packed.settings();
+    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..settings };
+    let mut studio = Studio { backend, packed, camera, settings, direct: None, places: None };
+    let film = studio.film(Some(Feature::Albedo), middle);
+    packed.show(None);
+    packed.set(settings)?;
+    film
 }
 
 /// What all layers are rendered with, and what several of them take.

@@ -121,10 +121,10 @@ fn together<R: Scalar, L: Leaf, M: Together>(isa: Isa, geometry: &TraceContext<'
     isa.run::<R>(Neighbours::<R, L, M>(Slots::new(geometry, slots, job)));
 }
 
-/// As [`together`], with the instructions that every processor has: the hybrids are there to be compared, and to
-/// compile them for every ISA would take as long as all else.
-fn plainly<R: Scalar, L: Leaf, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    Neighbours::<R, L, M>(Slots::new(geometry, slots, job)).run::<Native>();
+/// As [`together`], with the instructions that every processor has and leaves that may hold anything: the hybrids are there to be
+/// compared, and to compile them for every ISA and kind of leaf would take as long as all else.
+fn plainly<R: Scalar, L, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+    Neighbours::<R, Primitives, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }
 
 impl<R: Scalar, L: Leaf, M: Together> Task<R> for Neighbours<'_, R, L, M> {

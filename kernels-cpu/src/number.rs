@@ -11,8 +11,8 @@ use crate::isa::Isa;
 use crate::records::Records;
 use crate::way::Way;
 
-/// The slots of a wave.
-pub struct Slots<'a> {
+/// The slots of a wave, and of the one after it.
+pub struct Queues<'a> {
     /// Those of this one.
     pub now: &'a [u32],
     /// Those of the next are added here.
@@ -33,7 +33,7 @@ pub struct Shown<'a> {
 
 /// A number that every stage is compiled for: `f32` (exact), [`Fast`] and `f64` (reference).
 ///
-/// Slots are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
+/// Queues are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
 pub trait Number: Scalar<Record: Send + Sync> {
     /// Starts the paths of some slots.
     fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]);
@@ -42,14 +42,14 @@ pub trait Number: Scalar<Record: Send + Sync> {
     fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, Self>);
 
     /// Shades a wave.
-    fn shade(scene: &Shown<'_>, slots: Slots<'_>, records: &mut Records<Self>);
+    fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>);
 
     /// Scatters the paths of a wave, with the instructions of an [`Isa`].
     fn scatter(
         isa: Isa,
         launch: &LaunchContext<'_>,
         context: &ScatterContext<'_>,
-        slots: Slots<'_>,
+        queues: Queues<'_>,
         records: &mut Records<Self>,
     );
 
@@ -74,10 +74,10 @@ macro_rules! number {
                 follow(isa, way, geometry, slots, job);
             }
 
-            fn shade(scene: &Shown<'_>, slots: Slots<'_>, records: &mut Records<Self>) {
+            fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>) {
                 let Shown { launch, shading, lights, environment } = scene;
                 let Records { paths, hits, shadows, sums, .. } = records;
-                slots.next.extend(slots.now.iter().filter(|&&slot| {
+                queues.next.extend(queues.now.iter().filter(|&&slot| {
                     let wave = Wave::<Self> { paths: &mut *paths, hits, shadows, lights, environment, sums: &mut *sums };
                     integrator::shade(launch, shading, slot, wave)
                 }));
@@ -87,10 +87,10 @@ macro_rules! number {
                 isa: Isa,
                 launch: &LaunchContext<'_>,
                 context: &ScatterContext<'_>,
-                slots: Slots<'_>,
+                queues: Queues<'_>,
                 records: &mut Records<Self>,
             ) {
-                isa.run(Scatter { launch, context, slots, records });
+                isa.run(Scatter { launch, context, queues, records });
             }
 
             fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]) {
@@ -114,7 +114,7 @@ number!(f32 Fast f64);
 struct Scatter<'t, R: Scalar> {
     launch: &'t LaunchContext<'t>,
     context: &'t ScatterContext<'t>,
-    slots: Slots<'t>,
+    queues: Queues<'t>,
     records: &'t mut Records<R>,
 }
 
@@ -123,11 +123,11 @@ impl<R: Scalar> Task<R> for Scatter<'_, R> {
     fn run<V: SimdIsa<R>>(self) {
         let Records { paths, hits, shadows, segments, sums } = self.records;
         let starts = !self.launch.spec.launch.has(Launch::SECONDARY);
-        for &slot in self.slots.now {
+        for &slot in self.queues.now {
             let exchange =
                 Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums, starts };
             if integrator::scatter(self.launch, self.context, slot, exchange) {
-                self.slots.next.push(slot);
+                self.queues.next.push(slot);
             }
         }
     }

@@ -1,10 +1,31 @@
 //! The committed SPIR-V modules, embedded so that an installed program carries its kernels. Apart from their sources, whose native
 //! code need not be built anew when a module is.
 
-/// Exact arithmetic, kernels `exact::*`, and `subgroup_exact::*` of methods that vote across a subgroup. Every float instruction
-/// forbids contraction.
-pub const EXACT: &[u8] = include_bytes!("exact.spv");
-/// Arithmetic at the device's own speed, kernels `fast::*` and `subgroup_fast::*`.
-pub const FAST: &[u8] = include_bytes!("fast.spv");
+use std::io::Read;
+use std::sync::LazyLock;
+
+use flate2::read::ZlibDecoder;
+
+static EXACT: LazyLock<Vec<u8>> = LazyLock::new(|| unpacked(include_bytes!(concat!(env!("OUT_DIR"), "/exact.zlib"))));
+static FAST: LazyLock<Vec<u8>> = LazyLock::new(|| unpacked(include_bytes!(concat!(env!("OUT_DIR"), "/fast.zlib"))));
+
 /// The kernel `numerics::evaluate`: what exact arithmetic is built from, see `numerics` of the kernels' own crate.
 pub const NUMERICS: &[u8] = include_bytes!("numerics.spv");
+
+/// Exact arithmetic, kernels `exact::*`, and `subgroup_exact::*` of methods that vote across a subgroup. Every float instruction
+/// forbids contraction.
+pub fn exact() -> &'static [u8] {
+    &EXACT
+}
+
+/// Arithmetic at the device's own speed, kernels `fast::*` and `subgroup_fast::*`.
+pub fn fast() -> &'static [u8] {
+    &FAST
+}
+
+/// A program holds the modules compressed, since most of it would be modules; unpacking one takes some hundredths of a second.
+fn unpacked(compressed: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    ZlibDecoder::new(compressed).read_to_end(&mut bytes).expect("compressed by the build script");
+    bytes
+}

@@ -59,9 +59,9 @@ fn naga_accepts_the_fast_modules() {
         assert!(!module.entry_points.is_empty());
         Validator::new(ValidationFlags::all(), capabilities).validate(&module).unwrap();
     };
-    check(eyerays_modules::FAST, Capabilities::SUBGROUP);
+    check(eyerays_modules::fast(), Capabilities::SUBGROUP);
     // What does not vote asks for no subgroups.
-    let kernels = Kernels::parse(eyerays_modules::FAST).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::fast()).unwrap();
     for name in kernels.names().iter().filter(|name| name.starts_with("fast::")) {
         let spec = Specialisation::default().with_launch(Launch::GOES_ON);
         let words = kernels.cut(name, &spec.constants()).unwrap().words();

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use eyerays_kernels_cpu::{Isa, Job, Number, Records, Shown, Slots};
+use eyerays_kernels_cpu::{Isa, Job, Number, Queues, Records, Shown};
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
@@ -164,14 +164,14 @@ impl<R: Number> Launch<'_, '_, R> {
         let laid = &self.planned.laid;
         let (lights, environment) = (laid.lights(), laid.packed.environment());
         let shown = Shown { launch: scene.base, shading: laid.shading(), lights, environment };
-        R::shade(&shown, Slots { now: &self.queue, next: &mut self.next }, &mut self.records);
+        R::shade(&shown, Queues { now: &self.queue, next: &mut self.next }, &mut self.records);
     }
 
     /// Likewise.
     fn scatter(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
         let (isa, context) = (self.planned.isa, self.planned.laid.scattering());
-        let slots = Slots { now: &self.queue, next: &mut self.next };
-        R::scatter(isa, &scene.base, &context, slots, &mut self.records);
+        let queues = Queues { now: &self.queue, next: &mut self.next };
+        R::scatter(isa, &scene.base, &context, queues, &mut self.records);
     }
 }

@@ -11,8 +11,8 @@ use crate::plan::{Stage, Step};
 /// A committed module, parsed when the first kernel is cut out of it.
 type Module = LazyLock<Kernels>;
 
-static EXACT: Module = LazyLock::new(|| parse(eyerays_modules::EXACT));
-static FAST: Module = LazyLock::new(|| parse(eyerays_modules::FAST));
+static EXACT: Module = LazyLock::new(|| parse(eyerays_modules::exact()));
+static FAST: Module = LazyLock::new(|| parse(eyerays_modules::fast()));
 
 fn parse(module: &[u8]) -> Kernels {
     Kernels::parse(module).unwrap_or_else(|e| panic!("a committed module: {e}"))

@@ -1,10 +1,11 @@
 //! The committed modules, made from the sources.
 
 use std::path::Path;
+use std::time::Instant;
 
 use crate::compiler::{Compiler, hex};
 use crate::manifest::{self, FORMAT, Manifest, Toolchain};
-use crate::table::{MODULES, Module};
+use crate::table::{MODULES, Module, Precision};
 use crate::validate::Validation;
 use crate::{Error, Result, compile, pass, reflect, source, validate};
 
@@ -31,17 +32,32 @@ pub fn build(compiler: &Compiler, shader: &Path) -> Result<Build> {
         spirv_std: source::locked(shader, "spirv-std")?,
         codegen: compiler.codegen_hash()?,
     };
-    let words = compile::compile(compiler, shader)?;
+    let (exact, fast) = std::thread::scope(|scope| {
+        let compile = |precision| timed(precision, || compile::compile(compiler, shader, precision));
+        let fast = scope.spawn(move || compile(Precision::Fast));
+        (compile(Precision::Exact), fast.join().expect("it does not panic"))
+    });
+    let (exact, fast) = (exact?, fast?);
     let mut build = Build {
         manifest: Manifest { format: FORMAT, source, toolchain, modules: Vec::new() },
         files: Vec::new(),
         validation: Validation::Passed,
     };
     for module in &MODULES {
-        build.add(module, &words)?;
+        let words = if module.precision == Precision::Exact { &exact } else { &fast };
+        build.add(module, words)?;
     }
     build.check_size()?;
     Ok(build)
+}
+
+/// Says how long the compiler takes.
+fn timed<T>(precision: Precision, compile: impl FnOnce() -> T) -> T {
+    let (start, name) = (Instant::now(), precision.feature());
+    eprintln!("compiling {name} precision, which takes some minutes");
+    let compiled = compile();
+    eprintln!("compiled {name} precision in {:.0} s", start.elapsed().as_secs_f32());
+    compiled
 }
 
 impl Build {

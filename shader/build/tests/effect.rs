@@ -12,7 +12,7 @@ use eyerays::scene;
 use eyerays_passes::{Kernel, Kernels};
 use eyerays_shader::data::{Effects, Specialisation};
 use eyerays_spirv::compiler::Compiler;
-use eyerays_spirv::table::{MODULES, Module};
+use eyerays_spirv::table::{MODULES, Module, Precision};
 use eyerays_spirv::{compile, pass, source};
 
 const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
@@ -20,9 +20,8 @@ const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
 /// An edit of a source file.
 type Edit = (&'static str, &'static str, &'static str);
 
-/// Leaves out what takes long to compile and `auto` never takes: fast precision, and most methods.
-const SHORTER: [Edit; 2] = [
-    ("src/entry/kernels.rs", "precision!(Fast, fast, subgroup_fast);\n", ""),
+/// Leaves out what takes long to compile and `auto` never takes: most methods.
+const SHORTER: [Edit; 1] = [
     (
         "src/entry/kernels.rs",
         "        $(methods! { @$only $lanes $R, $module, $method, $($persistent)? })*\n",
@@ -125,7 +124,7 @@ fn copy_folder(from: &Path, to: &Path) {
 /// The exact kernels of a copy with these edits.
 fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
     let folder = tempfile::tempdir().unwrap();
-    let words = compile::compile(compiler, &copied(folder.path(), edits)).unwrap_or_else(|e| panic!("{e}"));
+    let words = compile::compile(compiler, &copied(folder.path(), edits), Precision::Exact).unwrap_or_else(|e| panic!("{e}"));
     let table: &Module = MODULES.iter().find(|module| module.name == "exact").expect("a module of exact kernels");
     let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
     Kernels::parse(&compile::bytes(&finished.words())).unwrap()

@@ -6,7 +6,9 @@ use std::process::{Command, Stdio};
 use eyerays_passes::Kernels;
 use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
 
-const MODULES: [&[u8]; 2] = [eyerays_modules::EXACT, eyerays_modules::FAST];
+fn modules() -> [&'static [u8]; 2] {
+    [eyerays_modules::exact(), eyerays_modules::fast()]
+}
 
 fn effects(bits: u32) -> Specialisation {
     Specialisation { effects: Effects(bits), ..Specialisation::default() }
@@ -50,7 +52,7 @@ fn every_kernel_is_valid_whatever_is_folded() {
     if Command::new("spirv-val").arg("--version").output().is_err() {
         return eprintln!("skipped: spirv-val is not on the PATH");
     }
-    for module in MODULES {
+    for module in modules() {
         let kernels = Kernels::parse(module).unwrap();
         for entry in kernels.names() {
             for spec in specialisations() {
@@ -64,7 +66,7 @@ fn every_kernel_is_valid_whatever_is_folded() {
 /// Each stands for a branch in the source that a scene without the effect has no instruction of.
 #[test]
 fn an_effect_costs_instructions_only_where_it_is_asked_for() {
-    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
     let count = |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().instructions();
     let trace = |spec| count("exact::while_while::trace", spec);
     let bare = count("exact::shade", effects(0));
@@ -94,7 +96,7 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
 /// The same where paths are scattered.
 #[test]
 fn what_a_path_does_not_meet_is_not_in_its_kernel() {
-    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
     let count = |spec: Specialisation| kernels.cut("exact::scatter", &spec.constants()).unwrap().instructions();
     let lit = effects(Effects::LIT);
     for effect in [
@@ -146,7 +148,7 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
 /// Functions of their own that one effect, or any of some, alone needs.
 #[test]
 fn a_kernel_reaches_no_function_of_an_effect_that_nothing_has() {
-    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
     let all =
         Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL | Effects::COMPENSATED | Effects::SPHERE | Effects::DISK;
     let all = all | Effects::CONDUCTOR | Effects::REFRACTION | Effects::THIN | Effects::ANISOTROPIC;
@@ -174,7 +176,7 @@ fn a_kernel_reaches_no_function_of_an_effect_that_nothing_has() {
 #[test]
 fn a_kernel_binds_what_it_reads_and_writes() {
     use eyerays_shader::resources::binding::*;
-    let kernels = Kernels::parse(eyerays_modules::EXACT).unwrap();
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
     let bindings =
         |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().bindings().to_vec();
     let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
@@ -194,7 +196,7 @@ fn a_kernel_binds_what_it_reads_and_writes() {
 fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
     use eyerays_shader::entry::bound;
     use eyerays_shader::resources::RESOURCES;
-    for module in MODULES {
+    for module in modules() {
         let kernels = Kernels::parse(module).unwrap();
         for entry in kernels.names() {
             let persistent = entry.contains("::persistent::");

@@ -6,7 +6,6 @@ use crate::integrator::{self, Exchange, ScatterContext, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::light::Lighting;
 use crate::material::Albedos;
-use crate::real::Fast;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
 use crate::stage::{self, ShadowInputs};
@@ -138,10 +137,13 @@ macro_rules! precision {
     };
 }
 
+#[cfg(feature = "exact")]
 precision!(f32, exact, subgroup_exact);
-precision!(Fast, fast, subgroup_fast);
+#[cfg(feature = "fast")]
+precision!(crate::real::Fast, fast, subgroup_fast);
 
 /// What tests run.
+#[cfg(feature = "exact")]
 pub mod numerics {
     use super::*;
 

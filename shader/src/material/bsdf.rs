@@ -88,9 +88,10 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         passes(self.effects, &self.layers)
     }
 
+    /// Of what lets light pass: is it a thin wall? A constant where no material of the scene bends light.
     #[inline(always)]
     fn is_thin(&self) -> bool {
-        self.effects.has(Effects::THIN) && self.layers.way == Way::THIN
+        self.effects.has(Effects::THIN) && (!self.effects.has(Effects::REFRACTION) || self.layers.way == Way::THIN)
     }
 
     /// The index of refraction on the viewer's side over that on the other; 1 of a thin wall, which bends nothing.

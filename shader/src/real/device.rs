@@ -39,6 +39,7 @@ macro_rules! of_integers {
 
 of_floats!(lesser, "37", "FMin: of two zeros it may be either; NaN gives any number.", a b);
 of_floats!(greater, "40", "FMax, with the same licence.", a b);
+of_floats!(inverse_root, "32", "InverseSqrt: within 2 units in the last place.", x);
 of_floats!(fused, "50", "Fma: `a * b + c`, rounded once or twice.", a b c);
 of_integers!(lesser_integer, "39", "SMin.");
 of_integers!(greater_integer, "42", "SMax.");

@@ -15,7 +15,7 @@ use super::options::{DeviceArgs, Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
 use super::summary::{Summary, Times};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
@@ -59,6 +59,9 @@ pub(super) struct Render {
     /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
     #[arg(long)]
     half: bool,
+    /// Write the colours of the surfaces to the output first, by the CPU, to be seen while a GPU gets ready; the picture replaces them
+    #[arg(long)]
+    preview: bool,
     /// Render this many times and tell the median time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
     repeat: u32,
@@ -85,6 +88,9 @@ impl Render {
             None => Destination::from(default_output(&self.scene).as_path()),
         };
         super::one_on_stdout(self.json, &destination)?;
+        if self.preview && destination.file().is_none() {
+            return Err(Error::new("--preview replaces what it wrote, which standard output can't: name a file with --output"));
+        }
         let bits = BitDepth::from_bits(self.bits)?;
         let mut encoding = Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone };
         encoding.check(destination.format()?)?;
@@ -103,6 +109,13 @@ impl Render {
             effort = effort.endless(&read.scene)?;
         }
         let (mut loaded, scene, camera) = self.view.pack_and_keep(read, &effort, &choice, quiet)?;
+        if self.preview {
+            progress::stage("drawing a preview", quiet || self.json, || {
+                let film = layers::preview(&mut loaded.packed, &camera, choice.threads)?;
+                let plain = Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..encoding };
+                output::write_layers(&film, &[], &destination, &plain)
+            })?;
+        }
         // Nothing but layers has a use for it, and memory may be short.
         let kept = (!layers.is_empty()).then_some((scene, camera));
         let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;

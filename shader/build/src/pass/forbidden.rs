@@ -67,8 +67,8 @@ impl Rules {
         let known = inst.operands[0].id_ref_any() == self.glsl;
         let op = known.then(|| GlslStd450Op::from_u32(number)).flatten();
         match op {
-            Some(GlslStd450Op::Sqrt) if protected => None,
-            Some(GlslStd450Op::Sqrt) => Some(("Sqrt".into(), DIVISION)),
+            Some(GlslStd450Op::Sqrt | GlslStd450Op::InverseSqrt) if protected => None,
+            Some(op @ (GlslStd450Op::Sqrt | GlslStd450Op::InverseSqrt)) => Some((format!("{op:?}"), DIVISION)),
             Some(op) if is_exact(op) => None,
             Some(op) => Some((format!("{op:?}"), INEXACT)),
             None => Some((format!("extended instruction {number}"), INEXACT)),
@@ -196,14 +196,16 @@ mod tests {
             let x = b.load_input();
             b.f_div(x, x);
         };
-        let root = |b: &mut Body| {
-            let x = b.load_input();
-            b.glsl(GlslStd450Op::Sqrt, x);
-        };
         assert_eq!(found(false, division).as_deref(), Some("FDiv"));
-        assert_eq!(found(false, root).as_deref(), Some("Sqrt"));
         assert_eq!(found(true, division), None);
-        assert_eq!(found(true, root), None);
+        for op in [GlslStd450Op::Sqrt, GlslStd450Op::InverseSqrt] {
+            let root = |b: &mut Body| {
+                let x = b.load_input();
+                b.glsl(op, x);
+            };
+            assert_eq!(found(false, root), Some(format!("{op:?}")));
+            assert_eq!(found(true, root), None);
+        }
     }
 
     #[test]
@@ -213,7 +215,7 @@ mod tests {
             (GlslStd450Op::Floor, true),
             (GlslStd450Op::Round, false),
             (GlslStd450Op::Sin, false),
-            (GlslStd450Op::InverseSqrt, false),
+            (GlslStd450Op::Normalize, false),
         ] {
             let result = found(true, |b| {
                 let x = b.load_input();

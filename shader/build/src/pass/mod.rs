@@ -60,6 +60,7 @@ pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::table::Precision;
     use crate::compile;
     use crate::validate::{self, Validation};
     use eyerays_passes::testing::Kernel;
@@ -84,7 +85,8 @@ mod tests {
         let words = kernel.module().assemble();
         for (name, policy, protected) in [("exact", Policy::Exact, vec!["real::div"]), ("fast", Policy::Fast, vec![])] {
             let prefixes: &[&str] = if name == "exact" { &["exact::"] } else { &["fast::"] };
-            let table = Module { name, prefixes, policy, protects: &[] };
+            let precision = Precision::Exact;
+            let table = Module { name, prefixes, policy, precision, protects: &[] };
             let finished = finish(&words, &table).unwrap();
             assert_eq!(finished.protected, protected);
             let bytes = compile::bytes(&finished.words());

@@ -6,6 +6,7 @@ use crate::data::{Effects, Frame, Primitive, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Fast, Real, Scalar, V3};
 use crate::scene::{LaunchContext, TraceContext};
+use crate::traverse::tests::cases;
 use crate::traverse::{Closest, Occlusion, Query};
 use bytemuck::Zeroable;
 use glam::Vec3;
@@ -140,7 +141,7 @@ fn point(size: f32) -> impl Strategy<Value = [f32; 3]> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(50_000))]
+    #![proptest_config(cases(50_000))]
 
     /// What a GPU computes anew has the bits that a CPU kept with the hit.
     #[test]

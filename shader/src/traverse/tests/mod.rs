@@ -21,6 +21,11 @@ use crate::real::{F32xN, Fast, Lanes, Scalar, V3};
 use crate::stage::{SHADOWED, Segment, persistent, shadow_together, trace_together};
 use crate::warp::Alone;
 
+/// So many cases, or as many as an interpreter that watches every access has time for.
+pub(super) fn cases(count: u32) -> ProptestConfig {
+    ProptestConfig::with_cases(if cfg!(miri) { 4 } else { count })
+}
+
 fn check<M: Method<R>, R: Scalar + PartialEq + core::fmt::Debug>(world: &World, origin: [f32; 3], direction: [f32; 3]) {
     let ray = ray::<R>(origin, direction);
     for limit in [f32::MAX, 0.5] {
@@ -49,7 +54,7 @@ fn every_method<R: Scalar + RayLanes + PartialEq + core::fmt::Debug>(
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(20_000))]
+    #![proptest_config(cases(20_000))]
 
     #[test]
     fn finds_what_brute_force_finds(
@@ -137,7 +142,7 @@ fn rays_of(ends: [([f32; 3], [f32; 3]); 8], same_origin: bool) -> Vec<End> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(2_000))]
+    #![proptest_config(cases(2_000))]
 
     #[test]
     fn packets_find_what_their_rays_find(
@@ -229,7 +234,7 @@ fn persistent_lanes<M: Method<f32> + Resumable<f32>>(world: &World, rays: &[Segm
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(cases(300))]
 
     #[test]
     fn persistent_lanes_find_what_a_thread_a_ray_finds(

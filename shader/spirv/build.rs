@@ -1,0 +1,20 @@
+//! Compresses the modules, which would be a quarter of a program otherwise.
+
+use std::fs::{File, read};
+use std::io::Write;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+
+fn main() -> std::io::Result<()> {
+    let output = std::env::var_os("OUT_DIR").expect("cargo sets it");
+    for name in ["exact.spv", "fast.spv"] {
+        println!("cargo::rerun-if-changed={name}");
+        let file = File::create(Path::new(&output).join(name).with_extension("zlib"))?;
+        let mut encoder = ZlibEncoder::new(file, Compression::best());
+        encoder.write_all(&read(name)?)?;
+        encoder.finish()?;
+    }
+    Ok(())
+}

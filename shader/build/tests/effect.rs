@@ -21,13 +21,11 @@ const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
 type Edit = (&'static str, &'static str, &'static str);
 
 /// Leaves out what takes long to compile and `auto` never takes: most methods.
-const SHORTER: [Edit; 1] = [
-    (
-        "src/entry/kernels.rs",
-        "        $(methods! { @$only $lanes $R, $module, $method, $($persistent)? })*\n",
-        "        methods! { @$only alone $R, if_if, IfIf, }\n        methods! { @$only alone $R, while_while, WhileWhile<Alone>, }\n",
-    ),
-];
+const SHORTER: [Edit; 1] = [(
+    "src/entry/kernels.rs",
+    "        $(methods! { @$only $lanes $R, $module, $method, $($persistent)? })*\n",
+    "        methods! { @$only alone $R, if_if, IfIf, }\n        methods! { @$only alone $R, while_while, WhileWhile<Alone>, }\n",
+)];
 
 /// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
 const DUMMY: [Edit; 6] = [
@@ -124,7 +122,8 @@ fn copy_folder(from: &Path, to: &Path) {
 /// The exact kernels of a copy with these edits.
 fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
     let folder = tempfile::tempdir().unwrap();
-    let words = compile::compile(compiler, &copied(folder.path(), edits), Precision::Exact).unwrap_or_else(|e| panic!("{e}"));
+    let words =
+        compile::compile(compiler, &copied(folder.path(), edits), Precision::Exact).unwrap_or_else(|e| panic!("{e}"));
     let table: &Module = MODULES.iter().find(|module| module.name == "exact").expect("a module of exact kernels");
     let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
     Kernels::parse(&compile::bytes(&finished.words())).unwrap()

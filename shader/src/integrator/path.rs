@@ -55,9 +55,20 @@ fn scattered<R: Scalar>(
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
     let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent());
-    let shadow = sampled_light(launch, lighting, vertex, (&interaction, closure, &view), decisions.x);
-    let draws = (decisions.y, decisions.w);
-    let sample = closure.sample((&interaction, view.origin), draws, || vertex.draws.set(bounces + 1));
+    let is_asked = is_lit(launch) && closure.is_rough();
+    let lamp = if is_asked {
+        let places = vertex.draws.set(bounces);
+        EmitterSample::new(launch, lighting, &view, decisions.x, (places.z, places.w))
+    } else {
+        EmitterSample::none()
+    };
+    let (at, draws) = ((&interaction, view.origin), (decisions.y, decisions.w));
+    let (arriving, sample) = closure.eval_and_sample(at, lamp.direction, draws, || vertex.draws.set(bounces + 1));
+    let shadow = if is_asked {
+        sampled_light(launch, vertex, (&interaction, &view), &lamp, arriving)
+    } else {
+        ShadowRay::none()
+    };
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let is_wide = launch.spec.launch.has(Launch::MIPMAPPED) && sample.density.eq(R::splat(0.0));
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
@@ -125,22 +136,16 @@ fn emitted<R: Scalar>(
     (radiance * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own * other.under)).map(|c| c.flush(FAINT))
 }
 
-/// The light of one light, by the same weights.
+/// The light of one light, by the same weights, which the surface scatters.
 #[inline(always)]
 fn sampled_light<R: Scalar>(
     launch: &LaunchContext<'_>,
-    lighting: &Lighting<'_>,
     vertex: &Vertex<R>,
-    (interaction, closure, view): (&SurfaceInteraction<R>, &impl Closure<R>, &Viewpoint<R>),
-    choice: u32,
+    (interaction, view): (&SurfaceInteraction<R>, &Viewpoint<R>),
+    sample: &EmitterSample<R>,
+    Scattering { value, density }: Scattering<R>,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
-    if !is_lit(launch) || !closure.is_rough() {
-        return ShadowRay::none();
-    }
-    let places = vertex.draws.set(vertex.path.bounces);
-    let sample = EmitterSample::new(launch, lighting, view, choice, (places.z, places.w));
-    let Scattering { value, density } = closure.eval(interaction, sample.direction);
     let mut light = value.times(sample.light).map(|c| c.flush(FAINT));
     if !sample.density.over.eq(zero) {
         let own = density * sample.density.under;
@@ -149,7 +154,7 @@ fn sampled_light<R: Scalar>(
     }
     let passes = effects.has(Effects::PHYSICAL) && !interaction.receives(sample.direction);
     let origin = if passes { interaction.offset_ray_origin(sample.direction) } else { view.origin };
-    vertex.asks(launch, (interaction, origin), &sample, light)
+    vertex.asks(launch, (interaction, origin), sample, light)
 }
 
 /// What a sample counts whose own density is in the proportion `own` to that of the other strategy: all of it where its strategy,

@@ -58,8 +58,9 @@ const MOST: f32 = 1.0 / SMALL;
 const OUTSIDE: f32 = 1.0 - 1.0 / 4096.0;
 
 impl<R: Scalar> EmitterSample<R> {
+    /// Nothing: along the third axis, without light.
     #[inline(always)]
-    fn none() -> Self {
+    pub fn none() -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let density = Density { over: zero, under: one };
         EmitterSample { direction: V3::new(zero, zero, one), limit: -one, light: V3::zero(), density }

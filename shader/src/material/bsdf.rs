@@ -1,5 +1,7 @@
 //! A physical surface: a matt base below facets that reflect, and let pass what is not reflected.
 
+mod branches;
+
 use super::albedo::Albedos;
 use super::closure::{Closure, ClosureSample, Scattering};
 use super::energy::Energy;
@@ -133,7 +135,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         (share(self.matt - self.far), share(self.far), share(STEPS - self.matt))
     }
 
-    /// [`Closure::eval`] of a unit direction in the frame.
+    /// How light from a unit direction of the frame is scattered.
     #[inline(always)]
     fn scattering(&self, to: V3<R>) -> Scattering<R> {
         let zero = R::splat(0.0);
@@ -210,18 +212,44 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         (self.layers.through * (facet.rest * eta * eta * over)).map(|c| c.flush(FAINT))
     }
 
+    /// [`Closure::eval`] of a direction, in the frame and in the world.
+    #[inline(always)]
+    fn agreeing(&self, interaction: &SurfaceInteraction<R>, to: V3<R>, direction: V3<R>) -> Scattering<R> {
+        if self.agrees(interaction, to, direction) { self.scattering(to) } else { Scattering::none() }
+    }
+
     /// Is a direction of the frame on its side of the surface, too?
     #[inline(always)]
     fn agrees(&self, interaction: &SurfaceInteraction<R>, local: V3<R>, world: V3<R>) -> bool {
         R::splat(0.0).lt(local.z) == interaction.receives(world)
     }
 
+    /// Chooses what is matt or a facet, by the draws of [`Closure::sample`].
     #[inline(always)]
-    fn smooth_sample(&self, interaction: &SurfaceInteraction<R>, way: R) -> ClosureSample<R> {
-        let up = V3::splat(Vec3::Z);
-        let facet = self.facet(up);
-        let reflects = way.lt(facet.probability);
-        let mut to = self.leaving(up, reflects);
+    fn choose(&self, (part, way): (u32, u32), pair: impl FnOnce() -> UVec4) -> Chosen<R> {
+        let (step, up) = ((part >> 9) as i32, V3::<R>::splat(Vec3::Z));
+        if step < self.matt {
+            let pair = pair();
+            let near = cosine_direction(up, (pair.x, pair.y)).0.map(|c| c.flush(SMALL));
+            let is_near = step >= self.far;
+            let to = V3::new(near.x, near.y, R::select(is_near, near.z, -near.z));
+            return Chosen { to, reflects: is_near, is_matt: true, facet: Facet::none() };
+        }
+        let h = if self.is_smooth {
+            up
+        } else {
+            let pair = pair();
+            self.layers.ggx.visible(self.viewer, (pair.x, pair.y))
+        };
+        let facet = self.facet(h);
+        let reflects = R::splat(unit(way)).lt(facet.probability);
+        Chosen { to: self.leaving(h, reflects), reflects, is_matt: false, facet }
+    }
+
+    /// Along the ray of a mirror or a lens.
+    #[inline(always)]
+    fn smooth_sample(&self, interaction: &SurfaceInteraction<R>, chosen: &Chosen<R>) -> ClosureSample<R> {
+        let Chosen { mut to, reflects, ref facet, .. } = *chosen;
         let mut direction = self.world(to);
         if reflects && !interaction.faces(direction) {
             // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
@@ -230,8 +258,24 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
             to.z = R::splat(1.0);
         }
         let agrees = self.agrees(interaction, to, direction);
-        let factor = V3::select(agrees, self.smooth_factor(&facet, reflects), V3::zero());
+        let factor = V3::select(agrees, self.smooth_factor(facet, reflects), V3::zero());
         ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
+    }
+
+    /// Along a direction whose scattering is known.
+    #[inline(always)]
+    fn rough_sample(
+        &self,
+        interaction: &SurfaceInteraction<R>,
+        (chosen, direction): (&Chosen<R>, V3<R>),
+        Scattering { value, density }: Scattering<R>,
+    ) -> ClosureSample<R> {
+        let zero = R::splat(0.0);
+        // Between facets light may leave on the wrong side, whose density is of other ways to get there.
+        let counts = zero.lt(chosen.to.z) == chosen.reflects && zero.lt(density);
+        let over = R::select(counts, density, R::splat(1.0)).reciprocal();
+        let factor = V3::select(counts, (value * over).map(|c| c.flush(FAINT)), V3::zero());
+        ClosureSample { direction, factor, density, origin: interaction.scattered_ray_origin(direction) }
     }
 
     /// Where a ray starts whose direction could be no other: glass magnifies a step beside its own line; a mirror has corners to
@@ -243,59 +287,6 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         } else {
             interaction.offset_ray_origin(direction)
         }
-    }
-}
-
-/// For integrators that branch: facets by rays of their own, and the base by itself.
-impl<R: Scalar> Bsdf<'_, R> {
-    /// What is matt alone scatters, see [`Closure::eval`].
-    #[inline(always)]
-    pub fn eval_base(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
-        let to = self.local(direction);
-        let is_lit = R::splat(0.0).lt(to.z) && interaction.receives(direction);
-        if is_lit { self.matt(to) } else { V3::zero() }
-    }
-
-    /// The ray that a facet reflects, and that which passes it; a factor of zero is none. The draws choose the facet.
-    #[inline(always)]
-    pub fn branches(&self, interaction: &SurfaceInteraction<R>, draws: (u32, u32)) -> [ClosureSample<R>; 2] {
-        let up = V3::splat(Vec3::Z);
-        let h = if self.is_smooth { up } else { self.layers.ggx.visible(self.viewer, draws) };
-        let facet = self.facet(h);
-        let to = self.leaving(h, true);
-        let reflected = self.branch(interaction, to, true, facet.reflected * self.shadowing(to, h));
-        if !self.passes() {
-            return [reflected, ClosureSample { factor: V3::zero(), ..reflected }];
-        }
-        let to = self.leaving(h, false);
-        let eta = self.eta();
-        let factor = facet.rest * eta * eta * self.shadowing(V3::new(to.x, to.y, -to.z), h);
-        [reflected, self.branch(interaction, to, false, self.layers.through * factor)]
-    }
-
-    /// The share of what a facet sends to a direction on this side, or mirrored there, that other facets let pass.
-    #[inline(always)]
-    fn shadowing(&self, to: V3<R>, h: V3<R>) -> R {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        if self.is_smooth || !zero.lt(to.z) {
-            return one;
-        }
-        let (mirrored, likely) = self.layers.ggx.reflected(self.viewer, to, h);
-        mirrored.div(R::select(likely.eq(zero), one, likely))
-    }
-
-    #[inline(always)]
-    fn branch(
-        &self,
-        interaction: &SurfaceInteraction<R>,
-        to: V3<R>,
-        reflects: bool,
-        factor: V3<R>,
-    ) -> ClosureSample<R> {
-        let direction = self.world(to);
-        let is_right = R::splat(0.0).lt(to.z) == reflects && self.agrees(interaction, to, direction);
-        let factor = V3::select(is_right, factor.map(|c| c.flush(FAINT)), V3::zero());
-        ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
     }
 }
 
@@ -312,40 +303,45 @@ impl<R: Scalar> Closure<R> for Bsdf<'_, R> {
 
     #[inline(always)]
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
-        let to = self.local(direction);
-        if self.agrees(interaction, to, direction) { self.scattering(to) } else { Scattering::none() }
+        self.agreeing(interaction, self.local(direction), direction)
     }
 
     #[inline(always)]
-    fn sample(
+    fn eval_and_sample(
         &self,
         (interaction, _): (&SurfaceInteraction<R>, V3<R>),
-        (part, way): (u32, u32),
+        light: V3<R>,
+        draws: (u32, u32),
         pair: impl FnOnce() -> UVec4,
-    ) -> ClosureSample<R> {
-        let step = (part >> 9) as i32;
-        let (is_matt, way) = (step < self.matt, R::splat(unit(way)));
-        if self.is_smooth && !is_matt {
-            return self.smooth_sample(interaction, way);
+    ) -> (Scattering<R>, ClosureSample<R>) {
+        let chosen = self.choose(draws, pair);
+        let is_rough = chosen.is_matt || !self.is_smooth;
+        let (mut of_light, mut own) = (Scattering::none(), Scattering::none());
+        let (mut to, mut direction) = (self.local(light), light);
+        let (mut turn, turns) = (0, if is_rough { 2 } else { 1 });
+        while turn < turns {
+            (of_light, own) = (own, self.agreeing(interaction, to, direction));
+            (to, direction) = (chosen.to, self.world(chosen.to));
+            turn += 1;
         }
-        let (pair, zero) = (pair(), R::splat(0.0));
-        let (to, reflects) = if is_matt {
-            let near = cosine_direction(V3::<R>::splat(Vec3::Z), (pair.x, pair.y)).0.map(|c| c.flush(SMALL));
-            let is_near = step >= self.far;
-            (V3::new(near.x, near.y, R::select(is_near, near.z, -near.z)), is_near)
+        if is_rough {
+            (of_light, self.rough_sample(interaction, (&chosen, direction), own))
         } else {
-            let h = self.layers.ggx.visible(self.viewer, (pair.x, pair.y));
-            let reflects = way.lt(self.facet(h).probability);
-            (self.leaving(h, reflects), reflects)
-        };
-        let (Scattering { value, density }, direction) = (self.scattering(to), self.world(to));
-        // Between facets light may leave on the wrong side, whose density is of other ways to get there.
-        let is_right = zero.lt(to.z) == reflects;
-        let counts = is_right && zero.lt(density) && self.agrees(interaction, to, direction);
-        let over = R::select(counts, density, R::splat(1.0)).reciprocal();
-        let factor = V3::select(counts, (value * over).map(|c| c.flush(FAINT)), V3::zero());
-        ClosureSample { direction, factor, density, origin: interaction.scattered_ray_origin(direction) }
+            (own, self.smooth_sample(interaction, &chosen))
+        }
     }
+}
+
+/// What [`Bsdf::choose`] chose.
+struct Chosen<R: Real> {
+    /// In the frame.
+    to: V3<R>,
+    /// Is it meant for this side of the surface?
+    reflects: bool,
+    /// Is it of what is matt?
+    is_matt: bool,
+    /// Else the facet that sends the path there.
+    facet: Facet<R>,
 }
 
 /// The unit vector between two others.

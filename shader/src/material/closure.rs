@@ -37,15 +37,28 @@ pub trait Closure<R: Scalar> {
     /// How it scatters light from a unit direction, towards the light; of mirrors and lenses nothing.
     fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R>;
 
-    /// A direction in which the path goes on, from an interaction with the place where rays start on the viewer's side. The first of
-    /// the draws chooses a part of the surface and the second what its facets do; `pair` gives two more, if they are asked for,
-    /// that choose the direction.
+    /// [`Closure::eval`] of a light's direction, and a direction in which the path goes on, from an interaction with the place where
+    /// rays start on the viewer's side: both at once, since most of their instructions are the same, which a kernel then holds once.
+    /// A light's direction of zero is none. The first of the draws chooses a part of the surface and the second what its facets do;
+    /// `pair` gives two more, if they are asked for, that choose the direction.
+    fn eval_and_sample(
+        &self,
+        at: (&SurfaceInteraction<R>, V3<R>),
+        light: V3<R>,
+        draws: (u32, u32),
+        pair: impl FnOnce() -> UVec4,
+    ) -> (Scattering<R>, ClosureSample<R>);
+
+    /// A direction in which the path goes on alone.
+    #[inline(always)]
     fn sample(
         &self,
         at: (&SurfaceInteraction<R>, V3<R>),
         draws: (u32, u32),
         pair: impl FnOnce() -> UVec4,
-    ) -> ClosureSample<R>;
+    ) -> ClosureSample<R> {
+        self.eval_and_sample(at, V3::zero(), draws, pair).1
+    }
 }
 
 impl<R: Scalar> Scattering<R> {

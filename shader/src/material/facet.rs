@@ -15,6 +15,12 @@ pub struct Facet<R: Real> {
 }
 
 impl<R: Scalar> Facet<R> {
+    /// One that does nothing.
+    #[inline(always)]
+    pub fn none() -> Self {
+        Facet { reflected: V3::zero(), rest: R::splat(0.0), probability: R::splat(0.0) }
+    }
+
     /// Of unit normal `h`, seen from the unit direction `viewer`.
     #[inline(always)]
     pub fn new(effects: Effects, layers: &Layers<R>, viewer: V3<R>, h: V3<R>) -> Self {

@@ -108,7 +108,16 @@ fn glass<R: Scalar>(w: V3<R>, h: V3<R>, eta: R) -> R {
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
 fn conductors<R: Scalar>(cosine: R, eta: V3<R>, k: V3<R>) -> V3<R> {
-    V3::new(conductor(cosine, eta.x, k.x), conductor(cosine, eta.y, k.y), conductor(cosine, eta.z, k.z))
+    // Each channel in turn becomes the first, so that a kernel holds the equations once.
+    let (mut eta, mut k, mut all) = (eta, k, V3::zero());
+    let mut channel = 0;
+    while channel < 3 {
+        all = V3::new(all.y, all.z, conductor(cosine, eta.x, k.x));
+        eta = V3::new(eta.y, eta.z, eta.x);
+        k = V3::new(k.y, k.z, k.x);
+        channel += 1;
+    }
+    all
 }
 
 /// Of a conductor with the complex index `eta + i k` in a vacuum, each at most 2^10 (Lagarde, Memo on Fresnel Equations, 2013).

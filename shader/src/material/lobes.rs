@@ -93,10 +93,24 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
     }
 
     #[inline(always)]
-    fn sample(
+    fn eval_and_sample(
+        &self,
+        at: (&SurfaceInteraction<R>, V3<R>),
+        light: V3<R>,
+        (part, _): (u32, u32),
+        pair: impl FnOnce() -> UVec4,
+    ) -> (Scattering<R>, ClosureSample<R>) {
+        (self.eval(at.0, light), self.chosen(at, part, pair))
+    }
+}
+
+impl<R: Scalar> Lobes<R> {
+    /// See [`Closure::sample`].
+    #[inline(always)]
+    fn chosen(
         &self,
         (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
-        (part, _): (u32, u32),
+        part: u32,
         pair: impl FnOnce() -> UVec4,
     ) -> ClosureSample<R> {
         let step = (part >> 9) as i32;

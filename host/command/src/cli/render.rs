@@ -89,7 +89,9 @@ impl Render {
         };
         super::one_on_stdout(self.json, &destination)?;
         if self.preview && destination.file().is_none() {
-            return Err(Error::new("--preview replaces what it wrote, which standard output can't: name a file with --output"));
+            return Err(Error::new(
+                "--preview replaces what it wrote, which standard output can't: name a file with --output",
+            ));
         }
         let bits = BitDepth::from_bits(self.bits)?;
         let mut encoding = Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone };

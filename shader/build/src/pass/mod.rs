@@ -60,8 +60,8 @@ pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::Precision;
     use crate::compile;
+    use crate::table::Precision;
     use crate::validate::{self, Validation};
     use eyerays_passes::testing::Kernel;
 

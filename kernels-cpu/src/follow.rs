@@ -123,6 +123,8 @@ fn together<R: Scalar, L: Leaf, M: Together>(isa: Isa, geometry: &TraceContext<'
 
 /// As [`together`], with the instructions that every processor has and leaves that may hold anything: the hybrids are there to be
 /// compared, and to compile them for every ISA and kind of leaf would take as long as all else.
+// The table of methods gives every way a kind of leaf.
+#[allow(clippy::extra_unused_type_parameters)]
 fn plainly<R: Scalar, L, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
     Neighbours::<R, Primitives, M>(Slots::new(geometry, slots, job)).run::<Native>();
 }

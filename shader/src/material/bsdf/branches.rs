@@ -6,7 +6,7 @@ use crate::real::{FAINT, Scalar, V3};
 use glam::Vec3;
 
 impl<R: Scalar> Bsdf<'_, R> {
-    /// What is matt alone scatters, see [`Closure::eval`].
+    /// What is matt alone scatters, see [`Closure::eval`](crate::material::Closure::eval).
     #[inline(always)]
     pub fn eval_base(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
         let to = self.local(direction);

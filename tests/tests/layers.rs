@@ -173,3 +173,18 @@ fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
     }
     assert!(matt > 500, "{matt}");
 }
+
+/// What is seen before the picture: the colours of the materials that the layer of materials tells.
+#[test]
+fn a_preview_has_the_colours_at_the_middle_of_each_pixel() {
+    let scene = shipped("bleeding");
+    let settings = Settings { size: SIZE, spp: 3, sampler: Sampler::Sobol, ..scene.settings };
+    let mut packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let preview = layers::preview(&mut packed, &scene.cameras[0], 2).unwrap();
+    assert_eq!(*packed.settings(), settings, "the settings are left as they were");
+    let (_, layers) = layered(&scene, 1);
+    for (i, (&seen, &number)) in preview.pixels.iter().zip(numbers(&layers, Layer::Material)).enumerate() {
+        let colour = if number == 0 { Vec3::ZERO } else { scene.materials[number as usize - 1].diffuse };
+        assert_eq!(Vec3::from(seen), colour, "pixel {i}");
+    }
+}

@@ -211,6 +211,19 @@ fn layers_lie_beside_the_picture_in_one_file() {
     assert_eq!(bytes, render("again.exr", &["--layers", "normal,object,depth", "--threads", "1"]));
 }
 
+/// The picture replaces what was shown first, and has its own bits. Standard output can't take back what it was given.
+#[test]
+fn a_preview_changes_nothing_of_the_picture() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let render = |output: &str, more: &[&str]| {
+        let quick = ["render", "scene.toml", "--device", "cpu", "--samples", "2", "-o", output];
+        place.succeed(&[&quick, more].concat());
+        fs::read(place.path(output)).unwrap()
+    };
+    assert_eq!(render("plain.png", &[]), render("after.png", &["--preview"]));
+    place.refuse(&["render", "scene.toml", "--device", "cpu", "--preview", "-o", "-"], &["--preview", "--output"]);
+}
+
 #[test]
 fn the_summary_tells_what_layers_took_where_there_are_any() {
     let place = Place::new(&[("scene.toml", SCENE)]);

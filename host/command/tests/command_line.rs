@@ -175,11 +175,7 @@ fn every_format_is_written_and_read_again() {
 #[test]
 fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
     let place = Place::new(&[("scene.toml", SCENE)]);
-    let render = |output: &str, more: &[&str]| {
-        let bright = ["render", "scene.toml", "--device", "cpu", "--exposure", "4", "-o", output];
-        place.succeed(&[&bright, more].concat());
-        fs::read(place.path(output)).unwrap()
-    };
+    let render = |output: &str, more: &[&str]| rendered(&place, output, &[&["--exposure", "4"], more].concat());
     let cut_off = render("a.png", &[]);
     assert_eq!(cut_off, render("b.png", &["--tone", "none"]));
     render("c.exr", &["--tone", "none"]);
@@ -192,14 +188,16 @@ fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
     }
 }
 
+/// The bytes of a picture of the scene.
+fn rendered(place: &Place, output: &str, options: &[&str]) -> Vec<u8> {
+    place.succeed(&[&["render", "scene.toml", "--device", "cpu", "-o", output], options].concat());
+    fs::read(place.path(output)).unwrap()
+}
+
 #[test]
 fn layers_lie_beside_the_picture_in_one_file() {
     let place = Place::new(&[("scene.toml", SCENE)]);
-    let render = |output: &str, more: &[&str]| {
-        let quick = ["render", "scene.toml", "--device", "cpu", "--samples", "2", "-o", output];
-        place.succeed(&[&quick, more].concat());
-        fs::read(place.path(output)).unwrap()
-    };
+    let render = |output: &str, more: &[&str]| rendered(&place, output, &[&["--samples", "2"], more].concat());
     render("plain.exr", &[]);
     let bytes = render("layers.exr", &["--layers", "depth,normal,object,colour,depth"]);
     // A header names its channels, each with a zero byte.
@@ -215,11 +213,7 @@ fn layers_lie_beside_the_picture_in_one_file() {
 #[test]
 fn a_preview_changes_nothing_of_the_picture() {
     let place = Place::new(&[("scene.toml", SCENE)]);
-    let render = |output: &str, more: &[&str]| {
-        let quick = ["render", "scene.toml", "--device", "cpu", "--samples", "2", "-o", output];
-        place.succeed(&[&quick, more].concat());
-        fs::read(place.path(output)).unwrap()
-    };
+    let render = |output: &str, more: &[&str]| rendered(&place, output, &[&["--samples", "2"], more].concat());
     assert_eq!(render("plain.png", &[]), render("after.png", &["--preview"]));
     place.refuse(&["render", "scene.toml", "--device", "cpu", "--preview", "-o", "-"], &["--preview", "--output"]);
 }

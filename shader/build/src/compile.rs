@@ -6,7 +6,7 @@ use spirv_builder::{Capability, ShaderPanicStrategy, SpirvBuilder, SpirvMetadata
 
 use crate::compiler::Compiler;
 use crate::error::one_line;
-use crate::table::Precision;
+use crate::table::Policy;
 use crate::{Error, Result};
 
 /// The Vulkan version whose SPIR-V is written.
@@ -30,8 +30,8 @@ const CAPABILITIES: [Capability; 6] = [
 /// What the code generator reads from the environment beside its arguments.
 const FORBIDDEN_VARIABLES: [&str; 3] = ["RUSTGPU_CODEGEN_ARGS", "RUSTGPU_RUSTFLAGS", "RUSTGPU_CARGOFLAGS"];
 
-/// Compiles the kernels of a precision, of the crate at `shader`; the words hold every entry point and all debug names.
-pub fn compile(compiler: &Compiler, shader: &Path, precision: Precision) -> Result<Vec<u32>> {
+/// Compiles the kernels of a policy, of the crate at `shader`; the words hold every entry point and all debug names.
+pub fn compile(compiler: &Compiler, shader: &Path, policy: Policy) -> Result<Vec<u32>> {
     for name in FORBIDDEN_VARIABLES {
         if std::env::var_os(name).is_some() {
             return Err(Error::Environment(name));
@@ -41,9 +41,9 @@ pub fn compile(compiler: &Compiler, shader: &Path, precision: Precision) -> Resu
     builder.rustc_codegen_spirv_location = Some(compiler.codegen.clone());
     builder.toolchain_overwrite = Some(compiler.toolchain.clone());
     builder.shader_crate_features.default_features = false;
-    builder.shader_crate_features.features = vec![precision.feature().into()];
+    builder.shader_crate_features.features = vec![policy.feature().into()];
     // Cargo lets one compiler at a time into a folder.
-    builder.target_dir_path = Some(format!("spirv-builder/{}", precision.feature()).into());
+    builder.target_dir_path = Some(format!("spirv-builder/{}", policy.feature()).into());
     builder.capabilities = CAPABILITIES.to_vec();
     builder.shader_panic_strategy = ShaderPanicStrategy::SilentExit;
     // Names make messages readable, whatever the profile says of debug information.

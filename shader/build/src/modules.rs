@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use crate::compiler::{Compiler, hex};
 use crate::manifest::{self, FORMAT, Manifest, Toolchain};
-use crate::table::{MODULES, Module, Precision};
+use crate::table::{MODULES, Module, Policy};
 use crate::validate::Validation;
 use crate::{Error, Result, compile, pass, reflect, source, validate};
 
@@ -33,9 +33,9 @@ pub fn build(compiler: &Compiler, shader: &Path) -> Result<Build> {
         codegen: compiler.codegen_hash()?,
     };
     let (exact, fast) = std::thread::scope(|scope| {
-        let compile = |precision| timed(precision, || compile::compile(compiler, shader, precision));
-        let fast = scope.spawn(move || compile(Precision::Fast));
-        (compile(Precision::Exact), fast.join().expect("it does not panic"))
+        let compile = |policy| timed(policy, || compile::compile(compiler, shader, policy));
+        let fast = scope.spawn(move || compile(Policy::Fast));
+        (compile(Policy::Exact), fast.join().expect("it does not panic"))
     });
     let (exact, fast) = (exact?, fast?);
     let mut build = Build {
@@ -44,7 +44,7 @@ pub fn build(compiler: &Compiler, shader: &Path) -> Result<Build> {
         validation: Validation::Passed,
     };
     for module in &MODULES {
-        let words = if module.precision == Precision::Exact { &exact } else { &fast };
+        let words = if module.policy == Policy::Exact { &exact } else { &fast };
         build.add(module, words)?;
     }
     build.check_size()?;
@@ -52,8 +52,8 @@ pub fn build(compiler: &Compiler, shader: &Path) -> Result<Build> {
 }
 
 /// Says how long the compiler takes.
-fn timed<T>(precision: Precision, compile: impl FnOnce() -> T) -> T {
-    let (start, name) = (Instant::now(), precision.feature());
+fn timed<T>(policy: Policy, compile: impl FnOnce() -> T) -> T {
+    let (start, name) = (Instant::now(), policy.feature());
     eprintln!("compiling {name} precision, which takes some minutes");
     let compiled = compile();
     eprintln!("compiled {name} precision in {:.0} s", start.elapsed().as_secs_f32());

@@ -10,21 +10,13 @@ pub enum Policy {
     Fast,
 }
 
-/// What is compiled at once: the compiler has one thread, so that each precision is compiled beside the other.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
-pub enum Precision {
-    /// The same bits on all devices.
-    Exact,
-    /// The device's own arithmetic.
-    Fast,
-}
-
-impl Precision {
-    /// The feature of the kernels' crate, by which the folder of what is built is named, too.
+impl Policy {
+    /// The feature of the kernels' crate that has the kernels of this policy, by which the folder of what is built is named, too.
+    /// The compiler has one thread, so that those of each are compiled beside the others.
     pub fn feature(self) -> &'static str {
         match self {
-            Precision::Exact => "exact",
-            Precision::Fast => "fast",
+            Policy::Exact => "exact",
+            Policy::Fast => "fast",
         }
     }
 }
@@ -38,8 +30,6 @@ pub struct Module {
     pub prefixes: &'static [&'static str],
     /// What it promises.
     pub policy: Policy,
-    /// The precision whose kernels it holds.
-    pub precision: Precision,
     /// Ends of the paths of functions that must survive as protected ones: `#[inline(never)]` is
     /// lost, with no more than a warning, on a function that takes a reference into a buffer or
     /// may panic, and its arithmetic is then rounded as the device likes.
@@ -58,25 +48,7 @@ const TRIANGLES: &[&str] = &["triangle::intersect_watertight", "triangle::stradd
 
 /// Every committed module. A kernel that is cut out of one asks a device only for what it uses itself.
 pub const MODULES: [Module; 3] = [
-    Module {
-        name: "exact",
-        prefixes: &["exact::", "subgroup_exact::"],
-        policy: Policy::Exact,
-        precision: Precision::Exact,
-        protects: &[],
-    },
-    Module {
-        name: "fast",
-        prefixes: &["fast::", "subgroup_fast::"],
-        policy: Policy::Fast,
-        precision: Precision::Fast,
-        protects: TRIANGLES,
-    },
-    Module {
-        name: "numerics",
-        prefixes: &["numerics::"],
-        policy: Policy::Exact,
-        precision: Precision::Exact,
-        protects: &[],
-    },
+    Module { name: "exact", prefixes: &["exact::", "subgroup_exact::"], policy: Policy::Exact, protects: &[] },
+    Module { name: "fast", prefixes: &["fast::", "subgroup_fast::"], policy: Policy::Fast, protects: TRIANGLES },
+    Module { name: "numerics", prefixes: &["numerics::"], policy: Policy::Exact, protects: &[] },
 ];

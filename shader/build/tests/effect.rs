@@ -12,7 +12,7 @@ use eyerays::scene;
 use eyerays_passes::{Kernel, Kernels};
 use eyerays_shader::data::{Effects, Specialisation};
 use eyerays_spirv::compiler::Compiler;
-use eyerays_spirv::table::{MODULES, Module, Precision};
+use eyerays_spirv::table::{MODULES, Module, Policy};
 use eyerays_spirv::{compile, pass, source};
 
 const SHIPPED: [&str; 4] = ["cornell", "whitted", "glass", "lights"];
@@ -123,7 +123,7 @@ fn copy_folder(from: &Path, to: &Path) {
 fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
     let folder = tempfile::tempdir().unwrap();
     let words =
-        compile::compile(compiler, &copied(folder.path(), edits), Precision::Exact).unwrap_or_else(|e| panic!("{e}"));
+        compile::compile(compiler, &copied(folder.path(), edits), Policy::Exact).unwrap_or_else(|e| panic!("{e}"));
     let table: &Module = MODULES.iter().find(|module| module.name == "exact").expect("a module of exact kernels");
     let finished = pass::finish(&words, &Module { protects: &[], ..*table }).unwrap_or_else(|e| panic!("{e}"));
     Kernels::parse(&compile::bytes(&finished.words())).unwrap()

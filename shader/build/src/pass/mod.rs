@@ -61,7 +61,6 @@ pub fn finish(words: &[u32], table: &Module) -> Result<Finished> {
 mod tests {
     use super::*;
     use crate::compile;
-    use crate::table::Precision;
     use crate::validate::{self, Validation};
     use eyerays_passes::testing::Kernel;
 
@@ -85,8 +84,7 @@ mod tests {
         let words = kernel.module().assemble();
         for (name, policy, protected) in [("exact", Policy::Exact, vec!["real::div"]), ("fast", Policy::Fast, vec![])] {
             let prefixes: &[&str] = if name == "exact" { &["exact::"] } else { &["fast::"] };
-            let precision = Precision::Exact;
-            let table = Module { name, prefixes, policy, precision, protects: &[] };
+            let table = Module { name, prefixes, policy, protects: &[] };
             let finished = finish(&words, &table).unwrap();
             assert_eq!(finished.protected, protected);
             let bytes = compile::bytes(&finished.words());

@@ -125,7 +125,7 @@ choices! {
         /// No ray slips between two triangles that share an edge (Woop, Benthin and Wald 2013)
         #[default]
         Watertight = "watertight",
-        /// The test of Moeller and Trumbore (1997), which lets some rays through: fast precision only
+        /// The test of Moeller and Trumbore (1997), which lets some rays through: a GPU's fast precision only
         Moller = "moller",
     }
 }
@@ -153,7 +153,7 @@ pub struct Traversal {
     pub order: Order,
     /// How the hierarchy and its triangles lie in memory.
     pub layout: Layout,
-    /// How a ray is tested against a triangle; in exact and reference precision always the watertight way.
+    /// How a ray is tested against a triangle; always the watertight way on a CPU and in exact precision.
     pub triangle: TriangleTest,
 }
 

@@ -3,7 +3,6 @@
 use std::time::{Duration, Instant};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::real::Fast;
 
 use crate::choice::choices;
 use crate::cpu;
@@ -25,7 +24,7 @@ choices! {
         /// The same picture bit for bit on every device.
         #[default]
         Exact = "exact",
-        /// The device's own division, root and power.
+        /// A GPU's own division, root and power; a CPU's are exact.
         Fast = "fast",
         /// Double precision on the CPU, to measure errors against.
         Reference = "reference",
@@ -283,8 +282,7 @@ impl Backend {
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact => rendered::<f32>(&renderer, view, runs.limit, done),
-            Precision::Fast => rendered::<Fast>(&renderer, view, runs.limit, done),
+            Precision::Exact | Precision::Fast => rendered::<f32>(&renderer, view, runs.limit, done),
             Precision::Reference => rendered::<f64>(&renderer, view, runs.limit, done),
         };
         if runs.warm_up {

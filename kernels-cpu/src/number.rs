@@ -2,7 +2,7 @@
 
 use eyerays_shader::data::{Frame, Launch, Light, Order, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
-use eyerays_shader::real::{Fast, Scalar, SimdIsa, Task};
+use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 use eyerays_shader::stage;
 
@@ -31,7 +31,8 @@ pub struct Shown<'a> {
     pub environment: &'a [u32],
 }
 
-/// A number that every stage is compiled for: `f32` (exact), [`Fast`] and `f64` (reference).
+/// A number that every stage is compiled for: `f32` and, for references, `f64`. A CPU has no faster division or root to give up
+/// exactness for.
 ///
 /// Queues are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
 pub trait Number: Scalar<Record: Send + Sync> {
@@ -108,7 +109,7 @@ macro_rules! number {
         })*
     };
 }
-number!(f32 Fast f64);
+number!(f32 f64);
 
 /// The scattering of a wave's paths, for the instructions of an ISA.
 struct Scatter<'t, R: Scalar> {

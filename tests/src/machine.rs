@@ -1,4 +1,4 @@
-//! Where rays are followed: on the CPU and on a GPU, in exact and in fast precision.
+//! Where rays are followed: on the CPU, and on a GPU in exact and in fast precision.
 
 use std::fmt;
 use std::sync::LazyLock;
@@ -10,18 +10,17 @@ use eyerays::gpu::{AdapterRequest, Caster, Gpu, Renderer};
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
 use eyerays::rays::Rays;
 use eyerays::stream::{Answers, Question, Stream};
-use eyerays_shader::real::Fast;
 use glam::UVec4;
 
 use crate::{Posed, gpu, traversals};
 
 static GPU: LazyLock<Option<Gpu>> = LazyLock::new(|| gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }));
 
-/// A device in a precision. Without a GPU there are those of the CPU alone.
+/// A device in a precision. Without a GPU there is the CPU alone.
 #[derive(Clone, Copy)]
 pub struct Machine {
     gpu: Option<&'static Gpu>,
-    /// Is it exact precision?
+    /// Is it exact precision? A CPU's always is.
     pub exact: bool,
 }
 
@@ -38,9 +37,8 @@ impl Machine {
 
     /// Every one.
     pub fn all() -> Vec<Machine> {
-        let devices = [None, GPU.as_ref()];
-        let devices = if GPU.is_some() { &devices[..] } else { &devices[..1] };
-        devices.iter().flat_map(|&gpu| [true, false].map(|exact| Machine { gpu, exact })).collect()
+        let gpu = GPU.as_ref().into_iter().flat_map(|gpu| [true, false].map(|exact| Machine { gpu: Some(gpu), exact }));
+        std::iter::once(Machine::CPU).chain(gpu).collect()
     }
 
     /// Is it a GPU of software, which ends loops after 65,535 rounds (lavapipe), and compiles kernels slowly?
@@ -54,11 +52,10 @@ impl Machine {
     }
 
     /// The ways through a hierarchy that a test takes on it: all on a CPU; a software GPU is given few, for each of
-    /// which it compiles a kernel. In fast precision a CPU has the one that [`Machine::tracer`] takes.
+    /// which it compiles a kernel.
     pub fn traversals(&self) -> Vec<Traversal> {
-        match (self.is_cpu(), self.exact) {
-            (true, true) => traversals(),
-            (true, false) => vec![Method::IfIf.into()],
+        match self.gpu {
+            None => traversals(),
             _ if self.is_software() => {
                 [Method::Wide, Method::IfIf].map(|m| Traversal { scheduling: Scheduling::Grid, ..m.into() }).into()
             }
@@ -81,10 +78,9 @@ impl Machine {
     /// If the device can't.
     pub fn render(&self, posed: &Posed) -> (Film, Rays) {
         let (packed, view, traversal) = (&posed.packed, &posed.view, Traversal::default());
-        let rendered = match (self.gpu, self.exact) {
-            (None, true) => cpu::render::<f32>(packed, view, traversal, 0, &|_| ()),
-            (None, false) => cpu::render::<Fast>(packed, view, traversal, 0, &|_| ()),
-            (Some(gpu), exact) => Renderer::new(gpu, packed, exact, traversal)
+        let rendered = match self.gpu {
+            None => cpu::render::<f32>(packed, view, traversal, 0, &|_| ()),
+            Some(gpu) => Renderer::new(gpu, packed, self.exact, traversal)
                 .and_then(|mut renderer| renderer.render(view, &|_| ()))
                 .map(|rendering| (rendering.film, rendering.rays)),
         };
@@ -100,8 +96,7 @@ pub struct Tracer<'a> {
 }
 
 impl Tracer<'_> {
-    /// The closest hits of a stream: the bits of (t, u, v), and the slot of the triangle. In fast precision a CPU
-    /// takes if-if, whatever it is asked for.
+    /// The closest hits of a stream: the bits of (t, u, v), and the slot of the triangle.
     ///
     /// # Panics
     /// If the device can't.
@@ -112,8 +107,7 @@ impl Tracer<'_> {
                 caster.trace(&cast, self.machine.exact, traversal, question)?;
                 caster.answers(&cast, question)
             }),
-            None if self.machine.exact => cpu::cast(self.packed, traversal, 0, stream, question).map(|(a, _)| a),
-            None => cpu::closest::<Fast>(self.packed, Method::IfIf.into(), 0, stream).map(Answers::Closest),
+            None => cpu::cast(self.packed, traversal, 0, stream, question).map(|(a, _)| a),
         };
         match answers {
             Ok(Answers::Closest(hits)) => hits,

@@ -8,7 +8,7 @@ use eyerays::method::Traversal;
 use eyerays::rays::Rays;
 use eyerays::view::Region;
 use eyerays_bvh::Quality;
-use eyerays_shader::real::{Fast, Scalar};
+use eyerays_shader::real::Scalar;
 use eyerays_shader::stage::NON_FINITE;
 use eyerays_tests::{Posed, SAMPLED, SHIPPED, assert_same_bits, pack, pack_in, settings, shipped, traversals};
 
@@ -36,11 +36,6 @@ fn any_number_of_threads<R: cpu::Number>() {
 #[test]
 fn threads_change_nothing_in_exact_precision() {
     any_number_of_threads::<f32>();
-}
-
-#[test]
-fn threads_change_nothing_in_fast_precision() {
-    any_number_of_threads::<Fast>();
 }
 
 #[test]

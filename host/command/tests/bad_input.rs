@@ -289,6 +289,7 @@ fn options_that_contradict_each_other() {
         (&["--scheduling", "persistent", "--method", "packet"], &["--scheduling persistent", "if-if"]),
         (&["--triangle", "moller"], &["--triangle moller", "--precision fast"]),
         (&["--triangle", "moller", "--precision", "reference"], &["--triangle moller", "--precision fast"]),
+        (&["--device", "cpu", "--precision", "fast", "--triangle", "moller"], &["--triangle moller", "--device cpu"]),
         (&["--device", "cpu", "--adapter", "0"], &["--adapter"]),
         (&["--json", "-o", "-"], &["--json", "name a file"]),
         (&["--half", "-o", "a.hdr"], &["--half", ".exr"]),

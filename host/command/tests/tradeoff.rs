@@ -2,6 +2,7 @@
 
 mod program;
 
+use std::cell::RefCell;
 use std::fs;
 
 use program::{Place, SCENE, has_gpu, shipped};
@@ -74,9 +75,8 @@ fn a_report_is_written_in_every_format() {
     let json: serde_json::Value = serde_json::from_str(&read("a.json")).unwrap();
     let records = json["records"].as_array().unwrap();
     assert_eq!(read("a.csv").lines().count(), 1 + records.len());
-    assert!(
-        records.iter().any(|record| record["triangle"] == "moller") && records.iter().any(|r| r["method"] == "wide")
-    );
+    assert!(records.iter().any(|record| record["method"] == "wide"));
+    assert!(records.iter().all(|record| record["precision"] == "exact"), "a CPU has no other");
     assert!(read("a.svg").starts_with("<svg") && read("a.svg").contains("in ms (logarithmic)"));
     let quiet = place.succeed(&[&["tradeoff", "scene.toml", "--samples", "1", "-q"], &FEW[..]].concat());
     assert!(quiet.stdout.is_empty() && quiet.stderr.is_empty(), "{}", quiet.stderr);
@@ -153,16 +153,21 @@ fn options_override_a_settings_file_and_it_the_scene() {
     let kept = "device = \"cpu\"\nprecision = \"fast\"\ntriangle = \"moller\"\nsamples = 2\nbounces = 3\n";
     let scene = SCENE.replace("size = [24, 18]", "size = [24, 18]\nsamples = 3\nbounces = 7");
     let place = Place::new(&[("scene.toml", &scene), ("kept.toml", kept), ("bounces.toml", "bounces = 1\n")]);
+    let hashes = RefCell::new(Vec::new());
     let summary = |more: &[&str]| {
         let json = place.succeed(&[&["render", "scene.toml", "-o", "out.exr", "--json"], more].concat()).json();
+        hashes.borrow_mut().push(json["film_hash"].to_string());
         ["samples", "bounces", "precision"].map(|key| json[key].to_string())
     };
     assert_eq!(summary(&["--device", "cpu"]), ["3", "7", "\"exact\""]);
     assert_eq!(summary(&["--settings", "kept.toml"]), ["2", "3", "\"fast\""]);
     assert_eq!(summary(&["--settings", "bounces.toml", "--device", "cpu"]), ["3", "1", "\"exact\""]);
     assert_eq!(summary(&["--settings", "kept.toml", "--samples", "1", "--bounces", "0"]), ["1", "0", "\"fast\""]);
-    // Exact precision undoes the triangle test that is for fast precision alone.
+    // Exact precision undoes the triangle test that is for fast precision alone. A CPU has neither.
     assert_eq!(summary(&["--settings", "kept.toml", "--precision", "exact"]), ["2", "3", "\"exact\""]);
+    let hashes = hashes.into_inner();
+    assert_eq!(hashes[1], hashes[4], "fast precision on a CPU is exact");
+    assert_ne!(hashes[1], hashes[3], "other samples");
 }
 
 #[test]
@@ -226,7 +231,8 @@ fn runs_that_can_not_be() {
         (&["--roulette", "65536"], &["--roulette 65536"]),
         (&["--reference-spp", "1"], &["--reference-spp 1", "2 to"]),
         (&["--sampler", "regular", "--spp", "8"], &["scene.toml", "no grid of 8"]),
-        (&["--precision", "exact", "--triangle", "moller"], &["--triangle moller", "--precision fast"]),
+        (&["--triangle", "moller"], &["--triangle moller", "GPUs", "--device cpu"]),
+        (&["--precision", "exact,fast"], &["--precision fast", "GPUs", "--device cpu"]),
         (&["--threads", "0"], &["--threads 0"]),
         (&["--adapter", "0"], &["--adapter", "--device cpu"]),
         (&["--size", "0x10"], &["0x10"]),

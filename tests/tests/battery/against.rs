@@ -70,7 +70,7 @@ fn is_near(hit: Found, want: Found) -> bool {
 }
 
 /// Asserts that every traversal of every machine finds what brute force does in its precision: the same bits in exact
-/// precision and on the CPU; on a GPU in fast precision nothing but numbers, and how many differ is counted.
+/// precision; in fast precision nothing but numbers, and how many differ is counted.
 ///
 /// `rounds` are what a ray's traversal may take at most, for software that ends loops after 65,535 of them.
 pub fn assert_like_brute_force(what: &str, packed: &DeviceScene, stream: &Stream, rounds: usize) {
@@ -80,7 +80,7 @@ pub fn assert_like_brute_force(what: &str, packed: &DeviceScene, stream: &Stream
             println!("battery: {what}, {machine}: left out, since software ends loops early");
             continue;
         }
-        let (want, is_same) = (if machine.exact { &exact } else { &fast }, machine.exact || machine.is_cpu());
+        let (want, is_same) = (if machine.exact { &exact } else { &fast }, machine.exact);
         let (tracer, traversals) = (machine.tracer(packed), machine.traversals());
         let (mut differing, mut unsound) = (0, 0);
         for &traversal in &traversals {

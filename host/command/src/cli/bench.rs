@@ -9,6 +9,7 @@ use eyerays_shader::data::Tuning;
 
 use super::camera;
 use super::choice::choice;
+use super::device;
 use super::options;
 use super::reading::{Read, Reading};
 use super::{console, hush, progress, threads};
@@ -220,7 +221,7 @@ impl Bench {
             return Err(Error::new("--ao-length is no finite number above 0"));
         }
         let (ways, on) = (&self.ways, &self.on);
-        options::check_tests(&ways.triangle, on.precision.contains(&Precision::Fast))?;
+        device::check_tests(&ways.triangle, on.precision.contains(&Precision::Fast))?;
         let mut kinds = self.rays.kinds.clone();
         kinds.sort_unstable();
         kinds.dedup();
@@ -231,7 +232,7 @@ impl Bench {
             orders: unique(&ways.order),
             layouts: unique(&ways.layout),
             triangles: unique(&ways.triangle),
-            tuning: options::tuning(ways.stack_max, ways.cut)?,
+            tuning: device::tuning(ways.stack_max, ways.cut)?,
             exact: on.precision.contains(&Precision::Exact),
             fast: on.precision.contains(&Precision::Fast),
             threads: threads::chosen(on.threads)?,

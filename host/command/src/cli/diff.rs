@@ -8,7 +8,8 @@ use clap::Args;
 use serde_json::json;
 
 use super::console;
-use super::options::{DeviceArgs, Effort, View};
+use super::device::DeviceArgs;
+use super::options::{Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
 use crate::error::{Error, Result};

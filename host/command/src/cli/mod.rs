@@ -6,6 +6,7 @@ mod check;
 mod choice;
 mod console;
 mod convert;
+mod device;
 mod diff;
 mod exposure;
 mod footprint;

@@ -10,8 +10,9 @@ use clap::Args;
 
 use super::choice::choice;
 use super::console;
+use super::device::DeviceArgs;
 use super::exposure::{Brightness, Exposure};
-use super::options::{DeviceArgs, Effort, View};
+use super::options::{Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
 use super::summary::{Summary, Times};
@@ -101,7 +102,8 @@ impl Render {
         if !self.layers.is_empty() {
             output::check_layers(&destination)?;
         }
-        let choice = self.on.over(&preset).choice(self.device.or(preset.device).unwrap_or_default())?;
+        let device = self.device.or(preset.device).unwrap_or_default();
+        let choice = self.on.over(&preset, device).choice(device)?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
         let mut effort = self.effort.over(&preset);

@@ -8,8 +8,9 @@ use clap::{Args, ValueEnum};
 
 use super::choice::choice;
 use super::console;
+use super::device;
 use super::hush;
-use super::options::{self, Effort, View};
+use super::options::{Effort, View};
 use super::progress;
 use super::reading::{Read, Reading};
 use super::threads;
@@ -169,8 +170,11 @@ impl Tradeoff {
         let outputs = self.outputs()?;
         let choice = self.choice()?;
         let subject = self.subject(quiet)?;
-        let plan = self.plan(&subject, wish, quiet)?;
+        let mut plan = self.plan(&subject, wish, quiet)?;
         let device = Backend::new(&choice)?;
+        if device.gpu().is_none() {
+            plan.axes.on_cpu();
+        }
         let progress = progress::steps(tradeoff::steps(&plan), quiet);
         let report = tradeoff::run(&plan, &subject, device, &|step| console::step(&progress, step));
         progress.finish_and_clear();
@@ -237,6 +241,10 @@ impl Tradeoff {
         if self.on.device == DeviceWish::Cpu && self.on.adapter.is_some() {
             return Err(Error::new("--adapter is for GPUs: drop it, or --device cpu"));
         }
+        if self.on.device == DeviceWish::Cpu && self.tried.precision.contains(&Precision::Fast) {
+            return Err(Error::new("--precision fast is for GPUs: a CPU is exact; drop it, or --device cpu"));
+        }
+        device::check_processor(&self.tried.triangle, self.on.device)?;
         Ok(Choice {
             device: self.on.device,
             precision: if self.tried.exact() { Default::default() } else { eyerays::render::Precision::Fast },
@@ -305,7 +313,7 @@ impl Tried {
     /// Leaves of the axes what was asked for.
     fn restrict(&self, axes: &mut Axes) -> Result<()> {
         let fast = self.precision.is_empty() || self.precision.contains(&Precision::Fast);
-        options::check_tests(&self.triangle, fast)?;
+        device::check_tests(&self.triangle, fast)?;
         axes.arithmetic.retain(|&(precision, triangle)| match precision {
             eyerays::render::Precision::Fast => fast && (self.triangle.is_empty() || self.triangle.contains(&triangle)),
             _ => self.exact(),

@@ -79,6 +79,11 @@ impl Axes {
         axes
     }
 
+    /// Leaves what a CPU has a choice of: its fast precision is the exact one.
+    pub fn on_cpu(&mut self) {
+        self.arithmetic = vec![(Precision::Exact, TriangleTest::Watertight)];
+    }
+
     /// Adds what else is tried of a scene by the integrators.
     fn extend(&mut self, scene: &Scene, own: &Settings) {
         let followed = |m: &Material| m.reflection != Vec3::ZERO || m.transmission != Vec3::ZERO;

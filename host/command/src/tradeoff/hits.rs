@@ -1,6 +1,6 @@
 //! Errors of hits: what primary rays meet, beside what they meet in double precision.
 
-use eyerays_shader::real::{Fast, Scalar};
+use eyerays_shader::real::Scalar;
 use glam::UVec4;
 
 use crate::bench::answers::primitive;
@@ -74,16 +74,14 @@ impl Primary {
         Ok(Primary { stream, truth })
     }
 
-    /// How far the hits of a choice in exact or fast precision are from the truth, on the GPU or else the CPU.
+    /// How far the hits of a choice in single precision are from the truth, on the GPU or else the CPU.
     ///
     /// # Errors
     /// What the device reports.
     pub fn errors(&self, packed: &DeviceScene, gpu: Option<&Gpu>, choice: &Choice) -> Result<HitErrors> {
-        let fast = choice.precision == Precision::Fast;
         let on_cpu = choice.traversal.resolved(Processor::Cpu, Coherence::Primary);
         let hits = match gpu {
-            Some(gpu) => self.on_gpu(gpu, packed, !fast, choice.traversal)?,
-            None if fast => cpu::closest::<Fast>(packed, on_cpu, choice.threads, &self.stream)?,
+            Some(gpu) => self.on_gpu(gpu, packed, choice.precision == Precision::Exact, choice.traversal)?,
             None => cpu::closest::<f32>(packed, on_cpu, choice.threads, &self.stream)?,
         };
         let found: Vec<_> =

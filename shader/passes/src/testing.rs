@@ -201,11 +201,7 @@ impl Body<'_> {
 
     /// Does `then` if a word has a bit.
     pub fn if_has(&mut self, word: Word, bit: u32, then: impl FnOnce(&mut Body)) {
-        let (uint, bool) = (self.ids.uint, self.b.type_bool());
-        let (bit, zero) = (self.constant_u32(bit), self.constant_u32(0));
-        let masked = self.b.bitwise_and(uint, None, word, bit).unwrap();
-        let has = self.b.i_not_equal(bool, None, masked, zero).unwrap();
-        let (inside, after) = (self.b.id(), self.b.id());
+        let (has, inside, after) = (self.has(word, bit), self.b.id(), self.b.id());
         self.b.selection_merge(after, SelectionControl::NONE).unwrap();
         self.b.branch_conditional(has, inside, after, []).unwrap();
         self.b.begin_block(Some(inside)).unwrap();
@@ -222,10 +218,50 @@ impl Body<'_> {
         then: impl FnOnce(&mut Body) -> Word,
         other: impl FnOnce(&mut Body) -> Word,
     ) -> Word {
-        let (uint, bool, kind) = (self.ids.uint, self.b.type_bool(), self.b.type_struct([self.ids.float; 2]));
+        let kind = self.b.type_struct([self.ids.float; 2]);
+        self.value_if(kind, (word, bit), then, other)
+    }
+
+    /// One of two numbers, likewise.
+    pub fn number_if(
+        &mut self,
+        word: Word,
+        bit: u32,
+        then: impl FnOnce(&mut Body) -> Word,
+        other: impl FnOnce(&mut Body) -> Word,
+    ) -> Word {
+        self.value_if(self.ids.float, (word, bit), then, other)
+    }
+
+    /// A number, or another one if a word has a bit; without a block for the other side.
+    pub fn number_unless(&mut self, word: Word, bit: u32, x: Word, then: impl FnOnce(&mut Body) -> Word) -> Word {
+        let (has, inside, after, before) = (self.has(word, bit), self.b.id(), self.b.id(), self.b.id());
+        self.b.branch(before).unwrap();
+        self.b.begin_block(Some(before)).unwrap();
+        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
+        self.b.branch_conditional(has, inside, after, []).unwrap();
+        self.b.begin_block(Some(inside)).unwrap();
+        let other = then(&mut Body { b: self.b, ids: self.ids });
+        self.b.branch(after).unwrap();
+        self.b.begin_block(Some(after)).unwrap();
+        self.b.phi(self.ids.float, None, [(other, inside), (x, before)]).unwrap()
+    }
+
+    fn has(&mut self, word: Word, bit: u32) -> Word {
+        let (uint, bool) = (self.ids.uint, self.b.type_bool());
         let (bit, zero) = (self.constant_u32(bit), self.constant_u32(0));
         let masked = self.b.bitwise_and(uint, None, word, bit).unwrap();
-        let has = self.b.i_not_equal(bool, None, masked, zero).unwrap();
+        self.b.i_not_equal(bool, None, masked, zero).unwrap()
+    }
+
+    fn value_if(
+        &mut self,
+        kind: Word,
+        (word, bit): (Word, u32),
+        then: impl FnOnce(&mut Body) -> Word,
+        other: impl FnOnce(&mut Body) -> Word,
+    ) -> Word {
+        let has = self.has(word, bit);
         let [inside, outside, after] = [0; 3].map(|_| self.b.id());
         self.b.selection_merge(after, SelectionControl::NONE).unwrap();
         self.b.branch_conditional(has, inside, outside, []).unwrap();
@@ -319,6 +355,12 @@ impl Body<'_> {
     pub fn pair(&mut self, x: Word, y: Word) -> Word {
         let kind = self.b.type_struct([self.ids.float; 2]);
         self.b.composite_construct(kind, None, [x, y]).unwrap()
+    }
+
+    /// A struct of a number and its double.
+    pub fn pair_with_sum(&mut self, x: Word) -> Word {
+        let sum = self.f_add(x, x);
+        self.pair(sum, x)
     }
 
     /// A struct of two numbers with another in one of the places.

@@ -187,7 +187,7 @@ fn survive<R: Scalar>(frame: &Frame, next: PathState<R>, decision: u32) -> (Path
         return (next, true);
     }
     let steps = ((greatest * R::splat(STEPS as f32)).floor_index()).max(1);
-    let raised = R::splat(STEPS as f32).div(R::splat(steps as f32));
+    let raised = R::splat(STEPS as f32).over(R::splat(steps as f32));
     let weight = (next.weight * raised).map(|c| c.flush(FAINT));
     (PathState { weight, ..next }, (decision >> 9) < steps as u32)
 }

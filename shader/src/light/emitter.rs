@@ -111,7 +111,7 @@ impl<R: Scalar> EmitterSample<R> {
         if distance.lt(R::splat(TINY)) {
             return Self::none();
         }
-        let inverse = one.div(distance).min(R::splat(MOST));
+        let inverse = distance.reciprocal().min(R::splat(MOST));
         let light = ((colour * inverse).map(|c| c.flush(FAINT)) * inverse).map(|c| c.flush(FAINT));
         let light = (light * probability.reciprocal()).map(|c| c.flush(FAINT));
         EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density }
@@ -255,8 +255,8 @@ impl<R: Scalar> Cone<R> {
         let away = (centre - origin).map(|c| c.flush(SMALL));
         let (square, own) = (away.dot(away), (radius * radius).flush(FAINT));
         let is_outside = own.lt(square * R::splat(OUTSIDE));
-        let sine = own.div(R::select(is_outside, square, own));
-        Cone { is_outside, height: sine.div(one + (one - sine).sqrt()) }
+        let sine = own.div(R::select(is_outside, square, own)).flush(FAINT);
+        Cone { is_outside, height: sine.over(one + (one - sine).sqrt()) }
     }
 
     /// The sphere is chosen as its area is, and each direction of the cone is as likely.

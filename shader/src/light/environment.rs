@@ -126,7 +126,7 @@ impl<'a> Environment<'a> {
     fn solid_angle<R: Scalar>(&self, row: u32) -> R {
         let (upper, _) = self.beside_pole(row);
         let height: R = self.edge::<R>(upper + 1) - self.edge(upper);
-        height * R::splat(core::f32::consts::TAU).div(R::splat(self.width as f32))
+        height * R::splat(core::f32::consts::TAU).over(R::splat(self.width as f32))
     }
 
     /// A row by its number from the nearer pole, and whether that is the lower one.
@@ -219,7 +219,7 @@ impl Drawn {
         let shift = self.shift();
         // Whole numbers of 24 bits and one more, which every device converts exactly.
         let (over, all) = ((self.over >> shift) as f32, ((self.steps >> shift) + 1) as f32);
-        R::splat(over).div(R::splat(all)).min(R::splat(MOST))
+        R::splat(over).over(R::splat(all)).min(R::splat(MOST))
     }
 
     /// How likely it is.

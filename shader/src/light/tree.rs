@@ -127,13 +127,13 @@ fn importance<R: Scalar>(node: &LightNode, view: &Viewpoint<R>) -> R {
     let half = V3::<R>::splat(numbers(node.half));
     let (square, reach) = (away.dot(away), half.dot(half).flush(FAINT));
     let intensity = R::splat(f32::from_bits(node.middle.w));
-    let arrives = intensity.div(square.max(reach).max(R::splat(NEAREST))).flush(FAINT);
+    let arrives = intensity.over(square.max(reach).max(R::splat(NEAREST))).flush(FAINT);
     if !reach.lt(square * R::splat(OUTSIDE)) {
         return arrives;
     }
     let direction = away.direction_and_length().0;
     // The cone that the box is seen in, of its sphere.
-    let sine = reach.div(square).flush(FAINT);
+    let sine = reach.over(square).flush(FAINT);
     let around = Angle { cosine: (one - sine).sqrt(), sine: sine.sqrt() };
     let facing = -V3::<R>::splat(numbers(node.axis)).dot(direction).flush(SMALL);
     let facing = if node.has(LightNode::TWO_SIDED) { facing.abs() } else { facing };
@@ -160,7 +160,7 @@ fn steps_of_first<R: Scalar>(first: R, second: R) -> u32 {
         return 0;
     }
     // What may arrive may be chosen.
-    let steps = (first.div(first + second) * R::splat(STEPS as f32)).floor_index();
+    let steps = (first.over(first + second) * R::splat(STEPS as f32)).floor_index();
     steps.max(1).min(STEPS as i32 - 1) as u32
 }
 

@@ -77,7 +77,7 @@ impl<R: Scalar> Axis<R> {
 #[inline(always)]
 pub fn cosine_coordinate<R: Scalar>(cosine: R, roughness: R) -> R {
     let (one, cosine) = (R::splat(1.0), cosine.max(R::splat(SMALL)).min(R::splat(1.0)));
-    let near = cosine * (one + roughness).div(cosine + roughness);
+    let near = cosine * (one + roughness).over(cosine + roughness);
     cosine.sqrt() * R::splat(0.6) + near * R::splat(0.4)
 }
 
@@ -113,7 +113,7 @@ impl<R: Scalar> FacetAlbedo<R> {
         let root = rough.sqrt();
         let even = Axis::new(root, EVEN[0]);
         let brushed = if effects.has(Effects::ANISOTROPIC) {
-            (Axis::new(root, BRUSHED[0]), Axis::new(fine.div(rough).sqrt(), BRUSHED[1]))
+            (Axis::new(root, BRUSHED[0]), Axis::new(fine.over(rough).sqrt(), BRUSHED[1]))
         } else {
             (even, even)
         };
@@ -138,7 +138,7 @@ impl<R: Scalar> FacetAlbedo<R> {
         let square = (w.x * w.x + w.y * w.y).flush(SMALL);
         let none = square.eq(R::splat(0.0));
         let length = R::select(none, R::splat(1.0), square).sqrt();
-        let azimuth = Axis::new(along.abs().div(length), BRUSHED[2]);
+        let azimuth = Axis::new(along.abs().over(length), BRUSHED[2]);
         let cosine = Axis::new(coordinate, BRUSHED[3]);
         let (rough, ratio) = self.brushed;
         rough.between(|i| {
@@ -166,7 +166,7 @@ impl<R: Scalar> FacetAlbedo<R> {
     pub fn glass(&self, eta: R) -> GlassAlbedo<R> {
         const OVER: f32 = 1.0 / MOST_BEND;
         let one = R::splat(1.0);
-        let bend = (one - eta).abs().div(one + eta) * R::splat(OVER);
+        let bend = (one - eta).abs().over(one + eta) * R::splat(OVER);
         GlassAlbedo {
             own: self.rough,
             bend: Axis::new(bend, GLASS[0]),

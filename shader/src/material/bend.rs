@@ -21,7 +21,7 @@ pub fn bent<R: Scalar>(interaction: &SurfaceInteraction<R>, normal: V3<R>, direc
         return normal;
     }
     // In the plane of both normals the bent one is (x, z), by the axis across the surface's own and that.
-    let (across, size) = (normal - own * normal.dot(own)).map(|c| c.flush(SMALL)).normalised();
+    let (across, size) = (normal - own * normal.dot(own)).map(|c| c.flush(SMALL)).direction_and_length();
     let x = viewer.dot(across).flush(SMALL);
     let square = (x * x + height * height).flush(SMALL);
     if size.eq(zero) || square.eq(zero) {
@@ -32,9 +32,9 @@ pub fn bent<R: Scalar>(interaction: &SurfaceInteraction<R>, normal: V3<R>, direc
     let c = (least + height) * (least + height) * R::splat(0.25);
     let root = (b * b - square * c * R::splat(4.0)).max(zero).sqrt();
     let sum = R::select(x.lt(zero), b + root, b - root);
-    let z = (sum * R::splat(0.5)).div(square).max(zero).min(one);
+    let z = (sum * R::splat(0.5)).over(square).max(zero).min(one);
     let (x, z) = ((one - z).sqrt(), z.sqrt());
-    (across * x.flush(SMALL) + own * z.flush(SMALL)).map(|c| c.flush(SMALL)).normalised().0
+    (across * x.flush(SMALL) + own * z.flush(SMALL)).map(|c| c.flush(SMALL)).renormalised()
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         let left = if is_compensated { energy.left } else { facet.rest };
         let base = if layers.is_coated { layers.diffuse * left } else { layers.diffuse };
         let under = if layers.is_coated {
-            facet.rest.div((one - layers.reflectance.mean(effects)).max(R::splat(SMALL)))
+            facet.rest.over((one - layers.reflectance.mean(effects)).max(R::splat(SMALL)))
         } else {
             one
         };
@@ -68,7 +68,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         let (near, far) = ((energy.near * energy.lost).greatest(), (energy.far * energy.lost).greatest());
         let least = if zero.lt(base.greatest()) { LEAST } else { LEAST_LOST };
         let matt = steps(base.greatest() + near + far, facets, least);
-        let share = far.div((base.greatest() + near + far).max(R::splat(SMALL)));
+        let share = far.over((base.greatest() + near + far).max(R::splat(SMALL)));
         let far = (share * R::splat(matt as f32)).floor_index();
         Bsdf { effects, albedos, axes, viewer, layers, is_smooth, energy, under, matt, far }
     }
@@ -82,7 +82,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     fn world(&self, v: V3<R>) -> V3<R> {
         let [x, y, z] = self.axes;
         let part = |axis: V3<R>, length| (axis * length).map(|c| c.flush(TINY));
-        (part(x, v.x) + part(y, v.y) + part(z, v.z)).map(|c| c.flush(TINY)).direction_and_length().0
+        (part(x, v.x) + part(y, v.y) + part(z, v.z)).map(|c| c.flush(TINY)).renormalised()
     }
 
     #[inline(always)]
@@ -228,19 +228,16 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     #[inline(always)]
     fn choose(&self, (part, way): (u32, u32), pair: impl FnOnce() -> UVec4) -> Chosen<R> {
         let (step, up) = ((part >> 9) as i32, V3::<R>::splat(Vec3::Z));
-        if step < self.matt {
-            let pair = pair();
+        let is_matt = step < self.matt;
+        // Here, so that a kernel holds it once.
+        let pair = if is_matt || !self.is_smooth { pair() } else { UVec4::ZERO };
+        if is_matt {
             let near = cosine_direction(up, (pair.x, pair.y)).0.map(|c| c.flush(SMALL));
             let is_near = step >= self.far;
             let to = V3::new(near.x, near.y, R::select(is_near, near.z, -near.z));
             return Chosen { to, reflects: is_near, is_matt: true, facet: Facet::none() };
         }
-        let h = if self.is_smooth {
-            up
-        } else {
-            let pair = pair();
-            self.layers.ggx.visible(self.viewer, (pair.x, pair.y))
-        };
+        let h = if self.is_smooth { up } else { self.layers.ggx.visible(self.viewer, (pair.x, pair.y)) };
         let facet = self.facet(h);
         let reflects = R::splat(unit(way)).lt(facet.probability);
         Chosen { to: self.leaving(h, reflects), reflects, is_matt: false, facet }
@@ -362,7 +359,10 @@ fn steps<R: Scalar>(matt: R, facets: R, least: i32) -> i32 {
     if facets.eq(zero) {
         return STEPS;
     }
-    (matt.div(matt + facets) * R::splat(STEPS as f32)).floor_index().max(least).min(STEPS - LEAST)
+    (matt.over((matt + facets).max(R::splat(FAINT))) * R::splat(STEPS as f32))
+        .floor_index()
+        .max(least)
+        .min(STEPS - LEAST)
 }
 
 /// A vector in the frame of unit axes.

@@ -71,7 +71,7 @@ impl<R: Scalar> Energy<R> {
         let partial = Energy { facets, glass, bends, dielectric, ..Self::none(layers) };
         let means = facets.mean(albedos);
         let sum = means.0 + means.1;
-        let again = |f: R| (f * f * sum).flush(SMALL).div(one - f * (one - sum));
+        let again = |f: R| (f * f * sum).flush(SMALL).over((one - f * (one - sum)).max(R::splat(SMALL)));
         let mean = if is_conductor { reflectance.mean_colour } else { reflectance.schlick_mean() };
         let reflected = mean.map(|f| again(f.min(one)).min(one));
         let (mean_near, mean_far) = (partial.mean_loss(albedos, means, false), partial.mean_loss(albedos, means, true));
@@ -91,12 +91,12 @@ impl<R: Scalar> Energy<R> {
             if has_glass { reflectance.of_faces(effects, glass.mean(albedos, false).0) * dielectric } else { zero };
         let mirrored = (reflectance.normal * means.0 + reflectance.grazing * means.1).greatest();
         let mean_spent = mirrored + mean_glass + greatest * mean_near;
-        let over = |mean: R| lost.div(mean.max(R::splat(SMALL)));
+        let over = |mean: R| lost.over(mean.max(R::splat(SMALL)));
         Energy {
             lost,
             over: (over(mean_near), over(mean_far)),
             left,
-            left_over: left.div((one - mean_spent).max(R::splat(SMALL))),
+            left_over: left.over((one - mean_spent).max(R::splat(SMALL))),
             ..partial
         }
     }
@@ -123,7 +123,7 @@ impl<R: Scalar> Energy<R> {
         if layers.way != Way::BODY {
             return one - layers.reflectance.of_faces(effects, one - outside);
         }
-        let over = one.div(eta * eta);
+        let over = (eta * eta).reciprocal();
         let passed = R::select(one.lt(eta), outside * over, outside);
         let balance = far.div(R::select(zero.lt(near), near, one)).min(one);
         passed * R::select(zero.lt(near), balance, zero)

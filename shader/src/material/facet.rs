@@ -29,7 +29,7 @@ impl<R: Scalar> Facet<R> {
         let greatest = reflected.greatest().min(one);
         let rest = rest(reflected);
         let passes = if passes(effects, layers) { (layers.through.greatest() * rest).flush(FAINT) } else { zero };
-        let probability = if zero.lt(passes) { greatest.div(greatest + passes) } else { one };
+        let probability = if zero.lt(passes) { greatest.flush(FAINT).over(greatest + passes) } else { one };
         Facet { reflected, rest, probability }
     }
 }

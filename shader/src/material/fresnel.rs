@@ -1,5 +1,6 @@
 //! What an interface reflects of unpolarised light, by the cosine of the angle of incidence.
 
+use super::optics::ratio;
 use super::{fresnel, refract};
 use crate::data::Effects;
 use crate::real::{Real, SMALL, Scalar, V3};
@@ -44,7 +45,7 @@ impl<R: Scalar> Reflectance<R> {
     #[inline(always)]
     pub fn of_faces(&self, effects: Effects, share: R) -> R {
         if effects.has(Effects::THIN) && self.has_two_faces {
-            (share + share).div(R::splat(1.0) + share)
+            (share + share).over(R::splat(1.0) + share)
         } else {
             share
         }
@@ -55,7 +56,7 @@ impl<R: Scalar> Reflectance<R> {
     #[inline(always)]
     pub fn mean(&self, effects: Effects) -> R {
         let one = R::splat(1.0);
-        let root = (one - self.eta).div(one + self.eta);
+        let root = (one - self.eta).over(one + self.eta);
         let normal = self.normal.greatest() + self.glass * self.of_faces(effects, (root * root).flush(SMALL));
         let grazing = self.grazing.greatest() + self.glass;
         normal + (grazing - normal) * R::splat(MEAN)
@@ -135,14 +136,6 @@ fn conductor<R: Scalar>(cosine: R, eta: R, k: R) -> R {
     let across = ratio(near, twice);
     let (near, twice) = (sum * square + sine * sine, twice * sine);
     (across + across * ratio(near, twice)) * half
-}
-
-/// The difference of two numbers over their sum; 1 where both are zero.
-#[inline(always)]
-fn ratio<R: Scalar>(a: R, b: R) -> R {
-    let sum = (a + b).flush(SMALL);
-    let none = sum.eq(R::splat(0.0));
-    R::select(none, R::splat(1.0), (a - b).flush(SMALL).div(R::select(none, R::splat(1.0), sum)))
 }
 
 #[cfg(test)]

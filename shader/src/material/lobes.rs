@@ -56,7 +56,7 @@ impl<R: Scalar> Lobes<R> {
         // A lens of one step lets nothing pass.
         let splits = specular.passes && rest > 1;
         let reflected = if splits { steps(specular.mirror.x, rest).max(1).min(rest - 1) } else { rest };
-        let over = |steps: i32| R::splat(STEPS as f32).div(R::splat(steps as f32));
+        let over = |steps: i32| R::splat(STEPS as f32).over(R::splat(steps as f32));
         let mirror = (specular.mirror * over(reflected)).map(|c| c.flush(FAINT));
         let lens = (specular.lens * over((rest - reflected).max(1))).map(|c| c.flush(FAINT));
         let specular = Specular { mirror, lens, ..specular };

@@ -173,7 +173,7 @@ fn interpolated<R: Scalar>(
     let normals = read(shading.normals, primitive_index);
     let normal = |record| V3::<R>::splat(numbers(record));
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
-    let (unit, length) = sum.normalised();
+    let (unit, length) = sum.map(|c| c.flush(SMALL)).direction_and_length();
     let unit = V3::select(interaction.faces(unit), unit, -unit);
     let lost = length.eq(R::splat(0.0)) || R::splat(0.0).le(unit.dot(direction));
     V3::select(lost, interaction.normal, unit)
@@ -187,7 +187,7 @@ fn tangent<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) 
     let of = |record| V3::<R>::splat(numbers(record));
     let sum = of(a) * (R::splat(1.0) - u - v) + of(b) * u + of(c) * v;
     let across = sum - normal * normal.dot(sum);
-    let (unit, length) = across.map(|c| c.flush(SMALL)).normalised();
+    let (unit, length) = across.map(|c| c.flush(SMALL)).direction_and_length();
     // Along the normal there is no tangent.
     let none = length.lt(R::splat(LEAST_TANGENT));
     (V3::select(none, V3::zero(), unit), R::splat(f32::from_bits(a.w)))
@@ -222,12 +222,12 @@ fn mapped<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>, m
     let across = own.cross(along).map(|c| c.flush(TINY)) * sign;
     let part = |axis: V3<R>, length: R| (axis * length.flush(SMALL)).map(|c| c.flush(SMALL));
     let sum = part(along, map.x) + part(across, map.y) + part(own, map.z);
-    let unit = sum.map(|c| c.flush(SMALL)).normalised().0;
+    let unit = sum.map(|c| c.flush(SMALL)).direction_and_length().0;
     let unit = V3::select(front, unit, -unit);
     let none = unit.dot(unit).eq(zero);
     let unit = V3::select(none, normal, unit);
     let seen_by = -unit.dot(seen.direction);
-    let bent = (unit - seen.direction * (R::splat(LEAST) - seen_by)).map(|c| c.flush(SMALL)).normalised().0;
+    let bent = (unit - seen.direction * (R::splat(LEAST) - seen_by)).map(|c| c.flush(SMALL)).direction_and_length().0;
     let bent = V3::select(zero.lt(-bent.dot(seen.direction)), bent, normal);
     V3::select(R::splat(LEAST).le(seen_by), unit, bent)
 }

@@ -2,7 +2,7 @@
 //!
 //! `d` is a unit direction of travel, `n` the unit normal on the side it comes from.
 
-use crate::real::{Real, Scalar, V3};
+use crate::real::{Real, SMALL, Scalar, V3};
 
 /// The mirrored direction, thesis equation 3.1: `r = d + 2 (-d.n) n`.
 #[inline(always)]
@@ -36,6 +36,14 @@ pub fn refract<R: Scalar>(d: V3<R>, n: V3<R>, eta: R) -> Refraction<R> {
     Refraction { total, direction, cos_in, cos_out }
 }
 
+/// The difference of two numbers over their sum; 1 where both are zero, as the cosines of grazing light are, which is all reflected.
+#[inline(always)]
+pub(super) fn ratio<R: Scalar>(a: R, b: R) -> R {
+    let sum = (a + b).flush(SMALL);
+    let none = sum.eq(R::splat(0.0));
+    R::select(none, R::splat(1.0), (a - b).flush(SMALL).over(R::select(none, R::splat(1.0), sum)))
+}
+
 /// The reflected share of unpolarised light, Fresnel's equations for a dielectric; `eta` as in [`refract`].
 #[inline(always)]
 pub fn fresnel<R: Scalar>(at: &Refraction<R>, eta: R) -> R {
@@ -43,11 +51,6 @@ pub fn fresnel<R: Scalar>(at: &Refraction<R>, eta: R) -> R {
     if at.total {
         return one;
     }
-    let ratio = |a: R, b: R| {
-        let sum = a + b;
-        // Both cosines are zero only at grazing incidence, where everything is reflected.
-        if sum.eq(R::splat(0.0)) { one } else { (a - b).div(sum) }
-    };
     let across = ratio(eta * at.cos_in, at.cos_out);
     let along = ratio(at.cos_in, eta * at.cos_out);
     (across * across + along * along) * R::splat(0.5)

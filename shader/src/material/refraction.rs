@@ -8,7 +8,7 @@ use crate::real::{FAINT, SMALL, Scalar, V3};
 #[inline(always)]
 pub fn refracting<R: Scalar>(from: V3<R>, to: V3<R>, eta: R) -> V3<R> {
     let zero = R::splat(0.0);
-    let h = (from * eta + to).map(|c| c.flush(SMALL)).normalised().0.map(|c| c.flush(SMALL));
+    let h = (from * eta + to).map(|c| c.flush(SMALL)).direction_and_length().0.map(|c| c.flush(SMALL));
     let h = V3::select(h.z.lt(zero), -h, h);
     // Such a facet would have both on one side.
     let is_between = zero.lt(h.z) && zero.lt(h.dot(from)) && h.dot(to).lt(zero);
@@ -28,9 +28,9 @@ pub fn refracted<R: Scalar>(ggx: Ggx<R>, from: V3<R>, to: V3<R>, h: V3<R>, eta: 
     if sum.eq(R::splat(0.0)) {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let facets = (near_cosine * far_cosine).flush(SMALL).div(sum * sum) * ggx.density(h);
+    let facets = (near_cosine * far_cosine).flush(SMALL).over(sum * sum) * ggx.density(h);
     let facets = (facets + facets).flush(FAINT);
     let (own, other) = (ggx.stretched(from), ggx.stretched(to));
-    let value = (facets * eta * eta * far).div(own * far + other * from.z);
-    (value, facets.div(from.z + own))
+    let value = (facets * eta * eta * far).over(own * far + other * from.z);
+    (value, facets.over(from.z + own))
 }

@@ -37,6 +37,7 @@ macro_rules! of_integers {
     };
 }
 
+of_floats!(magnitude, "4", "FAbs: no instruction at all where operands have a sign of their own.", x);
 of_floats!(lesser, "37", "FMin: of two zeros it may be either; NaN gives any number.", a b);
 of_floats!(greater, "40", "FMax, with the same licence.", a b);
 of_floats!(inverse_root, "32", "InverseSqrt: within 2 units in the last place.", x);

@@ -55,6 +55,10 @@ impl Scalar for f64 {
     fn load(r: Record) -> (V3<f64>, u32) {
         (V3::new(r.0, r.1, r.2), r.3)
     }
+    fn binade(self) -> (f64, f64) {
+        let exponent = ((self.to_bits() >> 52) & 2047).min(2045);
+        (f64::from_bits(exponent << 52), f64::from_bits((2046 - exponent) << 52))
+    }
     fn pow(self, exponent: f64) -> f64 {
         self.powf(exponent)
     }

@@ -86,6 +86,12 @@ pub trait Real: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Se
     fn reciprocal(self) -> Self {
         Self::splat(1.0).div(self)
     }
+    /// The quotient by a normal number between 2^-100 and 2^100, within 1.5 units in the last place, for less than [`Real::div`]
+    /// takes. No quotient may be subnormal.
+    #[inline(always)]
+    fn over(self, divisor: Self) -> Self {
+        self * divisor.reciprocal()
+    }
     /// The square root; zero for a subnormal.
     fn sqrt(self) -> Self;
     /// `self < other`; false for NaN.
@@ -246,6 +252,8 @@ pub trait Scalar: Real<Mask = bool, Index = u32> {
     fn pow(self, exponent: Self) -> Self;
     /// The whole number at or below, for magnitudes up to 2^23 (clamped there).
     fn floor_index(self) -> i32;
+    /// The power of two at or below a magnitude, at most 2^126, and its inverse; of zero, zero and some power of two.
+    fn binade(self) -> (Self, Self);
     /// Rounded to single precision, as a film holds it.
     fn to_f32(self) -> f32;
     /// Is it neither NaN nor infinite?

@@ -27,7 +27,10 @@ macro_rules! comparisons {
         }
         #[inline(always)]
         fn abs(self) -> Self {
-            $wrap(f32::from_bits($inner(self).to_bits() & 0x7fff_ffff))
+            #[cfg(target_arch = "spirv")]
+            return $wrap(super::device::magnitude($inner(self)));
+            #[cfg(not(target_arch = "spirv"))]
+            $wrap($inner(self).abs())
         }
         #[cfg(target_arch = "spirv")]
         #[inline(always)]
@@ -74,6 +77,11 @@ macro_rules! records {
             (V3::splat(data::numbers(record)), record.w)
         }
         #[inline(always)]
+        fn binade(self) -> (Self, Self) {
+            let (power, inverse) = super::single::binade($inner(self));
+            ($wrap(power), $wrap(inverse))
+        }
+        #[inline(always)]
         fn floor_index(self) -> i32 {
             super::single::floor_index($inner(self))
         }
@@ -88,6 +96,13 @@ macro_rules! records {
     };
 }
 pub(super) use records;
+
+/// The exponent's bits alone, and those of the exponent of the other sign.
+#[inline(always)]
+pub(super) fn binade(x: f32) -> (f32, f32) {
+    let exponent = ((x.to_bits() >> 23) & 255).min(253);
+    (f32::from_bits(exponent << 23), f32::from_bits((254 - exponent) << 23))
+}
 
 /// Truncation and a correction: both exact within the clamp.
 #[inline(always)]

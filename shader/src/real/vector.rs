@@ -1,6 +1,6 @@
 //! Vectors of three numbers; every sum is from left to right.
 
-use super::Real;
+use super::{Real, Scalar};
 use core::ops::{Add, Mul, Neg, Sub};
 use glam::Vec3;
 
@@ -135,30 +135,32 @@ impl<R: Real> V3<R> {
         V3::new(R::select(mask, a.x, b.x), R::select(mask, a.y, b.y), R::select(mask, a.z, b.z))
     }
 
-    /// Unit vector and length; a zero vector gives itself and zero.
-    ///
-    /// The greatest component is divided out first, so that no square over- or underflows.
-    #[inline(always)]
-    pub fn normalised(self) -> (Self, R) {
-        let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let scale = self.abs().greatest();
-        let none = scale.eq(zero);
-        let inverse = one.div(R::select(none, one, scale));
-        let v = (self * inverse).map(|c| c.flush(super::SMALL));
-        let length = v.dot(v).sqrt();
-        let shrink = one.div(R::select(none, one, length));
-        ((v * shrink).map(|c| c.flush(super::TINY)), length * scale)
-    }
-}
-
-impl<R: Real> V3<R> {
-    /// As [`V3::normalised`], for fewer instructions: of components that are zero or between 2^-40 and 2^60.
+    /// Unit vector and length, of components that are zero or between 2^-40 and 2^60; a zero vector gives itself and zero.
     #[inline(always)]
     pub fn direction_and_length(self) -> (Self, R) {
         let length = self.dot(self).sqrt();
         let none = length.eq(R::splat(0.0));
         let shrink = R::select(none, R::splat(1.0), length).reciprocal();
         ((self * shrink).map(|c| c.flush(super::TINY)), length)
+    }
+
+    /// A vector whose length is 1 but for an error made one whose length errs by less than half the square of that, beside rounding:
+    /// a step of Newton's method, without division or root.
+    #[inline(always)]
+    pub fn renormalised(self) -> Self {
+        let grow = R::splat(1.5) - R::splat(0.5) * self.dot(self);
+        (self * grow).map(|c| c.flush(super::TINY))
+    }
+}
+
+impl<R: Scalar> V3<R> {
+    /// As [`V3::direction_and_length`], of any components: they are scaled by a power of two first, so that no square over- or
+    /// underflows.
+    #[inline(always)]
+    pub fn normalised(self) -> (Self, R) {
+        let (power, inverse) = self.abs().greatest().binade();
+        let (unit, length) = (self * inverse).map(|c| c.flush(super::SMALL)).direction_and_length();
+        (unit, length * power)
     }
 }
 

@@ -44,7 +44,7 @@ impl<R: Scalar> Cone<R> {
         let cross = edge(b).cross(edge(c)).map(|c| c.flush(SMALL));
         let area = cross.dot(cross).flush(FAINT).sqrt();
         let cosine = normal.dot(direction).abs().max(R::splat(GRAZING));
-        let wide = self.width.div(cosine).flush(SMALL);
+        let wide = self.width.over(cosine).flush(SMALL);
         let none = area.eq(R::splat(0.0));
         (wide * wide).flush(FAINT).div(R::select(none, R::splat(1.0), area))
     }

@@ -95,7 +95,7 @@ impl<R: Scalar> Covering<R> {
         } else if number == Maps::SPECULAR_TINT {
             self.specular_tint = colour;
         } else {
-            let (direction, length) = V3::new(signed(colour.x), signed(colour.y), R::splat(0.0)).normalised();
+            let (direction, length) = V3::new(signed(colour.x), signed(colour.y), R::splat(0.0)).direction_and_length();
             let is_none = length.eq(R::splat(0.0));
             self.axis = (R::select(is_none, one, direction.x) * colour.z, direction.y * colour.z);
         }

@@ -4,6 +4,7 @@ mod effect;
 mod gltf;
 mod hostile;
 mod mesh;
+mod mtl;
 mod obj;
 mod ply;
 mod round;
@@ -64,3 +65,9 @@ pub fn assert_refused(error: &Error, file: &str, line: Option<usize>, why: &str)
 
 /// One triangle.
 pub const TRIANGLE: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+
+/// The one warning of what is read.
+fn warning(warnings: &[String]) -> &str {
+    let [warning] = warnings else { panic!("{warnings:?}") };
+    warning
+}

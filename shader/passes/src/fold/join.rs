@@ -13,7 +13,8 @@ pub fn join(module: &mut Module) {
     module.functions.iter_mut().for_each(join_blocks);
 }
 
-fn join_blocks(function: &mut Function) {
+/// [`join`] in one function.
+pub fn join_blocks(function: &mut Function) {
     let followers = followers(function);
     let mut rest: Vec<Option<Block>> = std::mem::take(&mut function.blocks).into_iter().map(Some).collect();
     let mut joined = HashMap::new();

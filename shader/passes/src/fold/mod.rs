@@ -7,6 +7,7 @@ mod branch;
 mod composite;
 mod constants;
 mod evaluate;
+mod flatten;
 mod join;
 mod value;
 
@@ -18,6 +19,7 @@ use crate::dead;
 pub fn fold(module: &mut Module) {
     while value::fold(module) | branch::fold(module) {}
     join::join(module);
+    flatten::flatten(module);
     dead::remove(module);
 }
 

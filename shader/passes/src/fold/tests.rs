@@ -8,7 +8,7 @@ use crate::testing::{Body, Kernel};
 use crate::{Error, Kernels};
 
 /// Every instruction of the kernel that `body` makes with the value of a specialisation constant in place.
-fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
+pub(super) fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
     let mut kernel = Kernel::new();
     let special = kernel.spec_constant(1, 0);
     kernel.entry("kernel", |b| body(b, special));

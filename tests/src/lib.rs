@@ -4,6 +4,7 @@ pub mod bare;
 pub mod brute_force;
 pub mod count;
 pub mod covered;
+pub mod driver;
 pub mod machine;
 pub mod model;
 pub mod numbers;

@@ -153,11 +153,11 @@ fn covered<R: Scalar>(effects: Effects, colour: V3<R>, covering: &Covering<R>) -
 }
 
 /// The direction in which a surface mirrors. An interpolated normal may mirror a ray into its own surface; the triangle's normal
-/// does not.
+/// does not. Of unit length again, since one that is reflected to and fro would grow by the normals' rounding each time.
 #[inline(always)]
 pub fn mirrored<R: Scalar>(direction: V3<R>, interaction: &SurfaceInteraction<R>, surface: &Surface<R>) -> V3<R> {
     let mirrored = reflect(direction, surface.normal);
-    V3::select(interaction.faces(mirrored), mirrored, reflect(direction, interaction.normal))
+    V3::select(interaction.faces(mirrored), mirrored, reflect(direction, interaction.normal)).renormalised()
 }
 
 /// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,

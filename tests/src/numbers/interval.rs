@@ -184,6 +184,10 @@ impl Scalar for Interval {
         let value = Scalar::pow(self.value, exponent.value);
         Interval { value, low: bounds.low * (1.0 - slack), high: bounds.high * (1.0 + slack) }
     }
+    fn binade(self) -> (Self, Self) {
+        let (power, inverse) = self.value.binade();
+        (Interval::exact(power), Interval::exact(inverse))
+    }
     fn floor_index(self) -> i32 {
         Scalar::floor_index(self.value)
     }

@@ -168,6 +168,11 @@ macro_rules! numbers {
                 Self::new(Scalar::pow(self.seen(), exponent.seen()))
             }
             #[track_caller]
+            fn binade(self) -> (Self, Self) {
+                let (power, inverse) = self.seen().binade();
+                (Self::new(power), Self::new(inverse))
+            }
+            #[track_caller]
             fn floor_index(self) -> i32 {
                 Scalar::floor_index(self.seen())
             }

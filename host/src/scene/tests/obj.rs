@@ -4,7 +4,7 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::{Folder, assert_refused, budget, warning};
+use super::{Folder, TRIANGLE, assert_refused, budget, warning};
 use crate::scene::{Mesh, obj};
 
 fn mesh(text: &str) -> Mesh {

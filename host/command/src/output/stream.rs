@@ -1,6 +1,6 @@
 //! What is no file: standard output, devices and pipes.
 
-use std::fs::{self, File, OpenOptions};
+use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::Path;
 
@@ -49,7 +49,7 @@ pub(super) fn open_special(path: &Path) -> Result<File> {
 #[cfg(unix)]
 pub(super) fn blocks_on_open(path: &Path) -> bool {
     use std::os::unix::fs::FileTypeExt;
-    fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo())
+    std::fs::metadata(path).is_ok_and(|found| found.file_type().is_fifo())
 }
 
 #[cfg(not(unix))]

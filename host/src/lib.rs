@@ -49,6 +49,6 @@ pub mod rays;
 pub mod render;
 pub mod scene;
 pub mod stream;
-mod time_limit;
 pub mod view;
+pub mod watch;
 mod why;

@@ -13,8 +13,8 @@ use crate::gpu::{AdapterRequest, Around, Gpu, Renderer, warm};
 use crate::method::{Method, Processor, Traversal};
 use crate::rays::Rays;
 use crate::scene::{Scene, Settings};
-use crate::time_limit;
 use crate::view::View;
+use crate::watch::{Grows, Watch, grow};
 pub use crate::why::Why;
 
 choices! {
@@ -118,14 +118,14 @@ pub struct Rendering {
 type Seen<'a> = (&'a DeviceScene, &'a View);
 
 /// How often a picture is rendered.
-#[derive(Debug, Clone, Copy)]
-struct Runs {
+#[derive(Clone, Copy)]
+struct Runs<'a> {
     /// Is it rendered before any time counts?
     warm_up: bool,
     /// At least once.
     repeat: u32,
-    /// How long it may take, instead of the view's samples.
-    limit: Option<Duration>,
+    /// Who looks on.
+    watch: Option<&'a Watch<'a>>,
     /// When their preparation began; a GPU that then can't is part of it.
     since: Instant,
 }
@@ -199,16 +199,16 @@ impl Backend {
         repeat: u32,
         done: &(dyn Fn(u64) + Sync),
     ) -> Result<Rendering> {
-        self.run((packed, view), Runs { warm_up: false, repeat, limit: None, since: Instant::now() }, done)
+        self.run((packed, view), Runs { warm_up: false, repeat, watch: None, since: Instant::now() }, done)
     }
 
-    /// Renders as many samples of each pixel as fit the time, at least one and at most those of the view: the picture has the
-    /// bits of one of [`Rendering::samples`].
+    /// Renders while somebody looks on, who may end it before all samples of the view are done: the picture has the bits of one of
+    /// [`Rendering::samples`].
     ///
     /// # Errors
     /// As [`Backend::render`].
-    pub fn render_within(&self, packed: &DeviceScene, view: &View, limit: Duration) -> Result<Rendering> {
-        let runs = Runs { warm_up: false, repeat: 1, limit: Some(limit), since: Instant::now() };
+    pub fn render_watched(&self, packed: &DeviceScene, view: &View, watch: &Watch<'_>) -> Result<Rendering> {
+        let runs = Runs { warm_up: false, repeat: 1, watch: Some(watch), since: Instant::now() };
         self.run((packed, view), runs, &|_| ())
     }
 
@@ -217,10 +217,10 @@ impl Backend {
     /// # Errors
     /// As [`Backend::render`].
     pub fn measure(&self, packed: &DeviceScene, view: &View, repeat: u32) -> Result<Rendering> {
-        self.run((packed, view), Runs { warm_up: true, repeat, limit: None, since: Instant::now() }, &|_| ())
+        self.run((packed, view), Runs { warm_up: true, repeat, watch: None, since: Instant::now() }, &|_| ())
     }
 
-    fn run(&self, scene: Seen<'_>, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn run(&self, scene: Seen<'_>, runs: Runs<'_>, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         if let Device::Gpu(gpu) = &self.device {
             match self.on_gpu(gpu, scene, runs, done) {
                 Err(error) if self.choice.device == DeviceWish::Auto => {
@@ -236,7 +236,7 @@ impl Backend {
         &self,
         gpu: &Gpu,
         (packed, view): Seen<'_>,
-        runs: Runs,
+        runs: Runs<'_>,
         done: &(dyn Fn(u64) + Sync),
     ) -> Result<Rendering> {
         let mut renderer =
@@ -252,8 +252,8 @@ impl Backend {
         }
         let mut device_times = Some(Vec::new());
         let (last, times) = repeated(runs.repeat, || {
-            let rendering = match runs.limit {
-                Some(limit) => renderer.render_within(view, limit)?,
+            let rendering = match runs.watch {
+                Some(watch) => renderer.render_watched(view, watch)?,
                 None => renderer.render(view, done)?,
             };
             match rendering.device_time.zip(device_times.as_mut()) {
@@ -277,13 +277,19 @@ impl Backend {
         })
     }
 
-    fn on_cpu(&self, (packed, view): Seen<'_>, why: Why, runs: Runs, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+    fn on_cpu(
+        &self,
+        (packed, view): Seen<'_>,
+        why: Why,
+        runs: Runs<'_>,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Rendering> {
         let threads = self.choice.threads;
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact | Precision::Fast => rendered::<f32>(&renderer, view, runs.limit, done),
-            Precision::Reference => rendered::<f64>(&renderer, view, runs.limit, done),
+            Precision::Exact | Precision::Fast => rendered::<f32>(&renderer, view, runs.watch, done),
+            Precision::Reference => rendered::<f64>(&renderer, view, runs.watch, done),
         };
         if runs.warm_up {
             render(&|_| ())?;
@@ -310,20 +316,34 @@ impl Backend {
 fn rendered<R: cpu::Number>(
     renderer: &cpu::Renderer<'_>,
     view: &View,
-    limit: Option<Duration>,
+    watch: Option<&Watch<'_>>,
     done: &(dyn Fn(u64) + Sync),
 ) -> Result<(Film, Rays, u32)> {
-    let Some(limit) = limit else {
+    let Some(watch) = watch else {
         let (film, rays) = renderer.render::<R>(view, done, &())?;
         return Ok((film, rays, view.samples()));
     };
-    let mut picture = renderer.start::<R>(view);
-    time_limit::fill(limit, view.samples(), |count| {
-        renderer.add(&mut picture, count);
+    let mut growing = OnCpu { renderer, picture: renderer.start::<R>(view) };
+    grow(&mut growing, view.samples(), watch)?;
+    let (film, rays) = growing.picture.film()?;
+    Ok((film, rays, growing.picture.samples()))
+}
+
+/// A picture that grows on a CPU.
+struct OnCpu<'a, R: cpu::Number> {
+    renderer: &'a cpu::Renderer<'a>,
+    picture: cpu::Picture<R>,
+}
+
+impl<R: cpu::Number> Grows for OnCpu<'_, R> {
+    fn add(&mut self, count: u32) -> Result<()> {
+        self.renderer.add(&mut self.picture, count);
         Ok(())
-    })?;
-    let (film, rays) = picture.film()?;
-    Ok((film, rays, picture.samples()))
+    }
+
+    fn film(&mut self) -> Result<Film> {
+        Ok(self.picture.film()?.0)
+    }
 }
 
 /// Runs `repeat` times, at least once, and keeps the last result and all times.

@@ -4,11 +4,11 @@
 mod program;
 
 use std::fs;
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-use program::{Place, TRIANGLE};
+use program::{Place, TRIANGLE, shipped};
 
 const CODES: [(&str, i32); 3] = [("HUP", 129), ("INT", 130), ("TERM", 143)];
 
@@ -21,9 +21,13 @@ fn heeding(place: &Place, arguments: &[&str]) -> Command {
     command
 }
 
-fn interrupted(mut child: Child, signal: &str) -> ExitStatus {
+fn send(child: &Child, signal: &str) {
     let sent = Command::new("kill").args(["-s", signal, &child.id().to_string()]).status().unwrap();
     assert!(sent.success());
+}
+
+fn interrupted(mut child: Child, signal: &str) -> ExitStatus {
+    send(&child, signal);
     child.wait().unwrap()
 }
 
@@ -54,19 +58,75 @@ fn an_interrupt_while_writing_keeps_the_old_files_and_leaves_nothing() {
     }
 }
 
+/// A rendering that takes an hour, and its first pictures so far.
+fn long_rendering(place: &Place) -> Child {
+    let scene = shipped("bleeding");
+    let render = ["render", &scene, "--device", "cpu", "--size", "64x48", "--spp", "16000000"];
+    let child = heeding(place, &[&render[..], &["--preview-every", "0.05", "-o", "a.exr"]].concat())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !place.path("a.exr").exists() {
+        assert!(start.elapsed() < Duration::from_secs(60), "there is no picture so far");
+    }
+    child
+}
+
+/// What it says, once it ends.
+fn said(child: &mut Child) -> String {
+    let mut said = String::new();
+    child.stderr.as_mut().unwrap().read_to_string(&mut said).unwrap();
+    said
+}
+
 #[test]
-fn an_interrupt_ends_a_rendering_at_once() {
-    let place = Place::new(&[("mesh.obj", &format!("mtllib missing.mtl\n{TRIANGLE}"))]);
-    let render = ["render", "mesh.obj", "--device", "cpu", "--size", "4096x4096", "--samples", "64"];
+fn an_interrupt_of_a_rendering_keeps_the_samples_that_are_done() {
+    for (signal, code) in CODES {
+        let place = Place::new(&[]);
+        let mut child = long_rendering(&place);
+        send(&child, signal);
+        let said = said(&mut child);
+        assert_eq!(child.wait().unwrap().code(), Some(code), "{said}");
+        let line = said.lines().last().unwrap();
+        let samples = line.strip_prefix("ended after ").and_then(|line| line.split(' ').next()).unwrap();
+        assert!(line.contains("of 16000000 samples"), "{said}");
+        assert_eq!(place.names(), ["a.exr"]);
+        let render = ["render", &shipped("bleeding"), "--device", "cpu", "--size", "64x48", "-o", "b.exr", "-q"];
+        place.succeed(&[&render[..], &["--spp", samples]].concat());
+        place.succeed(&["diff", "a.exr", "b.exr"]);
+    }
+}
+
+/// However it ends: the picture so far is whole.
+#[test]
+fn a_rendering_that_is_killed_leaves_its_picture_so_far() {
+    let place = Place::new(&[]);
+    for wait in 0..4 {
+        let child = long_rendering(&place);
+        std::thread::sleep(Duration::from_millis(77 * wait));
+        interrupted(child, "KILL");
+        place.succeed(&["diff", "a.exr", "a.exr"]);
+    }
+}
+
+#[test]
+fn a_second_interrupt_ends_a_rendering_at_once() {
+    let place = Place::new(&[]);
+    let scene = shipped("bleeding");
+    let render = ["render", &scene, "--device", "cpu", "--size", "4096x4096", "--threads", "1", "--preview-every", "0"];
     for (signal, code) in CODES {
         let mut child = heeding(&place, &render).stderr(Stdio::piped()).spawn().unwrap();
-        // The warning, after which it renders for a minute.
-        let mut line = String::new();
-        BufReader::new(child.stderr.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let mut said = String::new();
         let start = Instant::now();
-        assert_eq!(interrupted(child, signal).code(), Some(code), "{line}");
-        assert!(start.elapsed() < Duration::from_secs(5));
-        assert_eq!(place.names(), ["mesh.obj"]);
+        // Too early it would end the program, which has nothing to render yet.
+        std::thread::sleep(Duration::from_secs(3));
+        send(&child, signal);
+        BufReader::new(child.stderr.as_mut().unwrap()).read_line(&mut said).unwrap();
+        assert!(said.contains("once more ends at once"), "{said}");
+        assert_eq!(interrupted(child, signal).code(), Some(code));
+        assert!(start.elapsed() < Duration::from_secs(10), "its first sample takes longer");
+        assert!(place.names().is_empty());
     }
 }
 

@@ -24,8 +24,8 @@ use crate::method::Traversal;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
 use crate::scene::Light;
-use crate::time_limit;
 use crate::view::{Region, View};
+use crate::watch::{Grows, Watch, grow};
 
 /// Bytes of films that are read back at once.
 const READ: u64 = 1 << 28;
@@ -80,6 +80,17 @@ pub(super) struct Band {
     pub group: wgpu::BindGroup,
 }
 
+impl Grows for Renderer<'_> {
+    fn add(&mut self, count: u32) -> Result<()> {
+        Renderer::add(self, count, &|_| ())?;
+        self.gpu.wait()
+    }
+
+    fn film(&mut self) -> Result<Film> {
+        Ok(Renderer::film(self)?.film)
+    }
+}
+
 impl<'a> Renderer<'a> {
     /// Compiles the kernels and uploads the scene.
     ///
@@ -127,17 +138,14 @@ impl<'a> Renderer<'a> {
         Ok(rendering)
     }
 
-    /// Renders as many samples as fit a time, at least one and at most those of the view.
+    /// Renders the samples of a view while somebody looks on, who may end it before.
     ///
     /// # Errors
     /// What the GPU reports.
-    pub fn render_within(&mut self, view: &View, limit: Duration) -> Result<GpuRendering> {
+    pub fn render_watched(&mut self, view: &View, watch: &Watch<'_>) -> Result<GpuRendering> {
         self.start(view)?;
-        time_limit::fill(limit, view.samples(), |count| {
-            self.add(count, &|_| ())?;
-            self.gpu.wait()
-        })?;
-        self.film()
+        grow(self, view.samples(), watch)?;
+        Renderer::film(self)
     }
 
     /// Starts a picture without any sample. Memory is taken if no picture before needed as much.

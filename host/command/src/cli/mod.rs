@@ -25,6 +25,7 @@ mod threads;
 mod tip;
 mod tradeoff;
 mod transport;
+mod watching;
 
 use std::process::ExitCode;
 

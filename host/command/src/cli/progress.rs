@@ -22,6 +22,12 @@ pub(super) fn pixels(count: u64, quiet: bool) -> ProgressBar {
     styled(ProgressBar::new(count), "rendering {bar:40} {percent:>3} % {elapsed} (left {eta})", quiet)
 }
 
+/// A bar over the samples of each pixel.
+pub(super) fn samples(count: u32, quiet: bool) -> ProgressBar {
+    let template = "rendering {bar:40} {pos} of {len} samples {elapsed} (left {eta})";
+    styled(ProgressBar::new(count.into()), template, quiet)
+}
+
 /// A bar over named steps.
 pub(super) fn steps(count: usize, quiet: bool) -> ProgressBar {
     styled(ProgressBar::new(count as u64), "{bar:40} {pos}/{len} {elapsed} (left {eta}) {wide_msg}", quiet)

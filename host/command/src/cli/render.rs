@@ -12,16 +12,17 @@ use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
 use super::exposure::{Brightness, Exposure};
-use super::options::{Effort, View};
+use super::options::{Effort, Loaded, View};
 use super::progress;
 use super::reading::{Read, Reading};
 use super::summary::{Summary, Times};
+use super::watching::{self, Watching};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
 use eyerays::layers::{self, Layer};
-use eyerays::render::{Backend, DeviceWish};
+use eyerays::render::{Backend, DeviceWish, Rendering};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -69,6 +70,9 @@ pub(super) struct Render {
     /// Render as many samples of each pixel as fit so many seconds, at least one and at most --spp; for samplers without a grid
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with_all = ["repeat", "samples"])]
     time_limit: Option<Duration>,
+    /// Write the picture so far to the output every so many seconds, 0 for never [default: 10, of what takes longer than 20]
+    #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "repeat")]
+    preview_every: Option<Duration>,
     /// Print the summary as JSON to standard output
     #[arg(long)]
     json: bool,
@@ -126,15 +130,25 @@ impl Render {
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let chosen = ManuallyDrop::new(chosen);
         let (width, height) = loaded.packed.settings().size;
-        let progress =
-            progress::pixels(u64::from(width) * u64::from(height) * u64::from(self.repeat), quiet || self.json);
-        let rendering = match self.time_limit {
-            Some(limit) => progress::stage("rendering", quiet || self.json, || {
-                chosen.render_within(&loaded.packed, &loaded.view, limit)
-            }),
-            None => chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| progress.inc(pixels)),
+        let is_silent = quiet || self.json;
+        let rendering = if self.repeat == 1 {
+            let watching = Watching {
+                bar: progress::samples(loaded.view.samples(), is_silent),
+                destination: &destination,
+                encoding,
+                auto_exposure: self.exposure == Exposure::Auto,
+                every: self.preview_every,
+                limit: self.time_limit,
+                quiet,
+            };
+            watching.follow(|watch| chosen.render_watched(&loaded.packed, &loaded.view, watch))
+        } else {
+            let pixels = u64::from(width) * u64::from(height) * u64::from(self.repeat);
+            let bar = progress::pixels(pixels, is_silent);
+            let rendering = chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| bar.inc(pixels));
+            bar.finish_and_clear();
+            rendering
         };
-        progress.finish_and_clear();
         let rendering = rendering.map_err(|e| e.of(&self.scene))?;
         let start = Instant::now();
         let layers = match &kept {
@@ -159,11 +173,21 @@ impl Render {
         } else if !quiet {
             console::say(summary);
         }
-        Ok(ExitCode::SUCCESS)
+        Ok(self.code(&rendering, &loaded, quiet))
     }
 }
 
 impl Render {
+    /// How the command ends: as shells have it where a signal ended the rendering.
+    fn code(&self, rendering: &Rendering, loaded: &Loaded, quiet: bool) -> ExitCode {
+        let Some(signal) = watching::ended_by() else { return ExitCode::SUCCESS };
+        let (samples, all) = (rendering.samples, loaded.view.samples());
+        if samples < all && !quiet {
+            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
+        }
+        ExitCode::from(128 + signal as u8)
+    }
+
     /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
     fn beyond_white(
         &self,

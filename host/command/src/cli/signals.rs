@@ -1,4 +1,5 @@
-//! Interrupts: what is half-written goes, and the exit code tells the signal as shells do.
+//! Interrupts: a rendering ends with the samples that are done; what is half-written goes; and the exit code tells the signal as
+//! shells do.
 
 use std::fs;
 use std::io;
@@ -9,9 +10,11 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::iterator::Signals;
 use signal_hook::{flag, low_level};
 
+use super::{console, watching};
 use crate::output;
 
-/// Ends the process on an interrupt, a request to terminate or a terminal that hangs up, whatever it does then. A file that would be
+/// Ends the process on an interrupt, a request to terminate or a terminal that hangs up, whatever it does then; but a rendering is
+/// asked to end by itself first, and only the next signal ends it at once. A file that would be
 /// larger than the system lets it is an error of writing, not a signal that ends the process at once.
 ///
 /// # Errors
@@ -24,7 +27,11 @@ pub(super) fn watch() -> io::Result<()> {
     let watched = [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
     let mut signals = Signals::new(watched)?;
     thread::Builder::new().name("signals".to_owned()).spawn(move || {
-        if let Some(signal) = signals.forever().next() {
+        for signal in signals.forever() {
+            if watching::end_by(signal) {
+                console::say("ending with the samples that are done; once more ends at once, without a picture");
+                continue;
+            }
             let _discarded = output::discard();
             low_level::exit(128 + signal);
         }

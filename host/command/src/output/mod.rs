@@ -110,6 +110,11 @@ pub fn check_writable(destination: &Destination) -> Result<()> {
     }
 }
 
+/// Whether what is written there can be written again in its place: a file, as against a pipe.
+pub fn can_replace(destination: &Destination) -> bool {
+    destination.file().is_some_and(|path| matches!(Target::of(path), Ok(Target::Regular { .. })))
+}
+
 /// Writes a file whole or not at all: under a temporary name in the same folder that is renamed
 /// at the end and removed on any failure, so that an old file stays until the new one is there.
 /// A symbolic link is followed, and the permissions of an old file are kept. What exists and is

@@ -86,7 +86,7 @@ struct Wishes {
 #[derive(Args)]
 #[command(next_help_heading = "Settings to try")]
 struct Tried {
-    /// Precisions, for example exact,fast [default: both]
+    /// Precisions, for example exact,fast; a CPU has exact alone [default: both]
     #[arg(long, value_enum, value_delimiter = ',')]
     precision: Vec<Precision>,
     /// Triangle tests of fast precision [default: all]

@@ -9,7 +9,8 @@ use rspirv::spirv::{Op, Word};
 
 use super::{blocks, join};
 
-/// The most instructions that are computed in vain.
+/// The most instructions that are computed in vain. A picture takes as long with none, 12 and 40 of them, and the driver's compiler
+/// takes least with 40 (an NVIDIA H100).
 const MOST: usize = 40;
 
 /// Flattens selections, the innermost first, until none is left that is small enough.

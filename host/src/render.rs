@@ -14,7 +14,7 @@ use crate::method::{Method, Processor, Traversal};
 use crate::rays::Rays;
 use crate::scene::{Scene, Settings};
 use crate::view::View;
-use crate::watch::{Grows, Watch, grow};
+use crate::watch::Watch;
 pub use crate::why::Why;
 
 choices! {
@@ -288,8 +288,8 @@ impl Backend {
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
         let render = |done| match self.choice.precision {
-            Precision::Exact | Precision::Fast => rendered::<f32>(&renderer, view, runs.watch, done),
-            Precision::Reference => rendered::<f64>(&renderer, view, runs.watch, done),
+            Precision::Exact | Precision::Fast => cpu::rendered::<f32>(&renderer, view, runs.watch, done),
+            Precision::Reference => cpu::rendered::<f64>(&renderer, view, runs.watch, done),
         };
         if runs.warm_up {
             render(&|_| ())?;
@@ -309,40 +309,6 @@ impl Backend {
             device_time: None,
             times,
         })
-    }
-}
-
-/// A picture, its rays and the samples of each pixel.
-fn rendered<R: cpu::Number>(
-    renderer: &cpu::Renderer<'_>,
-    view: &View,
-    watch: Option<&Watch<'_>>,
-    done: &(dyn Fn(u64) + Sync),
-) -> Result<(Film, Rays, u32)> {
-    let Some(watch) = watch else {
-        let (film, rays) = renderer.render::<R>(view, done, &())?;
-        return Ok((film, rays, view.samples()));
-    };
-    let mut growing = OnCpu { renderer, picture: renderer.start::<R>(view) };
-    grow(&mut growing, view.samples(), watch)?;
-    let (film, rays) = growing.picture.film()?;
-    Ok((film, rays, growing.picture.samples()))
-}
-
-/// A picture that grows on a CPU.
-struct OnCpu<'a, R: cpu::Number> {
-    renderer: &'a cpu::Renderer<'a>,
-    picture: cpu::Picture<R>,
-}
-
-impl<R: cpu::Number> Grows for OnCpu<'_, R> {
-    fn add(&mut self, count: u32) -> Result<()> {
-        self.renderer.add(&mut self.picture, count);
-        Ok(())
-    }
-
-    fn film(&mut self) -> Result<Film> {
-        Ok(self.picture.film()?.0)
     }
 }
 

@@ -164,7 +164,7 @@ fn samples_in_parts() {
     let (film, rays) = on_cpu(&packed);
     let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
     for parts in [&[8, 8][..], &[1, 3, 12]] {
-        let mut picture = renderer.start::<f32>(&packed.view);
+        let mut picture = renderer.start::<f32>(&packed.view).unwrap();
         parts.iter().for_each(|&count| renderer.add(&mut picture, count));
         let (got, counted) = picture.film().unwrap();
         assert_same_bits(&got, &film, &format!("CPU, {parts:?}"));

@@ -58,6 +58,23 @@ fn an_interrupt_while_writing_keeps_the_old_files_and_leaves_nothing() {
     }
 }
 
+/// Of one sample.
+#[test]
+fn an_interrupt_ends_a_rendering_at_once_that_has_nothing_to_keep() {
+    let place = Place::new(&[("mesh.obj", &format!("mtllib missing.mtl\n{TRIANGLE}"))]);
+    let render = ["render", "mesh.obj", "--device", "cpu", "--size", "16384x16384", "--threads", "1"];
+    for (signal, code) in CODES {
+        let mut child = heeding(&place, &render).stderr(Stdio::piped()).spawn().unwrap();
+        // The warning, after which it renders for a minute.
+        let mut line = String::new();
+        BufReader::new(child.stderr.as_mut().unwrap()).read_line(&mut line).unwrap();
+        let start = Instant::now();
+        assert_eq!(interrupted(child, signal).code(), Some(code), "{line}");
+        assert!(start.elapsed() < Duration::from_secs(5));
+        assert_eq!(place.names(), ["mesh.obj"]);
+    }
+}
+
 /// A rendering that takes an hour, and its first pictures so far.
 fn long_rendering(place: &Place) -> Child {
     let scene = shipped("bleeding");

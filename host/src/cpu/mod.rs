@@ -4,6 +4,7 @@ mod cast;
 mod pool;
 mod render;
 mod tile;
+mod watched;
 
 pub use eyerays_kernels_cpu::{Isa, Number, Records};
 
@@ -11,3 +12,4 @@ pub use cast::{cast, cast_by, closest};
 pub use pool::pool;
 pub use render::{Picture, Renderer, render};
 pub use tile::{Observer, Planned};
+pub(crate) use watched::rendered;

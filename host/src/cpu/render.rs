@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::device_scene::{DeviceScene, SceneView};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::method::Traversal;
 use crate::rays::Rays;
@@ -33,7 +33,7 @@ const TILE: u32 = 32;
 /// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let view = View::of(&device_scene, &scene.cameras[0], (16, 16), 2)?;
 /// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
-/// let mut picture = renderer.start::<f32>(&view);
+/// let mut picture = renderer.start::<f32>(&view)?;
 /// while picture.samples() < view.samples() {
 ///     renderer.add(&mut picture, 1);
 ///     let (_so_far, _rays) = picture.film()?;
@@ -109,10 +109,18 @@ impl<'a> Renderer<'a> {
         Ok(result.into_inner().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Starts a picture without any sample.
-    pub fn start<R: Number>(&self, view: &View) -> Picture<R> {
-        let tile = |region| Tile { region, film: self.planned.film::<R>(region), secondary: 0 };
-        Picture { view: *view, tiles: self.tiles(view).into_iter().map(tile).collect(), samples: 0 }
+    /// Starts a picture without any sample, which keeps the sums of all its pixels.
+    ///
+    /// # Errors
+    /// If there is no memory for them.
+    pub fn start<R: Number>(&self, view: &View) -> Result<Picture<R>> {
+        let (width, height) = view.size();
+        let tile = |region| {
+            let film = self.planned.try_film::<R>(region).ok_or(Error::Memory { width, height })?;
+            Ok(Tile { region, film, secondary: 0 })
+        };
+        let tiles = self.tiles(view).into_iter().map(tile).collect::<Result<_>>()?;
+        Ok(Picture { view: *view, tiles, samples: 0 })
     }
 
     /// Adds the next `count` samples of each pixel to a picture, or as many as its view has: n and then n more give the
@@ -221,7 +229,7 @@ mod tests {
         let renderer = Renderer::new(&packed, Traversal::default(), 3).unwrap();
         let (whole, rays) = renderer.render::<f32>(&view, &|_| (), &()).unwrap();
         for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3, 99]] {
-            let mut picture = renderer.start::<f32>(&view);
+            let mut picture = renderer.start::<f32>(&view).unwrap();
             parts.iter().for_each(|&count| renderer.add(&mut picture, count));
             let (film, counted) = picture.film().unwrap();
             assert!(picture.samples() == 9 && film.bits_equal(&whole), "{parts:?}");
@@ -235,7 +243,7 @@ mod tests {
         let packed = packed(&scene, Settings { size: (16, 12), samples: 2, bounces: 0, ..scene.settings });
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
-        let mut picture = renderer.start::<f32>(&view);
+        let mut picture = renderer.start::<f32>(&view).unwrap();
         assert!(picture.film().unwrap().0.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
         renderer.add(&mut picture, 1);
         let one = picture.film().unwrap().0;

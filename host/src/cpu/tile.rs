@@ -58,8 +58,19 @@ impl<'a> Planned<'a> {
 
     /// An empty film for a region.
     pub fn film<R: Number>(&self, region: Region) -> Vec<R::Record> {
-        let records = self.plan.film_bytes / Plan::RECORD_BYTES;
-        vec![R::store(V3::zero(), 0); (records * region.pixels()) as usize]
+        vec![R::store(V3::zero(), 0); self.records(region)]
+    }
+
+    /// The same, or none if there is no memory for it.
+    pub fn try_film<R: Number>(&self, region: Region) -> Option<Vec<R::Record>> {
+        let (mut film, count) = (Vec::new(), self.records(region));
+        film.try_reserve_exact(count).ok()?;
+        film.resize(count, R::store(V3::zero(), 0));
+        Some(film)
+    }
+
+    fn records(&self, region: Region) -> usize {
+        (self.plan.film_bytes / Plan::RECORD_BYTES * region.pixels()) as usize
     }
 
     /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays; where the

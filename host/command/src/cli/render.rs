@@ -131,7 +131,8 @@ impl Render {
         let chosen = ManuallyDrop::new(chosen);
         let (width, height) = loaded.packed.settings().size;
         let is_silent = quiet || self.json;
-        let rendering = if self.repeat == 1 {
+        // Of one sample there is nothing to be seen before it is done, nor to be kept.
+        let rendering = if self.repeat == 1 && loaded.view.samples() > 1 {
             let watching = Watching {
                 bar: progress::samples(loaded.view.samples(), is_silent),
                 destination: &destination,

@@ -62,7 +62,7 @@ fn an_interrupt_while_writing_keeps_the_old_files_and_leaves_nothing() {
 #[test]
 fn an_interrupt_ends_a_rendering_at_once_that_has_nothing_to_keep() {
     let place = Place::new(&[("mesh.obj", &format!("mtllib missing.mtl\n{TRIANGLE}"))]);
-    let render = ["render", "mesh.obj", "--device", "cpu", "--size", "16384x16384", "--threads", "1"];
+    let render = ["render", "mesh.obj", "--device", "cpu", "--size", "6000x6000", "--threads", "1"];
     for (signal, code) in CODES {
         let mut child = heeding(&place, &render).stderr(Stdio::piped()).spawn().unwrap();
         // The warning, after which it renders for a minute.

@@ -65,7 +65,7 @@ fn an_interrupt_ends_a_rendering_at_once_that_has_nothing_to_keep() {
     let render = ["render", "mesh.obj", "--device", "cpu", "--size", "6000x6000", "--threads", "1"];
     for (signal, code) in CODES {
         let mut child = heeding(&place, &render).stderr(Stdio::piped()).spawn().unwrap();
-        // The warning, after which it renders for a minute.
+        // The warning, after which it renders for seconds.
         let mut line = String::new();
         BufReader::new(child.stderr.as_mut().unwrap()).read_line(&mut line).unwrap();
         let start = Instant::now();

@@ -201,13 +201,8 @@ impl Body<'_> {
 
     /// Does `then` if a word has a bit.
     pub fn if_has(&mut self, word: Word, bit: u32, then: impl FnOnce(&mut Body)) {
-        let (has, inside, after) = (self.has(word, bit), self.b.id(), self.b.id());
-        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
-        self.b.branch_conditional(has, inside, after, []).unwrap();
-        self.b.begin_block(Some(inside)).unwrap();
-        then(&mut Body { b: self.b, ids: self.ids });
-        self.b.branch(after).unwrap();
-        self.b.begin_block(Some(after)).unwrap();
+        let has = self.has(word, bit);
+        self.one_side(has, then);
     }
 
     /// One of two structs of two numbers, by whether a bit is set in a word.
@@ -235,15 +230,10 @@ impl Body<'_> {
 
     /// A number, or another one if a word has a bit; without a block for the other side.
     pub fn number_unless(&mut self, word: Word, bit: u32, x: Word, then: impl FnOnce(&mut Body) -> Word) -> Word {
-        let (has, inside, after, before) = (self.has(word, bit), self.b.id(), self.b.id(), self.b.id());
+        let (has, before) = (self.has(word, bit), self.b.id());
         self.b.branch(before).unwrap();
         self.b.begin_block(Some(before)).unwrap();
-        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
-        self.b.branch_conditional(has, inside, after, []).unwrap();
-        self.b.begin_block(Some(inside)).unwrap();
-        let other = then(&mut Body { b: self.b, ids: self.ids });
-        self.b.branch(after).unwrap();
-        self.b.begin_block(Some(after)).unwrap();
+        let (other, inside) = self.one_side(has, then);
         self.b.phi(self.ids.float, None, [(other, inside), (x, before)]).unwrap()
     }
 
@@ -252,6 +242,24 @@ impl Body<'_> {
         let (bit, zero) = (self.constant_u32(bit), self.constant_u32(0));
         let masked = self.b.bitwise_and(uint, None, word, bit).unwrap();
         self.b.i_not_equal(bool, None, masked, zero).unwrap()
+    }
+
+    /// A selection of one side, whose value and block are returned.
+    fn one_side<T>(&mut self, has: Word, then: impl FnOnce(&mut Body) -> T) -> (T, Word) {
+        let (inside, after) = (self.b.id(), self.b.id());
+        self.b.selection_merge(after, SelectionControl::NONE).unwrap();
+        self.b.branch_conditional(has, inside, after, []).unwrap();
+        let made = self.side(inside, after, then);
+        self.b.begin_block(Some(after)).unwrap();
+        (made, inside)
+    }
+
+    /// The block of a selection's side, which goes on to the end.
+    fn side<T>(&mut self, block: Word, after: Word, fill: impl FnOnce(&mut Body) -> T) -> T {
+        self.b.begin_block(Some(block)).unwrap();
+        let made = fill(self);
+        self.b.branch(after).unwrap();
+        made
     }
 
     fn value_if(
@@ -265,12 +273,8 @@ impl Body<'_> {
         let [inside, outside, after] = [0; 3].map(|_| self.b.id());
         self.b.selection_merge(after, SelectionControl::NONE).unwrap();
         self.b.branch_conditional(has, inside, outside, []).unwrap();
-        self.b.begin_block(Some(inside)).unwrap();
-        let one = then(&mut Body { b: self.b, ids: self.ids });
-        self.b.branch(after).unwrap();
-        self.b.begin_block(Some(outside)).unwrap();
-        let two = other(&mut Body { b: self.b, ids: self.ids });
-        self.b.branch(after).unwrap();
+        let one = self.side(inside, after, then);
+        let two = self.side(outside, after, other);
         self.b.begin_block(Some(after)).unwrap();
         self.b.phi(kind, None, [(one, inside), (two, outside)]).unwrap()
     }

@@ -129,7 +129,6 @@ impl Render {
         let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let chosen = ManuallyDrop::new(chosen);
-        let (width, height) = loaded.packed.settings().size;
         let is_silent = quiet || self.json;
         // Of one sample there is nothing to be seen before it is done, nor to be kept.
         let rendering = if self.repeat == 1 && loaded.view.samples() > 1 {
@@ -144,6 +143,7 @@ impl Render {
             };
             watching.follow(|watch| chosen.render_watched(&loaded.packed, &loaded.view, watch))
         } else {
+            let (width, height) = loaded.packed.settings().size;
             let pixels = u64::from(width) * u64::from(height) * u64::from(self.repeat);
             let bar = progress::pixels(pixels, is_silent);
             let rendering = chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| bar.inc(pixels));

@@ -219,20 +219,23 @@ fn apply(function: &mut Function, header: usize, selection: &Selection) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::folded;
+    use super::super::tests::{cut, folded};
     use super::*;
-    use crate::Kernels;
-    use crate::testing::{Body, Kernel};
-    use rspirv::binary::Assemble;
+    use crate::testing::Body;
     use rspirv::spirv::MemoryAccess;
 
-    /// What is left of a kernel, whose last value is stored.
-    fn left(body: impl FnOnce(&mut Body, Word, Word) -> Word) -> Vec<Op> {
-        folded(0, |b, _| {
+    /// A kernel's body that stores what another makes of a word and a number.
+    fn storing(body: impl FnOnce(&mut Body, Word, Word) -> Word) -> impl FnOnce(&mut Body, Word) {
+        |b, _| {
             let (word, x) = (b.load_counter(MemoryAccess::NONE), b.load_input());
             let value = body(b, word, x);
             b.store_output(value);
-        })
+        }
+    }
+
+    /// What is left of such a kernel.
+    fn left(body: impl FnOnce(&mut Body, Word, Word) -> Word) -> Vec<Op> {
+        folded(0, storing(body))
     }
 
     fn branches(ops: &[Op]) -> usize {
@@ -255,15 +258,7 @@ mod tests {
     #[test]
     fn the_condition_selects_its_own_side() {
         let operations = |body: fn(&mut Body, Word, Word) -> Word| {
-            let mut kernel = Kernel::new();
-            kernel.entry("kernel", |b| {
-                let (word, x) = (b.load_counter(MemoryAccess::NONE), b.load_input());
-                let value = body(b, word, x);
-                b.store_output(value);
-            });
-            let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
-            let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[]).unwrap();
-            let module = rspirv::dr::load_words(cut.words()).unwrap();
+            let module = rspirv::dr::load_words(cut(0, storing(body)).words()).unwrap();
             let all = &module.functions[0].blocks[0].instructions;
             let select = all.iter().find(|inst| inst.class.opcode == Op::Select).unwrap();
             let of = |operand: &Operand| {

@@ -5,15 +5,20 @@ use rspirv::dr;
 use rspirv::spirv::Op;
 
 use crate::testing::{Body, Kernel};
-use crate::{Error, Kernels};
+use crate::{Error, Kernel as Cut, Kernels};
 
-/// Every instruction of the kernel that `body` makes with the value of a specialisation constant in place.
-pub(super) fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
+/// The kernel that `body` makes with the value of a specialisation constant in place.
+pub(super) fn cut(value: u32, body: impl FnOnce(&mut Body, u32)) -> Cut {
     let mut kernel = Kernel::new();
     let special = kernel.spec_constant(1, 0);
     kernel.entry("kernel", |b| body(b, special));
     let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
-    let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap();
+    Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap()
+}
+
+/// Every instruction of such a kernel.
+pub(super) fn folded(value: u32, body: impl FnOnce(&mut Body, u32)) -> Vec<Op> {
+    let cut = cut(value, body);
     let module = dr::load_words(cut.words()).unwrap();
     assert!(!module.types_global_values.iter().any(|inst| inst.class.opcode == Op::SpecConstant));
     let blocks = module.functions.iter().flat_map(|function| &function.blocks);
@@ -41,14 +46,8 @@ fn what_a_constant_rules_out_is_gone_and_its_branch_too() {
 /// What is left of a way around nothing are no blocks of their own, so that it leaves no trace.
 #[test]
 fn blocks_that_only_follow_one_another_become_one() {
-    let blocks = |value, body: fn(&mut Body, u32)| {
-        let mut kernel = Kernel::new();
-        let special = kernel.spec_constant(1, 0);
-        kernel.entry("kernel", |b| body(b, special));
-        let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
-        let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, value)]).unwrap();
-        dr::load_words(cut.words()).unwrap().functions[0].blocks.len()
-    };
+    let blocks =
+        |value, body: fn(&mut Body, u32)| dr::load_words(cut(value, body).words()).unwrap().functions[0].blocks.len();
     let choices: fn(&mut Body, u32) = |b, special| {
         let x = b.load_input();
         b.if_has(special, 4, |b| b.if_has(special, 8, |b| b.store_output(x)));
@@ -172,12 +171,7 @@ fn loops_stay_whole_whatever_is_known_of_them() {
 /// Its way back is one emptied block then, from which its counter has no value in particular.
 #[test]
 fn a_counter_keeps_a_value_for_every_way_into_its_loop() {
-    let mut kernel = Kernel::new();
-    let special = kernel.spec_constant(1, 0);
-    kernel.entry("kernel", |b| b.leave_long_loop(special));
-    let bytes: Vec<u8> = kernel.module().assemble().into_iter().flat_map(u32::to_le_bytes).collect();
-    let cut = Kernels::parse(&bytes).unwrap().cut("kernel", &[(1, 1)]).unwrap();
-    let module = dr::load_words(cut.words()).unwrap();
+    let module = dr::load_words(cut(1, |b, special| b.leave_long_loop(special)).words()).unwrap();
     let function = &module.functions[0];
     assert_eq!(
         function.blocks.len(),

@@ -17,13 +17,13 @@ fn main() -> Result<()> {
     println!("{}: {} rays", cpu.device, cpu.rays.total());
 
     // Three floats of linear light a pixel, row by row from the top left.
-    let values: &[f32] = cpu.film.pixels.as_flattened();
+    let values: &[f32] = cpu.picture.pixels.as_flattened();
     let mean = values.iter().sum::<f32>() / values.len() as f32;
     println!("{} values, {mean:.4} on average", values.len());
 
     match render(&packed, &view, DeviceWish::Gpu) {
         Ok(gpu) => {
-            let comparison = compare(&cpu.film, &gpu.film)?;
+            let comparison = compare(&cpu.picture, &gpu.picture)?;
             println!("{}: {} pixels differ from the CPU's", gpu.device, comparison.differing_pixels);
         }
         // Without a GPU, or with one that can't be exact, there is nothing to compare with.

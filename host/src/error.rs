@@ -5,9 +5,9 @@ use std::io::{self, ErrorKind};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use crate::film::Film;
 use crate::image::Format;
 use crate::line::one_line;
+use crate::picture::Picture;
 
 /// The result of everything that can fail on what the caller gave.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -46,14 +46,14 @@ pub enum Error {
         /// The most that it may be.
         most: String,
     },
-    /// A film that is empty, or larger than [`Film::MAX_SIDE`] and [`Film::MAX_PIXELS`] allow.
+    /// A picture that is empty, or larger than [`Picture::MAX_SIDE`] and [`Picture::MAX_PIXELS`] allow.
     Size {
         /// Columns.
         width: u32,
         /// Rows.
         height: u32,
     },
-    /// Too little memory for a film of this size.
+    /// Too little memory for a picture of this size.
     Memory {
         /// Columns.
         width: u32,
@@ -235,8 +235,8 @@ impl Error {
             }
             Error::Size { width, height } => format!(
                 "an image of {width}x{height} pixels is too large; a side is at most {} and all at most {} pixels",
-                Film::MAX_SIDE,
-                Film::MAX_PIXELS
+                Picture::MAX_SIDE,
+                Picture::MAX_PIXELS
             ),
             Error::Memory { width, height } => {
                 format!("too little memory for an image of {width}x{height} pixels; choose a smaller size")

@@ -3,7 +3,7 @@
 use crate::choice::choices;
 use crate::device_scene::{DeviceScene, Feature};
 use crate::error::Result;
-use crate::film::Film;
+use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering};
 use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
 use crate::view::View;
@@ -35,11 +35,11 @@ choices! {
 #[derive(Debug, Clone)]
 pub enum Values {
     /// Light, linear RGB.
-    Light(Film),
+    Light(Picture),
     /// Shares of light, linear RGB.
-    Colours(Film),
+    Colours(Picture),
     /// Means of vectors.
-    Vectors(Film),
+    Vectors(Picture),
     /// Lengths.
     Lengths(Vec<f32>),
     /// Numbers, from 1.
@@ -50,7 +50,7 @@ impl Values {
     /// How many pixels there are.
     pub fn pixels(&self) -> usize {
         match self {
-            Values::Light(film) | Values::Colours(film) | Values::Vectors(film) => film.pixels.len(),
+            Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture.pixels.len(),
             Values::Lengths(lengths) => lengths.len(),
             Values::Numbers(numbers) => numbers.len(),
         }
@@ -73,7 +73,7 @@ pub fn render(
     let of_picture = Settings { spp: picture.samples, ..settings };
     let mut studio = Studio { backend, packed, camera, settings: of_picture, direct: None, places: None };
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
-    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, &picture.film)?))).collect();
+    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, &picture.picture)?))).collect();
     packed.show(None);
     packed.set(settings)?;
     rendered
@@ -84,15 +84,15 @@ pub fn render(
 ///
 /// # Errors
 /// As [`Backend::render`].
-pub fn preview(packed: &mut DeviceScene, camera: &Camera, threads: usize) -> Result<Film> {
+pub fn preview(packed: &mut DeviceScene, camera: &Camera, threads: usize) -> Result<Picture> {
     let backend = &Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
     let settings = *packed.settings();
     let middle = Settings { spp: 1, sampler: Sampler::Regular, ..settings };
     let mut studio = Studio { backend, packed, camera, settings, direct: None, places: None };
-    let film = studio.film(Some(Feature::Albedo), middle);
+    let picture = studio.picture(Some(Feature::Albedo), middle);
     packed.show(None);
     packed.set(settings)?;
-    film
+    picture
 }
 
 /// What all layers are rendered with, and what several of them take.
@@ -102,7 +102,7 @@ struct Studio<'a> {
     camera: &'a Camera,
     /// Of the picture.
     settings: Settings,
-    direct: Option<Film>,
+    direct: Option<Picture>,
     places: Option<Vec<Place>>,
 }
 
@@ -116,11 +116,11 @@ struct Place {
 }
 
 impl Studio<'_> {
-    fn layer(&mut self, layer: Layer, scene: &Scene, picture: &Film) -> Result<Values> {
+    fn layer(&mut self, layer: Layer, scene: &Scene, picture: &Picture) -> Result<Values> {
         Ok(match layer {
             Layer::Colour => Values::Light(picture.clone()),
-            Layer::Albedo => Values::Colours(self.film(Some(Feature::Albedo), self.settings)?),
-            Layer::Normal => Values::Vectors(self.film(Some(Feature::Normal), self.settings)?),
+            Layer::Albedo => Values::Colours(self.picture(Some(Feature::Albedo), self.settings)?),
+            Layer::Normal => Values::Vectors(self.picture(Some(Feature::Normal), self.settings)?),
             Layer::Direct => Values::Light(self.direct()?.clone()),
             Layer::Indirect => Values::Light(less(picture, self.direct()?)?),
             Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
@@ -137,9 +137,9 @@ impl Studio<'_> {
         Ok(Values::Numbers(numbers.collect()))
     }
 
-    fn direct(&mut self) -> Result<&Film> {
+    fn direct(&mut self) -> Result<&Picture> {
         if self.direct.is_none() {
-            self.direct = Some(self.film(None, Settings { bounces: 0, ..self.settings })?);
+            self.direct = Some(self.picture(None, Settings { bounces: 0, ..self.settings })?);
         }
         Ok(self.direct.as_ref().expect("it was just made"))
     }
@@ -153,24 +153,24 @@ impl Studio<'_> {
                 let depth = if primitive.is_some() { (f64::from(depth) / scale) as f32 } else { f32::INFINITY };
                 Place { depth, primitive }
             };
-            self.places = Some(self.film(Some(Feature::Place), middle)?.pixels.into_iter().map(place).collect());
+            self.places = Some(self.picture(Some(Feature::Place), middle)?.pixels.into_iter().map(place).collect());
         }
         Ok(self.places.as_deref().expect("they were just made"))
     }
 
-    fn film(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Film> {
+    fn picture(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
         self.packed.show(feature);
         self.packed.set(settings)?;
         let view = View::new(self.packed, self.camera)?;
-        Ok(self.backend.render(self.packed, &view, 1, &|_| ())?.film)
+        Ok(self.backend.render(self.packed, &view, 1, &|_| ())?.picture)
     }
 }
 
 /// The light that a picture has and another has not. What rounding leaves below zero is none.
-fn less(picture: &Film, other: &Film) -> Result<Film> {
+fn less(picture: &Picture, other: &Picture) -> Result<Picture> {
     let less = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|channel| (a[channel] - b[channel]).max(0.0));
     let pixels = picture.pixels.iter().zip(&other.pixels).map(less).collect();
-    Film::from_pixels(picture.width, picture.height, pixels)
+    Picture::from_pixels(picture.width, picture.height, pixels)
 }
 
 /// The numbers of the scene's parts by where their primitives end.

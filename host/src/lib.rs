@@ -18,7 +18,7 @@
 //! let view = View::new(&device_scene, &scene.cameras[0])?;
 //! let backend = Backend::new(&Choice { device: DeviceWish::Cpu, ..Choice::default() })?;
 //! let rendering = backend.render(&device_scene, &view, 1, &|_pixels| ())?;
-//! assert_eq!(rendering.film.pixels.len(), 32 * 32);
+//! assert_eq!(rendering.picture.pixels.len(), 32 * 32);
 //! # Ok(())
 //! # }
 //! ```
@@ -34,7 +34,6 @@ pub mod compare;
 pub mod cpu;
 pub mod device_scene;
 pub mod error;
-pub mod film;
 pub mod gpu;
 pub mod image;
 pub mod integrator;
@@ -43,6 +42,7 @@ pub mod line;
 pub mod math;
 pub mod memory;
 pub mod method;
+pub mod picture;
 pub mod plan;
 pub mod quality;
 pub mod rays;

@@ -8,9 +8,9 @@ use crate::choice::choices;
 use crate::cpu;
 use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::gpu::{AdapterRequest, Around, Gpu, Renderer, warm};
 use crate::method::{Method, Processor, Traversal};
+use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::scene::{Scene, Settings};
 use crate::view::View;
@@ -93,7 +93,7 @@ pub struct Backend {
 /// A picture and what it took.
 pub struct Rendering {
     /// The picture.
-    pub film: Film,
+    pub picture: Picture,
     /// Samples of each pixel.
     pub samples: u32,
     /// What was traced.
@@ -264,7 +264,7 @@ impl Backend {
         })?;
         let route = if self.choice.no_passthrough { ", through naga" } else { "" };
         Ok(Rendering {
-            film: last.film,
+            picture: last.picture,
             samples: last.samples,
             rays: last.rays,
             device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
@@ -294,11 +294,11 @@ impl Backend {
         if runs.warm_up {
             render(&|_| ())?;
         }
-        let ((film, rays, samples), times) = repeated(runs.repeat, || render(done))?;
+        let ((picture, rays, samples), times) = repeated(runs.repeat, || render(done))?;
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
         Ok(Rendering {
-            film,
+            picture,
             samples,
             rays,
             device: format!("CPU ({threads} thread{plural})"),

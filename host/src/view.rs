@@ -6,8 +6,8 @@ use glam::DVec3;
 
 use crate::device_scene::{DeviceScene, flushed};
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::math;
+use crate::picture::Picture;
 use crate::scene::{Camera, Projection, Settings};
 
 /// A rectangle of the image in pixels.
@@ -55,7 +55,7 @@ impl View {
     /// A camera in a scene, with an image of `width` x `height` pixels and `samples` x `samples` samples a pixel.
     ///
     /// # Errors
-    /// As [`View::new`]; or a size that [`Film::check_size`] refuses, or no sample or too many.
+    /// As [`View::new`]; or a size that [`Picture::check_size`] refuses, or no sample or too many.
     pub fn of(packed: &DeviceScene, camera: &Camera, size: (u32, u32), samples: u32) -> Result<View> {
         crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
         View::seen(packed, camera, &Settings { size, samples, spp: 0, ..*packed.settings() })
@@ -63,7 +63,7 @@ impl View {
 
     fn seen(packed: &DeviceScene, camera: &Camera, settings: &Settings) -> Result<View> {
         let (width, height) = settings.size;
-        Film::check_size(width, height)?;
+        Picture::check_size(width, height)?;
         let grid = settings.grid()?;
         let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
         let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
@@ -106,7 +106,7 @@ impl View {
         self.samples
     }
 
-    /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The film is started anew by
+    /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The picture is started anew by
     /// sample 0.
     pub fn launch(&self, scene: &DeviceScene, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
@@ -160,8 +160,8 @@ mod tests {
         let settings = Settings { size: (64, 64), samples: 1, bounces: 0, ..scene.settings };
         let packed = device_scene::DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
-        let film = cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).unwrap().0;
-        film.pixels.iter().filter(|pixel| pixel.iter().any(|&v| v > 0.0)).count()
+        let picture = cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).unwrap().0;
+        picture.pixels.iter().filter(|pixel| pixel.iter().any(|&v| v > 0.0)).count()
     }
 
     #[test]

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::error::Result;
-use crate::film::Film;
+use crate::picture::Picture;
 
 /// How long samples take that are added at once, where one does not take longer: so soon a rendering ends that is stopped.
 const STEP: Duration = Duration::from_secs(1);
@@ -26,16 +26,16 @@ pub struct Growth<'a> {
     pub samples: u32,
     /// Samples that it shall have.
     pub of: u32,
-    film: &'a mut dyn FnMut() -> Result<Film>,
+    picture: &'a mut dyn FnMut() -> Result<Picture>,
 }
 
 impl Growth<'_> {
     /// The picture so far: the bits of one of so many samples.
     ///
     /// # Errors
-    /// What the device reports, or if there is no memory for the film.
-    pub fn film(self) -> Result<Film> {
-        (self.film)()
+    /// What the device reports, or if there is no memory for the picture.
+    pub fn picture(self) -> Result<Picture> {
+        (self.picture)()
     }
 }
 
@@ -45,7 +45,7 @@ pub(crate) trait Grows {
     fn add(&mut self, count: u32) -> Result<()>;
 
     /// The picture so far.
-    fn film(&mut self) -> Result<Film>;
+    fn picture(&mut self) -> Result<Picture>;
 }
 
 /// Adds samples until there are `most`, the time is up or somebody stops it. Their number is chosen by what those before took.
@@ -60,7 +60,7 @@ pub(crate) fn grow(picture: &mut impl Grows, most: u32, watch: &Watch<'_>) -> Re
         picture.add(next)?;
         samples += next;
         let each = (before.elapsed().as_secs_f64() / f64::from(next)).max(1e-9);
-        (watch.grown)(Growth { samples, of: most, film: &mut || picture.film() });
+        (watch.grown)(Growth { samples, of: most, picture: &mut || picture.picture() });
         if watch.stop.load(Ordering::Relaxed) {
             break;
         }
@@ -94,8 +94,8 @@ mod tests {
             if self.fails { Err(Error::NoGpu) } else { Ok(()) }
         }
 
-        fn film(&mut self) -> Result<Film> {
-            Film::new(self.batches.iter().sum(), 1)
+        fn picture(&mut self) -> Result<Picture> {
+            Picture::new(self.batches.iter().sum(), 1)
         }
     }
 
@@ -137,7 +137,7 @@ mod tests {
         let grown = |growth: Growth<'_>| {
             let (samples, of) = (growth.samples, growth.of);
             stop.store(samples >= 5, Ordering::Relaxed);
-            seen.borrow_mut().push((samples, of, growth.film().unwrap().pixels.len()));
+            seen.borrow_mut().push((samples, of, growth.picture().unwrap().pixels.len()));
         };
         let mut picture = slow(Duration::ZERO);
         grow(&mut picture, 100, &Watch { limit: None, stop: &stop, grown: &grown }).unwrap();

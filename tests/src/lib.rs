@@ -1,4 +1,4 @@
-//! What the whole-program tests share: the shipped scenes, the GPU at hand, and films side by side.
+//! What the whole-program tests share: the shipped scenes, the GPU at hand, and pictures side by side.
 
 pub mod bare;
 pub mod brute_force;
@@ -16,9 +16,9 @@ use std::path::PathBuf;
 use eyerays::compare::compare;
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::gpu::{AdapterRequest, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
+use eyerays::picture::Picture;
 use eyerays::rays::Rays;
 use eyerays::scene::{self, Camera, Direct, Scene, Settings, Transport};
 use eyerays::view::View;
@@ -146,8 +146,8 @@ pub fn traversals() -> Vec<Traversal> {
 /// names the arithmetic itself compiles all kernels again.
 ///
 /// # Panics
-/// If there is no memory for the film.
-pub fn on_cpu(posed: &Posed) -> (Film, Rays) {
+/// If there is no memory for the picture.
+pub fn on_cpu(posed: &Posed) -> (Picture, Rays) {
     rendered::<f32>(posed)
 }
 
@@ -155,25 +155,25 @@ pub fn on_cpu(posed: &Posed) -> (Film, Rays) {
 ///
 /// # Panics
 /// As [`on_cpu`].
-pub fn in_double_precision(posed: &Posed) -> (Film, Rays) {
+pub fn in_double_precision(posed: &Posed) -> (Picture, Rays) {
     rendered::<f64>(posed)
 }
 
-fn rendered<R: cpu::Number>(posed: &Posed) -> (Film, Rays) {
+fn rendered<R: cpu::Number>(posed: &Posed) -> (Picture, Rays) {
     cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), 0, &|_| ()).unwrap_or_else(|e| panic!("{e}"))
 }
 
-/// Asserts that two films have the same bits.
+/// Asserts that two pictures have the same bits.
 ///
 /// # Panics
 /// If they have not, with the differences.
-pub fn assert_same_bits(a: &Film, b: &Film, what: &str) {
+pub fn assert_same_bits(a: &Picture, b: &Picture, what: &str) {
     let comparison = compare(a, b).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(a.bits_equal(b) && comparison.bit_equal, "{what}:\n{comparison}");
 }
 
 /// The largest difference of a channel of each pixel, row-major from the top left.
-pub fn differences(a: &Film, b: &Film) -> Vec<f32> {
+pub fn differences(a: &Picture, b: &Picture) -> Vec<f32> {
     let channel = |(a, b): (&f32, &f32)| (a - b).abs();
     let pixel = |(a, b): (&[f32; 3], &[f32; 3])| a.iter().zip(b).map(channel).fold(0.0, f32::max);
     a.pixels.iter().zip(&b.pixels).map(pixel).collect()

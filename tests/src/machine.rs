@@ -5,9 +5,9 @@ use std::sync::LazyLock;
 
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::gpu::{AdapterRequest, Caster, Gpu, Renderer};
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
+use eyerays::picture::Picture;
 use eyerays::rays::Rays;
 use eyerays::stream::{Answers, Question, Stream};
 use glam::UVec4;
@@ -76,13 +76,13 @@ impl Machine {
     ///
     /// # Panics
     /// If the device can't.
-    pub fn render(&self, posed: &Posed) -> (Film, Rays) {
+    pub fn render(&self, posed: &Posed) -> (Picture, Rays) {
         let (packed, view, traversal) = (&posed.packed, &posed.view, Traversal::default());
         let rendered = match self.gpu {
             None => cpu::render::<f32>(packed, view, traversal, 0, &|_| ()),
             Some(gpu) => Renderer::new(gpu, packed, self.exact, traversal)
                 .and_then(|mut renderer| renderer.render(view, &|_| ()))
-                .map(|rendering| (rendering.film, rendering.rays)),
+                .map(|rendering| (rendering.picture, rendering.rays)),
         };
         rendered.unwrap_or_else(|e| panic!("{self}: {e}"))
     }

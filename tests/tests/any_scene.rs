@@ -174,9 +174,9 @@ fn any_scene_that_is_accepted_is_drawn() {
         let mut posed = pack(&scene, &scene.cameras[0], scene.settings);
         for feature in [None, Some(one(&mut random, &[Feature::Albedo, Feature::Normal, Feature::Place]))] {
             posed.packed.show(feature);
-            let (film, rays) = on_cpu(&posed);
+            let (picture, rays) = on_cpu(&posed);
             assert_eq!(rays.non_finite, 0, "seed {seed}, {feature:?}");
-            drawn += film.pixels.iter().filter(|pixel| pixel.iter().any(|&channel| channel != 0.0)).count();
+            drawn += picture.pixels.iter().filter(|pixel| pixel.iter().any(|&channel| channel != 0.0)).count();
         }
     }
     assert!(drawn as u64 > 10 * SCENES, "most are not black, but {drawn} pixels are bright");
@@ -215,5 +215,5 @@ fn assert_same_on(gpu: &Gpu, scene: &Scene, what: &str) {
     let posed = pack(scene, &scene.cameras[0], scene.settings);
     let mut renderer = Renderer::new(gpu, &posed, true, Traversal::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
     let rendering = renderer.render(&posed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-    assert_same_bits(&rendering.film, &on_cpu(&posed).0, what);
+    assert_same_bits(&rendering.picture, &on_cpu(&posed).0, what);
 }

@@ -3,8 +3,8 @@
 use eyerays::cpu;
 use eyerays::cpu::{Isa, Planned};
 use eyerays::device_scene::SceneView;
-use eyerays::film::Film;
 use eyerays::method::Traversal;
+use eyerays::picture::Picture;
 use eyerays::rays::Rays;
 use eyerays::view::Region;
 use eyerays_bvh::Quality;
@@ -15,19 +15,19 @@ use eyerays_tests::{Posed, SAMPLED, SHIPPED, assert_same_bits, pack, pack_in, se
 /// Edges that no tile's edge divides.
 const SIZE: (u32, u32) = (83, 61);
 
-fn render<R: cpu::Number>(posed: &Posed, threads: usize) -> (Film, Rays) {
+fn render<R: cpu::Number>(posed: &Posed, threads: usize) -> (Picture, Rays) {
     cpu::render::<R>(&posed.packed, &posed.view, Traversal::default(), threads, &|_| ()).unwrap()
 }
 
-/// The same film at 1, 2 and 7 threads, and twice with each.
+/// The same picture at 1, 2 and 7 threads, and twice with each.
 fn any_number_of_threads<R: cpu::Number>() {
     for name in SHIPPED.into_iter().chain(SAMPLED) {
         let scene = shipped(name);
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, SIZE, 1));
-        let (film, rays) = render::<R>(&packed, 1);
+        let (picture, rays) = render::<R>(&packed, 1);
         for threads in [1, 2, 2, 7, 7] {
             let (other, counted) = render::<R>(&packed, threads);
-            assert_same_bits(&film, &other, &format!("{name}, {threads} threads"));
+            assert_same_bits(&picture, &other, &format!("{name}, {threads} threads"));
             assert_eq!(rays, counted, "{name}, {threads} threads");
         }
     }
@@ -52,11 +52,11 @@ fn a_better_hierarchy_changes_nothing() {
                 let packed = pack_in(&scene, camera, settings(&scene, SIZE, 1), quality);
                 render::<f32>(&packed, 2)
             };
-            let (film, rays) = of(Quality::Fast);
+            let (picture, rays) = of(Quality::Fast);
             for quality in [Quality::Medium, Quality::High] {
                 let what = format!("{name}, camera {}, {quality:?}", camera.name);
                 let (other, counted) = of(quality);
-                assert_same_bits(&film, &other, &what);
+                assert_same_bits(&picture, &other, &what);
                 assert_eq!(rays, counted, "{what}");
             }
         }
@@ -69,11 +69,11 @@ fn another_method_changes_nothing() {
         let scene = shipped(name);
         for camera in &scene.cameras {
             let packed = pack(&scene, camera, settings(&scene, (41, 31), 1));
-            let (film, rays) = render::<f32>(&packed, 2);
+            let (picture, rays) = render::<f32>(&packed, 2);
             for traversal in traversals() {
                 let what = format!("{name}, camera {}, {traversal:?}", camera.name);
                 let (other, counted) = cpu::render::<f32>(&packed, &packed.view, traversal, 2, &|_| ()).unwrap();
-                assert_same_bits(&film, &other, &what);
+                assert_same_bits(&picture, &other, &what);
                 assert_eq!(rays, counted, "{what}");
             }
         }
@@ -100,9 +100,9 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         let (whole, rays) = render::<f32>(&packed, 2);
         let planned = Planned::new(SceneView::new(&packed, Traversal::default()), Isa::best());
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
-            let (mut film, mut counted) = (Film::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
+            let (mut picture, mut counted) = (Picture::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
             for tile in tiles(SIZE, size) {
-                let mut records = planned.film::<f32>(tile);
+                let mut records = planned.picture::<f32>(tile);
                 counted.secondary +=
                     planned.add::<f32>(&packed.view, tile, 0..packed.view.samples(), &mut records, &());
                 counted.primary += u64::from(tile.width * tile.height * packed.view.samples());
@@ -114,13 +114,13 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
                         colour = colour + f32::load(rest).0;
                     }
                     let (x, y) = (tile.x + at % tile.width, tile.y + at / tile.width);
-                    film.pixels[(y * SIZE.0 + x) as usize] =
+                    picture.pixels[(y * SIZE.0 + x) as usize] =
                         [colour.x, colour.y, colour.z].map(|sum| sum / packed.view.samples() as f32);
                     counted.shadow += u64::from(word & !NON_FINITE);
                     counted.non_finite += u64::from(word & NON_FINITE != 0);
                 }
             }
-            assert_same_bits(&whole, &film, &format!("{name}, tiles of {size:?}"));
+            assert_same_bits(&whole, &picture, &format!("{name}, tiles of {size:?}"));
             assert_eq!(rays, counted, "{name}, tiles of {size:?}");
         }
     }

@@ -19,13 +19,13 @@ fn exact() -> Option<Gpu> {
 }
 
 fn assert_same_by(gpu: &Gpu, packed: &Posed, traversals: &[Traversal], what: &str) {
-    let (film, rays) = on_cpu(packed);
+    let (picture, rays) = on_cpu(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
     for &traversal in traversals {
         let what = format!("{what}, {traversal:?}");
         let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
         let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-        assert_same_bits(&rendering.film, &film, &what);
+        assert_same_bits(&rendering.picture, &picture, &what);
         assert_eq!(rendering.rays, rays, "{what}");
     }
 }
@@ -74,7 +74,7 @@ fn twice_in_a_row() {
     let packed = pack(&scene, &scene.cameras[2], settings(&scene, (70, 50), 2));
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     let [first, second] = [0, 1].map(|_| renderer.render(&packed.view, &|_| ()).unwrap());
-    assert_same_bits(&first.film, &second.film, "twice");
+    assert_same_bits(&first.picture, &second.picture, "twice");
     assert_eq!(first.rays, second.rays);
 }
 
@@ -184,9 +184,9 @@ fn ten_thousand_bounces() {
     scene.cameras[0].projection = Projection::Perspective { fov: 70.0 };
     let settings = Settings { size: (9, 5), bounces: BOUNCES, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
-    let (film, rays) = on_cpu(&packed);
+    let (picture, rays) = on_cpu(&packed);
     assert_eq!(rays.secondary, rays.primary * u64::from(BOUNCES));
-    assert!(film.pixels.iter().flatten().all(|channel| (channel - 1.0).abs() < 1e-3), "{:?}", film.pixels);
+    assert!(picture.pixels.iter().flatten().all(|channel| (channel - 1.0).abs() < 1e-3), "{:?}", picture.pixels);
     if let Some(gpu) = exact() {
         assert_same(&gpu, &packed, "mirrors");
     }
@@ -244,24 +244,24 @@ fn samples_in_parts() {
     let scene = still_life();
     let settings = Settings { samples: 3, sampler: Sampler::Sobol, bounces: 4, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
-    let (film, rays) = on_cpu(&packed);
+    let (picture, rays) = on_cpu(&packed);
     let all = u64::from(integrator::needs(&packed).paths) * 3 * 16 * 61 * 45;
     for (max_binding, parts) in
         [(u64::MAX, &[9][..]), (u64::MAX, &[1, 2, 6]), (3 * all, &[9]), (2 * all, &[4, 5]), (all / 2, &[2, 7])]
     {
         gpu.report.max_binding = gpu.report.max_buffer.min(max_binding);
         let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
-        // A picture that was started before, and films in between, change nothing.
+        // A picture that was started before, and pictures in between, change nothing.
         renderer.start(&packed.view).unwrap();
         renderer.add(1, &|_| ()).unwrap();
         renderer.start(&packed.view).unwrap();
-        assert!(renderer.film().unwrap().film.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        assert!(renderer.picture().unwrap().picture.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
         for &count in parts {
             renderer.add(count, &|_| ()).unwrap();
-            renderer.film().unwrap();
+            renderer.picture().unwrap();
         }
-        let rendering = renderer.film().unwrap();
-        assert_same_bits(&rendering.film, &film, &format!("{parts:?}, {max_binding}"));
+        let rendering = renderer.picture().unwrap();
+        assert_same_bits(&rendering.picture, &picture, &format!("{parts:?}, {max_binding}"));
         assert_eq!(rendering.rays, rays, "{parts:?}, {max_binding}");
     }
 }
@@ -279,8 +279,8 @@ fn views_of_one_upload() {
         let view = View::of(&packed, &scene.cameras[camera], size, samples).unwrap();
         let rendering = renderer.render(&view, &|_| ()).unwrap();
         let want = pack(&scene, &scene.cameras[camera], settings(&scene, size, samples));
-        let (film, rays) = on_cpu(&want);
-        assert_same_bits(&rendering.film, &film, &format!("camera {camera}, {size:?}"));
+        let (picture, rays) = on_cpu(&want);
+        assert_same_bits(&rendering.picture, &picture, &format!("camera {camera}, {size:?}"));
         assert_eq!(rendering.rays, rays);
     }
     for light in &mut scene.lights {
@@ -290,7 +290,7 @@ fn views_of_one_upload() {
     renderer.set_lights(&scene.lights).unwrap();
     let dimmed = pack(&scene, &scene.cameras[0], settings(&scene, (40, 30), 1));
     let rendering = renderer.render(&dimmed.view, &|_| ()).unwrap();
-    assert_same_bits(&rendering.film, &on_cpu(&dimmed).0, "dimmed");
+    assert_same_bits(&rendering.picture, &on_cpu(&dimmed).0, "dimmed");
 }
 
 /// Cameras far outside the scene, whose rays first come close to it.
@@ -306,8 +306,8 @@ fn cameras_from_afar() {
         camera.projection = Projection::Perspective { fov: 2.0 * (4.0 / distance).atan().to_degrees() };
         let packed = pack(&scene, &scene.cameras[0], scene.settings);
         assert_same(&gpu, &packed, &format!("{distance} away"));
-        let (film, rays) = on_cpu(&packed);
+        let (picture, rays) = on_cpu(&packed);
         assert!(rays.shadow > u64::from(61 * 45u32) / 2, "{distance} away, the scene fills the picture");
-        assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()));
+        assert!(picture.pixels.iter().flatten().all(|channel| channel.is_finite()));
     }
 }

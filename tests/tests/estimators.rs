@@ -4,7 +4,7 @@
 use std::collections::BTreeSet;
 use std::sync::Arc;
 
-use eyerays::film::Film;
+use eyerays::picture::Picture;
 use eyerays::scene::{
     Alpha, Direct, Environment, Integrator, Light, Map, Physical, Placement, Sampler, Scene, Settings, Texels, Texture,
     Transport,
@@ -17,11 +17,11 @@ const BLOCKS: usize = 8;
 const SEEDS: u32 = 24;
 
 /// Brightness of each block by each seed.
-fn blocks(film: &Film) -> Vec<f64> {
-    let edge = film.width as usize / BLOCKS;
+fn blocks(picture: &Picture) -> Vec<f64> {
+    let edge = picture.width as usize / BLOCKS;
     let mut sums = vec![0.0; BLOCKS * BLOCKS];
-    for (index, pixel) in film.pixels.iter().enumerate() {
-        let (x, y) = (index % film.width as usize, index / film.width as usize);
+    for (index, pixel) in picture.pixels.iter().enumerate() {
+        let (x, y) = (index % picture.width as usize, index / picture.width as usize);
         sums[y / edge * BLOCKS + x / edge] += pixel.iter().map(|&channel| f64::from(channel)).sum::<f64>();
     }
     sums
@@ -32,9 +32,9 @@ fn estimate(scene: &Scene, settings: Settings) -> Vec<(f64, f64)> {
     let all: Vec<Vec<f64>> = (0..SEEDS)
         .map(|seed| {
             let transport = Transport { seed, ..settings.transport };
-            let (film, rays) = on_cpu(&pack(scene, &scene.cameras[0], Settings { transport, ..settings }));
+            let (picture, rays) = on_cpu(&pack(scene, &scene.cameras[0], Settings { transport, ..settings }));
             assert_eq!(rays.non_finite, 0);
-            blocks(&film)
+            blocks(&picture)
         })
         .collect();
     let count = f64::from(SEEDS);
@@ -234,12 +234,13 @@ fn distributed_trees_are_whitteds() {
             (material.ambient, material.diffuse, material.specular) = (Some(Vec3::ZERO), Vec3::ZERO, Vec3::ZERO);
         }
         for camera in [0, 1] {
-            let mut film = |integrator, light: f32| {
+            let mut picture = |integrator, light: f32| {
                 let direction = Vec3::new(-0.4, -1.0, 0.3);
                 scene.lights = vec![Light::Directional { direction, colour: Vec3::splat(0.5 * light) }];
                 on_cpu(&pack(&scene, &scene.cameras[camera], with(integrator, settings))).0
             };
-            let (tree, want) = (film(Integrator::Distributed, std::f32::consts::PI), film(Integrator::Whitted, 1.0));
+            let (tree, want) =
+                (picture(Integrator::Distributed, std::f32::consts::PI), picture(Integrator::Whitted, 1.0));
             let off = |(got, want): (&[f32; 3], &[f32; 3])| got.iter().zip(want).any(|(a, b)| (a - b).abs() > 2e-5);
             let others = tree.pixels.iter().zip(&want.pixels).filter(|&pair| off(pair)).count();
             println!(

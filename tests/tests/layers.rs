@@ -3,9 +3,9 @@
 use eyerays::batch::{Batch, Ray};
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::layers::{self, Layer, Values};
 use eyerays::method::Method;
+use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{Disk, Part, Primitives, Sampler, Scene, Settings};
@@ -18,7 +18,7 @@ use glam::Vec3;
 const SIZE: (u32, u32) = (48, 36);
 
 /// The picture of a scene on the CPU, and all its layers in their order.
-fn layered(scene: &Scene, spp: u32) -> (Film, Vec<(Layer, Values)>) {
+fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
     let settings = Settings { size: SIZE, spp, sampler: Sampler::Sobol, ..scene.settings };
     let mut packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
     let choice = Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() };
@@ -37,15 +37,15 @@ fn layered(scene: &Scene, spp: u32) -> (Film, Vec<(Layer, Values)>) {
     ];
     let layers = layers::render(&backend, &mut packed, (scene, &scene.cameras[0]), &picture, &all).unwrap();
     let again = backend.render(&packed, &view, 1, &|_| ()).unwrap();
-    assert!(again.film.bits_equal(&picture.film), "layers change the scene that they are of");
-    (picture.film, layers)
+    assert!(again.picture.bits_equal(&picture.picture), "layers change the scene that they are of");
+    (picture.picture, layers)
 }
 
-fn film(layers: &[(Layer, Values)], wanted: Layer) -> &Film {
+fn picture(layers: &[(Layer, Values)], wanted: Layer) -> &Picture {
     let (_, values) = layers.iter().find(|(layer, _)| *layer == wanted).expect("it was asked for");
     match values {
-        Values::Light(film) | Values::Colours(film) | Values::Vectors(film) => film,
-        Values::Lengths(_) | Values::Numbers(_) => panic!("{wanted:?} is no film"),
+        Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture,
+        Values::Lengths(_) | Values::Numbers(_) => panic!("{wanted:?} is no picture"),
     }
 }
 
@@ -136,7 +136,7 @@ fn direct_and_indirect_light_are_all_of_it() {
         scene.settings.transport.integrator = eyerays::scene::Integrator::Path;
         scene.settings.bounces = 4;
         let (picture, layers) = layered(&scene, 4);
-        let (direct, indirect) = (film(&layers, Layer::Direct), film(&layers, Layer::Indirect));
+        let (direct, indirect) = (picture(&layers, Layer::Direct), picture(&layers, Layer::Indirect));
         assert!(indirect.pixels.iter().filter(|pixel| pixel.iter().any(|&c| c > 0.0)).count() > 100);
         for (i, pixel) in picture.pixels.iter().enumerate() {
             for (channel, &light) in pixel.iter().enumerate() {
@@ -146,7 +146,7 @@ fn direct_and_indirect_light_are_all_of_it() {
         }
         scene.settings.bounces = 0;
         let (_, layers) = layered(&scene, 4);
-        assert!(film(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        assert!(picture(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
     }
 }
 
@@ -154,7 +154,7 @@ fn direct_and_indirect_light_are_all_of_it() {
 fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
     let scene = shipped("bleeding");
     let (_, layers) = layered(&scene, 1);
-    let (albedo, normal) = (film(&layers, Layer::Albedo), film(&layers, Layer::Normal));
+    let (albedo, normal) = (picture(&layers, Layer::Albedo), picture(&layers, Layer::Normal));
     let forward = (scene.cameras[0].target - scene.cameras[0].eye).normalize();
     let materials = numbers(&layers, Layer::Material);
     let mut matt = 0;
@@ -165,7 +165,7 @@ fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
         if number == 0 || !around.iter().all(|&other| materials.get(other) == Some(&number)) {
             continue;
         }
-        let [colour, vector] = [albedo, normal].map(|film| Vec3::from(film.pixels[i]));
+        let [colour, vector] = [albedo, normal].map(|picture| Vec3::from(picture.pixels[i]));
         assert!((vector.length() - 1.0).abs() < 1e-5, "pixel {i}: {vector}");
         assert!(vector.dot(forward) < 0.5, "pixel {i}: {vector} faces away");
         assert_eq!(colour, scene.materials[number as usize - 1].diffuse, "pixel {i}");

@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use eyerays::film::Film;
+use eyerays::picture::Picture;
 use eyerays::scene::{Integrator, Map, Physical, Placement, Scene, Settings, Texels, Texture, Transport};
 use eyerays_shader::data::Effects;
 use eyerays_tests::{on_cpu, pack, shipped};
 use glam::{Vec2, Vec3, Vec4};
 
-fn film(scene: &Scene, integrator: Integrator) -> Film {
+fn picture(scene: &Scene, integrator: Integrator) -> Picture {
     let transport = Transport { integrator, ..scene.settings.transport };
     let settings = Settings { size: (24, 16), spp: 4, transport, ..scene.settings };
-    let (film, rays) = on_cpu(&pack(scene, &scene.cameras[0], settings));
+    let (picture, rays) = on_cpu(&pack(scene, &scene.cameras[0], settings));
     assert_eq!(rays.non_finite, 0);
-    film
+    picture
 }
 
-fn light(film: &Film) -> f64 {
-    film.pixels.iter().flatten().map(|&channel| f64::from(channel)).sum()
+fn light(picture: &Picture) -> f64 {
+    picture.pixels.iter().flatten().map(|&channel| f64::from(channel)).sum()
 }
 
 /// A picture of bytes, of 64 x 64 texels.
@@ -45,8 +45,8 @@ fn a_black_picture_of_light_is_dark_and_a_faint_one_is_seen() {
     let black = shining(|_| [0, 0, 0, 255]);
     let faint = shining(|_| [1, 1, 1, 255]);
     for integrator in [Integrator::Path, Integrator::Distributed] {
-        assert_eq!(light(&film(&black, integrator)), 0.0, "{integrator:?}");
-        assert!(light(&film(&faint, integrator)) > 0.0, "{integrator:?}");
+        assert_eq!(light(&picture(&black, integrator)), 0.0, "{integrator:?}");
+        assert!(light(&picture(&faint, integrator)) > 0.0, "{integrator:?}");
     }
     // Kernels that draw lamps need some.
     let is_emissive = |scene| pack(scene, &scene.cameras[0], scene.settings).effects().has(Effects::EMISSIVE);
@@ -64,11 +64,11 @@ fn coordinates_of_a_set_that_no_mesh_has_are_zero() {
     let covered = |scene: &mut Scene, set| scene.materials.iter_mut().for_each(|m| m.maps.base = red(set));
     scene.mesh.coordinates[0] = vec![Vec2::ZERO; scene.mesh.positions.len()];
     covered(&mut scene, 0);
-    let of_zeros = film(&scene, Integrator::Path);
+    let of_zeros = picture(&scene, Integrator::Path);
     covered(&mut scene, 1);
-    assert!(film(&scene, Integrator::Path).bits_equal(&of_zeros), "no second set");
+    assert!(picture(&scene, Integrator::Path).bits_equal(&of_zeros), "no second set");
     scene.mesh.coordinates[0].clear();
-    assert!(film(&scene, Integrator::Path).bits_equal(&of_zeros), "no set at all");
+    assert!(picture(&scene, Integrator::Path).bits_equal(&of_zeros), "no set at all");
 }
 
 /// Of two meshes in a scene, one without tangents looks as it does alone, by whichever set its normal map lies.
@@ -84,14 +84,14 @@ fn tangents_are_made_for_what_has_none() {
         material.maps.normal = waves(0);
     }
     scene.mesh.coordinates[0] = coordinates.clone();
-    let made = film(&scene, Integrator::Path);
+    let made = picture(&scene, Integrator::Path);
     // As where another mesh of the file has tangents.
     scene.mesh.tangents = vec![Vec4::ZERO; count];
-    assert!(film(&scene, Integrator::Path).bits_equal(&made), "zeros are none");
+    assert!(picture(&scene, Integrator::Path).bits_equal(&made), "zeros are none");
     scene.mesh.tangents = vec![Vec4::new(1.0, 0.0, 0.0, 1.0); count];
-    assert!(!film(&scene, Integrator::Path).bits_equal(&made), "a mesh's own count");
+    assert!(!picture(&scene, Integrator::Path).bits_equal(&made), "a mesh's own count");
     scene.mesh.tangents.clear();
     scene.materials.iter_mut().for_each(|material| material.maps.normal = waves(1));
     scene.mesh.coordinates = [vec![Vec2::ZERO; count], coordinates];
-    assert!(film(&scene, Integrator::Path).bits_equal(&made), "by the set of the map");
+    assert!(picture(&scene, Integrator::Path).bits_equal(&made), "by the set of the map");
 }

@@ -8,9 +8,9 @@ use glam::Vec3;
 /// The pixels row by row from the top left.
 fn render(scene: &Scene) -> Vec<Vec3> {
     let packed = pack(scene, &scene.cameras[0], scene.settings);
-    let (film, rays) = on_cpu(&packed);
+    let (picture, rays) = on_cpu(&packed);
     assert_eq!(rays.non_finite, 0);
-    film.pixels.into_iter().map(Vec3::from).collect()
+    picture.pixels.into_iter().map(Vec3::from).collect()
 }
 
 /// The one pixel along the view.

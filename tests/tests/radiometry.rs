@@ -3,7 +3,7 @@
 
 use std::f32::consts::PI;
 
-use eyerays::film::Film;
+use eyerays::picture::Picture;
 use eyerays::scene::{
     Background, Camera, Direct, Disk, Integrator, Light, Material, Projection, Sampler, Scene, Settings, Sphere,
     Transport,
@@ -41,15 +41,15 @@ fn at(eye: Vec3, target: Vec3) -> Camera {
     }
 }
 
-fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Film {
-    let (film, rays) = on_cpu(&pack(scene, camera, settings));
+fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Picture {
+    let (picture, rays) = on_cpu(&pack(scene, camera, settings));
     assert_eq!(rays.non_finite, 0);
-    film
+    picture
 }
 
 /// The mean of all pixels and its standard error.
-fn mean(film: &Film) -> (f64, f64) {
-    let values: Vec<f64> = film.pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+fn mean(picture: &Picture) -> (f64, f64) {
+    let values: Vec<f64> = picture.pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
@@ -81,8 +81,8 @@ fn add_square(scene: &mut Scene, x: f32, z: f32) {
 fn assert_floor(what: &str, scene: &Scene, irradiance: f64) {
     let camera = at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO);
     for direct in WAYS {
-        let film = render(scene, &camera, by(direct, once()));
-        assert_is(&format!("{what}, {direct:?}"), mean(&film), irradiance / f64::from(PI));
+        let picture = render(scene, &camera, by(direct, once()));
+        assert_is(&format!("{what}, {direct:?}"), mean(&picture), irradiance / f64::from(PI));
     }
 }
 
@@ -177,9 +177,9 @@ fn a_point_light_in_a_sphere() {
     let scene = lit_sphere();
     for k in 1..=5 {
         let transport = Transport { roulette: Settings::MOST_BOUNCES, ..once().transport };
-        let film = render(&scene, &inside(), Settings { spp: 4, bounces: k - 1, transport, ..once() });
+        let picture = render(&scene, &inside(), Settings { spp: 4, bounces: k - 1, transport, ..once() });
         let want = 1.0 - 0.5f32.powi(k as i32);
-        let all = film.pixels.iter().map(|pixel| pixel[1]);
+        let all = picture.pixels.iter().map(|pixel| pixel[1]);
         let (least, most) = (all.clone().fold(f32::MAX, f32::min), all.fold(0.0, f32::max));
         println!("{k}: {least} to {most} of {want}");
         assert!((least - want).abs() < 1e-5 && (most - want).abs() < 1e-5, "{k}: {least} to {most} of {want}");
@@ -203,8 +203,8 @@ fn a_point_light_that_lies_on_a_ceiling() {
     assert!((got - want).abs() < 1e-4 * want, "{got} of {want}");
 }
 
-fn assert_everywhere(what: &str, film: &Film, want: f32) {
-    let far = film.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
+fn assert_everywhere(what: &str, picture: &Picture, want: f32) {
+    let far = picture.pixels.as_flattened().iter().map(|got| (got - want).abs()).fold(0.0, f32::max);
     assert!(far < 1e-5, "{what}: {far} off {want}");
 }
 
@@ -215,18 +215,18 @@ fn a_clamp() {
     for clamp in [0.05f32, 0.1, 0.125, 0.25, 7.0] {
         let transport =
             Transport { clamp, roulette: Settings::MOST_BOUNCES, direct: Direct::Surface, ..once().transport };
-        let film = render(&scene, &inside(), Settings { spp: 4, bounces: 4, transport, ..once() });
+        let picture = render(&scene, &inside(), Settings { spp: 4, bounces: 4, transport, ..once() });
         let scattered = (2..=5).map(|n| (0.5 * 0.5f32.powi(n)).min(clamp));
         let want = 0.5 + 0.25 + scattered.sum::<f32>();
-        assert_everywhere(&format!("clamp {clamp}"), &film, want);
+        assert_everywhere(&format!("clamp {clamp}"), &picture, want);
     }
     // Light that is asked for is scattered once more when it arrives.
     let scene = lit_sphere();
     for clamp in [0.1f32, 0.2, 0.25] {
         let transport = Transport { clamp, roulette: Settings::MOST_BOUNCES, ..once().transport };
-        let film = render(&scene, &inside(), Settings { spp: 4, bounces: 3, transport, ..once() });
+        let picture = render(&scene, &inside(), Settings { spp: 4, bounces: 3, transport, ..once() });
         let want = 0.5 + (2..=4).map(|n| 0.5f32.powi(n).min(clamp)).sum::<f32>();
-        assert_everywhere(&format!("clamp {clamp}, asked for"), &film, want);
+        assert_everywhere(&format!("clamp {clamp}, asked for"), &picture, want);
     }
 }
 
@@ -247,8 +247,8 @@ fn lids_before_lamps() {
     below_disk.disks.push(Disk { center: Vec3::new(0.0, 2.0, 0.0), normal: Vec3::NEG_Y, radius: 1.0, material });
     for (what, scene) in [("sphere", below_sphere), ("disk", below_disk)] {
         for direct in WAYS {
-            let film = render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), by(direct, once()));
-            assert!(film.pixels.as_flattened().iter().all(|&channel| channel == 0.0), "{what}, {direct:?}");
+            let picture = render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), by(direct, once()));
+            assert!(picture.pixels.as_flattened().iter().all(|&channel| channel == 0.0), "{what}, {direct:?}");
         }
     }
 }
@@ -305,6 +305,6 @@ fn a_ball_in_white_surroundings() {
         target: Vec3::ZERO,
         ..inside()
     };
-    let film = render(&scene, &camera, Settings { spp: 16, ..once() });
-    assert!(film.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
+    let picture = render(&scene, &camera, Settings { spp: 16, ..once() });
+    assert!(picture.pixels.iter().flat_map(|p| [p[0] - 0.3, p[1] - 0.5, p[2] - 0.9]).all(|off| off.abs() < 1e-6));
 }

@@ -4,8 +4,8 @@ use std::sync::Mutex;
 
 use eyerays::cpu::{self, Observer, Records};
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::method::Traversal;
+use eyerays::picture::Picture;
 use eyerays_shader::camera;
 use eyerays_shader::data::{Effects, Light};
 use eyerays_shader::geometry::SurfaceInteraction;
@@ -99,13 +99,13 @@ fn cone<R: Scalar>(effects: Effects, light: &Light, contact: &SurfaceInteraction
     }
 }
 
-fn render<R: cpu::Number>(packed: &Posed) -> (Film, Vec<Story>) {
+fn render<R: cpu::Number>(packed: &Posed) -> (Picture, Vec<Story>) {
     let (width, height) = packed.view.size();
     let log = Log { packed, stories: Mutex::new(vec![Story::default(); (width * height) as usize]) };
     let renderer = cpu::Renderer::new(packed, Traversal::default(), 0).unwrap();
-    let (film, rays) = renderer.render::<R>(&packed.view, &|_| (), &log).unwrap();
+    let (picture, rays) = renderer.render::<R>(&packed.view, &|_| (), &log).unwrap();
     assert_eq!(rays.non_finite, 0);
-    (film, log.stories.into_inner().unwrap())
+    (picture, log.stories.into_inner().unwrap())
 }
 
 /// For every camera: at least 99.9 % of the pixels are near the reference, and in each of the others a ray hit

@@ -22,19 +22,19 @@ fn settings(scene: &Scene, size: (u32, u32), spp: u32) -> Settings {
 }
 
 fn assert_same(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
-    let (film, rays) = on_cpu(packed);
+    let (picture, rays) = on_cpu(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
-    assert!(film.pixels.iter().any(|&pixel| pixel != [0.0; 3]), "{what} is black");
+    assert!(picture.pixels.iter().any(|&pixel| pixel != [0.0; 3]), "{what} is black");
     let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
     let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-    assert_same_bits(&rendering.film, &film, what);
+    assert_same_bits(&rendering.picture, &picture, what);
     assert_eq!(rendering.rays, rays, "{what}");
     let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
         // Its parts are added in another order.
         (Some(a), Some(b)) => (a / b - 1.0).abs() < 1e-9,
         (a, b) => a == b,
     };
-    assert!(close(rendering.film.noise(), film.noise()), "{what}");
+    assert!(close(rendering.picture.noise(), picture.noise()), "{what}");
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn surfaces_and_surroundings() {
         (Integrator::Path, Filter::Bilinear, Method::Wide),
         (Integrator::Distributed, Filter::Mipmap, Method::WhileWhile),
     ];
-    let films: Vec<_> = ways
+    let pictures: Vec<_> = ways
         .into_iter()
         .map(|(integrator, filter, method)| {
             let transport = Transport { integrator, ..scene.settings.transport };
@@ -127,7 +127,7 @@ fn surfaces_and_surroundings() {
             on_cpu(&packed).0
         })
         .collect();
-    for pair in films.windows(2) {
+    for pair in pictures.windows(2) {
         assert!(!pair[0].bits_equal(&pair[1]), "a filter or an integrator changes nothing");
     }
     // Whitted's model refuses light that surfaces send out.
@@ -135,9 +135,9 @@ fn surfaces_and_surroundings() {
     let settings = Settings { sampler: Sampler::Regular, spp: 4, size: (40, 30), bounces: 3, ..scene.settings };
     let packed = pack(&scene, &scene.cameras[0], settings);
     let Some(gpu) = exact() else { return };
-    let (film, _) = on_cpu(&packed);
+    let (picture, _) = on_cpu(&packed);
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
-    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "whitted");
+    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().picture, &picture, "whitted");
 }
 
 /// Of everything that surfaces may have, however it is traced and whatever light the picture had.
@@ -156,18 +156,18 @@ fn what_the_camera_sees_first() {
     }
 }
 
-/// In flight together or one by one, all at once or in parts: a film is kept with what rounding took off.
+/// In flight together or one by one, all at once or in parts: a picture is kept with what rounding took off.
 #[test]
 fn samples_in_parts() {
     let scene = shipped("bleeding");
     let packed = pack(&scene, &scene.cameras[0], settings(&scene, (61, 45), 16));
-    let (film, rays) = on_cpu(&packed);
+    let (picture, rays) = on_cpu(&packed);
     let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
     for parts in [&[8, 8][..], &[1, 3, 12]] {
         let mut picture = renderer.start::<f32>(&packed.view).unwrap();
         parts.iter().for_each(|&count| renderer.add(&mut picture, count));
-        let (got, counted) = picture.film().unwrap();
-        assert_same_bits(&got, &film, &format!("CPU, {parts:?}"));
+        let (got, counted) = picture.picture().unwrap();
+        assert_same_bits(&got, &picture, &format!("CPU, {parts:?}"));
         assert_eq!(counted, rays);
     }
     let Some(mut gpu) = quick_gpu() else { return };
@@ -178,10 +178,10 @@ fn samples_in_parts() {
         renderer.start(&packed.view).unwrap();
         for &count in parts {
             renderer.add(count, &|_| ()).unwrap();
-            renderer.film().unwrap();
+            renderer.picture().unwrap();
         }
-        let rendering = renderer.film().unwrap();
-        assert_same_bits(&rendering.film, &film, &format!("{in_flight} in flight, {parts:?}"));
+        let rendering = renderer.picture().unwrap();
+        assert_same_bits(&rendering.picture, &picture, &format!("{in_flight} in flight, {parts:?}"));
         assert_eq!(rendering.rays, rays);
     }
 }
@@ -240,11 +240,11 @@ fn lights_change_without_another_scene() {
         }
     }
     renderer.set_lights(&scene.lights).unwrap();
-    let film = renderer.render::<f32>(&packed.view, &|_| (), &()).unwrap().0;
+    let picture = renderer.render::<f32>(&packed.view, &|_| (), &()).unwrap().0;
     let fresh = pack(&scene, &scene.cameras[0], settings);
-    assert_same_bits(&film, &on_cpu(&fresh).0, "CPU");
+    assert_same_bits(&picture, &on_cpu(&fresh).0, "CPU");
     let Some(gpu) = quick_gpu() else { return };
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     renderer.set_lights(&scene.lights).unwrap();
-    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().film, &film, "GPU");
+    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().picture, &picture, "GPU");
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use eyerays::film::Film;
+use eyerays::picture::Picture;
 use eyerays::scene::{
     Absorption, Alpha, Background, Camera, Filter, Integrator, Light, Map, Maps, Material, Physical, Placement,
     Projection, Sampler, Scene, Settings, Sphere, Texels, Texture, Transport,
@@ -32,14 +32,14 @@ fn camera(eye: Vec3, fov: f32) -> Camera {
     }
 }
 
-fn film(scene: &Scene, camera: &Camera, settings: Settings) -> Film {
-    let (film, rays) = on_cpu(&pack(scene, camera, settings));
+fn picture(scene: &Scene, camera: &Camera, settings: Settings) -> Picture {
+    let (picture, rays) = on_cpu(&pack(scene, camera, settings));
     assert_eq!(rays.non_finite, 0);
-    film
+    picture
 }
 
-fn mean(film: &Film) -> f64 {
-    film.pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / film.pixels.len() as f64
+fn mean(picture: &Picture) -> f64 {
+    picture.pixels.iter().map(|pixel| f64::from(pixel[1])).sum::<f64>() / picture.pixels.len() as f64
 }
 
 fn map(side: u32, texels: Texels, placement: Placement) -> Map {
@@ -70,22 +70,22 @@ fn a_pane_lets_as_much_of_a_sun_pass_as_it_is_not_opaque() {
             let colour = Vec3::splat(std::f32::consts::PI / -direction.y);
             scene.lights.push(Light::Directional { direction, colour });
             // Below the pane.
-            let film = film(&scene, &camera(Vec3::new(0.0, 0.8, 0.8), 20.0), settings(integrator));
-            let (got, want) = (mean(&film), f64::from(1.0 - opacity));
-            let error = (want * (1.0 - want) / (film.pixels.len() * 16) as f64).sqrt();
+            let picture = picture(&scene, &camera(Vec3::new(0.0, 0.8, 0.8), 20.0), settings(integrator));
+            let (got, want) = (mean(&picture), f64::from(1.0 - opacity));
+            let error = (want * (1.0 - want) / (picture.pixels.len() * 16) as f64).sqrt();
             assert!((got - want).abs() < 4.0 * error, "{integrator}, {opacity}, {tilt}: {got} of {want} ({error:.1e})");
         }
     }
 }
 
 /// A wall that shines as its picture does, from aslant.
-fn wall(coordinates: [Vec<Vec2>; 2], placement: Placement, filter: Filter) -> Film {
+fn wall(coordinates: [Vec<Vec2>; 2], placement: Placement, filter: Filter) -> Picture {
     let mut scene = empty();
     let maps = Maps { emission: Some(map(64, noise(64), placement)), ..Maps::default() };
     add_wall(&mut scene, Material { emission: Vec3::ONE, maps, ..black() }, Vec3::ZERO, 1.0);
     scene.mesh.coordinates = coordinates;
     let settings = Settings { filter, ..settings(Integrator::Path) };
-    film(&scene, &camera(Vec3::new(3.0, 1.0, 3.0), 40.0), settings)
+    picture(&scene, &camera(Vec3::new(3.0, 1.0, 3.0), 40.0), settings)
 }
 
 /// By powers of two, so that products are exact: the levels are the same, too.
@@ -108,14 +108,14 @@ fn a_transform_or_the_second_set_is_as_good_as_other_coordinates() {
 }
 
 /// A wall with holes where a picture of 4 x 4 texels says so.
-fn grille(texels: Texels, side: u32, nearest: bool, filter: Filter) -> Film {
+fn grille(texels: Texels, side: u32, nearest: bool, filter: Filter) -> Picture {
     let mut scene = empty();
     let placement = Placement { nearest, ..Placement::default() };
     let maps = Maps { opacity: Some(map(side, texels, placement)), ..Maps::default() };
     let material = Material { alpha: Alpha::Mask(0.5), emission: Vec3::ONE, two_sided: true, maps, ..black() };
     add_wall(&mut scene, material, Vec3::ZERO, 1.0);
     scene.mesh.coordinates[0] = [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (0.0, 0.0)].map(Vec2::from).to_vec();
-    film(&scene, &camera(Vec3::new(1.0, 0.5, 3.0), 40.0), Settings { filter, ..settings(Integrator::Path) })
+    picture(&scene, &camera(Vec3::new(1.0, 0.5, 3.0), 40.0), Settings { filter, ..settings(Integrator::Path) })
 }
 
 #[test]
@@ -147,7 +147,7 @@ fn ball(material: Material, integrator: Integrator) -> f64 {
     scene.background = Background::Colour(Vec3::ONE);
     scene.materials.push(material);
     scene.spheres.push(Sphere { center: Vec3::ZERO, radius: 1.0, material: 0 });
-    mean(&film(&scene, &camera(Vec3::Z * 5.0, 0.1), settings(integrator)))
+    mean(&picture(&scene, &camera(Vec3::Z * 5.0, 0.1), settings(integrator)))
 }
 
 /// Beer and Lambert's law.
@@ -172,7 +172,7 @@ fn a_tint_is_limited_after_its_texture() {
         let texels = Texels::Floats(vec![[texel, texel, texel, 1.0]]);
         let maps = Maps { specular_tint: Some(map(1, texels, Placement::default())), ..Maps::default() };
         add_wall(&mut scene, Material { physical: Some(physical), maps, ..black() }, Vec3::ZERO, 1.0);
-        film(&scene, &camera(Vec3::Z * 3.0, 20.0), settings(Integrator::Path))
+        picture(&scene, &camera(Vec3::Z * 3.0, 20.0), settings(Integrator::Path))
     };
     let (light, full) = (reflects(8.0, 1.0), reflects(64.0, 1.0));
     assert_same_bits(&reflects(64.0, 0.125), &light, "a factor of which a texture leaves an eighth");

@@ -5,8 +5,8 @@
 
 use eyerays::compare::check_sizes;
 use eyerays::error::Result;
-use eyerays::film::Film;
 use eyerays::image::{quantise_to_byte, srgb_to_linear};
+use eyerays::picture::Picture;
 use nv_flip::{DEFAULT_PIXELS_PER_DEGREE, FlipImageRgb8};
 use rayon::prelude::*;
 
@@ -24,12 +24,12 @@ pub struct Flip {
 }
 
 impl Flip {
-    /// Compares two films as a PNG of 8 bits shows them, seen from where a degree has 67 pixels: 0.7 m from a screen that
+    /// Compares two pictures as a PNG of 8 bits shows them, seen from where a degree has 67 pixels: 0.7 m from a screen that
     /// is 0.7 m wide and has 3840 pixels a line. NaN is black, and infinity as bright as white.
     ///
     /// # Errors
-    /// An invalid film and unequal sizes.
-    pub fn new(a: &Film, b: &Film) -> Result<Flip> {
+    /// An invalid picture and unequal sizes.
+    pub fn new(a: &Picture, b: &Picture) -> Result<Flip> {
         check_sizes(a, b)?;
         let (width, height) = (a.width, a.height);
         let squares: Vec<Square> = squares(width, height).collect();
@@ -51,18 +51,18 @@ impl Flip {
         sum / self.errors.len() as f64
     }
 
-    /// The errors as a film in the authors' colours, matplotlib's "magma": black for 0 over violet and orange to pale
+    /// The errors as a picture in the authors' colours, matplotlib's "magma": black for 0 over violet and orange to pale
     /// yellow for 1.
     ///
     /// # Errors
-    /// As [`Film::from_pixels`].
-    pub fn map(&self) -> Result<Film> {
+    /// As [`Picture::from_pixels`].
+    pub fn map(&self) -> Result<Picture> {
         let bytes = nv_flip::magma_lut().to_vec();
         let linear: Vec<f32> = bytes.iter().map(|&byte| srgb_to_linear(f64::from(byte) / 255.0) as f32).collect();
         let colours = linear.as_chunks::<3>().0;
         let last = colours.len() - 1;
         let colour = |&error: &f32| colours[((error * last as f32).round() as usize).min(last)];
-        Film::from_pixels(self.width, self.height, self.errors.iter().map(colour).collect())
+        Picture::from_pixels(self.width, self.height, self.errors.iter().map(colour).collect())
     }
 }
 
@@ -90,9 +90,10 @@ fn squares(width: u32, height: u32) -> impl Iterator<Item = Square> {
 
 impl Square {
     /// The errors of its pixels, line by line.
-    fn errors(&self, a: &Film, b: &Film) -> Vec<f32> {
+    fn errors(&self, a: &Picture, b: &Picture) -> Vec<f32> {
         let around = self.with_margin(a.width, a.height);
-        let [a, b] = [a, b].map(|film| FlipImageRgb8::with_data(around.width, around.height, &around.bytes(film)));
+        let [a, b] =
+            [a, b].map(|picture| FlipImageRgb8::with_data(around.width, around.height, &around.bytes(picture)));
         let errors = nv_flip::flip(a, b, DEFAULT_PIXELS_PER_DEGREE).to_vec();
         let lines = errors.chunks_exact(around.width as usize).skip((self.y - around.y) as usize);
         let start = (self.x - around.x) as usize;
@@ -109,9 +110,9 @@ impl Square {
     }
 
     /// Its sRGB values, line by line.
-    fn bytes(&self, film: &Film) -> Vec<u8> {
-        let lines = (self.y..self.y + self.height).map(|y| place(film.width, self.x, y));
-        let pixels = lines.flat_map(|start| film.pixels[start..start + self.width as usize].as_flattened());
+    fn bytes(&self, picture: &Picture) -> Vec<u8> {
+        let lines = (self.y..self.y + self.height).map(|y| place(picture.width, self.x, y));
+        let pixels = lines.flat_map(|start| picture.pixels[start..start + self.width as usize].as_flattened());
         pixels.map(|&v| quantise_to_byte(v.into())).collect()
     }
 }
@@ -120,22 +121,22 @@ impl Square {
 mod tests {
     use super::*;
 
-    /// A film of waves, with so much added to its red.
-    fn waves(width: u32, height: u32, more: f32) -> Film {
+    /// A picture of waves, with so much added to its red.
+    fn waves(width: u32, height: u32, more: f32) -> Picture {
         let value = |i: u32| (i.wrapping_mul(2_654_435_769) >> 24) as f32 / 512.0;
         let pixels = (0..width * height).map(|i| [value(i / 5) + more, value(i / 7), value(i / 11)]);
-        Film::from_pixels(width, height, pixels.collect()).unwrap()
+        Picture::from_pixels(width, height, pixels.collect()).unwrap()
     }
 
-    fn mean(a: &Film, b: &Film) -> f64 {
+    fn mean(a: &Picture, b: &Picture) -> f64 {
         Flip::new(a, b).unwrap().mean()
     }
 
     #[test]
-    fn equal_films_look_equal() {
+    fn equal_pictures_look_equal() {
         for (width, height) in [(1, 1), (1, 40), (40, 1), (300, 20)] {
-            let film = waves(width, height, 0.1);
-            let flip = Flip::new(&film, &film).unwrap();
+            let picture = waves(width, height, 0.1);
+            let flip = Flip::new(&picture, &picture).unwrap();
             assert!(flip.errors.iter().all(|&error| error == 0.0));
             assert_eq!(flip.mean(), 0.0);
         }
@@ -144,8 +145,8 @@ mod tests {
     #[test]
     fn a_greater_difference_looks_greater() {
         for (width, height) in [(1, 1), (33, 17)] {
-            let film = waves(width, height, 0.0);
-            let means = [0.0, 0.02, 0.1, 0.4].map(|more| mean(&film, &waves(width, height, more)));
+            let picture = waves(width, height, 0.0);
+            let means = [0.0, 0.02, 0.1, 0.4].map(|more| mean(&picture, &waves(width, height, more)));
             assert!(means[0] == 0.0 && means.is_sorted_by(|a, b| a < b) && means[3] < 1.0, "{means:?}");
         }
     }
@@ -154,11 +155,12 @@ mod tests {
     #[test]
     fn squares_have_the_errors_of_the_whole() {
         for (width, height) in [(SIDE + 3, SIDE - 1), (2 * SIDE, 2 * SIDE + MARGIN / 2), (5, 3 * SIDE + 1)] {
-            let films = [waves(width, height, 0.0), waves(width, height, 0.05)];
+            let pictures = [waves(width, height, 0.0), waves(width, height, 0.05)];
             let whole = Square { x: 0, y: 0, width, height };
-            let [a, b] = films.each_ref().map(|film| FlipImageRgb8::with_data(width, height, &whole.bytes(film)));
+            let [a, b] =
+                pictures.each_ref().map(|picture| FlipImageRgb8::with_data(width, height, &whole.bytes(picture)));
             let wanted = nv_flip::flip(a, b, DEFAULT_PIXELS_PER_DEGREE).to_vec();
-            let found = Flip::new(&films[0], &films[1]).unwrap().errors;
+            let found = Flip::new(&pictures[0], &pictures[1]).unwrap().errors;
             assert!(found == wanted, "{width}x{height}");
         }
     }
@@ -166,21 +168,21 @@ mod tests {
     /// Black and white are as far apart as the paper's measure goes, but for what the filters' weights round.
     #[test]
     fn what_is_no_light_has_a_place() {
-        let film = |value: f32| Film::from_pixels(8, 8, vec![[value; 3]; 64]).unwrap();
-        let [black, white] = [film(0.0), film(1.0)];
+        let picture = |value: f32| Picture::from_pixels(8, 8, vec![[value; 3]; 64]).unwrap();
+        let [black, white] = [picture(0.0), picture(1.0)];
         for dark in [f32::NAN, f32::NEG_INFINITY, -1.0] {
-            assert_eq!(mean(&black, &film(dark)), 0.0);
+            assert_eq!(mean(&black, &picture(dark)), 0.0);
         }
         for bright in [f32::INFINITY, f32::MAX, 2.0] {
-            assert_eq!(mean(&white, &film(bright)), 0.0);
+            assert_eq!(mean(&white, &picture(bright)), 0.0);
         }
-        let most = mean(&film(f32::NAN), &film(f32::INFINITY));
+        let most = mean(&picture(f32::NAN), &picture(f32::INFINITY));
         assert!(most > 0.9 && most <= 1.0, "{most}");
     }
 
     #[test]
     fn the_map_is_dark_where_films_look_equal() {
-        let (mut a, b) = (Film::new(64, 1).unwrap(), Film::new(64, 1).unwrap());
+        let (mut a, b) = (Picture::new(64, 1).unwrap(), Picture::new(64, 1).unwrap());
         a.pixels[0] = [1.0; 3];
         let map = Flip::new(&a, &b).unwrap().map().unwrap();
         let [near, far] = [map.pixels[0], map.pixels[63]].map(|pixel| pixel.iter().sum::<f32>());

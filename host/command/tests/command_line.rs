@@ -13,10 +13,10 @@ const PNG_END: &[u8] = b"\0\0\0\0IEND\xae\x42\x60\x82";
 fn a_cornell_box_is_on_disk() {
     let place = Place::new(&[]);
     let outcome = place.succeed(&["render", &shipped("cornell"), "-o", "cornell.png", "--device", "cpu"]);
-    let film = image::read(&place.path("cornell.png")).unwrap();
-    assert_eq!((film.width, film.height), (512, 512));
+    let picture = image::read(&place.path("cornell.png")).unwrap();
+    assert_eq!((picture.width, picture.height), (512, 512));
     // A red wall to the left and a green one to the right.
-    let [left, right] = [60, 451].map(|x| film.pixel(x, 256).unwrap());
+    let [left, right] = [60, 451].map(|x| picture.pixel(x, 256).unwrap());
     assert!(left[0] > 2.0 * left[1] && right[1] > 2.0 * right[0], "{left:?} {right:?}");
     assert_eq!(place.names(), ["cornell.png"]);
     let summary = outcome.stderr.strip_suffix('\n').unwrap();
@@ -49,8 +49,8 @@ fn a_bare_mesh_is_framed_lit_and_coloured() {
     let [warning, summary] = outcome.stderr.lines().collect::<Vec<_>>()[..] else { panic!("{}", outcome.stderr) };
     assert!(warning.starts_with("warning: ") && warning.contains("mesh.mtl") && warning.contains("map_Kd"));
     assert!(summary.starts_with("mesh.png: 33x33"), "{summary}");
-    let film = image::read(&place.path("mesh.png")).unwrap();
-    assert!(film.pixels.iter().any(|&[r, g, b]| r > 0.1 && g == 0.0 && b == 0.0), "there is no red");
+    let picture = image::read(&place.path("mesh.png")).unwrap();
+    assert!(picture.pixels.iter().any(|&[r, g, b]| r > 0.1 && g == 0.0 && b == 0.0), "there is no red");
 }
 
 #[test]
@@ -69,8 +69,8 @@ fn the_largest_coordinates_render() {
 fn a_dash_writes_a_picture_to_standard_output_and_nothing_else() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     let outcome = place.succeed(&["render", "scene.toml", "--device", "cpu", "-o", "-"]);
-    let film = image::decode(std::io::Cursor::new(&outcome.stdout)).unwrap();
-    assert_eq!((film.width, film.height), (24, 18));
+    let picture = image::decode(std::io::Cursor::new(&outcome.stdout)).unwrap();
+    assert_eq!((picture.width, picture.height), (24, 18));
     assert!(outcome.stdout.ends_with(PNG_END));
     assert_eq!(place.names(), ["scene.toml"]);
     assert!(outcome.stderr.starts_with("standard output: 24x18"), "{}", outcome.stderr);

@@ -11,11 +11,11 @@ fn a_converted_scene_renders_to_the_same_picture_without_the_files_that_it_came_
         let file = format!("{name}.eyerays");
         let said = place.succeed(&["convert", &shipped(name), &file]).stderr;
         assert!(said.contains(&format!("{file}: ")) && said.contains(" bytes"), "{said}");
-        let film = |scene: &str| {
+        let picture = |scene: &str| {
             let options = ["--size", "48x32", "--device", "cpu", "-o", "out.exr", "--json"];
             place.succeed(&[&["render", scene], &options[..]].concat()).json()["film_hash"].clone()
         };
-        assert_eq!(film(&file), film(&shipped(name)), "{name}");
+        assert_eq!(picture(&file), picture(&shipped(name)), "{name}");
     }
     let again = place.succeed(&["convert", "lights.eyerays", "again.eyerays", "-q"]);
     assert!(again.stderr.is_empty());
@@ -81,22 +81,22 @@ fn a_model_becomes_a_scene_file_that_renders_to_the_same_picture() {
     for said in ["integrator = \"path\"", "[[camera]]", "kind = \"spot\"", "base_color = [", "file = \"model.glb\""] {
         assert!(text.contains(said), "{said} is not in {text}");
     }
-    let film = |scene: &str| {
+    let picture = |scene: &str| {
         let options = ["--size", "48x32", "--spp", "4", "--device", "cpu", "-o", "out.exr", "--json"];
         place.succeed(&[&["render", scene], &options[..]].concat()).json()["film_hash"].clone()
     };
-    assert_eq!(film("model.toml"), film("model.glb"));
+    assert_eq!(picture("model.toml"), picture("model.glb"));
     // A bare mesh as well, from another folder.
     std::fs::create_dir(place.path("scenes")).unwrap();
     std::fs::write(place.path("mesh.obj"), program::TRIANGLE).unwrap();
     place.succeed(&["convert", "mesh.obj", "scenes/mesh.toml"]);
-    assert_eq!(film("scenes/mesh.toml"), film("mesh.obj"));
+    assert_eq!(picture("scenes/mesh.toml"), picture("mesh.obj"));
     let text = std::fs::read_to_string(place.path("scenes/mesh.toml")).unwrap();
     assert!(text.contains("file = \"../mesh.obj\""), "both may be moved together: {text}");
     // And one that nothing lights but what shines.
     std::fs::write(place.path("lamp.gltf"), LAMP).unwrap();
     place.succeed(&["convert", "lamp.gltf", "lamp.toml"]);
-    assert_eq!(film("lamp.toml"), film("lamp.gltf"));
+    assert_eq!(picture("lamp.toml"), picture("lamp.gltf"));
     let text = std::fs::read_to_string(place.path("lamp.toml")).unwrap();
     assert!(text.contains("# Several of its materials are called \"matt\""), "{text}");
 }

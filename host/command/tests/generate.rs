@@ -27,8 +27,8 @@ fn a_scene_is_three_files_that_render_as_they_are() {
                 ["render", &names[2], "--camera", &view, "--size", "48x48", "--device", "cpu", "-o", "view.png"];
             let rendered = place.succeed(&render);
             assert!(rendered.stderr.contains("0 non-finite pixels"), "{}", rendered.stderr);
-            let film = image::read(&place.path("view.png")).unwrap();
-            assert!(film.pixels.iter().any(|pixel| pixel != &film.pixels[0]), "{kind} {view}");
+            let picture = image::read(&place.path("view.png")).unwrap();
+            assert!(picture.pixels.iter().any(|pixel| pixel != &picture.pixels[0]), "{kind} {view}");
         }
         // The mesh by itself, too.
         place.succeed(&["check", &names[1]]);

@@ -45,7 +45,7 @@ fn pictures_of_the_readme_and_the_gallery_are_what_the_program_renders() {
             renewed = renewed.replace(film_hash, &found);
             continue;
         }
-        assert_eq!(found, *film_hash, "{name}: another film; if it should be, {PICTURES}=write makes it again");
+        assert_eq!(found, *film_hash, "{name}: another picture; if it should be, {PICTURES}=write makes it again");
         let [now, then] = [place.path(name), docs(name)].map(|path| image::read(&path).unwrap());
         assert!(now.bits_equal(&then), "docs/{name} is another picture; {PICTURES}=write makes it again");
     }
@@ -58,7 +58,7 @@ fn pictures_of_the_readme_and_the_gallery_are_what_the_program_renders() {
 const FOREIGN: &str = "EYERAYS_FOREIGN";
 
 #[test]
-fn another_platform_gives_the_same_films_and_files() {
+fn another_platform_gives_the_same_pictures_and_files() {
     let Ok(foreign) = std::env::var(FOREIGN) else {
         eprintln!("skipped: {FOREIGN} names no program");
         return;
@@ -85,7 +85,7 @@ fn another_platform_gives_the_same_films_and_files() {
         let mut other = Command::new(foreign[0]);
         other.args(&foreign[1..]);
         let (here, there) = (render("here", place.command::<&str>(&[])), render("there", other));
-        assert_eq!(here.0, there.0, "{scene}: the films differ");
+        assert_eq!(here.0, there.0, "{scene}: the pictures differ");
         assert!(here.1 == there.1, "{scene}: the {format} files differ");
     }
 }

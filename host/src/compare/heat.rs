@@ -2,9 +2,9 @@
 
 use super::{check_sizes, difference};
 use crate::error::Result;
-use crate::film::{Film, bits_differ};
 use crate::image::srgb_to_linear;
 use crate::math;
+use crate::picture::{Picture, bits_differ};
 
 /// One colour a decade, sRGB: the "inferno" map of matplotlib 2.0 (CC0) at 0.2, 0.3, ..., 1.0.
 /// Its lightness grows evenly, and it begins where it can be told from black.
@@ -14,14 +14,14 @@ const COLOURS: [u32; 9] =
 /// The decade of the first colour.
 const FIRST_DECADE: f64 = -8.0;
 
-/// A film that shows where two films differ and how much, by the largest absolute difference of
+/// A picture that shows where two pictures differ and how much, by the largest absolute difference of
 /// a pixel's channels in linear light. Black is equal in every bit. Above it is a logarithmic
 /// scale from dark violet for 1e-8 and less over red for 1e-5 and orange for 1e-3 to pale yellow
 /// for 1 and more, a colour a decade; a difference to infinity or NaN is pale yellow as well.
 ///
 /// # Errors
 /// As [`super::compare()`].
-pub fn heat_map(a: &Film, b: &Film) -> Result<Film> {
+pub fn heat_map(a: &Picture, b: &Picture) -> Result<Picture> {
     check_sizes(a, b)?;
     let pixels = a.pixels.iter().zip(&b.pixels);
     let heat = pixels.map(|(&a, &b)| {
@@ -32,7 +32,7 @@ pub fn heat_map(a: &Film, b: &Film) -> Result<Film> {
             [0.0; 3]
         }
     });
-    Film::from_pixels(a.width, a.height, heat.collect())
+    Picture::from_pixels(a.width, a.height, heat.collect())
 }
 
 /// The linear colour of a difference of at least 0.

@@ -1,4 +1,4 @@
-//! How far two films are apart, in bits and in light.
+//! How far two pictures are apart, in bits and in light.
 
 mod heat;
 mod ulp;
@@ -8,8 +8,8 @@ use std::fmt;
 use serde::Serialize;
 
 use crate::error::{Error, Result};
-use crate::film::{Film, bits_differ};
 use crate::math;
+use crate::picture::{Picture, bits_differ};
 
 pub use heat::heat_map;
 pub use ulp::ulp_distance;
@@ -17,9 +17,9 @@ pub use ulp::ulp_distance;
 /// What [`compare`] found. As JSON, infinite numbers are `null`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// Width of both films in pixels.
+    /// Width of both pictures in pixels.
     pub width: u32,
-    /// Height of both films in pixels.
+    /// Height of both pictures in pixels.
     pub height: u32,
     /// Whether no bit differs. 0 and -0 differ; NaNs of the same bits do not.
     pub bit_equal: bool,
@@ -36,15 +36,15 @@ pub struct Comparison {
     /// Peak signal-to-noise ratio in dB with a peak of 1.0: infinite if the RMSE is 0, and minus
     /// infinity if that is infinite.
     pub psnr: f64,
-    /// Channel values of either film that are infinite or NaN.
+    /// Channel values of either picture that are infinite or NaN.
     pub non_finite: [u64; 2],
 }
 
-/// Measures the differences of two films.
+/// Measures the differences of two pictures.
 ///
 /// # Errors
-/// An invalid film and unequal sizes.
-pub fn compare(a: &Film, b: &Film) -> Result<Comparison> {
+/// An invalid picture and unequal sizes.
+pub fn compare(a: &Picture, b: &Picture) -> Result<Comparison> {
     check_sizes(a, b)?;
     let pairs = || a.pixels.as_flattened().iter().zip(b.pixels.as_flattened());
     let pixels = a.pixels.iter().zip(&b.pixels);
@@ -66,7 +66,7 @@ pub fn compare(a: &Film, b: &Film) -> Result<Comparison> {
 }
 
 impl Comparison {
-    /// Whether the films are further apart than is tolerated: by the largest difference in
+    /// Whether the pictures are further apart than is tolerated: by the largest difference in
     /// linear light, and at a tolerance of 0 or less by any bit, be it the sign of a zero.
     pub fn exceeds(&self, tolerance: f32) -> bool {
         if tolerance > 0.0 { self.largest_difference > tolerance.into() } else { !self.bit_equal }
@@ -99,11 +99,11 @@ fn short(x: f64) -> String {
     if x == 0.0 { "0".to_owned() } else { format!("{x:.6e}") }
 }
 
-/// Refuses films that cannot be compared pixel by pixel.
+/// Refuses pictures that cannot be compared pixel by pixel.
 ///
 /// # Errors
-/// An invalid film and unequal sizes.
-pub fn check_sizes(a: &Film, b: &Film) -> Result<()> {
+/// An invalid picture and unequal sizes.
+pub fn check_sizes(a: &Picture, b: &Picture) -> Result<()> {
     a.validate()?;
     b.validate()?;
     if (a.width, a.height) == (b.width, b.height) {
@@ -126,8 +126,8 @@ fn difference(a: f32, b: f32) -> f64 {
     }
 }
 
-fn non_finite(film: &Film) -> u64 {
-    let values = film.pixels.as_flattened().iter();
+fn non_finite(picture: &Picture) -> u64 {
+    let values = picture.pixels.as_flattened().iter();
     values.filter(|value| !value.is_finite()).count() as u64
 }
 

@@ -2,13 +2,13 @@ use proptest::prelude::*;
 
 use super::*;
 
-fn film(pixels: &[[f32; 3]]) -> Film {
-    Film::from_pixels(pixels.len() as u32, 1, pixels.to_vec()).unwrap()
+fn picture(pixels: &[[f32; 3]]) -> Picture {
+    Picture::from_pixels(pixels.len() as u32, 1, pixels.to_vec()).unwrap()
 }
 
 #[test]
-fn equal_films_are_infinitely_alike() {
-    let a = film(&[[0.5, f32::NAN, f32::INFINITY], [1.0; 3]]);
+fn equal_pictures_are_infinitely_alike() {
+    let a = picture(&[[0.5, f32::NAN, f32::INFINITY], [1.0; 3]]);
     let found = compare(&a, &a).unwrap();
     assert!(found.bit_equal && !found.exceeds(0.0));
     assert_eq!((found.differing_pixels, found.largest_ulps), (0, 0));
@@ -22,8 +22,8 @@ fn equal_films_are_infinitely_alike() {
 
 #[test]
 fn known_differences() {
-    let a = film(&[[0.0; 3], [1.0; 3]]);
-    let b = film(&[[0.0; 3], [1.0, 0.5, 1.0f32.next_up()]]);
+    let a = picture(&[[0.0; 3], [1.0; 3]]);
+    let b = picture(&[[0.0; 3], [1.0, 0.5, 1.0f32.next_up()]]);
     let found = compare(&a, &b).unwrap();
     assert_eq!((found.differing_pixels, found.largest_ulps), (1, 1 << 23));
     assert_eq!(found.largest_difference, 0.5);
@@ -36,7 +36,7 @@ fn known_differences() {
 
 #[test]
 fn the_sign_of_a_zero_is_a_bit() {
-    let found = compare(&film(&[[0.0; 3]]), &film(&[[-0.0; 3]])).unwrap();
+    let found = compare(&picture(&[[0.0; 3]]), &picture(&[[-0.0; 3]])).unwrap();
     assert!(!found.bit_equal && found.exceeds(0.0) && !found.exceeds(1e-9));
     assert_eq!((found.largest_ulps, found.rmse), (0, 0.0));
 }
@@ -44,7 +44,7 @@ fn the_sign_of_a_zero_is_a_bit() {
 #[test]
 fn a_nan_is_beyond_any_tolerance() {
     for odd in [f32::NAN, f32::INFINITY] {
-        let found = compare(&film(&[[odd; 3]]), &film(&[[1.0; 3]])).unwrap();
+        let found = compare(&picture(&[[odd; 3]]), &picture(&[[1.0; 3]])).unwrap();
         assert!(found.exceeds(f32::MAX));
         assert_eq!(found.psnr, f64::NEG_INFINITY);
         assert_eq!(found.non_finite, [3, 0]);
@@ -53,19 +53,19 @@ fn a_nan_is_beyond_any_tolerance() {
 
 #[test]
 fn unequal_sizes_are_both_named() {
-    let error = compare(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).unwrap_err();
+    let error = compare(&Picture::new(2, 3).unwrap(), &Picture::new(3, 2).unwrap()).unwrap_err();
     assert!(error.message().contains("2x3") && error.message().contains("3x2"), "{error}");
-    assert!(heat_map(&Film::new(2, 3).unwrap(), &Film::new(3, 2).unwrap()).is_err());
+    assert!(heat_map(&Picture::new(2, 3).unwrap(), &Picture::new(3, 2).unwrap()).is_err());
 }
 
 #[test]
 fn heat_grows_lighter_by_the_decade() {
-    let zero = film(&[[0.0; 3]; 13]);
+    let zero = picture(&[[0.0; 3]; 13]);
     let mut steps = [[0.0; 3]; 13];
     for (i, step) in steps.iter_mut().enumerate().skip(1) {
         *step = [0.0, 10_f32.powi(i as i32 - 10), 0.0];
     }
-    let heat = heat_map(&zero, &film(&steps)).unwrap().pixels;
+    let heat = heat_map(&zero, &picture(&steps)).unwrap().pixels;
     let lightness = heat.iter().map(|[r, g, b]| 0.2126 * r + 0.7152 * g + 0.0722 * b);
     let lightness: Vec<f32> = lightness.collect();
     assert_eq!(lightness[0], 0.0);
@@ -111,12 +111,12 @@ proptest! {
         same in any::<bool>(), flip in 0..32_u32,
     ) {
         let near = [a[0], f32::from_bits(a[1].to_bits() ^ (1_u32 << flip)), a[2]];
-        let heat = heat_map(&film(&[a, a, a]), &film(&[a, near, if same { a } else { b }])).unwrap();
+        let heat = heat_map(&picture(&[a, a, a]), &picture(&[a, near, if same { a } else { b }])).unwrap();
         prop_assert_eq!(heat.pixels[0], [0.0; 3]);
         prop_assert!(heat.pixels[1].iter().all(|v| *v > 0.0 && *v <= 1.0));
         let differ = bits_differ(a, if same { a } else { b });
         prop_assert_eq!(heat.pixels[2] != [0.0; 3], differ);
-        let found = compare(&film(&[a]), &film(&[b])).unwrap();
+        let found = compare(&picture(&[a]), &picture(&[b])).unwrap();
         prop_assert_eq!(found.bit_equal, !found.exceeds(0.0));
         prop_assert!(!found.rmse.is_nan() && !found.psnr.is_nan());
     }

@@ -11,8 +11,8 @@ use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::device_scene::{DeviceScene, SceneView};
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::method::Traversal;
+use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::scene::Light;
 use crate::view::{Region, View};
@@ -47,7 +47,7 @@ pub struct Renderer<'a> {
 }
 
 /// A picture that samples are added to: [`Renderer::start`].
-pub struct Picture<R: Number> {
+pub struct Growing<R: Number> {
     view: View,
     tiles: Vec<Tile<R>>,
     samples: u32,
@@ -90,12 +90,12 @@ impl<'a> Renderer<'a> {
         view: &View,
         done: &(dyn Fn(u64) + Sync),
         observer: &dyn Observer<R>,
-    ) -> Result<(Film, Rays)>
+    ) -> Result<(Picture, Rays)>
     where
         R: Number,
     {
         let (width, height) = view.size();
-        let result = Mutex::new((Film::new(width, height)?, Rays::default()));
+        let result = Mutex::new((Picture::new(width, height)?, Rays::default()));
         self.threads.install(|| {
             // A tile a task: coarser splitting leaves threads idle at the end.
             self.tiles(view).into_par_iter().with_max_len(1).for_each(|region| {
@@ -113,19 +113,19 @@ impl<'a> Renderer<'a> {
     ///
     /// # Errors
     /// If there is no memory for them.
-    pub fn start<R: Number>(&self, view: &View) -> Result<Picture<R>> {
+    pub fn start<R: Number>(&self, view: &View) -> Result<Growing<R>> {
         let (width, height) = view.size();
         let tile = |region| {
             let film = self.planned.try_film::<R>(region).ok_or(Error::Memory { width, height })?;
             Ok(Tile { region, film, secondary: 0 })
         };
         let tiles = self.tiles(view).into_iter().map(tile).collect::<Result<_>>()?;
-        Ok(Picture { view: *view, tiles, samples: 0 })
+        Ok(Growing { view: *view, tiles, samples: 0 })
     }
 
     /// Adds the next `count` samples of each pixel to a picture, or as many as its view has: n and then n more give the
     /// bits of 2n at once.
-    pub fn add<R>(&self, picture: &mut Picture<R>, count: u32)
+    pub fn add<R>(&self, picture: &mut Growing<R>, count: u32)
     where
         R: Number,
     {
@@ -159,14 +159,14 @@ impl<R: Number> Tile<R> {
         self.secondary += planned.add(view, self.region, samples, &mut self.film, observer);
     }
 
-    fn develop(&self, samples: u32, image: &mut Film, rays: &mut Rays) {
+    fn develop(&self, samples: u32, image: &mut Picture, rays: &mut Rays) {
         image.develop::<R>(self.region, &self.film, samples, rays);
         rays.secondary += self.secondary;
         rays.primary += self.region.pixels() * u64::from(samples);
     }
 }
 
-impl<R: Number> Picture<R> {
+impl<R: Number> Growing<R> {
     /// How many samples of each pixel it has.
     pub fn samples(&self) -> u32 {
         self.samples
@@ -176,9 +176,9 @@ impl<R: Number> Picture<R> {
     ///
     /// # Errors
     /// If there is no memory for the film.
-    pub fn film(&self) -> Result<(Film, Rays)> {
+    pub fn film(&self) -> Result<(Picture, Rays)> {
         let (width, height) = self.view.size();
-        let (mut film, mut rays) = (Film::new(width, height)?, Rays::default());
+        let (mut film, mut rays) = (Picture::new(width, height)?, Rays::default());
         if self.samples > 0 {
             self.tiles.iter().for_each(|tile| tile.develop(self.samples, &mut film, &mut rays));
         }
@@ -196,7 +196,7 @@ pub fn render<R>(
     traversal: impl Into<Traversal>,
     threads: usize,
     done: &(dyn Fn(u64) + Sync),
-) -> Result<(Film, Rays)>
+) -> Result<(Picture, Rays)>
 where
     R: Number,
 {
@@ -249,7 +249,7 @@ mod tests {
         let one = picture.film().unwrap().0;
         renderer.add(&mut picture, 3);
         let four = picture.film().unwrap().0;
-        let brightness = |film: &Film| film.pixels.as_flattened().iter().sum::<f32>() / film.pixels.len() as f32;
+        let brightness = |film: &Picture| film.pixels.as_flattened().iter().sum::<f32>() / film.pixels.len() as f32;
         assert!(brightness(&one) > 0.1 && (brightness(&one) / brightness(&four) - 1.0).abs() < 0.05);
         assert!(!one.bits_equal(&four));
     }

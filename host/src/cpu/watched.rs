@@ -2,9 +2,9 @@
 
 use eyerays_kernels_cpu::Number;
 
-use super::render::{Picture, Renderer};
+use super::render::{Growing, Renderer};
 use crate::error::Result;
-use crate::film::Film;
+use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::View;
 use crate::watch::{Grows, Watch, grow};
@@ -15,7 +15,7 @@ pub(crate) fn rendered<R: Number>(
     view: &View,
     watch: Option<&Watch<'_>>,
     done: &(dyn Fn(u64) + Sync),
-) -> Result<(Film, Rays, u32)> {
+) -> Result<(Picture, Rays, u32)> {
     if let Some(watch) = watch {
         match renderer.start::<R>(view) {
             Ok(picture) => return watched(OnCpu { renderer, picture }, view, watch),
@@ -29,7 +29,7 @@ pub(crate) fn rendered<R: Number>(
 }
 
 /// A picture as somebody looks on, its rays and the samples of each pixel that there are in the end.
-fn watched<R: Number>(mut growing: OnCpu<'_, R>, view: &View, watch: &Watch<'_>) -> Result<(Film, Rays, u32)> {
+fn watched<R: Number>(mut growing: OnCpu<'_, R>, view: &View, watch: &Watch<'_>) -> Result<(Picture, Rays, u32)> {
     grow(&mut growing, view.samples(), watch)?;
     let (film, rays) = growing.picture.film()?;
     Ok((film, rays, growing.picture.samples()))
@@ -38,7 +38,7 @@ fn watched<R: Number>(mut growing: OnCpu<'_, R>, view: &View, watch: &Watch<'_>)
 /// A picture that grows on a CPU.
 struct OnCpu<'a, R: Number> {
     renderer: &'a Renderer<'a>,
-    picture: Picture<R>,
+    picture: Growing<R>,
 }
 
 impl<R: Number> Grows for OnCpu<'_, R> {
@@ -47,7 +47,7 @@ impl<R: Number> Grows for OnCpu<'_, R> {
         Ok(())
     }
 
-    fn film(&mut self) -> Result<Film> {
+    fn picture(&mut self) -> Result<Picture> {
         Ok(self.picture.film()?.0)
     }
 }

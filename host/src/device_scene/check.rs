@@ -1,7 +1,7 @@
 //! Whether settings make sense, and what they leave out.
 
 use crate::error::{Error, Result};
-use crate::film::Film;
+use crate::picture::Picture;
 use crate::scene::{Integrator, Settings};
 
 /// Refuses settings beyond the limits that memory is planned for.
@@ -10,7 +10,7 @@ use crate::scene::{Integrator, Settings};
 /// The first of them.
 pub fn settings(settings: &Settings) -> Result<()> {
     let Settings { size: (width, height), samples, spp, bounces, min_contribution, transport, .. } = *settings;
-    Film::check_size(width, height)?;
+    Picture::check_size(width, height)?;
     crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
     crate::error::within("bounces", &[bounces], 0..=Settings::MOST_BOUNCES)?;
     crate::error::within("min_contribution", &[min_contribution], 0.0..=1.0)?;

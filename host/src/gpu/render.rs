@@ -19,8 +19,8 @@ use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::device_scene::DeviceScene;
 use crate::error::Result;
-use crate::film::Film;
 use crate::method::Traversal;
+use crate::picture::Picture;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
 use crate::scene::Light;
@@ -33,7 +33,7 @@ const READ: u64 = 1 << 28;
 /// A picture and what it took.
 pub struct GpuRendering {
     /// The picture.
-    pub film: Film,
+    pub picture: Picture,
     /// Samples of each pixel.
     pub samples: u32,
     /// What was traced.
@@ -54,7 +54,7 @@ pub struct Renderer<'a> {
     scene: SceneBuffers,
     most_slots: u32,
     memory: Option<Memory>,
-    picture: Option<Picture>,
+    picture: Option<Growing>,
     queue: Queue<'a>,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Memory {
 }
 
 /// A picture that samples are added to.
-struct Picture {
+struct Growing {
     view: View,
     bands: Vec<Band>,
     samples: u32,
@@ -86,8 +86,8 @@ impl Grows for Renderer<'_> {
         self.gpu.wait()
     }
 
-    fn film(&mut self) -> Result<Film> {
-        Ok(Renderer::film(self)?.film)
+    fn picture(&mut self) -> Result<Picture> {
+        Ok(self.film()?.picture)
     }
 }
 
@@ -161,7 +161,7 @@ impl<'a> Renderer<'a> {
             Some(picture) if picture.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => picture.bands,
             _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
         };
-        self.picture = Some(Picture { view: *view, bands, samples: 0 });
+        self.picture = Some(Growing { view: *view, bands, samples: 0 });
         self.queue.forget();
         let memory = self.memory.as_ref().expect("it was reserved");
         self.queue.restart(memory.buffers.of(binding::COUNTERS));
@@ -186,8 +186,8 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    fn add_to(&mut self, picture: &Picture, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let Picture { view, bands, samples } = picture;
+    fn add_to(&mut self, picture: &Growing, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let Growing { view, bands, samples } = picture;
         let end = samples.saturating_add(count).min(view.samples());
         for band in bands {
             let (width, height) = (band.region.width, band.region.height);
@@ -216,12 +216,12 @@ impl<'a> Renderer<'a> {
     /// # Panics
     /// If no picture was started.
     pub fn film(&mut self) -> Result<GpuRendering> {
-        let Picture { view, bands, samples } = self.picture.as_ref().expect("a picture was started");
+        let Growing { view, bands, samples } = self.picture.as_ref().expect("a picture was started");
         let (width, height) = view.size();
-        let (mut film, mut rays) = (Film::new(width, height)?, Rays::default());
+        let (mut film, mut rays) = (Picture::new(width, height)?, Rays::default());
         let mut device_time = self.queue.has_clock().then_some(Duration::ZERO);
         if *samples == 0 {
-            return Ok(GpuRendering { film, samples: 0, rays, device_time });
+            return Ok(GpuRendering { picture: film, samples: 0, rays, device_time });
         }
         let counters = self.buffers().of(binding::COUNTERS).clone();
         let mut rest = &bands[..];
@@ -243,7 +243,7 @@ impl<'a> Renderer<'a> {
             rest = later;
         }
         rays.primary = view.region().pixels() * u64::from(*samples);
-        Ok(GpuRendering { film, samples: *samples, rays, device_time })
+        Ok(GpuRendering { picture: film, samples: *samples, rays, device_time })
     }
 
     fn buffers(&self) -> &LaunchBuffers {

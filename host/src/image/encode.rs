@@ -13,11 +13,11 @@ use super::transfer::{quantise, quantise_to_byte};
 use super::{BitDepth, Encoding, Format, ToneMap};
 use crate::choice::Named;
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::layers::{Layer, Values};
 use crate::math;
+use crate::picture::Picture;
 
-/// Encodes a film and writes the file's bytes, at once and in order, so that any writer will do.
+/// Encodes a picture and writes the file's bytes, at once and in order, so that any writer will do.
 ///
 /// In a PNG, NaN and what is below 0 become 0 and what is above 1 becomes 1, unless a tone map finds a place for it. In an HDR, NaN and
 /// what is below 0 become 0 and infinity becomes the format's greatest value; pixels darker than
@@ -25,17 +25,17 @@ use crate::math;
 /// beyond ±65504 become that.
 ///
 /// # Errors
-/// An invalid film, those of [`Encoding::check`], and those of the writer. They name no file.
-pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl Write) -> Result<()> {
-    film.validate()?;
+/// An invalid picture, those of [`Encoding::check`], and those of the writer. They name no file.
+pub fn encode(picture: &Picture, format: Format, encoding: &Encoding, mut writer: impl Write) -> Result<()> {
+    picture.validate()?;
     encoding.check(format)?;
     let scale = encoding.scale()?;
     let refused = |error: &dyn fmt::Display| Error::new(format!("the image cannot be encoded as {format}: {error}"));
     let bytes = match format {
-        Format::Png => png(film, encoding, scale).map_err(|e| refused(&e))?,
-        Format::Exr if encoding.half => exr::half(film, scale).map_err(|e| refused(&e))?,
-        Format::Exr => exr::single(film, scale).map_err(|e| refused(&e))?,
-        Format::Hdr => hdr(film, scale).map_err(|e| refused(&e))?,
+        Format::Png => png(picture, encoding, scale).map_err(|e| refused(&e))?,
+        Format::Exr if encoding.half => exr::half(picture, scale).map_err(|e| refused(&e))?,
+        Format::Exr => exr::single(picture, scale).map_err(|e| refused(&e))?,
+        Format::Hdr => hdr(picture, scale).map_err(|e| refused(&e))?,
     };
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
@@ -46,28 +46,28 @@ pub fn encode(film: &Film, format: Format, encoding: &Encoding, mut writer: impl
 /// # Errors
 /// As [`encode`], and a layer of another number of pixels.
 pub fn encode_layers(
-    film: &Film,
+    picture: &Picture,
     layers: &[(Layer, Values)],
     encoding: &Encoding,
     mut writer: impl Write,
 ) -> Result<()> {
-    film.validate()?;
+    picture.validate()?;
     encoding.check(Format::Exr)?;
-    if let Some((layer, _)) = layers.iter().find(|(_, values)| values.pixels() != film.pixels.len()) {
+    if let Some((layer, _)) = layers.iter().find(|(_, values)| values.pixels() != picture.pixels.len()) {
         return Err(Error::new(format!(
             "the layer {} has other pixels than the picture; render it again",
             layer.name()
         )));
     }
-    let bytes = exr::layered(film, layers, encoding.scale()?, encoding.half);
+    let bytes = exr::layered(picture, layers, encoding.scale()?, encoding.half);
     let bytes = bytes.map_err(|error| Error::new(format!("the layers cannot be encoded as EXR: {error}")))?;
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 
 /// Every channel of every pixel, exposed, mapped to the screen and converted.
-fn samples<T: Send>(film: &Film, tone: ToneMap, scale: f64, convert: impl Fn(f64) -> T + Sync) -> Vec<T> {
+fn samples<T: Send>(picture: &Picture, tone: ToneMap, scale: f64, convert: impl Fn(f64) -> T + Sync) -> Vec<T> {
     let shown = |pixel: &[f32; 3]| tone.apply(pixel.map(|v| f64::from(v) * scale)).map(&convert);
-    film.pixels.par_iter().map(shown).collect::<Vec<_>>().into_flattened()
+    picture.pixels.par_iter().map(shown).collect::<Vec<_>>().into_flattened()
 }
 
 /// The chunks that say what wrote the file and that its colours are sRGB: length, type, data and
@@ -79,22 +79,22 @@ const PNG_CHUNKS: &[u8] = b"\
 /// Where a PNG's first chunk, the IHDR, ends.
 const PNG_HEADER: usize = 33;
 
-fn png(film: &Film, encoding: &Encoding, scale: f64) -> ImageResult<Vec<u8>> {
+fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> ImageResult<Vec<u8>> {
     match encoding.bits {
         BitDepth::Eight => {
-            let values = samples(film, encoding.tone, scale, quantise_to_byte);
-            png_of(film, &values, ExtendedColorType::Rgb8)
+            let values = samples(picture, encoding.tone, scale, quantise_to_byte);
+            png_of(picture, &values, ExtendedColorType::Rgb8)
         }
         BitDepth::Sixteen => {
-            let values = samples(film, encoding.tone, scale, |v| quantise(v, 65_535.0) as u16);
-            png_of(film, bytemuck::cast_slice(&values), ExtendedColorType::Rgb16)
+            let values = samples(picture, encoding.tone, scale, |v| quantise(v, 65_535.0) as u16);
+            png_of(picture, bytemuck::cast_slice(&values), ExtendedColorType::Rgb16)
         }
     }
 }
 
-fn png_of(film: &Film, samples: &[u8], colour: ExtendedColorType) -> ImageResult<Vec<u8>> {
+fn png_of(picture: &Picture, samples: &[u8], colour: ExtendedColorType) -> ImageResult<Vec<u8>> {
     let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes).write_image(samples, film.width, film.height, colour)?;
+    PngEncoder::new(&mut bytes).write_image(samples, picture.width, picture.height, colour)?;
     bytes.splice(PNG_HEADER..PNG_HEADER, PNG_CHUNKS.iter().copied());
     Ok(bytes)
 }
@@ -102,13 +102,13 @@ fn png_of(film: &Film, samples: &[u8], colour: ExtendedColorType) -> ImageResult
 /// The greatest value of RGBE, 255/256 of 2^127.
 const HDR_MAX: f32 = f32::from_bits(0x7eff_0000);
 
-fn hdr(film: &Film, scale: f64) -> ImageResult<Vec<u8>> {
-    let pixels: Vec<_> = film.pixels.iter().map(|pixel| rgbe(pixel.map(|v| exposed(v, scale)))).collect();
+fn hdr(picture: &Picture, scale: f64) -> ImageResult<Vec<u8>> {
+    let pixels: Vec<_> = picture.pixels.iter().map(|pixel| rgbe(pixel.map(|v| exposed(v, scale)))).collect();
     let mut bytes = Vec::new();
     HdrEncoder::new(&mut bytes).write_image(
         bytemuck::cast_slice(&pixels),
-        film.width,
-        film.height,
+        picture.width,
+        picture.height,
         ExtendedColorType::Rgb32F,
     )?;
     Ok(bytes)

@@ -10,21 +10,21 @@ use exr::prelude::*;
 use rayon::prelude::*;
 
 use crate::choice::Named;
-use crate::film::Film;
 use crate::layers::{Layer, Values};
+use crate::picture::Picture;
 
 /// Blocks of 16 lines that are compressed at once: enough for every core, and few of them in memory.
 const BATCH: usize = 64;
 
 /// The file's bytes with floats of 32 bits, their values times `scale`; the very bits where that is 1.
-pub(super) fn single(film: &Film, scale: f64) -> Result<Vec<u8>> {
-    bytes(film, |v| exposed(v, scale))
+pub(super) fn single(picture: &Picture, scale: f64) -> Result<Vec<u8>> {
+    bytes(picture, |v| exposed(v, scale))
 }
 
 /// The file's bytes with floats of 16 bits, the nearest to the values times `scale`. What is finite stays finite:
 /// beyond ±65504, the greatest of these floats, it becomes that.
-pub(super) fn half(film: &Film, scale: f64) -> Result<Vec<u8>> {
-    bytes(film, |v| nearest_half(exposed(v, scale)))
+pub(super) fn half(picture: &Picture, scale: f64) -> Result<Vec<u8>> {
+    bytes(picture, |v| nearest_half(exposed(v, scale)))
 }
 
 /// A value as it is exposed.
@@ -40,16 +40,16 @@ fn nearest_half(v: f32) -> f16 {
 
 /// The file's bytes with layers beside the picture, whose channels have the layer's name before a point. Light is exposed, and in
 /// floats of 16 bits if those are asked for; lengths and numbers keep 32 bits.
-pub(super) fn layered(film: &Film, layers: &[(Layer, Values)], scale: f64, is_half: bool) -> Result<Vec<u8>> {
-    let size = Vec2(film.width as usize, film.height as usize);
+pub(super) fn layered(picture: &Picture, layers: &[(Layer, Values)], scale: f64, is_half: bool) -> Result<Vec<u8>> {
+    let size = Vec2(picture.width as usize, picture.height as usize);
     let of = |name: String, values: &Values| match values {
-        Values::Light(film) => three(film, &name, ["R", "G", "B"], scale, is_half),
-        Values::Colours(film) => three(film, &name, ["R", "G", "B"], 1.0, is_half),
-        Values::Vectors(film) => three(film, &name, ["X", "Y", "Z"], 1.0, is_half),
+        Values::Light(picture) => three(picture, &name, ["R", "G", "B"], scale, is_half),
+        Values::Colours(picture) => three(picture, &name, ["R", "G", "B"], 1.0, is_half),
+        Values::Vectors(picture) => three(picture, &name, ["X", "Y", "Z"], 1.0, is_half),
         Values::Lengths(lengths) => vec![channel(&name, "Z", FlatSamples::F32(lengths.clone()))],
         Values::Numbers(numbers) => vec![channel(&name, "id", FlatSamples::U32(numbers.clone()))],
     };
-    let mut channels: SmallVec<[_; 4]> = three(film, "", ["R", "G", "B"], scale, is_half).into();
+    let mut channels: SmallVec<[_; 4]> = three(picture, "", ["R", "G", "B"], scale, is_half).into();
     channels.extend(layers.iter().flat_map(|(layer, values)| of(format!("{}.", layer.name()), values)));
     let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
     let mut bytes = Cursor::new(Vec::new());
@@ -61,21 +61,21 @@ fn channel(layer: &str, name: &str, samples: FlatSamples) -> AnyChannel<FlatSamp
     AnyChannel::new(format!("{layer}{name}").as_str(), samples)
 }
 
-fn three(film: &Film, layer: &str, names: [&str; 3], scale: f64, is_half: bool) -> Vec<AnyChannel<FlatSamples>> {
+fn three(picture: &Picture, layer: &str, names: [&str; 3], scale: f64, is_half: bool) -> Vec<AnyChannel<FlatSamples>> {
     let samples = |i: usize| {
-        let values = film.pixels.par_iter().map(|pixel| exposed(pixel[i], scale));
+        let values = picture.pixels.par_iter().map(|pixel| exposed(pixel[i], scale));
         if is_half { FlatSamples::F16(values.map(nearest_half).collect()) } else { FlatSamples::F32(values.collect()) }
     };
     names.into_iter().enumerate().map(|(i, name)| channel(layer, name, samples(i))).collect()
 }
 
-fn bytes<T>(film: &Film, convert: impl Fn(f32) -> T + Sync) -> Result<Vec<u8>>
+fn bytes<T>(picture: &Picture, convert: impl Fn(f32) -> T + Sync) -> Result<Vec<u8>>
 where
     T: IntoSample,
 {
-    let size = Vec2(film.width as usize, film.height as usize);
+    let size = Vec2(picture.width as usize, picture.height as usize);
     let pixel = |Vec2(x, y): Vec2<usize>| {
-        let [r, g, b] = film.pixels[y * size.0 + x];
+        let [r, g, b] = picture.pixels[y * size.0 + x];
         (convert(r), convert(g), convert(b))
     };
     let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, SpecificChannels::rgb(pixel));

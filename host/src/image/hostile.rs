@@ -8,7 +8,7 @@ use ::image::{DynamicImage, ImageFormat, RgbImage};
 use proptest::prelude::*;
 use proptest::sample::Index;
 
-use super::tests::{FORMATS, SIXTEEN, bytes, odd_film, png_crc, striped_film};
+use super::tests::{FORMATS, SIXTEEN, bytes, odd_picture, png_crc, striped_picture};
 use super::*;
 use crate::scene::{Texels, Texture};
 
@@ -17,7 +17,7 @@ fn bad_files_are_one_line_with_their_name() {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     for format in FORMATS {
-        let whole = bytes(&odd_film(), format, &SIXTEEN);
+        let whole = bytes(&odd_picture(), format, &SIXTEEN);
         fs::write(path(&format!("half-{format}")), &whole[..whole.len() / 2]).unwrap();
         fs::write(path(&format!("head-{format}")), &whole[..12]).unwrap();
     }
@@ -42,7 +42,7 @@ fn bad_files_are_one_line_with_their_name() {
 
 /// A PNG of nothing but a header, so short that its size cannot be true.
 fn huge_png(side: u32) -> Vec<u8> {
-    let mut png = bytes(&odd_film(), Format::Png, &SIXTEEN);
+    let mut png = bytes(&odd_picture(), Format::Png, &SIXTEEN);
     png[16..20].copy_from_slice(&side.to_be_bytes());
     png[20..24].copy_from_slice(&side.to_be_bytes());
     let crc = png_crc(&png[12..29]);
@@ -53,12 +53,12 @@ fn huge_png(side: u32) -> Vec<u8> {
 #[test]
 fn a_truncated_file_is_never_another_picture() {
     for format in FORMATS {
-        let whole = bytes(&striped_film(), format, &SIXTEEN);
-        let film = decode(Cursor::new(&whole)).unwrap();
+        let whole = bytes(&striped_picture(), format, &SIXTEEN);
+        let picture = decode(Cursor::new(&whole)).unwrap();
         for end in 0..whole.len() {
             match decode(Cursor::new(&whole[..end])) {
                 Ok(part) => {
-                    assert!(part.bits_equal(&film), "{format} at {end}");
+                    assert!(part.bits_equal(&picture), "{format} at {end}");
                     // Only what follows the pixels may be missing.
                     assert!(end + 16 >= whole.len(), "{format} at {end}");
                 }
@@ -97,13 +97,13 @@ fn devices_are_not_read() {
         assert!(error.message().contains("regular"), "{error}");
     }
     let full = fs::File::options().write(true).open("/dev/full").unwrap();
-    assert!(encode(&odd_film(), Format::Png, &SIXTEEN, full).is_err());
+    assert!(encode(&odd_picture(), Format::Png, &SIXTEEN, full).is_err());
 }
 
 /// A decoder takes memory by the size of the data, which differs from that of the display in some files.
 #[test]
 fn an_exr_that_claims_more_data_than_its_display_is_refused_before_memory_is_taken() {
-    let file = bytes(&striped_film(), Format::Exr, &Encoding::default());
+    let file = bytes(&striped_picture(), Format::Exr, &Encoding::default());
     let window = b"dataWindow\0box2i\0";
     let at = file.windows(window.len()).position(|bytes| bytes == window).unwrap() + window.len() + 4;
     for (corner, value) in [(8, 1_000_000_000i32), (12, 1_000_000_000), (8, 40_000)] {
@@ -142,7 +142,7 @@ proptest! {
         flips in prop::collection::vec(any::<(Index, u8)>(), 1..8),
         cut in any::<Option<Index>>(),
     ) {
-        let mut file = bytes(&striped_film(), format, &SIXTEEN);
+        let mut file = bytes(&striped_picture(), format, &SIXTEEN);
         damage(&mut file, &flips, cut);
         let _ = decode(Cursor::new(file));
     }

@@ -1,4 +1,4 @@
-//! Image files: films encoded for a screen or kept as they are, and read again.
+//! Image files: pictures encoded for a screen or kept as they are, and read again.
 //!
 //! | Format | Values | Loses |
 //! |---|---|---|
@@ -94,7 +94,7 @@ impl BitDepth {
     }
 }
 
-/// How a film becomes a file.
+/// How a picture becomes a file.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Encoding {
     /// Exposure in stops, at most [`Encoding::MAX_EXPOSURE`] either way: every value is

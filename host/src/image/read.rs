@@ -1,4 +1,4 @@
-//! Image files back to films.
+//! Image files back to pictures.
 
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, ErrorKind, Seek};
@@ -13,15 +13,15 @@ use super::bounded::{Allowance, Bounded};
 use super::transfer::{byte_to_linear, linear_table};
 use super::{hdr, jpeg, png};
 use crate::error::{Error, Result};
-use crate::film::Film;
 use crate::memory::Room;
+use crate::picture::Picture;
 
 /// Reads a PNG, EXR or HDR file, whatever its name says it is, as [`decode`].
 ///
 /// # Errors
 /// What is missing, unreadable, empty or not a regular file, and those of [`decode`]. They name
 /// the file.
-pub fn read(path: &Path) -> Result<Film> {
+pub fn read(path: &Path) -> Result<Picture> {
     decode(BufReader::new(open(path)?)).map_err(|error| error.of(path))
 }
 
@@ -47,13 +47,14 @@ pub(super) fn open(path: &Path) -> Result<File> {
 /// an EXR keeps its bits. Greys become RGB, and alpha is ignored.
 ///
 /// # Errors
-/// What is none of these, damaged, truncated, or larger than a film may be. They name no file.
-pub fn decode(reader: impl BufRead + Seek) -> Result<Film> {
+/// What is none of these, damaged, truncated, or larger than a picture may be. They name no file.
+pub fn decode(reader: impl BufRead + Seek) -> Result<Picture> {
     distrusting(|| {
-        let kinds = Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Film::MAX_PIXELS, otherwise: None };
-        let check = |Size { width, height, .. }| Film::check_size(width, height).map(drop);
+        let kinds =
+            Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Picture::MAX_PIXELS, otherwise: None };
+        let check = |Size { width, height, .. }| Picture::check_size(width, height).map(drop);
         let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, check)?;
-        Film::from_pixels(width, height, linear_pixels(decoded))
+        Picture::from_pixels(width, height, linear_pixels(decoded))
     })
 }
 
@@ -191,7 +192,7 @@ fn check_parts(reader: &mut impl BufRead) -> Result<()> {
     parts.iter().try_for_each(|part| {
         let [width, height] =
             [part.layer_size.0, part.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-        Film::check_size(width, height)?;
+        Picture::check_size(width, height)?;
         let each = part.channels.bytes_per_pixel as u64;
         if each > most {
             return Err(Error::new(format!("has pixels of more than {most} bytes; write fewer layers")));
@@ -223,7 +224,7 @@ where
 fn decode_error(error: ImageError) -> Error {
     Error::new(match error {
         ImageError::IoError(error) => read_error(&error),
-        ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Film::MAX_PIXELS),
+        ImageError::Limits(_) => format!("is too large; an image has at most {} pixels", Picture::MAX_PIXELS),
         // Decoders' own words are of their insides.
         ImageError::Unsupported(_) => {
             "is of a kind that is not read; write it as RGB of 8 or 16 bits, or of floats".to_owned()

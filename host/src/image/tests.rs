@@ -4,26 +4,26 @@ use std::path::Path;
 use proptest::prelude::*;
 
 use super::*;
-use crate::film::Film;
 use crate::layers::{Layer, Values};
+use crate::picture::Picture;
 
 pub(super) const FORMATS: [Format; 3] = [Format::Png, Format::Exr, Format::Hdr];
 
 pub(super) const SIXTEEN: Encoding =
     Encoding { exposure_ev: 0.0, bits: BitDepth::Sixteen, half: false, tone: ToneMap::None };
 
-pub(super) fn bytes(film: &Film, format: Format, encoding: &Encoding) -> Vec<u8> {
+pub(super) fn bytes(picture: &Picture, format: Format, encoding: &Encoding) -> Vec<u8> {
     let mut bytes = Vec::new();
-    encode(film, format, encoding, &mut bytes).unwrap();
+    encode(picture, format, encoding, &mut bytes).unwrap();
     bytes
 }
 
-fn round_trip(film: &Film, format: Format, encoding: &Encoding) -> Film {
-    decode(Cursor::new(bytes(film, format, encoding))).unwrap()
+fn round_trip(picture: &Picture, format: Format, encoding: &Encoding) -> Picture {
+    decode(Cursor::new(bytes(picture, format, encoding))).unwrap()
 }
 
-/// A film with every kind of value.
-pub(super) fn odd_film() -> Film {
+/// A picture with every kind of value.
+pub(super) fn odd_picture() -> Picture {
     let values = [
         [0.0, -0.0, 1.0],
         [0.5, 0.18, 1e-6],
@@ -32,29 +32,29 @@ pub(super) fn odd_film() -> Film {
         [f32::MIN_POSITIVE, f32::from_bits(1), f32::MAX],
         [f32::from_bits(0xffc0_1234), 1e-45, 2.0],
     ];
-    Film::from_pixels(3, 2, values.to_vec()).unwrap()
+    Picture::from_pixels(3, 2, values.to_vec()).unwrap()
 }
 
 #[test]
 fn exr_keeps_every_bit() {
-    let film = odd_film();
-    let back = round_trip(&film, Format::Exr, &Encoding::default());
-    assert!(film.bits_equal(&back), "{back:?}");
+    let picture = odd_picture();
+    let back = round_trip(&picture, Format::Exr, &Encoding::default());
+    assert!(picture.bits_equal(&back), "{back:?}");
 }
 
 #[test]
 fn layers_are_channels_of_their_names_with_numbers_as_they_are() {
     use ::exr::prelude::{FlatSamples, read_first_flat_layer_from_file};
-    let film = |value: f32| Film::from_pixels(2, 1, vec![[value, 2.0 * value, -value], [value; 3]]).unwrap();
+    let picture = |value: f32| Picture::from_pixels(2, 1, vec![[value, 2.0 * value, -value], [value; 3]]).unwrap();
     let layers = [
-        (Layer::Normal, Values::Vectors(film(0.5))),
+        (Layer::Normal, Values::Vectors(picture(0.5))),
         (Layer::Object, Values::Numbers(vec![0, u32::MAX])),
         (Layer::Depth, Values::Lengths(vec![f32::INFINITY, 1e-30])),
-        (Layer::Direct, Values::Light(film(0.25))),
+        (Layer::Direct, Values::Light(picture(0.25))),
     ];
     let encoding = Encoding { exposure_ev: 1.0, half: true, ..Encoding::default() };
     let mut bytes = Vec::new();
-    encode_layers(&film(1.0), &layers, &encoding, &mut bytes).unwrap();
+    encode_layers(&picture(1.0), &layers, &encoding, &mut bytes).unwrap();
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), &bytes).unwrap();
     let image = read_first_flat_layer_from_file(file.path()).unwrap();
@@ -71,7 +71,7 @@ fn layers_are_channels_of_their_names_with_numbers_as_they_are() {
     // Light is exposed, other vectors are not.
     assert_eq!((of("direct.G"), of("normal.Y"), of("R")), (halves([1.0, 0.5]), halves([1.0, 0.5]), halves([2.0, 2.0])));
     let short = [(Layer::Depth, Values::Lengths(vec![1.0]))];
-    let error = encode_layers(&film(1.0), &short, &encoding, &mut Vec::new()).unwrap_err();
+    let error = encode_layers(&picture(1.0), &short, &encoding, &mut Vec::new()).unwrap_err();
     assert_eq!(error.to_string(), "the layer depth has other pixels than the picture; render it again");
     // Who asks for no layer reads the picture.
     assert_eq!(decode(Cursor::new(&bytes)).unwrap().pixels, [[2.0, 4.0, -2.0], [2.0; 3]]);
@@ -79,12 +79,12 @@ fn layers_are_channels_of_their_names_with_numbers_as_they_are() {
 
 #[test]
 fn an_exr_is_compressed_and_its_bytes_do_not_hang_on_the_threads() {
-    let flat = Film::new(256, 1100).unwrap();
+    let flat = Picture::new(256, 1100).unwrap();
     let size = flat.pixels.len() * 12;
     assert!(bytes(&flat, Format::Exr, &Encoding::default()).len() < size / 50);
     let noise =
         (0..flat.pixels.len() as u32).map(|i| [0, 1, 2].map(|c| f32::from_bits((3 * i + c).wrapping_mul(0x9e37_79b9))));
-    let noise = Film::from_pixels(256, 1100, noise.collect()).unwrap();
+    let noise = Picture::from_pixels(256, 1100, noise.collect()).unwrap();
     let of_threads = |threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| bytes(&noise, Format::Exr, &Encoding::default()))
@@ -103,22 +103,22 @@ fn half_an_exr_has_the_nearest_floats_of_16_bits_and_keeps_the_finite_finite() {
         [f32::NAN, f32::INFINITY, f32::NEG_INFINITY],
         [6e-8, 1e-9, f32::MAX],
     ];
-    let film = Film::from_pixels(2, 2, values.to_vec()).unwrap();
-    let back = round_trip(&film, Format::Exr, &half(0.0));
+    let picture = Picture::from_pixels(2, 2, values.to_vec()).unwrap();
+    let back = round_trip(&picture, Format::Exr, &half(0.0));
     assert_eq!(back.pixels[0], [0.099_975_586, 0.0, 65_504.0]);
     assert!(back.pixels[0][1].is_sign_negative());
     assert_eq!(back.pixels[1], [65_504.0, 65_504.0, -65_504.0]);
     assert!(back.pixels[2][0].is_nan());
     assert_eq!(back.pixels[2][1..], [f32::INFINITY, f32::NEG_INFINITY]);
     assert_eq!(back.pixels[3], [2f32.powi(-24), 0.0, 65_504.0]);
-    let brighter = round_trip(&film, Format::Exr, &half(1.0));
+    let brighter = round_trip(&picture, Format::Exr, &half(1.0));
     assert_eq!(brighter.pixels[0], [0.199_951_17, 0.0, 65_504.0]);
     let noise = (0..4096).map(|i| [i, i + 1, i + 2].map(|i| (i * 7919 % 4099) as f32 / 4099.0)).collect();
-    let noise = Film::from_pixels(64, 64, noise).unwrap();
+    let noise = Picture::from_pixels(64, 64, noise).unwrap();
     let (whole, halved) = (bytes(&noise, Format::Exr, &Encoding::default()), bytes(&noise, Format::Exr, &half(0.0)));
     assert!(2 * halved.len() < whole.len() + 500, "{} {}", halved.len(), whole.len());
     for format in [Format::Png, Format::Hdr] {
-        let error = encode(&film, format, &half(0.0), io::sink()).unwrap_err();
+        let error = encode(&picture, format, &half(0.0), io::sink()).unwrap_err();
         assert!(error == Error::NoHalf { format }, "{error}");
     }
 }
@@ -130,12 +130,12 @@ fn png_keeps_every_value_it_has() {
         let table = transfer::linear_table(steps);
         let pixels = table.iter().map(|&v| [v, v, 1.0 - v]).collect::<Vec<_>>();
         let height = pixels.len() as u32 / 256;
-        let film = Film::from_pixels(256, height, pixels).unwrap();
-        let once = round_trip(&film, Format::Png, &encoding);
-        let kept = film.pixels.iter().zip(&once.pixels);
+        let picture = Picture::from_pixels(256, height, pixels).unwrap();
+        let once = round_trip(&picture, Format::Png, &encoding);
+        let kept = picture.pixels.iter().zip(&once.pixels);
         assert!(kept.clone().all(|(a, b)| a[..2] == b[..2]));
         assert!(once.bits_equal(&round_trip(&once, Format::Png, &encoding)));
-        assert_eq!(bytes(&once, Format::Png, &encoding), bytes(&film, Format::Png, &encoding));
+        assert_eq!(bytes(&once, Format::Png, &encoding), bytes(&picture, Format::Png, &encoding));
     }
 }
 
@@ -143,9 +143,9 @@ fn png_keeps_every_value_it_has() {
 fn hdr_keeps_a_hundredth_of_the_brightest_channel() {
     let values = [1e-30, 1e-3, 0.18, 0.999_999_94, 1.0, 200.0, 65_535.996, 1e30];
     let pixels = values.iter().map(|&v| [v, v / 3.0, 0.0]).collect();
-    let film = Film::from_pixels(8, 1, pixels).unwrap();
-    let back = round_trip(&film, Format::Hdr, &Encoding::default());
-    for (a, b) in film.pixels.iter().zip(&back.pixels) {
+    let picture = Picture::from_pixels(8, 1, pixels).unwrap();
+    let back = round_trip(&picture, Format::Hdr, &Encoding::default());
+    for (a, b) in picture.pixels.iter().zip(&back.pixels) {
         let close = a.iter().zip(b).all(|(x, y)| (x - y).abs() <= a[0] / 100.0);
         assert!(close, "{a:?} {b:?}");
     }
@@ -155,40 +155,40 @@ fn hdr_keeps_a_hundredth_of_the_brightest_channel() {
 #[test]
 fn hdr_just_below_a_power_of_two_has_the_lesser_exponent() {
     for power in [2f32.powi(-100), 0.25, 1.0, 1024.0, 2f32.powi(100)] {
-        let film = Film::from_pixels(1, 1, vec![[power.next_down(), power / 2.0, 0.0]]).unwrap();
-        let back = round_trip(&film, Format::Hdr, &Encoding::default());
+        let picture = Picture::from_pixels(1, 1, vec![[power.next_down(), power / 2.0, 0.0]]).unwrap();
+        let back = round_trip(&picture, Format::Hdr, &Encoding::default());
         assert_eq!(back.pixels[0], [255.0 / 256.0 * power, power / 2.0, 0.0]);
     }
 }
 
 #[test]
 fn what_is_no_light_has_a_place_in_png_and_hdr() {
-    let png = round_trip(&odd_film(), Format::Png, &Encoding::default());
+    let png = round_trip(&odd_picture(), Format::Png, &Encoding::default());
     assert_eq!(png.pixels[0], [0.0, 0.0, 1.0]);
     assert_eq!(png.pixels[2], [0.0, 1.0, 1.0]);
     assert_eq!(png.pixels[3], [0.0, 1.0, 0.0]);
-    let hdr = round_trip(&odd_film(), Format::Hdr, &Encoding::default());
+    let hdr = round_trip(&odd_picture(), Format::Hdr, &Encoding::default());
     assert_eq!(hdr.pixels[3][0], 0.0);
     assert!(hdr.pixels[3][1] > 1.6e38 && hdr.pixels[3][2] == 0.0);
     assert!(hdr.pixels[4][2] > 1.6e38);
-    let dark = Film::from_pixels(1, 1, vec![[1e-40; 3]]).unwrap();
+    let dark = Picture::from_pixels(1, 1, vec![[1e-40; 3]]).unwrap();
     let dark = round_trip(&dark, Format::Hdr, &Encoding::default());
     assert_eq!(dark.pixels[0], [0.0; 3]);
 }
 
 #[test]
 fn exposure_applies_to_every_format() {
-    let film = Film::from_pixels(1, 1, vec![[0.25, 0.125, 0.5]]).unwrap();
+    let picture = Picture::from_pixels(1, 1, vec![[0.25, 0.125, 0.5]]).unwrap();
     let brighter = Encoding { exposure_ev: 1.0, ..SIXTEEN };
     for format in FORMATS {
-        let back = round_trip(&film, format, &brighter).pixels[0];
+        let back = round_trip(&picture, format, &brighter).pixels[0];
         let wanted = [0.5, 0.25, 1.0];
         let close = |(a, b): (&f32, f32)| (a - b).abs() < 1e-4;
         assert!(back.iter().zip(wanted).all(close), "{format}: {back:?}");
     }
     for exposure_ev in [f32::NAN, f32::INFINITY, -300.0] {
         let encoding = Encoding { exposure_ev, ..SIXTEEN };
-        assert!(encode(&film, Format::Exr, &encoding, io::sink()).is_err());
+        assert!(encode(&picture, Format::Exr, &encoding, io::sink()).is_err());
     }
 }
 
@@ -203,14 +203,14 @@ fn a_png_has_the_values_of_its_tone_map() {
                 let exposed = pixel.map(|v| f64::from(v) * scale);
                 tone.apply(exposed).map(|v| table[transfer::quantise(v, steps.into()) as usize])
             };
-            for film in [odd_film(), striped_film()] {
-                let wanted: Vec<_> = film.pixels.iter().map(shown).collect();
-                assert_eq!(round_trip(&film, Format::Png, &encoding).pixels, wanted, "{tone} {steps}");
+            for picture in [odd_picture(), striped_picture()] {
+                let wanted: Vec<_> = picture.pixels.iter().map(shown).collect();
+                assert_eq!(round_trip(&picture, Format::Png, &encoding).pixels, wanted, "{tone} {steps}");
             }
         }
         let encoding = Encoding { tone, ..Encoding::default() };
         for format in [Format::Exr, Format::Hdr] {
-            let written = encode(&odd_film(), format, &encoding, io::sink());
+            let written = encode(&odd_picture(), format, &encoding, io::sink());
             assert_eq!(written.err(), (tone != ToneMap::None).then_some(Error::NoTone { format }));
         }
     }
@@ -218,8 +218,8 @@ fn a_png_has_the_values_of_its_tone_map() {
 
 #[test]
 fn png_says_what_it_is() {
-    let film = Film::new(2, 2).unwrap();
-    let png = bytes(&film, Format::Png, &Encoding::default());
+    let picture = Picture::new(2, 2).unwrap();
+    let png = bytes(&picture, Format::Png, &Encoding::default());
     for chunk in [&b"sRGB\0"[..], b"tEXtSoftware\0eyerays"] {
         let at = png.windows(chunk.len()).position(|w| w == chunk).unwrap();
         assert_eq!(png[at + chunk.len()..][..4], png_crc(chunk));
@@ -253,7 +253,7 @@ fn a_writer_that_fails_is_an_error() {
         }
     }
     for format in FORMATS {
-        let error = encode(&odd_film(), format, &SIXTEEN, Full).unwrap_err();
+        let error = encode(&odd_picture(), format, &SIXTEEN, Full).unwrap_err();
         assert!(error.message().contains("no space"), "{error}");
     }
 }
@@ -267,10 +267,10 @@ pub(super) fn png_crc(chunk: &[u8]) -> [u8; 4] {
 }
 
 /// Wide enough for the run lengths of an HDR, with runs and without.
-pub(super) fn striped_film() -> Film {
+pub(super) fn striped_picture() -> Picture {
     let value = |i: u32| if i % 16 < 8 { 0.5 } else { 1.0 / i as f32 };
     let pixels = (0..48).map(|i| [value(i), 0.25, value(i + 3)]).collect();
-    Film::from_pixels(16, 3, pixels).unwrap()
+    Picture::from_pixels(16, 3, pixels).unwrap()
 }
 
 #[test]
@@ -279,9 +279,9 @@ fn greys_and_alpha_are_read() {
         image::DynamicImage::ImageLumaA16(image::ImageBuffer::from_raw(2, 1, vec![65_535, 0, 1_000, 30_000]).unwrap());
     let mut png = Cursor::new(Vec::new());
     image.write_to(&mut png, image::ImageFormat::Png).unwrap();
-    let film = decode(Cursor::new(png.into_inner())).unwrap();
+    let picture = decode(Cursor::new(png.into_inner())).unwrap();
     let grey = transfer::linear_table(65_535)[1_000];
-    assert_eq!(film.pixels, [[1.0; 3], [grey; 3]]);
+    assert_eq!(picture.pixels, [[1.0; 3], [grey; 3]]);
 }
 
 proptest! {
@@ -290,16 +290,16 @@ proptest! {
     #[test]
     fn exr_keeps_any_bits(bits in prop::collection::vec(any::<[u32; 3]>(), 1..40)) {
         let pixels = bits.iter().map(|p| p.map(f32::from_bits)).collect();
-        let film = Film::from_pixels(bits.len() as u32, 1, pixels).unwrap();
-        prop_assert!(film.bits_equal(&round_trip(&film, Format::Exr, &SIXTEEN)));
+        let picture = Picture::from_pixels(bits.len() as u32, 1, pixels).unwrap();
+        prop_assert!(picture.bits_equal(&round_trip(&picture, Format::Exr, &SIXTEEN)));
     }
 
     #[test]
-    fn any_film_can_be_encoded_and_read(bits in prop::collection::vec(any::<[u32; 3]>(), 1..40)) {
+    fn any_picture_can_be_encoded_and_read(bits in prop::collection::vec(any::<[u32; 3]>(), 1..40)) {
         let pixels = bits.iter().map(|p| p.map(f32::from_bits)).collect();
-        let film = Film::from_pixels(1, bits.len() as u32, pixels).unwrap();
+        let picture = Picture::from_pixels(1, bits.len() as u32, pixels).unwrap();
         for format in [Format::Png, Format::Hdr] {
-            let back = round_trip(&film, format, &SIXTEEN);
+            let back = round_trip(&picture, format, &SIXTEEN);
             prop_assert!(back.pixels.as_flattened().iter().all(|v| v.is_finite() && *v >= 0.0));
         }
     }

@@ -13,7 +13,7 @@ choices! {
         None = "none",
         /// Khronos PBR Neutral: colours of surfaces stay as they are, less 0.04, and only highlights are compressed
         Neutral = "neutral",
-        /// AgX, as in Blender 4: a film's contrast over 16.5 stops, and bright colours fade to white
+        /// AgX, as in Blender 4: a picture's contrast over 16.5 stops, and bright colours fade to white
         Agx = "agx",
         /// AgX as three.js and Filament have it, a little brighter
         AgxThree = "agx-three",
@@ -21,7 +21,7 @@ choices! {
 }
 
 impl ToneMap {
-    /// The colour that a screen shows for a colour of the film, both linear. With [`ToneMap::None`] it is the same;
+    /// The colour that a screen shows for a colour of the picture, both linear. With [`ToneMap::None`] it is the same;
     /// with the others it is in [0, 1], where NaN and what is below 0 count as 0 and infinity as [`f64::MAX`].
     pub fn apply(self, colour: [f64; 3]) -> [f64; 3] {
         let curve = match self {

@@ -10,7 +10,7 @@ use super::studio;
 use super::table::Table;
 use super::{Background, Camera, Environment, Light, Projection, Settings, Transport};
 use crate::error::Result;
-use crate::film::Film;
+use crate::picture::Picture;
 
 /// Reads `[render]`; what it does not say is the default.
 ///
@@ -32,7 +32,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
     };
     settings.grid().map_err(|error| table.fault_of("spp", error.message()))?;
     let (width, height) = settings.size;
-    Film::check_size(width, height).map_err(|error| table.fault_of("size", error.message()))?;
+    Picture::check_size(width, height).map_err(|error| table.fault_of("size", error.message()))?;
     table.done()?;
     Ok(settings)
 }

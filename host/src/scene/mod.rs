@@ -366,7 +366,7 @@ impl Settings {
     }
 
     /// The largest width and height in pixels.
-    pub const MOST_SIDE: u32 = crate::film::Film::MAX_SIDE;
+    pub const MOST_SIDE: u32 = crate::picture::Picture::MAX_SIDE;
     /// The most samples along a pixel's edge.
     pub const MOST_SAMPLES: u32 = 64;
     /// The most samples of a pixel, which single precision still counts.

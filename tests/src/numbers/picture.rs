@@ -12,7 +12,7 @@ use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
 
-/// The film of one sample a pixel, row-major from the top left.
+/// The picture of one sample a pixel, row-major from the top left.
 pub fn picture<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     if posed.settings().transport.integrator.samples() { sampled(posed) } else { whitted(posed) }
 }
@@ -24,7 +24,7 @@ fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let (slots, black) = (frame.slots as usize, R::store(V3::zero(), 0));
     let mut paths = vec![black; slots * (needs(posed).paths * RECORDS) as usize];
     let (mut hits, mut shadows) = (vec![black; slots], vec![0; slots * posed.lights().len()]);
-    let (mut sums, mut film) = (vec![black; slots], vec![V3::zero(); region.pixels() as usize]);
+    let (mut sums, mut picture) = (vec![black; slots], vec![V3::zero(); region.pixels() as usize]);
     let pixel = |slot: u32| camera::pixel(&frame, spec.order, slot);
     let mut queue: Vec<u32> = (0..frame.slots).filter(|&slot| pixel(slot).inside).collect();
     let mut context = scene.context(&frame, spec);
@@ -46,9 +46,9 @@ fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         context.base.spec = spec.with_launch(Launch::SECONDARY);
     }
     for slot in (0..frame.slots).filter(|&slot| pixel(slot).inside) {
-        film[pixel(slot).index as usize] = R::load(sums[slot as usize]).0;
+        picture[pixel(slot).index as usize] = R::load(sums[slot as usize]).0;
     }
-    film
+    picture
 }
 
 fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
@@ -80,9 +80,9 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         }
         spec = spec.with_launch(Launch::SECONDARY);
     }
-    let mut film = vec![black; FILM_RECORDS as usize * pixels];
+    let mut picture = vec![black; FILM_RECORDS as usize * pixels];
     for slot in 0..frame.pixel_slots {
-        stage::accumulate::<R>(&frame, spec.order, slot, (&sums, &shadows, &segments), &mut film);
+        stage::accumulate::<R>(&frame, spec.order, slot, (&sums, &shadows, &segments), &mut picture);
     }
-    film[..pixels].iter().map(|&record| R::load(record).0).collect()
+    picture[..pixels].iter().map(|&record| R::load(record).0).collect()
 }

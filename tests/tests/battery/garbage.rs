@@ -68,11 +68,11 @@ fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
         match DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
                 let Ok(view) = View::new(&packed, &scene.cameras[0]) else { continue };
-                let (film, rays) = machine.render(&Posed { packed, view });
+                let (picture, rays) = machine.render(&Posed { packed, view });
                 drawn.meshes += 1;
-                drawn.pixels += film.pixels.len();
+                drawn.pixels += picture.pixels.len();
                 let is_bad = |pixel: &&[f32; 3]| !pixel.iter().all(|channel| channel.is_finite());
-                drawn.bad += film.pixels.iter().filter(is_bad).count() + rays.non_finite as usize;
+                drawn.bad += picture.pixels.iter().filter(is_bad).count() + rays.non_finite as usize;
             }
             Err(error) => assert!(!error.to_string().contains('\n'), "{error}"),
         }
@@ -85,7 +85,7 @@ fn meshes_of_random_bits() {
     for machine in Machine::all() {
         let few = if machine.is_software() { count::of(FEW, MESHES as usize) } else { MESHES as usize };
         let drawn = draw(machine, (0..few as u64).map(scene));
-        let what = format!("garbage, no numbers in the film of {} meshes of random bits of {few}", drawn.meshes);
+        let what = format!("garbage, no numbers in the picture of {} meshes of random bits of {few}", drawn.meshes);
         count::none(what, machine, drawn.bad, drawn.pixels);
         assert!(drawn.meshes * 2 > few, "{machine}: only {} of {few} are drawn", drawn.meshes);
     }
@@ -116,7 +116,7 @@ fn files_of_random_numbers() {
         }
     };
     let drawn = draw(Machine::CPU, (0..MESHES).filter_map(load));
-    let what = format!("garbage, no numbers in the film of {} files of {MESHES}", drawn.meshes);
+    let what = format!("garbage, no numbers in the picture of {} files of {MESHES}", drawn.meshes);
     count::none(what, Machine::CPU, drawn.bad, drawn.pixels);
     assert!(drawn.meshes > 300);
 }

@@ -5,8 +5,8 @@
 
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::method::{Method, Order};
+use eyerays::picture::Picture;
 use eyerays::scene::{Light, Projection, Scene};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_command::bench::Kind;
@@ -85,7 +85,7 @@ fn compare(machine: Machine, packed: &DeviceScene, stream: &Stream) -> Apart {
 }
 
 /// Pixels whose channels differ by more than a step of 8 bits.
-fn visibly_apart(a: &Film, b: &Film) -> usize {
+fn visibly_apart(a: &Picture, b: &Picture) -> usize {
     differences(a, b).iter().filter(|&&d| d > 1.0 / 255.0).count()
 }
 
@@ -118,8 +118,8 @@ fn assert_near(what: &str, mut scene: Scene, (others, pixels): (f64, f64)) {
             // It would compile the kernels of every scene.
             continue;
         }
-        let (film, rays) = machine.render(&packed);
-        let (apart, total) = (visibly_apart(&film, &truth), film.pixels.len());
+        let (picture, rays) = machine.render(&packed);
+        let (apart, total) = (visibly_apart(&picture, &truth), picture.pixels.len());
         count::none(format_args!("places, {what}, pixels that lost light"), machine, rays.non_finite as usize, total);
         count::line(format_args!("places, {what}, pixels that look otherwise"), machine, apart, total);
         assert!(apart as f64 <= pixels * total as f64, "{what}, {machine}: {apart} of {total}");

@@ -134,7 +134,7 @@ fn room() -> Scene {
     scene
 }
 
-/// Lights a room from a place that is seen from none of its other side: the film is exactly black.
+/// Lights a room from a place that is seen from none of its other side: the picture is exactly black.
 fn assert_dark(what: &str, machine: Machine, light: Vec3, eye: Vec3, target: Vec3) {
     let (mut lit, mut pixels) = (0, 0);
     for (turn, scale, offset) in PLACES {
@@ -146,10 +146,10 @@ fn assert_dark(what: &str, machine: Machine, light: Vec3, eye: Vec3, target: Vec
         (scene.cameras[0].eye, scene.cameras[0].target, scene.cameras[0].projection) =
             (points[1], points[2], Projection::Perspective { fov: 80.0 });
         let packed = pack(&scene, &scene.cameras[0], scene.settings);
-        let (film, rays) = machine.render(&packed);
+        let (picture, rays) = machine.render(&packed);
         assert!(rays.shadow > 0 && rays.non_finite == 0, "{what}, {machine}: {rays:?}");
-        lit += film.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
-        pixels += film.pixels.len();
+        lit += picture.pixels.iter().filter(|pixel| **pixel != [0.0; 3]).count();
+        pixels += picture.pixels.len();
     }
     count::none(format_args!("leaks of light, {what}"), machine, lit, pixels);
 }
@@ -182,8 +182,8 @@ fn no_acne() {
             shape.materials = vec![glowing(Vec3::ONE)];
             shape.ambient = Vec3::ONE;
             body.lights = vec![lamp(eye)];
-            let film = |scene: &Scene| machine.render(&pack(scene, &scene.cameras[0], scene.settings)).0;
-            let (lit, shape) = (film(&body), film(&shape));
+            let picture = |scene: &Scene| machine.render(&pack(scene, &scene.cameras[0], scene.settings)).0;
+            let (lit, shape) = (picture(&body), picture(&shape));
             let pixels = || lit.pixels.iter().zip(&shape.pixels).filter(|(_, shape)| shape[0] > 0.0);
             dark += pixels().filter(|(lit, _)| lit[0] == 0.0).count();
             seen += pixels().count();

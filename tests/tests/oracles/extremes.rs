@@ -11,16 +11,16 @@ use eyerays_tests::{Posed, assert_same_bits, count, gpu, on_cpu, pack};
 use glam::Vec3;
 
 /// On the CPU without a value that is not finite, and on a GPU the same bits.
-fn films(packed: &Posed, what: &str) -> Vec<Vec3> {
-    let (film, rays) = on_cpu(packed);
+fn pictures(packed: &Posed, what: &str) -> Vec<Vec3> {
+    let (picture, rays) = on_cpu(packed);
     assert_eq!(rays.non_finite, 0, "{what}");
-    assert!(film.pixels.iter().flatten().all(|channel| channel.is_finite()), "{what}");
+    assert!(picture.pixels.iter().flatten().all(|channel| channel.is_finite()), "{what}");
     if let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) {
         let mut renderer = Renderer::new(&gpu, packed, true, Traversal::default()).unwrap();
         let rendering = renderer.render(&packed.view, &|_| ()).unwrap();
-        assert_same_bits(&rendering.film, &film, what);
+        assert_same_bits(&rendering.picture, &picture, what);
     }
-    film.pixels.iter().map(|&pixel| Vec3::from(pixel)).collect()
+    picture.pixels.iter().map(|&pixel| Vec3::from(pixel)).collect()
 }
 
 fn next(x: f32, ulps: i32) -> f32 {
@@ -82,7 +82,7 @@ fn an_index_of_one_is_no_glass() {
     bare.materials.iter_mut().filter(|m| m.transmission != Vec3::ZERO).for_each(|m| *m = black());
     bare.mesh.triangles.truncate(2 * 16);
     bare.mesh.materials.truncate(2 * 16);
-    let pixels = |scene: &Scene, what| films(&pack(scene, &scene.cameras[0], scene.settings), what);
+    let pixels = |scene: &Scene, what| pictures(&pack(scene, &scene.cameras[0], scene.settings), what);
     let (without, with) = (pixels(&bare, "no glass"), pixels(&panes([1.0, next(1.0, 1), next(1.0, 2)]), "ior 1"));
     let differing = without.iter().zip(&with).filter(|(a, b)| (**a - **b).abs().max_element() > 1e-4).count();
     // A ray at the border of two stripes may end on either.
@@ -127,16 +127,16 @@ fn highlight(shininess: f32) -> Scene {
 fn highlights_from_dull_to_a_point() {
     let lit = [0.0, 1.0, 1e4, 1e9].map(|shininess| {
         let scene = highlight(shininess);
-        let film = films(&pack(&scene, &scene.cameras[0], scene.settings), "a highlight");
-        assert!(film.iter().all(|p| p.min_element() >= 0.0 && p.max_element() <= 1.0));
-        assert!(film[33 * 16 + 16].x > 0.99, "head on all is mirrored: {}", film[33 * 16 + 16]);
-        film
+        let picture = pictures(&pack(&scene, &scene.cameras[0], scene.settings), "a highlight");
+        assert!(picture.iter().all(|p| p.min_element() >= 0.0 && p.max_element() <= 1.0));
+        assert!(picture[33 * 16 + 16].x > 0.99, "head on all is mirrored: {}", picture[33 * 16 + 16]);
+        picture
     });
     assert!(lit[0].iter().all(|p| *p == Vec3::ONE), "to the power of zero all is one");
     for pair in lit.windows(2) {
         assert!(pair[0].iter().zip(&pair[1]).all(|(dull, sharp)| sharp.x <= dull.x), "a greater power is never more");
     }
-    let bright = |film: &Vec<Vec3>| film.iter().filter(|p| p.x > 0.0).count();
+    let bright = |picture: &Vec<Vec3>| picture.iter().filter(|p| p.x > 0.0).count();
     assert!(2 * bright(&lit[1]) > lit[1].len() && bright(&lit[3]) <= 9, "{} of 1e9", bright(&lit[3]));
 }
 
@@ -148,11 +148,11 @@ fn lights_on_surfaces() {
         let wall = Material { diffuse: Vec3::splat(0.5), ..scene.materials[0].clone() };
         scene.materials[0] = wall;
         scene.lights = vec![lamp(place), Light::Point { position: place, colour: Vec3::splat(1e-30) }];
-        let film = films(&pack(&scene, &scene.cameras[0], scene.settings), &format!("a lamp at {place}"));
+        let picture = pictures(&pack(&scene, &scene.cameras[0], scene.settings), &format!("a lamp at {place}"));
         let on_plane = place.z == -2.0;
         // Light along a surface gives it none: the cosine is zero but for rounding of the place.
-        assert!(!on_plane || film.iter().filter(|p| p.x > 1e-2).count() <= 1, "{place}: {film:?}");
-        assert!(on_plane || film.iter().all(|p| p.x > 0.1));
+        assert!(!on_plane || picture.iter().filter(|p| p.x > 1e-2).count() <= 1, "{place}: {picture:?}");
+        assert!(on_plane || picture.iter().all(|p| p.x > 0.1));
     }
 }
 
@@ -180,7 +180,7 @@ fn none_and_ten_thousand_bounces_in_a_box_of_mirrors() {
         assert!(picture::<f32>(&packed).iter().all(expected), "{bounces} bounces");
     }
     let on_gpu = mirror_box(if count::full() { 10_000 } else { 200 });
-    films(&pack(&on_gpu, &on_gpu.cameras[0], on_gpu.settings), "a box of mirrors");
+    pictures(&pack(&on_gpu, &on_gpu.cameras[0], on_gpu.settings), "a box of mirrors");
 }
 
 /// Exact precision takes powers for which single precision has no exponent but 1.

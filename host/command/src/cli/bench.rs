@@ -17,9 +17,9 @@ use crate::bench::rays::MOST_RAYS;
 use crate::bench::{self, Kind, Plan, Report, Subject};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination, write_error};
-use eyerays::film::Film;
 use eyerays::gpu::{AdapterRequest, Gpu};
 use eyerays::method::{Layout, Method, Order, Scheduling, TriangleTest};
+use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::scene::{Camera, Scene};
 
@@ -212,7 +212,7 @@ impl Bench {
 
     fn plan(&self) -> Result<Plan> {
         let size = self.rays.size.unwrap_or(if self.quick { (256, 256) } else { (1024, 1024) });
-        Film::check_size(size.0, size.1)?;
+        Picture::check_size(size.0, size.1)?;
         if u64::from(size.0) * u64::from(size.1) > MOST_PIXELS {
             let (width, height) = size;
             return Err(Error::new(format!("--size {width}x{height} has more than {MOST_PIXELS} pixels: choose less")));

@@ -16,8 +16,8 @@ use crate::error::{Error, Result};
 use crate::flip::Flip;
 use crate::output::{self, Destination};
 use eyerays::compare::{Comparison, compare, heat_map};
-use eyerays::film::Film;
 use eyerays::image::{self, Encoding};
+use eyerays::picture::Picture;
 use eyerays::render::{Backend, DeviceWish, Precision, Rendering};
 use eyerays::scene;
 
@@ -111,7 +111,7 @@ impl Diff {
         outputs.iter().try_for_each(output::check_writable)
     }
 
-    fn pictures(&self, second: &PathBuf) -> Result<(Film, Film, [String; 2])> {
+    fn pictures(&self, second: &PathBuf) -> Result<(Picture, Picture, [String; 2])> {
         for file in [&self.first, second] {
             if has_extension(file, &["toml", "obj", scene::ENDING]) {
                 return Err(Error::file(
@@ -124,8 +124,8 @@ impl Diff {
         Ok((image::read(&self.first)?, image::read(second)?, names))
     }
 
-    /// The unquantised films of a scene from GPU and CPU.
-    fn renderings(&self, outputs: &[Destination], quiet: bool) -> Result<(Film, Film, [String; 2])> {
+    /// The unquantised pictures of a scene from GPU and CPU.
+    fn renderings(&self, outputs: &[Destination], quiet: bool) -> Result<(Picture, Picture, [String; 2])> {
         if has_extension(&self.first, &["png", "exr", "hdr"]) {
             return Err(Error::file(&self.first, "a picture needs a second one to compare with"));
         }
@@ -148,7 +148,7 @@ impl Diff {
         if gpu.rays != cpu.rays {
             super::warn(&[format!("the GPU counted {:?}, the CPU {:?}", gpu.rays, cpu.rays)], quiet);
         }
-        Ok((gpu.film, cpu.film, [gpu.device, cpu.device]))
+        Ok((gpu.picture, cpu.picture, [gpu.device, cpu.device]))
     }
 
     fn report(&self, comparison: &Comparison, flip: Option<&Flip>, names: &[String; 2], quiet: bool) -> Result<()> {

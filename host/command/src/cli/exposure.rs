@@ -1,7 +1,7 @@
 //! How bright a picture is shown.
 
-use eyerays::film::Film;
 use eyerays::math;
+use eyerays::picture::Picture;
 
 /// What `--exposure` asks for.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,8 +38,8 @@ const SHOWN: f64 = 0.99;
 
 impl Brightness {
     /// That of a picture.
-    pub fn of(film: &Film) -> Self {
-        let greatest = film.pixels.iter().map(|pixel| pixel.iter().copied().fold(0.0, f32::max));
+    pub fn of(picture: &Picture) -> Self {
+        let greatest = picture.pixels.iter().map(|pixel| pixel.iter().copied().fold(0.0, f32::max));
         Brightness(greatest.filter(|light| light.is_finite() && *light > 0.0).collect())
     }
 
@@ -67,26 +67,26 @@ impl Brightness {
 mod tests {
     use super::*;
 
-    fn film(light: impl Iterator<Item = f32>) -> Film {
+    fn picture(light: impl Iterator<Item = f32>) -> Picture {
         let pixels: Vec<_> = light.map(|light| [light / 2.0, light, 0.0]).collect();
-        Film::from_pixels(pixels.len() as u32, 1, pixels).unwrap()
+        Picture::from_pixels(pixels.len() as u32, 1, pixels).unwrap()
     }
 
     #[test]
     fn the_exposure_makes_white_what_all_but_a_hundredth_of_the_light_is_darker_than() {
-        let brightness = Brightness::of(&film((0..=200).map(|step| step as f32 * 4.0)));
+        let brightness = Brightness::of(&picture((0..=200).map(|step| step as f32 * 4.0)));
         // Of 200 pixels with light, 198 are at most 792, which is 2^9.63.
         assert_eq!(brightness.exposure(), -9.7);
         assert!(brightness.beyond_white(-9.7) <= 0.01);
         assert_eq!(brightness.beyond_white(0.0), 1.0);
         assert_eq!(brightness.beyond_white(-8.0), 1.0 - 64.0 / 200.0);
-        let dim = Brightness::of(&film([0.0, 0.125, 0.125].into_iter()));
+        let dim = Brightness::of(&picture([0.0, 0.125, 0.125].into_iter()));
         assert_eq!((dim.exposure(), dim.beyond_white(3.0), dim.beyond_white(3.1)), (3.0, 0.0, 1.0));
     }
 
     #[test]
     fn a_black_picture_stays_as_it_is() {
-        let black = Brightness::of(&film([0.0, 0.0].into_iter()));
+        let black = Brightness::of(&picture([0.0, 0.0].into_iter()));
         assert_eq!((black.exposure(), black.beyond_white(5.0)), (0.0, 0.0));
     }
 

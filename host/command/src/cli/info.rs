@@ -114,7 +114,7 @@ fn paid(cost: &Cost) -> String {
     };
     text += "+ runs for reflected and refracted rays, once for each wave of them\n";
     text += &format!("bytes of the scene: {}\n", sum(&cost.scene));
-    text + &format!("bytes of a sample in flight: {}; of a pixel: film {}\n", sum(&cost.sample), cost.pixel)
+    text + &format!("bytes of a sample in flight: {}; of a pixel: picture {}\n", sum(&cost.sample), cost.pixel)
 }
 
 const HEAD: &str = "BVH     primitives      nodes     leaves  depth  SAH cost       memory          build\n";

@@ -15,7 +15,7 @@ use crate::error::{Error, Result, within};
 use crate::preset::Preset;
 use eyerays::choice::Named;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
+use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::Choice;
 use eyerays::scene::{self, Camera, Filter, Integrator, Projection, Sampler, Scene, Settings};
@@ -177,7 +177,7 @@ impl View {
             compensation: own.compensation && !self.no_compensation,
             filter: effort.filter.unwrap_or(own.filter),
         };
-        Film::check_size(settings.size.0, settings.size.1)?;
+        Picture::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
         within("--spp", effort.spp.as_slice(), 1..=Settings::MOST_SPP)?;
         settings.grid()?;

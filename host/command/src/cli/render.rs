@@ -119,9 +119,9 @@ impl Render {
         let (mut loaded, scene, camera) = self.view.pack_and_keep(read, &effort, &choice, quiet)?;
         if self.preview {
             progress::stage("drawing a preview", quiet || self.json, || {
-                let film = layers::preview(&mut loaded.packed, &camera, choice.threads)?;
+                let picture = layers::preview(&mut loaded.packed, &camera, choice.threads)?;
                 let plain = Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..encoding };
-                output::write_layers(&film, &[], &destination, &plain)
+                output::write_layers(&picture, &[], &destination, &plain)
             })?;
         }
         // Nothing but layers has a use for it, and memory may be short.
@@ -160,13 +160,15 @@ impl Render {
             None => Vec::new(),
         };
         let layers_time = kept.is_some().then(|| start.elapsed());
-        let brightness = Brightness::of(&rendering.film);
+        let brightness = Brightness::of(&rendering.picture);
         if self.exposure == Exposure::Auto {
             encoding.exposure_ev = brightness.exposure();
         }
         super::warn(self.beyond_white(&brightness, &encoding, &destination)?.as_slice(), quiet);
         let start = Instant::now();
-        progress::stage("writing", quiet, || output::write_layers(&rendering.film, &layers, &destination, &encoding))?;
+        progress::stage("writing", quiet, || {
+            output::write_layers(&rendering.picture, &layers, &destination, &encoding)
+        })?;
         let times = Times::new(&loaded, &rendering, layers_time, start.elapsed());
         let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
         if self.json {

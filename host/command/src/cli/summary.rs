@@ -92,7 +92,7 @@ impl<'a> Summary<'a> {
             "spp": self.rendering.samples,
             "integrator": settings.transport.integrator.name(),
             "seed": settings.transport.seed,
-            "noise": self.rendering.film.noise(),
+            "noise": self.rendering.picture.noise(),
             "sampler": settings.sampler.name(),
             "bounces": settings.bounces,
             "precision": self.precision(),
@@ -100,7 +100,7 @@ impl<'a> Summary<'a> {
             "why": remedy::why(self.rendering),
             "primitives": self.loaded.packed.statistics().primitives,
             "rays": self.rendering.rays,
-            "film_hash": self.rendering.film.hash(),
+            "film_hash": self.rendering.picture.hash(),
             "mrays_per_second": self.mrays(times.render),
             "device_mrays_per_second": times.device.map(|time| self.mrays(time)),
             "read_ms": milliseconds(times.read),
@@ -124,7 +124,7 @@ impl fmt::Display for Summary<'_> {
         let (rendering, rays) = (self.rendering, self.rendering.rays);
         write!(out, "{}: {width}x{height} in {} precision", self.destination, self.precision())?;
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;
-        if let Some(noise) = rendering.film.noise() {
+        if let Some(noise) = rendering.picture.noise() {
             write!(out, ", {} samples a pixel, noise {:.2} %", rendering.samples, 100.0 * noise)?;
         }
         write!(out, "; {} primary, {} shadow, {} secondary rays", rays.primary, rays.shadow, rays.secondary)?;

@@ -82,10 +82,10 @@ impl Watching<'_> {
     /// What can't be written now may be later, and the rendering goes on.
     fn write(&self, growth: Growth<'_>, faulty: &Cell<bool>) {
         let samples = growth.samples;
-        let written = growth.film().map_err(Into::into).and_then(|film| {
-            let own = self.auto_exposure.then(|| Brightness::of(&film).exposure());
+        let written = growth.picture().map_err(Into::into).and_then(|picture| {
+            let own = self.auto_exposure.then(|| Brightness::of(&picture).exposure());
             let encoding = Encoding { exposure_ev: own.unwrap_or(self.encoding.exposure_ev), ..self.encoding };
-            output::write_picture(&film, self.destination, &encoding)
+            output::write_picture(&picture, self.destination, &encoding)
         });
         if let Err(error) = written
             && !faulty.replace(true)

@@ -11,7 +11,7 @@ use super::{Files, Kind, Pair, Recipe, Spheres, obj};
 use eyerays::device_scene::DeviceScene;
 use eyerays::scene::{self, Background, Scene};
 use eyerays::view::View;
-use eyerays::{cpu, film::Film};
+use eyerays::{cpu, picture::Picture};
 
 const KINDS: [Kind; 3] = [Kind::Hall, Kind::Forest, Kind::Cathedral];
 
@@ -154,7 +154,7 @@ fn load(kind: Kind, triangles: u64, seed: u64) -> Scene {
 }
 
 /// A view with nothing but this around the scene.
-fn film(scene: &Scene, camera: usize, around: Vec3) -> Film {
+fn picture(scene: &Scene, camera: usize, around: Vec3) -> Picture {
     let scene = Scene { background: Background::Colour(around), ..scene.clone() };
     let settings = scene::Settings { size: (72, 72), ..scene.settings };
     let packed = DeviceScene::new(&scene, settings, Quality::Fast).unwrap();
@@ -164,7 +164,7 @@ fn film(scene: &Scene, camera: usize, around: Vec3) -> Film {
 
 /// Where two backgrounds give two colours, a ray got out.
 fn open_pixels(scene: &Scene, camera: usize) -> usize {
-    let [black, bright] = [0.0, 1e4].map(|grey| film(scene, camera, Vec3::splat(grey)).pixels);
+    let [black, bright] = [0.0, 1e4].map(|grey| picture(scene, camera, Vec3::splat(grey)).pixels);
     black.iter().zip(&bright).filter(|(a, b)| a != b).count()
 }
 
@@ -192,8 +192,8 @@ fn the_views_show_something() {
         for seed in 1..4 {
             let scene = load(kind, 20_000, seed);
             for camera in 0..5 {
-                let film = film(&scene, camera, Vec3::ONE);
-                let mut colours: Vec<_> = film.pixels.iter().map(|p| p.map(|c| (c * 16.0) as i32)).collect();
+                let picture = picture(&scene, camera, Vec3::ONE);
+                let mut colours: Vec<_> = picture.pixels.iter().map(|p| p.map(|c| (c * 16.0) as i32)).collect();
                 colours.sort_unstable();
                 colours.dedup();
                 assert!(colours.len() > 30, "{kind:?} seed {seed} view{}: {}", camera + 1, colours.len());

@@ -15,9 +15,9 @@ use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 pub use apart::{check_apart, check_own};
-use eyerays::film::Film;
 use eyerays::image::{Encoding, Format, encode, encode_layers};
 use eyerays::layers::{Layer, Values};
+use eyerays::picture::Picture;
 use stream::{Stdout, blocks_on_open, open_special, write_through};
 use target::Target;
 use temporary::Temporary;
@@ -140,13 +140,13 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result
     written.map_err(|error| Error { file: error.file.or_else(|| Some(path.to_owned())), ..error })
 }
 
-/// Writes a film to where it belongs, in the format that the place asks for.
+/// Writes a picture to where it belongs, in the format that the place asks for.
 ///
 /// # Errors
 /// An unknown format and those of [`encode`] and [`Destination::write`].
-pub fn write_picture(film: &Film, destination: &Destination, encoding: &Encoding) -> Result<()> {
+pub fn write_picture(picture: &Picture, destination: &Destination, encoding: &Encoding) -> Result<()> {
     let format = destination.format()?;
-    destination.write(|out| Ok(encode(film, format, encoding, out)?))
+    destination.write(|out| Ok(encode(picture, format, encoding, out)?))
 }
 
 /// The same with layers beside the picture, as an EXR.
@@ -154,16 +154,16 @@ pub fn write_picture(film: &Film, destination: &Destination, encoding: &Encoding
 /// # Errors
 /// Layers for another format, and as [`write_picture`].
 pub fn write_layers(
-    film: &Film,
+    picture: &Picture,
     layers: &[(Layer, Values)],
     destination: &Destination,
     encoding: &Encoding,
 ) -> Result<()> {
     if layers.is_empty() {
-        return write_picture(film, destination, encoding);
+        return write_picture(picture, destination, encoding);
     }
     check_layers(destination)?;
-    destination.write(|out| Ok(encode_layers(film, layers, encoding, out)?))
+    destination.write(|out| Ok(encode_layers(picture, layers, encoding, out)?))
 }
 
 /// Whether a place may hold layers.

@@ -147,9 +147,9 @@ impl<'a> Judge<'a> {
         let hits = self.hits(setting, rendering.processor)?;
         let timing = Timing::of(&rendering.times);
         let slowest = rendering.times.iter().max().map_or(0.0, |time| time.as_secs_f64());
-        let judged = compare(&rendering.film, self.references.best())?;
+        let judged = compare(&rendering.picture, self.references.best())?;
         let alike = self.references.alike(self.packed.settings());
-        let alike = alike.map(|alike| compare(&rendering.film, alike)).transpose()?;
+        let alike = alike.map(|alike| compare(&rendering.picture, alike)).transpose()?;
         self.place.get_or_insert(Place {
             processor: rendering.processor,
             clock: if rendering.device_time.is_some() { "device time, by timestamps" } else { "wall-clock time" },

@@ -7,8 +7,8 @@ use eyerays::choice::Named;
 use eyerays::compare::compare;
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::method::Traversal;
+use eyerays::picture::Picture;
 use eyerays::render::{Backend, Precision};
 use eyerays::scene::{Sampler, Settings, Transport};
 use eyerays::view::View;
@@ -16,9 +16,9 @@ use eyerays::view::View;
 /// The most accurate picture, and others as far as they are of use.
 pub struct References {
     /// What all are compared with.
-    best: Film,
+    best: Picture,
     /// In double precision by samples of a pixel and sampler, where light is not sampled.
-    alike: Vec<((u32, Sampler), Film)>,
+    alike: Vec<((u32, Sampler), Picture)>,
     /// Of `best` where light is sampled: root of the mean square over all channel values, in linear light.
     pub standard_error: Option<f64>,
 }
@@ -41,7 +41,7 @@ impl Studio<'_> {
     }
 
     /// On the CPU.
-    fn on_cpu<R: cpu::Number>(&self, view: &View) -> Result<Film> {
+    fn on_cpu<R: cpu::Number>(&self, view: &View) -> Result<Picture> {
         let threads = self.device.choice().threads;
         Ok(cpu::render::<R>(self.packed, view, Traversal::default(), threads, &|_| ())?.0)
     }
@@ -71,7 +71,7 @@ impl References {
     fn without_noise(mut studio: Studio<'_>) -> Result<Self> {
         let axes = &studio.plan.axes;
         let best = axes.reference(studio.subject.settings);
-        let mut render = |settings: Settings| -> Result<Film> {
+        let mut render = |settings: Settings| -> Result<Picture> {
             let step = format!("reference, {} samples, {}", settings.samples_a_pixel(), settings.sampler);
             let view = studio.seen(settings, &step)?;
             studio.on_cpu::<f64>(&view)
@@ -85,7 +85,7 @@ impl References {
         }
         let key = (best.samples_a_pixel(), best.sampler);
         let best = match alike.iter().find(|(of, _)| *of == key) {
-            Some((_, film)) => film.clone(),
+            Some((_, picture)) => picture.clone(),
             None => render(best)?,
         };
         Ok(References { best, alike, standard_error: None })
@@ -96,12 +96,12 @@ impl References {
     fn sampled(mut studio: Studio<'_>) -> Result<Self> {
         let best = studio.plan.axes.reference(studio.subject.settings);
         let spp = halves(studio.plan);
-        let mut half = |place: u32| -> Result<Film> {
+        let mut half = |place: u32| -> Result<Picture> {
             let transport = Transport { seed: seed(best.transport.seed, place), ..best.transport };
             let settings = Settings { samples: 1, spp, sampler: Sampler::Sobol, transport, ..best };
             let view = studio.seen(settings, &format!("reference, {spp} samples, {place} of 2"))?;
             if studio.device.choice().precision == Precision::Exact {
-                return Ok(studio.device.render(studio.packed, &view, 1, &|_| ())?.film);
+                return Ok(studio.device.render(studio.packed, &view, 1, &|_| ())?.picture);
             }
             // A device that was opened for fast precision may have no other.
             studio.on_cpu::<f32>(&view)
@@ -110,19 +110,19 @@ impl References {
         let standard_error = Some(compare(&first, &second)?.rmse / 2.0);
         let mean = |(a, b): (&[f32; 3], &[f32; 3])| std::array::from_fn(|i| 0.5 * a[i] + 0.5 * b[i]);
         let pixels = first.pixels.iter().zip(&second.pixels).map(mean).collect();
-        let best = Film::from_pixels(first.width, first.height, pixels)?;
+        let best = Picture::from_pixels(first.width, first.height, pixels)?;
         Ok(References { best, alike: Vec::new(), standard_error })
     }
 
     /// What all pictures are compared with.
-    pub fn best(&self) -> &Film {
+    pub fn best(&self) -> &Picture {
         &self.best
     }
 
     /// The one of the same samples.
-    pub fn alike(&self, settings: &Settings) -> Option<&Film> {
+    pub fn alike(&self, settings: &Settings) -> Option<&Picture> {
         let key = (settings.samples_a_pixel(), settings.sampler);
-        self.alike.iter().find(|(of, _)| *of == key).map(|(_, film)| film)
+        self.alike.iter().find(|(of, _)| *of == key).map(|(_, picture)| picture)
     }
 
     /// In a line.

@@ -6,8 +6,8 @@ use super::*;
 use eyerays::compare::compare;
 use eyerays::cpu;
 use eyerays::device_scene::DeviceScene;
-use eyerays::film::Film;
 use eyerays::method::Processor;
+use eyerays::picture::Picture;
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{self, Integrator, Sampler, Settings, Transport};
 use eyerays::stream::StreamRay;
@@ -44,7 +44,7 @@ fn on_cpu() -> Backend {
 }
 
 /// The picture of a setting, straight from the executor.
-fn picture(subject: &Subject, setting: &Setting) -> Film {
+fn picture(subject: &Subject, setting: &Setting) -> Picture {
     let settings = setting.settings(subject.settings);
     let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, setting.bvh.quality()).unwrap();
     let choice = Choice {
@@ -54,10 +54,10 @@ fn picture(subject: &Subject, setting: &Setting) -> Film {
         ..Choice::default()
     };
     let view = View::new(&packed, &subject.camera).unwrap();
-    Backend::new(&choice).unwrap().render(&packed, &view, 1, &|_| ()).unwrap().film
+    Backend::new(&choice).unwrap().render(&packed, &view, 1, &|_| ()).unwrap().picture
 }
 
-fn reference(subject: &Subject, samples: u32) -> Film {
+fn reference(subject: &Subject, samples: u32) -> Picture {
     let settings = Settings { samples, ..subject.settings };
     let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, Bvh::High.quality()).unwrap();
     let view = View::new(&packed, &subject.camera).unwrap();
@@ -73,9 +73,9 @@ fn every_error_is_that_of_the_picture_beside_the_reference() {
     assert!(report.notes.iter().all(|note| note.contains("raise --trials")), "{:?}", report.notes);
     let references = [reference(&subject, 1), reference(&subject, 2)];
     for record in &report.records {
-        let film = picture(&subject, &record.setting);
+        let picture = picture(&subject, &record.setting);
         let [alike, judged] = [&references[record.setting.samples as usize - 1], &references[1]]
-            .map(|reference| compare(&film, reference).unwrap());
+            .map(|reference| compare(&picture, reference).unwrap());
         let what = record.setting.options();
         assert_eq!((record.rmse, record.psnr_db), (judged.rmse, judged.psnr), "{what}");
         assert_eq!(record.rmse_same_samples, Some(alike.rmse), "{what}");

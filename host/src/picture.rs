@@ -11,10 +11,10 @@ use crate::view::Region;
 
 /// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
 #[derive(Debug, Clone)]
-pub struct Film {
-    /// Width in pixels, 1 to [`Film::MAX_SIDE`].
+pub struct Picture {
+    /// Width in pixels, 1 to [`Picture::MAX_SIDE`].
     pub width: u32,
-    /// Height in pixels, 1 to [`Film::MAX_SIDE`].
+    /// Height in pixels, 1 to [`Picture::MAX_SIDE`].
     pub height: u32,
     /// `width * height` pixels, row-major from the top left.
     pub pixels: Vec<[f32; 3]>,
@@ -30,40 +30,40 @@ struct Noise {
     brightness: f64,
 }
 
-impl Film {
+impl Picture {
     /// The longest side in pixels: Radiance HDR has run lengths for no longer line.
     pub const MAX_SIDE: u32 = 32_767;
 
-    /// The most pixels, so that a film is at most 1.5 GiB and every file of one can be read again.
+    /// The most pixels, so that a picture is at most 1.5 GiB and every file of one can be read again.
     pub const MAX_PIXELS: u64 = 1 << 27;
 
-    /// A black film.
+    /// A black picture.
     ///
     /// # Errors
-    /// A size that [`Film::check_size`] refuses, or too little memory.
+    /// A size that [`Picture::check_size`] refuses, or too little memory.
     pub fn new(width: u32, height: u32) -> Result<Self> {
         let count = Self::check_size(width, height)?;
         let mut pixels = Vec::new();
         pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         // On all threads: a system takes 5 ms to hand the memory of 1920x1080 pixels to one.
         pixels.par_extend(rayon::iter::repeat_n([0.0; 3], count));
-        Ok(Film { width, height, pixels, noise: Noise::default() })
+        Ok(Picture { width, height, pixels, noise: Noise::default() })
     }
 
-    /// A film of given pixels, row-major from the top left.
+    /// A picture of given pixels, row-major from the top left.
     ///
     /// # Errors
-    /// As [`Film::validate`].
+    /// As [`Picture::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let film = Film { width, height, pixels, noise: Noise::default() };
-        film.validate()?;
-        Ok(film)
+        let picture = Picture { width, height, pixels, noise: Noise::default() };
+        picture.validate()?;
+        Ok(picture)
     }
 
-    /// The number of pixels of a size, if a film may have it.
+    /// The number of pixels of a size, if a picture may have it.
     ///
     /// # Errors
-    /// A side of 0 or above [`Film::MAX_SIDE`], or more than [`Film::MAX_PIXELS`] pixels.
+    /// A side of 0 or above [`Picture::MAX_SIDE`], or more than [`Picture::MAX_PIXELS`] pixels.
     pub fn check_size(width: u32, height: u32) -> Result<usize> {
         let pixels = u64::from(width) * u64::from(height);
         if pixels == 0 || width.max(height) > Self::MAX_SIDE || pixels > Self::MAX_PIXELS {
@@ -75,12 +75,12 @@ impl Film {
     /// Checks what the public fields cannot promise.
     ///
     /// # Errors
-    /// A size that [`Film::check_size`] refuses, or another number of pixels than it asks for.
+    /// A size that [`Picture::check_size`] refuses, or another number of pixels than it asks for.
     pub fn validate(&self) -> Result<()> {
         let count = Self::check_size(self.width, self.height)?;
         if self.pixels.len() != count {
             return Err(Error::new(format!(
-                "a film of {}x{} pixels has {} of them",
+                "a picture of {}x{} pixels has {} of them",
                 self.width,
                 self.height,
                 self.pixels.len()
@@ -134,7 +134,7 @@ impl Film {
     }
 
     /// SHA-256 of the size and of every bit, as 64 hexadecimal digits: of width and height as `u32`, then of the
-    /// pixels' channels in order as `f32`, all little-endian. Equal films have equal hashes on every machine.
+    /// pixels' channels in order as `f32`, all little-endian. Equal pictures have equal hashes on every machine.
     pub fn hash(&self) -> String {
         let mut digest = Sha256::new();
         digest.update(self.width.to_le_bytes());
@@ -147,7 +147,7 @@ impl Film {
     }
 
     /// Whether size and every bit agree: 0 and -0 differ, equal NaNs do not.
-    pub fn bits_equal(&self, other: &Film) -> bool {
+    pub fn bits_equal(&self, other: &Picture) -> bool {
         self.width == other.width
             && self.height == other.height
             && self.pixels.len() == other.pixels.len()
@@ -228,51 +228,51 @@ mod tests {
 
     #[test]
     fn refuses_empty_and_huge_sizes() {
-        for (width, height) in [(0, 1), (1, 0), (Film::MAX_SIDE + 1, 1), (32_767, 32_767)] {
-            assert!(Film::new(width, height).is_err(), "{width}x{height}");
+        for (width, height) in [(0, 1), (1, 0), (Picture::MAX_SIDE + 1, 1), (32_767, 32_767)] {
+            assert!(Picture::new(width, height).is_err(), "{width}x{height}");
         }
-        assert!(Film::new(u32::MAX, u32::MAX).is_err());
-        assert_eq!(Film::new(3, 2).unwrap().pixels.len(), 6);
+        assert!(Picture::new(u32::MAX, u32::MAX).is_err());
+        assert_eq!(Picture::new(3, 2).unwrap().pixels.len(), 6);
     }
 
     #[test]
     fn refuses_a_wrong_number_of_pixels() {
-        assert!(Film::from_pixels(2, 2, vec![[0.0; 3]; 3]).is_err());
-        assert!(Film::from_pixels(2, 2, vec![[0.0; 3]; 4]).is_ok());
+        assert!(Picture::from_pixels(2, 2, vec![[0.0; 3]; 3]).is_err());
+        assert!(Picture::from_pixels(2, 2, vec![[0.0; 3]; 4]).is_ok());
     }
 
     #[test]
     fn pixels_are_row_major() {
         let pixels = (0..6).map(|i| [i as f32; 3]).collect();
-        let film = Film::from_pixels(3, 2, pixels).unwrap();
-        assert_eq!(film.pixel(2, 1), Some([5.0; 3]));
-        assert_eq!(film.pixel(3, 0), None);
-        assert_eq!(film.pixel(0, 2), None);
+        let picture = Picture::from_pixels(3, 2, pixels).unwrap();
+        assert_eq!(picture.pixel(2, 1), Some([5.0; 3]));
+        assert_eq!(picture.pixel(3, 0), None);
+        assert_eq!(picture.pixel(0, 2), None);
     }
 
     #[test]
     fn a_hash_is_of_the_size_and_of_every_bit() {
-        let film = |width, values: [f32; 6]| {
+        let picture = |width, values: [f32; 6]| {
             let pixels = values.chunks(3).map(|v| [v[0], v[1], v[2]]).collect();
-            Film::from_pixels(width, 2 / width, pixels).unwrap().hash()
+            Picture::from_pixels(width, 2 / width, pixels).unwrap().hash()
         };
         let values = [0.0, 1.0, -2.5, 0.1, f32::INFINITY, 3.0];
-        let hash = film(2, values);
+        let hash = picture(2, values);
         // By another program: Python's hashlib over struct.pack("<II6f", 2, 1, 0, 1, -2.5, 0.1, inf, 3).
         assert_eq!(hash, "c50ec7616b65874188f491001af24f58fe0abed41149058c618d2e05e247f923");
-        assert_ne!(hash, film(1, values));
+        assert_ne!(hash, picture(1, values));
         for i in 0..values.len() {
             let mut other = values;
             other[i] = f32::from_bits(other[i].to_bits() ^ if i == 0 { 1 << 31 } else { 1 });
-            assert_ne!(hash, film(2, other), "{i}");
+            assert_ne!(hash, picture(2, other), "{i}");
         }
     }
 
     #[test]
     fn equality_is_of_bits() {
-        let film = |value| Film::from_pixels(1, 1, vec![[value; 3]]).unwrap();
-        assert!(film(f32::NAN).bits_equal(&film(f32::NAN)));
-        assert!(!film(0.0).bits_equal(&film(-0.0)));
-        assert!(!film(0.0).bits_equal(&Film::new(1, 2).unwrap()));
+        let picture = |value| Picture::from_pixels(1, 1, vec![[value; 3]]).unwrap();
+        assert!(picture(f32::NAN).bits_equal(&picture(f32::NAN)));
+        assert!(!picture(0.0).bits_equal(&picture(-0.0)));
+        assert!(!picture(0.0).bits_equal(&Picture::new(1, 2).unwrap()));
     }
 }

@@ -37,9 +37,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         renderer.start(&view(frame)?)?;
         renderer.add(1, &|_| ())?;
     }
-    let last = renderer.picture()?;
+    let last = renderer.film()?.develop()?;
     println!("{frames} frames of {width}x{height} in {:.1} ms", start.elapsed().as_secs_f64() * 1e3);
-    println!("checksum of the last: {}", last.picture.hash());
+    println!("checksum of the last: {}", last.hash());
 
     // Once more, asking the device after every frame what it took.
     let mut device = Duration::ZERO;

@@ -60,6 +60,15 @@ pub enum Error {
         /// Rows.
         height: u32,
     },
+    /// Films of different pictures, or a film of another picture than the one that is to be gone on with.
+    OtherFilm {
+        /// What differs.
+        what: String,
+        /// What it is in one.
+        one: String,
+        /// And in the other.
+        other: String,
+    },
     /// Floats of 16 bits, in a format that has none.
     NoHalf {
         /// The format.
@@ -240,6 +249,9 @@ impl Error {
             ),
             Error::Memory { width, height } => {
                 format!("too little memory for an image of {width}x{height} pixels; choose a smaller size")
+            }
+            Error::OtherFilm { what, one, other } => {
+                format!("a film of another picture: {what} is {one} in one and {other} in the other")
             }
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),

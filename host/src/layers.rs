@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering};
 use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
-use crate::view::View;
+use crate::view::{Region, View};
 
 choices! {
     /// What a picture may hold beside the light of each pixel.
@@ -28,6 +28,10 @@ choices! {
         Direct = "direct",
         /// All other light
         Indirect = "indirect",
+        /// The standard error of the pixel's brightness, estimated from how its samples differ; infinite of fewer than two
+        Error = "error",
+        /// How many samples the pixel has
+        Samples = "samples",
     }
 }
 
@@ -66,29 +70,30 @@ pub fn render(
     backend: &Backend,
     packed: &mut DeviceScene,
     (scene, camera): (&Scene, &Camera),
-    picture: &Rendering,
+    rendering: &Rendering,
     layers: &[Layer],
 ) -> Result<Vec<(Layer, Values)>> {
     let settings = *packed.settings();
-    let of_picture = Settings { spp: picture.samples, ..settings };
-    let mut studio = Studio { backend, packed, camera, settings: of_picture, direct: None, places: None };
+    let of_picture = Settings { spp: rendering.samples, ..settings };
+    let window = rendering.film.window();
+    let mut studio = Studio { backend, packed, camera, window, settings: of_picture, direct: None, places: None };
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
-    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, &picture.picture)?))).collect();
+    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
     packed.show(None);
     packed.set(settings)?;
     rendered
 }
 
 /// What can be seen before a GPU's driver has compiled the kernels of a picture: the colours of its surfaces at the middle of each
-/// pixel, by this many threads of the CPU, 0 for one a core. The scene's settings are left as they were.
+/// pixel of a part of the image, by this many threads of the CPU, 0 for one a core. The scene's settings are left as they were.
 ///
 /// # Errors
 /// As [`Backend::render`].
-pub fn preview(packed: &mut DeviceScene, camera: &Camera, threads: usize) -> Result<Picture> {
+pub fn preview(packed: &mut DeviceScene, camera: &Camera, window: Region, threads: usize) -> Result<Picture> {
     let backend = &Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
     let settings = *packed.settings();
     let middle = Settings { spp: 1, sampler: Sampler::Regular, ..settings };
-    let mut studio = Studio { backend, packed, camera, settings, direct: None, places: None };
+    let mut studio = Studio { backend, packed, camera, window, settings, direct: None, places: None };
     let picture = studio.picture(Some(Feature::Albedo), middle);
     packed.show(None);
     packed.set(settings)?;
@@ -100,6 +105,8 @@ struct Studio<'a> {
     backend: &'a Backend,
     packed: &'a mut DeviceScene,
     camera: &'a Camera,
+    /// What of the image it shows.
+    window: Region,
     /// Of the picture.
     settings: Settings,
     direct: Option<Picture>,
@@ -116,13 +123,16 @@ struct Place {
 }
 
 impl Studio<'_> {
-    fn layer(&mut self, layer: Layer, scene: &Scene, picture: &Picture) -> Result<Values> {
+    fn layer(&mut self, layer: Layer, scene: &Scene, rendering: &Rendering) -> Result<Values> {
+        let Rendering { picture, film, .. } = rendering;
         Ok(match layer {
             Layer::Colour => Values::Light(picture.clone()),
             Layer::Albedo => Values::Colours(self.picture(Some(Feature::Albedo), self.settings)?),
             Layer::Normal => Values::Vectors(self.picture(Some(Feature::Normal), self.settings)?),
             Layer::Direct => Values::Light(self.direct()?.clone()),
             Layer::Indirect => Values::Light(less(picture, self.direct()?)?),
+            Layer::Error => Values::Lengths(film.errors()),
+            Layer::Samples => Values::Numbers(film.samples()),
             Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
             Layer::Object => {
                 let objects = Objects::new(scene);
@@ -162,6 +172,7 @@ impl Studio<'_> {
         self.packed.show(feature);
         self.packed.set(settings)?;
         let view = View::new(self.packed, self.camera)?;
+        let view = view.part(self.window, view.range())?;
         Ok(self.backend.render(self.packed, &view, 1, &|_| ())?.picture)
     }
 }

@@ -34,6 +34,7 @@ pub mod compare;
 pub mod cpu;
 pub mod device_scene;
 pub mod error;
+pub mod film;
 pub mod gpu;
 pub mod image;
 pub mod integrator;

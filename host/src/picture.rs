@@ -1,13 +1,9 @@
-//! The finished picture: linear light, before any encoding for a screen or a file.
+//! The developed picture: linear light, before any encoding for a screen or a file.
 
-use eyerays_shader::real::Scalar;
-use eyerays_shader::stage::{NON_FINITE, brightness};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
 use crate::error::{Error, Result};
-use crate::rays::Rays;
-use crate::view::Region;
 
 /// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
 #[derive(Debug, Clone)]
@@ -18,16 +14,7 @@ pub struct Picture {
     pub height: u32,
     /// `width * height` pixels, row-major from the top left.
     pub pixels: Vec<[f32; 3]>,
-    noise: Noise,
-}
-
-/// What tells the noise of a picture whose integrator samples.
-#[derive(Debug, Clone, Copy, Default)]
-struct Noise {
-    /// Of each pixel's mean brightness, added.
-    variances: f64,
-    /// Pixels' mean brightness, added.
-    brightness: f64,
+    pub(crate) noise: Option<f64>,
 }
 
 impl Picture {
@@ -47,7 +34,7 @@ impl Picture {
         pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         // On all threads: a system takes 5 ms to hand the memory of 1920x1080 pixels to one.
         pixels.par_extend(rayon::iter::repeat_n([0.0; 3], count));
-        Ok(Picture { width, height, pixels, noise: Noise::default() })
+        Ok(Picture { width, height, pixels, noise: None })
     }
 
     /// A picture of given pixels, row-major from the top left.
@@ -55,7 +42,7 @@ impl Picture {
     /// # Errors
     /// As [`Picture::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let picture = Picture { width, height, pixels, noise: Noise::default() };
+        let picture = Picture { width, height, pixels, noise: None };
         picture.validate()?;
         Ok(picture)
     }
@@ -89,39 +76,11 @@ impl Picture {
         Ok(())
     }
 
-    /// Sets a region to the mean of `samples` samples of each pixel, whose sums a gather or accumulate stage left in
-    /// `records`, row by row; and counts.
-    pub(crate) fn develop<R: Scalar>(&mut self, region: Region, records: &[R::Record], samples: u32, rays: &mut Rays) {
-        let sums = Sums::<R>::new(region, records, samples);
-        let lines = self.pixels.chunks_mut(self.width as usize).skip(region.y as usize);
-        let rows = lines.take(region.height as usize).enumerate().map(|(row, pixels)| sums.develop(row, pixels));
-        self.noise = rows.fold(self.noise, |noise, row| noise.with(&row, rays));
-    }
-
-    /// The same on all threads, by one that holds no lock.
-    pub(crate) fn develop_on_all_threads<R>(
-        &mut self,
-        region: Region,
-        records: &[R::Record],
-        samples: u32,
-        rays: &mut Rays,
-    ) where
-        R: Scalar<Record: Sync>,
-    {
-        let sums = Sums::<R>::new(region, records, samples);
-        let lines = self.pixels.par_chunks_mut(self.width as usize).skip(region.y as usize);
-        let rows = lines.take(region.height as usize).enumerate().map(|(row, pixels)| sums.develop(row, pixels));
-        // Added in order, so that the sum is the same however many threads there are.
-        self.noise = rows.collect::<Vec<_>>().iter().fold(self.noise, |noise, row| noise.with(row, rays));
-    }
-
     /// The noise of a picture whose integrator samples: the standard error of a pixel (root mean square) over the mean of all,
     /// estimated from how much samples differ within pixels. Of samples that are placed evenly, as Sobol's are, it is too high.
     /// None of one sample, of a black picture, or without samples.
     pub fn noise(&self) -> Option<f64> {
-        let pixels = self.pixels.len() as f64;
-        let noise = (self.noise.variances / pixels).sqrt() / (self.noise.brightness / pixels);
-        (self.noise.variances > 0.0 && noise.is_finite()).then_some(noise)
+        self.noise
     }
 
     /// The pixel in column `x` and row `y` from the top left; `None` outside.
@@ -152,68 +111,6 @@ impl Picture {
             && self.height == other.height
             && self.pixels.len() == other.pixels.len()
             && self.pixels.iter().zip(&other.pixels).all(|(&a, &b)| !bits_differ(a, b))
-    }
-}
-
-/// The sums that a device left of a region.
-struct Sums<'r, R: Scalar> {
-    region: Region,
-    /// Light by pixel.
-    sums: &'r [R::Record],
-    /// What rounding took off, where light is sampled.
-    rests: &'r [R::Record],
-    samples: u32,
-}
-
-/// What the pixels of a row tell beside their light.
-#[derive(Default)]
-struct Row {
-    noise: Noise,
-    shadow: u64,
-    non_finite: u64,
-}
-
-impl<'r, R: Scalar> Sums<'r, R> {
-    fn new(region: Region, records: &'r [R::Record], samples: u32) -> Self {
-        let (sums, rests) = records.split_at(region.pixels() as usize);
-        Sums { region, sums, rests, samples }
-    }
-
-    /// Sets the region's part of a line of the image to means.
-    fn develop(&self, row: usize, line: &mut [[f32; 3]]) -> Row {
-        let width = self.region.width as usize;
-        let (mut told, count, first) = (Row::default(), R::splat(self.samples as f32), row * width);
-        for (i, pixel) in line[self.region.x as usize..][..width].iter_mut().enumerate() {
-            let (mut sum, word) = R::load(self.sums[first + i]);
-            if let Some(&rest) = self.rests.get(first + i) {
-                let (rest, squares) = R::load(rest);
-                sum = sum + rest;
-                told.noise.add(brightness(sum).to_f32(), f32::from_bits(squares), self.samples);
-            }
-            *pixel = [sum.x, sum.y, sum.z].map(|channel| channel.div(count).to_f32());
-            told.shadow += u64::from(word & !NON_FINITE);
-            told.non_finite += u64::from(word & NON_FINITE != 0);
-        }
-        told
-    }
-}
-
-impl Noise {
-    /// With a row's, whose rays are counted too.
-    fn with(self, row: &Row, rays: &mut Rays) -> Noise {
-        rays.shadow += row.shadow;
-        rays.non_finite += row.non_finite;
-        let Noise { variances, brightness } = row.noise;
-        Noise { variances: self.variances + variances, brightness: self.brightness + brightness }
-    }
-
-    /// Adds a pixel by the sums of its samples' brightness and of its squares.
-    fn add(&mut self, sum: f32, squares: f32, samples: u32) {
-        let (count, sum) = (f64::from(samples), f64::from(sum));
-        self.brightness += sum / count;
-        if samples > 1 {
-            self.variances += (f64::from(squares) - sum * sum / count).max(0.0) / (count * (count - 1.0));
-        }
     }
 }
 

@@ -8,13 +8,14 @@ use crate::choice::choices;
 use crate::cpu;
 use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
+use crate::film::Film;
 use crate::gpu::{AdapterRequest, Around, Gpu, Renderer, warm};
 use crate::method::{Method, Processor, Traversal};
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::scene::{Scene, Settings};
 use crate::view::View;
-use crate::watch::Watch;
+use crate::watch::{self, Grows, Watch};
 pub use crate::why::Why;
 
 choices! {
@@ -94,7 +95,9 @@ pub struct Backend {
 pub struct Rendering {
     /// The picture.
     pub picture: Picture,
-    /// Samples of each pixel.
+    /// What it was developed from.
+    pub film: Film,
+    /// Samples of each pixel, in the mean of all.
     pub samples: u32,
     /// What was traced.
     pub rays: Rays,
@@ -124,8 +127,8 @@ struct Runs<'a> {
     warm_up: bool,
     /// At least once.
     repeat: u32,
-    /// Who looks on.
-    watch: Option<&'a Watch<'a>>,
+    /// Who looks on, and a film that is gone on with.
+    watch: Option<(&'a Watch<'a>, Option<&'a Film>)>,
     /// When their preparation began; a GPU that then can't is part of it.
     since: Instant,
 }
@@ -177,6 +180,17 @@ impl Backend {
         }
     }
 
+    /// The device and its driver.
+    pub fn description(&self) -> String {
+        match &self.device {
+            Device::Cpu => "CPU".to_owned(),
+            Device::Gpu(gpu) => {
+                let report = &gpu.report;
+                format!("{} ({}, {})", report.name, report.backend, report.driver)
+            }
+        }
+    }
+
     /// What was asked for.
     pub fn choice(&self) -> &Choice {
         &self.choice
@@ -203,12 +217,18 @@ impl Backend {
     }
 
     /// Renders while somebody looks on, who may end it before all samples of the view are done: the picture has the bits of one of
-    /// [`Rendering::samples`].
+    /// [`Rendering::samples`]. Where there is a film `from` before, only what it has not is rendered.
     ///
     /// # Errors
-    /// As [`Backend::render`].
-    pub fn render_watched(&self, packed: &DeviceScene, view: &View, watch: &Watch<'_>) -> Result<Rendering> {
-        let runs = Runs { warm_up: false, repeat: 1, watch: Some(watch), since: Instant::now() };
+    /// As [`Backend::render`]; or a film of another picture.
+    pub fn render_watched(
+        &self,
+        packed: &DeviceScene,
+        view: &View,
+        from: Option<&Film>,
+        watch: &Watch<'_>,
+    ) -> Result<Rendering> {
+        let runs = Runs { warm_up: false, repeat: 1, watch: Some((watch, from)), since: Instant::now() };
         self.run((packed, view), runs, &|_| ())
     }
 
@@ -252,29 +272,19 @@ impl Backend {
         }
         let mut device_times = Some(Vec::new());
         let (last, times) = repeated(runs.repeat, || {
-            let rendering = match runs.watch {
-                Some(watch) => renderer.render_watched(view, watch)?,
-                None => renderer.render(view, done)?,
-            };
-            match rendering.device_time.zip(device_times.as_mut()) {
-                Some((time, times)) => times.push(time),
+            let before = renderer.device_time();
+            let film = runs.film(&mut renderer, view, done)?;
+            match renderer.device_time().zip(before).zip(device_times.as_mut()) {
+                Some(((after, before), times)) => times.push(after - before),
                 None => device_times = None,
             }
-            Ok(rendering)
+            Ok((film.develop()?, film))
         })?;
         let route = if self.choice.no_passthrough { ", through naga" } else { "" };
-        Ok(Rendering {
-            picture: last.picture,
-            samples: last.samples,
-            rays: last.rays,
-            device: format!("{} ({}{route})", gpu.report.name, gpu.report.backend),
-            processor: Processor::Gpu,
-            why: self.why.clone(),
-            prepare_time,
-            time: median(times.clone()),
-            device_time: device_times.clone().map(median),
-            times: device_times.unwrap_or(times),
-        })
+        let device = format!("{} ({}{route})", gpu.report.name, gpu.report.backend);
+        let taken =
+            Taken { device, processor: Processor::Gpu, why: self.why.clone(), prepare_time, times, device_times };
+        Ok(taken.rendering(last))
     }
 
     fn on_cpu(
@@ -287,28 +297,62 @@ impl Backend {
         let threads = self.choice.threads;
         let renderer = cpu::Renderer::new(packed, self.choice.traversal, threads)?;
         let prepare_time = self.open_time + runs.since.elapsed();
-        let render = |done| match self.choice.precision {
-            Precision::Exact | Precision::Fast => cpu::rendered::<f32>(&renderer, view, runs.watch, done),
-            Precision::Reference => cpu::rendered::<f64>(&renderer, view, runs.watch, done),
+        let render = |done: &(dyn Fn(u64) + Sync)| {
+            let film = match self.choice.precision {
+                Precision::Exact | Precision::Fast => runs.film(&mut cpu::OnCpu::<f32>::new(&renderer), view, done),
+                Precision::Reference => runs.film(&mut cpu::OnCpu::<f64>::new(&renderer), view, done),
+            }?;
+            Ok((renderer.install(|| film.develop())?, film))
         };
         if runs.warm_up {
             render(&|_| ())?;
         }
-        let ((picture, rays, samples), times) = repeated(runs.repeat, || render(done))?;
+        let (last, times) = repeated(runs.repeat, || render(done))?;
         let threads = if threads == 0 { std::thread::available_parallelism().map_or(1, usize::from) } else { threads };
         let plural = if threads == 1 { "" } else { "s" };
-        Ok(Rendering {
+        let device = format!("CPU ({threads} thread{plural})");
+        let taken = Taken { device, processor: Processor::Cpu, why, prepare_time, times, device_times: None };
+        Ok(taken.rendering(last))
+    }
+}
+
+impl Runs<'_> {
+    /// Renders once.
+    fn film(&self, device: &mut impl Grows, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
+        match self.watch {
+            Some((watch, from)) => watch::go_on(device, view, from.cloned(), watch),
+            None => watch::render(device, view, done),
+        }
+    }
+}
+
+/// What renderings took.
+struct Taken {
+    device: String,
+    processor: Processor,
+    why: Why,
+    prepare_time: Duration,
+    /// Of the wall clock.
+    times: Vec<Duration>,
+    device_times: Option<Vec<Duration>>,
+}
+
+impl Taken {
+    fn rendering(self, (picture, film): (Picture, Film)) -> Rendering {
+        let rays = film.rays();
+        Rendering {
+            samples: (rays.primary / film.window().pixels()) as u32,
             picture,
-            samples,
+            film,
             rays,
-            device: format!("CPU ({threads} thread{plural})"),
-            processor: Processor::Cpu,
-            why,
-            prepare_time,
-            time: median(times.clone()),
-            device_time: None,
-            times,
-        })
+            device: self.device,
+            processor: self.processor,
+            why: self.why,
+            prepare_time: self.prepare_time,
+            time: median(self.times.clone()),
+            device_time: self.device_times.clone().map(median),
+            times: self.device_times.unwrap_or(self.times),
+        }
     }
 }
 

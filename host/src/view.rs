@@ -1,17 +1,21 @@
 //! What changes from picture to picture of a scene: nothing here touches geometry, hierarchies or kernels.
 
+use std::ops::Range;
+
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Lens, Order, numbers};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::device_scene::{DeviceScene, flushed};
 use crate::error::{Error, Result};
+use crate::film::Part;
 use crate::math;
 use crate::picture::Picture;
 use crate::scene::{Camera, Projection, Settings};
 
 /// A rectangle of the image in pixels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Region {
     /// Left column.
     pub x: u32,
@@ -28,9 +32,18 @@ impl Region {
     pub fn pixels(&self) -> u64 {
         u64::from(self.width) * u64::from(self.height)
     }
+
+    /// The least region that holds both.
+    pub fn around(&self, other: Region) -> Region {
+        let (x, y) = (self.x.min(other.x), self.y.min(other.y));
+        // What a file says may be anything.
+        let end = |of: &Region| (of.x.saturating_add(of.width), of.y.saturating_add(of.height));
+        let ((right, bottom), (other_right, other_bottom)) = (end(self), end(&other));
+        Region { x, y, width: right.max(other_right) - x, height: bottom.max(other_bottom) - y }
+    }
 }
 
-/// A camera, the size of its image, and the samples of a pixel.
+/// A camera, the size of its image, what of the image is rendered, and which samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// In the normalised scene.
@@ -39,8 +52,11 @@ pub struct View {
     height: u32,
     /// Edge of the grid that a pixel's samples lie in, 1 without a grid.
     grid: u32,
-    /// Of a pixel.
-    samples: u32,
+    window: Region,
+    /// The first of a pixel's samples that is rendered.
+    first: u32,
+    /// The one after the last.
+    end: u32,
 }
 
 impl View {
@@ -88,7 +104,8 @@ impl View {
         let vector = |v: DVec3| flushed(v.as_vec3());
         let lens = if camera.projection.is_orthographic() { Lens::parallel } else { Lens::new };
         let lens = lens(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
-        Ok(View { lens, width, height, grid, samples: settings.samples_a_pixel() })
+        let window = Region { x: 0, y: 0, width, height };
+        Ok(View { lens, width, height, grid, window, first: 0, end: settings.samples_a_pixel() })
     }
 
     /// The image's width and height in pixels.
@@ -96,14 +113,47 @@ impl View {
         (self.width, self.height)
     }
 
-    /// The whole image.
-    pub fn region(&self) -> Region {
-        Region { x: 0, y: 0, width: self.width, height: self.height }
+    /// A part of it: these samples of the pixels of a region. All parts together, in any partition, have the bits of the whole
+    /// ([`Film::merge`](crate::film::Film::merge)).
+    ///
+    /// # Errors
+    /// Nothing of it is in the view.
+    pub fn part(&self, region: Region, samples: Range<u32>) -> Result<View> {
+        let (Region { x, y, width, height }, window) = (region, self.window);
+        if region.pixels() == 0 || window.around(region) != window {
+            let whole = format!("{}x{} pixels at {},{}", window.width, window.height, window.x, window.y);
+            return Err(Error::new(format!("a tile of {width}x{height} pixels at {x},{y} is not within the {whole}")));
+        }
+        let Range { start, end } = samples;
+        if start >= end || start < self.first || end > self.end {
+            let whole = format!("{} to {}", self.first, self.end);
+            return Err(Error::new(format!("samples {start} to {end} are not some of the samples {whole}")));
+        }
+        Ok(View { window: region, first: start, end, ..*self })
     }
 
-    /// Samples of a pixel, in both directions together.
+    pub(crate) fn lens(&self) -> &Lens {
+        &self.lens
+    }
+
+    /// What is rendered: the whole image, unless it is a part.
+    pub fn region(&self) -> Region {
+        self.window
+    }
+
+    /// All that is rendered.
+    pub fn whole(&self) -> Part {
+        Part { region: self.window, samples: self.range() }
+    }
+
+    /// How many samples of a pixel are rendered, in both directions together.
     pub fn samples(&self) -> u32 {
-        self.samples
+        self.end - self.first
+    }
+
+    /// Which of a pixel's samples.
+    pub fn range(&self) -> Range<u32> {
+        self.first..self.end
     }
 
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The picture is started anew by
@@ -118,6 +168,7 @@ impl View {
             height: self.height,
             samples: self.grid,
             sample: first,
+            first: self.first,
             left: region.x,
             top: region.y,
             columns: region.width,

@@ -1,10 +1,12 @@
-//! Renderings that grow by samples while somebody looks on, and end early where that is wanted.
+//! Films that grow by samples while somebody looks on, and end early where that is wanted.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::error::Result;
+use crate::film::Film;
 use crate::picture::Picture;
+use crate::view::View;
 
 /// How long samples take that are added at once, where one does not take longer: so soon a rendering ends that is stopped.
 const STEP: Duration = Duration::from_secs(1);
@@ -20,95 +22,210 @@ pub struct Watch<'a> {
     pub grown: &'a dyn Fn(Growth<'_>),
 }
 
-/// A picture that has got some samples.
+/// A film that has got some samples.
 pub struct Growth<'a> {
-    /// Samples of each pixel.
+    /// Samples of each pixel, in the mean of all.
     pub samples: u32,
     /// Samples that it shall have.
     pub of: u32,
-    picture: &'a mut dyn FnMut() -> Result<Picture>,
+    film: &'a mut dyn FnMut() -> Result<Film>,
 }
 
 impl Growth<'_> {
-    /// The picture so far: the bits of one of so many samples.
+    /// The film so far: the bits of one of so many samples.
     ///
     /// # Errors
-    /// What the device reports, or if there is no memory for the picture.
-    pub fn picture(self) -> Result<Picture> {
-        (self.picture)()
+    /// What the device reports, or if there is no memory for it.
+    pub fn film(self) -> Result<Film> {
+        (self.film)()
     }
-}
-
-/// A picture that samples are added to.
-pub(crate) trait Grows {
-    /// Adds samples and returns when they are done.
-    fn add(&mut self, count: u32) -> Result<()>;
 
     /// The picture so far.
-    fn picture(&mut self) -> Result<Picture>;
+    ///
+    /// # Errors
+    /// As [`Growth::film`].
+    pub fn picture(self) -> Result<Picture> {
+        self.film()?.develop()
+    }
 }
 
-/// Adds samples until there are `most`, the time is up or somebody stops it. Their number is chosen by what those before took.
+/// A device that films grow on.
+pub(crate) trait Grows {
+    /// Starts a film of a view, without any sample.
+    fn start(&mut self, view: &View) -> Result<()>;
+
+    /// Adds the next samples of the view; `done` hears of shares of the pixels.
+    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()>;
+
+    /// Waits until what was added is done.
+    fn wait(&mut self) -> Result<()>;
+
+    /// The film so far.
+    fn film(&mut self) -> Result<Film>;
+
+    /// The film, to which nothing is added any more.
+    fn end(&mut self) -> Result<Film> {
+        self.film()
+    }
+}
+
+/// Renders all samples of a view at once.
+pub(crate) fn render(device: &mut impl Grows, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
+    device.start(view)?;
+    device.add(view.samples(), done)?;
+    device.end()
+}
+
+/// Renders what a film has not yet of a view, until all is there, the time is up or somebody stops it.
 ///
 /// # Errors
-/// Those of the picture.
-pub(crate) fn grow(picture: &mut impl Grows, most: u32, watch: &Watch<'_>) -> Result<()> {
-    let start = Instant::now();
-    let (mut samples, mut next) = (0u32, 1u32);
-    while next > 0 {
-        let before = Instant::now();
-        picture.add(next)?;
-        samples += next;
-        let each = (before.elapsed().as_secs_f64() / f64::from(next)).max(1e-9);
-        (watch.grown)(Growth { samples, of: most, picture: &mut || picture.picture() });
-        if watch.stop.load(Ordering::Relaxed) {
+/// What the device reports, or a film of something else.
+pub(crate) fn go_on(device: &mut impl Grows, view: &View, from: Option<Film>, watch: &Watch<'_>) -> Result<Film> {
+    let missing = match &from {
+        Some(film) => film.missing(view),
+        None => vec![view.whole()],
+    };
+    let left = missing.iter().map(|part| part.volume()).sum();
+    let mut grower = Grower { view, watch, film: from, left, start: Instant::now() };
+    for part in missing {
+        device.start(&view.part(part.region, part.samples.clone())?)?;
+        let goes_on = grower.grow(device, part.samples.len() as u32, part.region.pixels())?;
+        grower.keep(device.end()?)?;
+        if !goes_on {
             break;
         }
-        let step = ((STEP.as_secs_f64() / each) as u32).max(1).min(next.saturating_mul(4));
-        let left = match watch.limit {
-            // Half of what should fit, since nobody knows what it takes; in the end one by one.
-            Some(limit) => ((limit.saturating_sub(start.elapsed()).as_secs_f64() / each) as u32).div_ceil(2),
-            None => u32::MAX,
-        };
-        next = step.min(left).min(most - samples);
     }
-    Ok(())
+    match grower.film {
+        Some(film) => Ok(film),
+        None => {
+            device.start(view)?;
+            device.end()
+        }
+    }
+}
+
+/// What a rendering has got, and what it has yet to get.
+struct Grower<'a> {
+    view: &'a View,
+    watch: &'a Watch<'a>,
+    /// Without the part under way.
+    film: Option<Film>,
+    /// Samples of all pixels that are missing.
+    left: u64,
+    start: Instant,
+}
+
+impl Grower<'_> {
+    /// Adds samples until there are `most`; false if it ends before that. Their number is chosen by what those before took.
+    fn grow(&mut self, device: &mut impl Grows, most: u32, pixels: u64) -> Result<bool> {
+        let (mut samples, mut next) = (0u32, 1u32);
+        while next > 0 {
+            let before = Instant::now();
+            device.add(next, &|_| ())?;
+            device.wait()?;
+            samples += next;
+            self.left -= u64::from(next) * pixels;
+            let each = (before.elapsed().as_secs_f64() / f64::from(next)).max(1e-9);
+            self.tell(device);
+            if self.watch.stop.load(Ordering::Relaxed) {
+                return Ok(false);
+            }
+            let step = ((STEP.as_secs_f64() / each) as u32).max(1).min(next.saturating_mul(4));
+            let left = match self.watch.limit {
+                // Half of what should fit, since nobody knows what it takes; in the end one by one.
+                Some(limit) => ((limit.saturating_sub(self.start.elapsed()).as_secs_f64() / each) as u32).div_ceil(2),
+                None => u32::MAX,
+            };
+            next = step.min(left).min(most - samples);
+        }
+        Ok(samples == most)
+    }
+
+    fn tell(&self, device: &mut impl Grows) {
+        let (of, whole) = (self.view.samples(), self.view.whole());
+        let samples = (whole.volume() - self.left) / whole.region.pixels();
+        let mut film = || self.with(device.film()?);
+        (self.watch.grown)(Growth { samples: samples as u32, of, film: &mut film });
+    }
+
+    fn with(&self, part: Film) -> Result<Film> {
+        match self.film.clone() {
+            Some(mut film) => film.merge(part).map(|()| film),
+            None => Ok(part),
+        }
+    }
+
+    fn keep(&mut self, part: Film) -> Result<()> {
+        match &mut self.film {
+            Some(film) => film.merge(part)?,
+            None => self.film = Some(part),
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::*;
-    use crate::error::Error;
+    use std::cell::RefCell;
 
-    /// A picture whose samples take so long each, and the batches that were added.
+    use super::*;
+    use crate::cpu::{OnCpu, Renderer};
+    use crate::device_scene::DeviceScene;
+    use crate::error::Error;
+    use crate::film::Part;
+    use crate::method::Traversal;
+    use crate::quality::Bvh;
+    use crate::scene::{self, Settings};
+    use crate::view::Region;
+
+    /// A device whose samples take so long each, and the batches that were added.
     struct Slow {
         each: Duration,
         batches: Vec<u32>,
         fails: bool,
+        view: Option<View>,
     }
 
     impl Grows for Slow {
-        fn add(&mut self, count: u32) -> Result<()> {
+        fn start(&mut self, view: &View) -> Result<()> {
+            self.view = Some(*view);
+            Ok(())
+        }
+
+        fn add(&mut self, count: u32, _: &(dyn Fn(u64) + Sync)) -> Result<()> {
             self.batches.push(count);
             std::thread::sleep(self.each * count);
             if self.fails { Err(Error::NoGpu) } else { Ok(()) }
         }
 
-        fn picture(&mut self) -> Result<Picture> {
-            Picture::new(self.batches.iter().sum(), 1)
+        fn wait(&mut self) -> Result<()> {
+            Ok(())
+        }
+
+        fn film(&mut self) -> Result<Film> {
+            Film::new(self.view.as_ref().unwrap(), 10)
         }
     }
 
     fn slow(each: Duration) -> Slow {
-        Slow { each, batches: Vec::new(), fails: false }
+        Slow { each, batches: Vec::new(), fails: false, view: None }
+    }
+
+    fn cornell(spp: u32) -> (DeviceScene, View) {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
+        let (scene, _) = scene::load(path.as_ref()).unwrap();
+        let settings = Settings { size: (16, 12), spp, bounces: 1, ..scene.settings };
+        let packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+        let view = View::new(&packed, &scene.cameras[0]).unwrap();
+        (packed, view)
     }
 
     /// The batches of a rendering with a limit, in milliseconds.
     fn filled(limit: Option<u64>, each: Duration, most: u32) -> Vec<u32> {
-        let mut picture = slow(each);
+        let mut device = slow(each);
         let (stop, limit) = (AtomicBool::new(false), limit.map(Duration::from_millis));
-        grow(&mut picture, most, &Watch { limit, stop: &stop, grown: &|_| () }).unwrap();
-        picture.batches
+        go_on(&mut device, &cornell(most).1, None, &Watch { limit, stop: &stop, grown: &|_| () }).unwrap();
+        device.batches
     }
 
     #[test]
@@ -133,21 +250,49 @@ mod tests {
 
     #[test]
     fn whoever_looks_on_sees_the_samples_and_can_end_it() {
-        let (stop, seen) = (AtomicBool::new(false), std::cell::RefCell::new(Vec::new()));
+        let (packed, view) = cornell(100);
+        let (stop, seen) = (AtomicBool::new(false), RefCell::new(Vec::new()));
         let grown = |growth: Growth<'_>| {
             let (samples, of) = (growth.samples, growth.of);
             stop.store(samples >= 5, Ordering::Relaxed);
-            seen.borrow_mut().push((samples, of, growth.picture().unwrap().pixels.len()));
+            seen.borrow_mut().push((samples, of, growth.film().unwrap().coverage().parts().to_vec()));
         };
-        let mut picture = slow(Duration::ZERO);
-        grow(&mut picture, 100, &Watch { limit: None, stop: &stop, grown: &grown }).unwrap();
-        assert_eq!(*seen.borrow(), [(1, 100, 1), (5, 100, 5)]);
+        let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
+        let watch = Watch { limit: None, stop: &stop, grown: &grown };
+        let film = go_on(&mut OnCpu::<f32>::new(&renderer), &view, None, &watch).unwrap();
+        let part = |end| vec![Part { region: view.region(), samples: 0..end }];
+        assert_eq!(*seen.borrow(), [(1, 100, part(1)), (5, 100, part(5))]);
+        assert_eq!(film.coverage().parts(), part(5));
+    }
+
+    /// A film with a tile and some samples of the rest, in the middle of those that are asked for.
+    #[test]
+    fn what_is_gone_on_with_has_the_bits_of_all_at_once() {
+        let (packed, view) = cornell(9);
+        let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
+        let mut device = OnCpu::<f32>::new(&renderer);
+        let whole = render(&mut device, &view, &|_| ()).unwrap();
+        let part = |region, samples| view.part(region, samples).unwrap();
+        let tile = Region { x: 3, y: 2, width: 5, height: 7 };
+        let mut from = render(&mut device, &part(tile, 0..4), &|_| ()).unwrap();
+        from.merge(render(&mut device, &part(view.region(), 5..7), &|_| ()).unwrap()).unwrap();
+        let (stop, seen) = (AtomicBool::new(false), RefCell::new(Vec::new()));
+        let grown = |growth: Growth<'_>| seen.borrow_mut().push((growth.samples, growth.of));
+        let film = go_on(&mut device, &view, Some(from), &Watch { limit: None, stop: &stop, grown: &grown }).unwrap();
+        assert!(film.develop().unwrap().bits_equal(&whole.develop().unwrap()) && film.rays() == whole.rays());
+        assert_eq!(film.coverage().parts(), [view.whole()]);
+        assert_eq!(seen.borrow().last(), Some(&(9, 9)));
+        assert!(seen.borrow().is_sorted());
+        let again =
+            go_on(&mut slow(Duration::ZERO), &view, Some(film), &Watch { limit: None, stop: &stop, grown: &|_| () });
+        assert!(again.unwrap().develop().unwrap().bits_equal(&whole.develop().unwrap()));
     }
 
     #[test]
     fn a_fault_ends_it() {
-        let (mut picture, stop) = (Slow { fails: true, ..slow(Duration::ZERO) }, AtomicBool::new(false));
-        assert!(grow(&mut picture, 9, &Watch { limit: None, stop: &stop, grown: &|_| () }).is_err());
-        assert_eq!(picture.batches, [1]);
+        let (mut device, stop) = (Slow { fails: true, ..slow(Duration::ZERO) }, AtomicBool::new(false));
+        let watch = Watch { limit: None, stop: &stop, grown: &|_| () };
+        assert!(go_on(&mut device, &cornell(9).1, None, &watch).is_err());
+        assert_eq!(device.batches, [1]);
     }
 }

@@ -1,5 +1,6 @@
 //! The numbers that pictures are rendered with, and the stages over them.
 
+use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch, Light, Order, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
@@ -54,11 +55,11 @@ pub trait Number: Scalar<Record: Send + Sync> {
         records: &mut Records<Self>,
     );
 
-    /// Folds the sums of slots into pixels.
-    fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]);
+    /// Adds what slots have summed to the film.
+    fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]);
 
-    /// Folds the sums of slots into pixels, and keeps what rounding takes off.
-    fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]);
+    /// The same, with the light that their last vertices waited for.
+    fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]);
 }
 
 /// Compiles every stage for a number.
@@ -94,16 +95,20 @@ macro_rules! number {
                 isa.run(Scatter { launch, context, queues, records });
             }
 
-            fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]) {
+            fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]) {
+                let sample = |slot: u32| Self::load(records.sums[slot as usize]);
                 for slot in 0..frame.pixel_slots {
-                    stage::gather::<Self>(frame, order, slot, &records.sums, film);
+                    let pixel = camera::pixel(frame, order, slot);
+                    stage::expose::<Self>(frame, (pixel, slot), stage::FILM_WORDS, sample, film);
                 }
             }
 
-            fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [Self::Record]) {
+            fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]) {
                 let Records { shadows, segments, sums, .. } = records;
+                let sample = |slot| stage::sampled::<Self>(frame, slot, (sums, shadows, segments));
                 for slot in 0..frame.pixel_slots {
-                    stage::accumulate::<Self>(frame, order, slot, (sums, shadows, segments), film);
+                    let pixel = camera::pixel(frame, order, slot);
+                    stage::expose::<Self>(frame, (pixel, slot), stage::NOISY_FILM_WORDS, sample, film);
                 }
             }
         })*

@@ -1,6 +1,6 @@
 //! Compresses the modules, which would be a quarter of a program otherwise.
 
-use std::fs::{File, read};
+use std::fs::{File, read, read_to_string};
 use std::io::Write;
 use std::path::Path;
 
@@ -16,5 +16,9 @@ fn main() -> std::io::Result<()> {
         encoder.write_all(&read(name)?)?;
         encoder.finish()?;
     }
+    println!("cargo::rerun-if-changed=manifest.toml");
+    let manifest = read_to_string("manifest.toml")?;
+    let source = manifest.lines().find_map(|line| line.strip_prefix("source = ")).expect("the manifest has it");
+    println!("cargo::rustc-env=EYERAYS_SOURCE={}", source.trim_matches('"'));
     Ok(())
 }

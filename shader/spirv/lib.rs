@@ -12,6 +12,9 @@ static FAST: LazyLock<Vec<u8>> = LazyLock::new(|| unpacked(include_bytes!(concat
 /// The kernel `numerics::evaluate`: what exact arithmetic is built from, see `numerics` of the kernels' own crate.
 pub const NUMERICS: &[u8] = include_bytes!("numerics.spv");
 
+/// A hash of the sources that the modules were made of.
+pub const SOURCE: &str = env!("EYERAYS_SOURCE");
+
 /// Exact arithmetic, kernels `exact::*`, and `subgroup_exact::*` of methods that vote across a subgroup. Every float instruction
 /// forbids contraction.
 pub fn exact() -> &'static [u8] {

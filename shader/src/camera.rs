@@ -37,7 +37,7 @@ pub struct Pixel {
     pub y: u32,
     /// Is it inside the region? A last block may stick out.
     pub inside: bool,
-    /// Its place in the region's film.
+    /// Its place in the region, row by row.
     pub index: u32,
     /// Which sample of the pixel.
     pub sample: u32,

@@ -44,7 +44,7 @@ macro_rules! resources {
             12 counters COUNTERS: Write u32, "counters";
             13 wide WIDE: Read CwbvhNode, "wide hierarchy";
             14 bounds BOUNDS: Read Bounds, "bounds";
-            15 film FILM: Write UVec4, "film";
+            15 film FILM: Write u32, "film";
             16 arguments ARGUMENTS: Write u32, "arguments";
             17 segments SEGMENTS: Write UVec4, "shadow rays";
             18 emitters EMITTERS: Read Emitter, "emitters";

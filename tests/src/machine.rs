@@ -82,7 +82,7 @@ impl Machine {
             None => cpu::render::<f32>(packed, view, traversal, 0, &|_| ()),
             Some(gpu) => Renderer::new(gpu, packed, self.exact, traversal)
                 .and_then(|mut renderer| renderer.render(view, &|_| ()))
-                .map(|rendering| (rendering.picture, rendering.rays)),
+                .and_then(|rendering| Ok((rendering.film.develop()?, rendering.film.rays()))),
         };
         rendered.unwrap_or_else(|e| panic!("{self}: {e}"))
     }

@@ -215,5 +215,5 @@ fn assert_same_on(gpu: &Gpu, scene: &Scene, what: &str) {
     let posed = pack(scene, &scene.cameras[0], scene.settings);
     let mut renderer = Renderer::new(gpu, &posed, true, Traversal::default()).unwrap_or_else(|e| panic!("{what}: {e}"));
     let rendering = renderer.render(&posed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-    assert_same_bits(&rendering.picture, &on_cpu(&posed).0, what);
+    assert_same_bits(&rendering.film.develop().unwrap(), &on_cpu(&posed).0, what);
 }

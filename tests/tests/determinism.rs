@@ -1,15 +1,11 @@
 //! One picture, whatever the threads, the hierarchy and the tiles.
 
 use eyerays::cpu;
-use eyerays::cpu::{Isa, Planned};
-use eyerays::device_scene::SceneView;
 use eyerays::method::Traversal;
 use eyerays::picture::Picture;
 use eyerays::rays::Rays;
 use eyerays::view::Region;
 use eyerays_bvh::Quality;
-use eyerays_shader::real::Scalar;
-use eyerays_shader::stage::NON_FINITE;
 use eyerays_tests::{Posed, SAMPLED, SHIPPED, assert_same_bits, pack, pack_in, settings, shipped, traversals};
 
 /// Edges that no tile's edge divides.
@@ -98,30 +94,19 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         let camera = scene.cameras.get(1).unwrap_or(&scene.cameras[0]);
         let packed = pack(&scene, camera, settings(&scene, SIZE, 3));
         let (whole, rays) = render::<f32>(&packed, 2);
-        let planned = Planned::new(SceneView::new(&packed, Traversal::default()), Isa::best());
+        let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
-            let (mut picture, mut counted) = (Picture::new(SIZE.0, SIZE.1).unwrap(), Rays::default());
-            for tile in tiles(SIZE, size) {
-                let mut records = planned.picture::<f32>(tile);
-                counted.secondary +=
-                    planned.add::<f32>(&packed.view, tile, 0..packed.view.samples(), &mut records, &());
-                counted.primary += u64::from(tile.width * tile.height * packed.view.samples());
-                // Where light is sampled, what rounding took off follows.
-                let (sums, rests) = records.split_at((tile.width * tile.height) as usize);
-                for (&record, at) in sums.iter().zip(0..) {
-                    let (mut colour, word) = f32::load(record);
-                    if let Some(&rest) = rests.get(at as usize) {
-                        colour = colour + f32::load(rest).0;
-                    }
-                    let (x, y) = (tile.x + at % tile.width, tile.y + at / tile.width);
-                    picture.pixels[(y * SIZE.0 + x) as usize] =
-                        [colour.x, colour.y, colour.z].map(|sum| sum / packed.view.samples() as f32);
-                    counted.shadow += u64::from(word & !NON_FINITE);
-                    counted.non_finite += u64::from(word & NON_FINITE != 0);
-                }
-            }
-            assert_same_bits(&whole, &picture, &format!("{name}, tiles of {size:?}"));
-            assert_eq!(rays, counted, "{name}, tiles of {size:?}");
+            let film_of = |tile| {
+                let view = packed.view.part(tile, packed.view.range()).unwrap();
+                let mut film = renderer.start(&view).unwrap();
+                renderer.add::<f32>(&view, &mut film, view.range(), &|_| (), &()).unwrap();
+                film
+            };
+            let mut films = tiles(SIZE, size).into_iter().map(film_of);
+            let mut film = films.next().unwrap();
+            films.for_each(|tile| film.merge(tile).unwrap());
+            assert_same_bits(&whole, &film.develop().unwrap(), &format!("{name}, tiles of {size:?}"));
+            assert_eq!(rays, film.rays(), "{name}, tiles of {size:?}");
         }
     }
 }

@@ -25,8 +25,8 @@ fn assert_same_by(gpu: &Gpu, packed: &Posed, traversals: &[Traversal], what: &st
         let what = format!("{what}, {traversal:?}");
         let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
         let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-        assert_same_bits(&rendering.picture, &picture, &what);
-        assert_eq!(rendering.rays, rays, "{what}");
+        assert_same_bits(&rendering.film.develop().unwrap(), &picture, &what);
+        assert_eq!(rendering.film.rays(), rays, "{what}");
     }
 }
 
@@ -73,9 +73,9 @@ fn twice_in_a_row() {
     let scene = shipped("whitted");
     let packed = pack(&scene, &scene.cameras[2], settings(&scene, (70, 50), 2));
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
-    let [first, second] = [0, 1].map(|_| renderer.render(&packed.view, &|_| ()).unwrap());
-    assert_same_bits(&first.picture, &second.picture, "twice");
-    assert_eq!(first.rays, second.rays);
+    let [first, second] = [0, 1].map(|_| renderer.render(&packed.view, &|_| ()).unwrap().film);
+    assert_same_bits(&first.develop().unwrap(), &second.develop().unwrap(), "twice");
+    assert_eq!(first.rays(), second.rays());
 }
 
 /// Settings that take other kernels, buffers or waves than the shipped ones.
@@ -255,14 +255,15 @@ fn samples_in_parts() {
         renderer.start(&packed.view).unwrap();
         renderer.add(1, &|_| ()).unwrap();
         renderer.start(&packed.view).unwrap();
-        assert!(renderer.picture().unwrap().picture.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        let none = renderer.film().unwrap().develop().unwrap();
+        assert!(none.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
         for &count in parts {
             renderer.add(count, &|_| ()).unwrap();
-            renderer.picture().unwrap();
+            renderer.film().unwrap();
         }
-        let rendering = renderer.picture().unwrap();
-        assert_same_bits(&rendering.picture, &picture, &format!("{parts:?}, {max_binding}"));
-        assert_eq!(rendering.rays, rays, "{parts:?}, {max_binding}");
+        let film = renderer.film().unwrap();
+        assert_same_bits(&film.develop().unwrap(), &picture, &format!("{parts:?}, {max_binding}"));
+        assert_eq!(film.rays(), rays, "{parts:?}, {max_binding}");
     }
 }
 
@@ -280,8 +281,8 @@ fn views_of_one_upload() {
         let rendering = renderer.render(&view, &|_| ()).unwrap();
         let want = pack(&scene, &scene.cameras[camera], settings(&scene, size, samples));
         let (picture, rays) = on_cpu(&want);
-        assert_same_bits(&rendering.picture, &picture, &format!("camera {camera}, {size:?}"));
-        assert_eq!(rendering.rays, rays);
+        assert_same_bits(&rendering.film.develop().unwrap(), &picture, &format!("camera {camera}, {size:?}"));
+        assert_eq!(rendering.film.rays(), rays);
     }
     for light in &mut scene.lights {
         let (Light::Point { colour, .. } | Light::Spot { colour, .. } | Light::Directional { colour, .. }) = light;
@@ -290,7 +291,7 @@ fn views_of_one_upload() {
     renderer.set_lights(&scene.lights).unwrap();
     let dimmed = pack(&scene, &scene.cameras[0], settings(&scene, (40, 30), 1));
     let rendering = renderer.render(&dimmed.view, &|_| ()).unwrap();
-    assert_same_bits(&rendering.picture, &on_cpu(&dimmed).0, "dimmed");
+    assert_same_bits(&rendering.film.develop().unwrap(), &on_cpu(&dimmed).0, "dimmed");
 }
 
 /// Cameras far outside the scene, whose rays first come close to it.

@@ -5,7 +5,6 @@ use eyerays::device_scene::{DeviceScene, SceneView};
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays::view::Region;
-use eyerays_shader::real::Scalar;
 use eyerays_tests::{SHIPPED, pack, settings, shipped, traversals};
 use glam::Vec3;
 
@@ -81,9 +80,9 @@ fn every_isa_renders_the_same_tile() {
         let region = Region { x: 3, y: 2, width: 33, height: 26 };
         let tile = |isa, method| {
             let planned = cpu::Planned::new(SceneView::new(&packed, Traversal::from(method)), isa);
-            let mut picture = planned.picture::<f32>(region);
-            let secondary = planned.add::<f32>(&packed.view, region, 0..1, &mut picture, &());
-            (picture.into_iter().map(f32::load).map(|(c, word)| ([c.x, c.y, c.z], word)).collect::<Vec<_>>(), secondary)
+            let mut film = planned.film(region);
+            let secondary = planned.add::<f32>(&packed.view, region, 0..1, &mut film, &());
+            (film, secondary)
         };
         let wanted = tile(Isa::Baseline, Method::IfIf);
         for isa in Isa::here() {

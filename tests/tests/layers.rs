@@ -10,7 +10,7 @@ use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{Disk, Part, Primitives, Sampler, Scene, Settings};
 use eyerays::stream::Question;
-use eyerays::view::View;
+use eyerays::view::{Region, View};
 use eyerays_tests::covered::covered;
 use eyerays_tests::shipped;
 use glam::Vec3;
@@ -41,7 +41,7 @@ fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
     (picture.picture, layers)
 }
 
-fn picture(layers: &[(Layer, Values)], wanted: Layer) -> &Picture {
+fn layer(layers: &[(Layer, Values)], wanted: Layer) -> &Picture {
     let (_, values) = layers.iter().find(|(layer, _)| *layer == wanted).expect("it was asked for");
     match values {
         Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture,
@@ -136,7 +136,7 @@ fn direct_and_indirect_light_are_all_of_it() {
         scene.settings.transport.integrator = eyerays::scene::Integrator::Path;
         scene.settings.bounces = 4;
         let (picture, layers) = layered(&scene, 4);
-        let (direct, indirect) = (picture(&layers, Layer::Direct), picture(&layers, Layer::Indirect));
+        let (direct, indirect) = (layer(&layers, Layer::Direct), layer(&layers, Layer::Indirect));
         assert!(indirect.pixels.iter().filter(|pixel| pixel.iter().any(|&c| c > 0.0)).count() > 100);
         for (i, pixel) in picture.pixels.iter().enumerate() {
             for (channel, &light) in pixel.iter().enumerate() {
@@ -146,7 +146,7 @@ fn direct_and_indirect_light_are_all_of_it() {
         }
         scene.settings.bounces = 0;
         let (_, layers) = layered(&scene, 4);
-        assert!(picture(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        assert!(layer(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
     }
 }
 
@@ -154,7 +154,7 @@ fn direct_and_indirect_light_are_all_of_it() {
 fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
     let scene = shipped("bleeding");
     let (_, layers) = layered(&scene, 1);
-    let (albedo, normal) = (picture(&layers, Layer::Albedo), picture(&layers, Layer::Normal));
+    let (albedo, normal) = (layer(&layers, Layer::Albedo), layer(&layers, Layer::Normal));
     let forward = (scene.cameras[0].target - scene.cameras[0].eye).normalize();
     let materials = numbers(&layers, Layer::Material);
     let mut matt = 0;
@@ -180,7 +180,8 @@ fn a_preview_has_the_colours_at_the_middle_of_each_pixel() {
     let scene = shipped("bleeding");
     let settings = Settings { size: SIZE, spp: 3, sampler: Sampler::Sobol, ..scene.settings };
     let mut packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
-    let preview = layers::preview(&mut packed, &scene.cameras[0], 2).unwrap();
+    let window = Region { x: 0, y: 0, width: SIZE.0, height: SIZE.1 };
+    let preview = layers::preview(&mut packed, &scene.cameras[0], window, 2).unwrap();
     assert_eq!(*packed.settings(), settings, "the settings are left as they were");
     let (_, layers) = layered(&scene, 1);
     for (i, (&seen, &number)) in preview.pixels.iter().zip(numbers(&layers, Layer::Material)).enumerate() {

@@ -13,8 +13,8 @@ fn assert_near(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
     let (exact, _) = on_cpu(packed);
     let mut renderer = Renderer::new(gpu, packed, false, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
     let fast = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-    assert_eq!(fast.rays.non_finite, 0, "{what}");
-    let differences = differences(&exact, &fast.picture);
+    assert_eq!(fast.film.rays().non_finite, 0, "{what}");
+    let differences = differences(&exact, &fast.film.develop().unwrap());
     let far = differences.iter().filter(|&&difference| difference > 1e-4).count();
     assert!(1000 * far <= differences.len(), "{what}: {far} pixels of {} differ", differences.len());
 }

@@ -27,14 +27,9 @@ fn assert_same(gpu: &Gpu, packed: &Posed, traversal: Traversal, what: &str) {
     assert!(picture.pixels.iter().any(|&pixel| pixel != [0.0; 3]), "{what} is black");
     let mut renderer = Renderer::new(gpu, packed, true, traversal).unwrap_or_else(|e| panic!("{what}: {e}"));
     let rendering = renderer.render(&packed.view, &|_| ()).unwrap_or_else(|e| panic!("{what}: {e}"));
-    assert_same_bits(&rendering.picture, &picture, what);
-    assert_eq!(rendering.rays, rays, "{what}");
-    let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
-        // Its parts are added in another order.
-        (Some(a), Some(b)) => (a / b - 1.0).abs() < 1e-9,
-        (a, b) => a == b,
-    };
-    assert!(close(rendering.picture.noise(), picture.noise()), "{what}");
+    let developed = rendering.film.develop().unwrap();
+    assert_same_bits(&developed, &picture, what);
+    assert_eq!((rendering.film.rays(), developed.noise()), (rays, picture.noise()), "{what}");
 }
 
 #[test]
@@ -137,7 +132,8 @@ fn surfaces_and_surroundings() {
     let Some(gpu) = exact() else { return };
     let (picture, _) = on_cpu(&packed);
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
-    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().picture, &picture, "whitted");
+    let film = renderer.render(&packed.view, &|_| ()).unwrap().film;
+    assert_same_bits(&film.develop().unwrap(), &picture, "whitted");
 }
 
 /// Of everything that surfaces may have, however it is traced and whatever light the picture had.
@@ -156,7 +152,7 @@ fn what_the_camera_sees_first() {
     }
 }
 
-/// In flight together or one by one, all at once or in parts: a picture is kept with what rounding took off.
+/// In flight together or one by one, all at once or in parts.
 #[test]
 fn samples_in_parts() {
     let scene = shipped("bleeding");
@@ -164,11 +160,13 @@ fn samples_in_parts() {
     let (picture, rays) = on_cpu(&packed);
     let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
     for parts in [&[8, 8][..], &[1, 3, 12]] {
-        let mut picture = renderer.start::<f32>(&packed.view).unwrap();
-        parts.iter().for_each(|&count| renderer.add(&mut picture, count));
-        let (got, counted) = picture.picture().unwrap();
-        assert_same_bits(&got, &picture, &format!("CPU, {parts:?}"));
-        assert_eq!(counted, rays);
+        let (mut film, mut first) = (renderer.start(&packed.view).unwrap(), 0);
+        for &count in parts {
+            renderer.add::<f32>(&packed.view, &mut film, first..first + count, &|_| (), &()).unwrap();
+            first += count;
+        }
+        assert_same_bits(&film.develop().unwrap(), &picture, &format!("CPU, {parts:?}"));
+        assert_eq!(film.rays(), rays);
     }
     let Some(mut gpu) = quick_gpu() else { return };
     let sample = 64 * 64 * 48;
@@ -178,11 +176,11 @@ fn samples_in_parts() {
         renderer.start(&packed.view).unwrap();
         for &count in parts {
             renderer.add(count, &|_| ()).unwrap();
-            renderer.picture().unwrap();
+            renderer.film().unwrap();
         }
-        let rendering = renderer.picture().unwrap();
-        assert_same_bits(&rendering.picture, &picture, &format!("{in_flight} in flight, {parts:?}"));
-        assert_eq!(rendering.rays, rays);
+        let film = renderer.film().unwrap();
+        assert_same_bits(&film.develop().unwrap(), &picture, &format!("{in_flight} in flight, {parts:?}"));
+        assert_eq!(film.rays(), rays);
     }
 }
 
@@ -246,5 +244,6 @@ fn lights_change_without_another_scene() {
     let Some(gpu) = quick_gpu() else { return };
     let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
     renderer.set_lights(&scene.lights).unwrap();
-    assert_same_bits(&renderer.render(&packed.view, &|_| ()).unwrap().picture, &picture, "GPU");
+    let film = renderer.render(&packed.view, &|_| ()).unwrap().film;
+    assert_same_bits(&film.develop().unwrap(), &picture, "GPU");
 }

@@ -10,6 +10,6 @@ pub use eyerays_kernels_cpu::{Isa, Number, Records};
 
 pub use cast::{cast, cast_by, closest};
 pub use pool::pool;
-pub use render::{Growing, Renderer, render};
+pub use render::{Renderer, render};
 pub use tile::{Observer, Planned};
-pub(crate) use watched::rendered;
+pub(crate) use watched::OnCpu;

@@ -10,7 +10,8 @@ use rayon::prelude::*;
 use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::device_scene::{DeviceScene, SceneView};
-use crate::error::{Error, Result};
+use crate::error::Result;
+use crate::film::{Exposure, Film};
 use crate::method::Traversal;
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -24,7 +25,7 @@ const TILE: u32 = 32;
 
 /// A scene laid out for the CPU, with the threads to render it: made once for any number of pictures.
 ///
-/// Samples can be added to a picture bit by bit, with the bits of all at once:
+/// Samples can be added to a film bit by bit, with the bits of all at once:
 ///
 /// ```
 /// # use eyerays::{cpu::Renderer, device_scene::DeviceScene, method::Traversal, quality::Bvh, scene, view::View};
@@ -33,10 +34,10 @@ const TILE: u32 = 32;
 /// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let view = View::of(&device_scene, &scene.cameras[0], (16, 16), 2)?;
 /// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
-/// let mut picture = renderer.start::<f32>(&view)?;
-/// while picture.samples() < view.samples() {
-///     renderer.add(&mut picture, 1);
-///     let (_so_far, _rays) = picture.film()?;
+/// let mut film = renderer.start(&view)?;
+/// for sample in view.range() {
+///     renderer.add::<f32>(&view, &mut film, sample..sample + 1, &|_| (), &())?;
+///     let _so_far = film.develop()?;
 /// }
 /// # Ok(())
 /// # }
@@ -44,19 +45,6 @@ const TILE: u32 = 32;
 pub struct Renderer<'a> {
     planned: Planned<'a>,
     threads: rayon::ThreadPool,
-}
-
-/// A picture that samples are added to: [`Renderer::start`].
-pub struct Growing<R: Number> {
-    view: View,
-    tiles: Vec<Tile<R>>,
-    samples: u32,
-}
-
-struct Tile<R: Number> {
-    region: Region,
-    film: Vec<R::Record>,
-    secondary: u64,
 }
 
 impl<'a> Renderer<'a> {
@@ -94,52 +82,60 @@ impl<'a> Renderer<'a> {
     where
         R: Number,
     {
-        let (width, height) = view.size();
-        let result = Mutex::new((Picture::new(width, height)?, Rays::default()));
-        self.threads.install(|| {
-            // A tile a task: coarser splitting leaves threads idle at the end.
-            self.tiles(view).into_par_iter().with_max_len(1).for_each(|region| {
-                let mut tile = Tile { region, film: self.planned.film::<R>(region), secondary: 0 };
-                tile.add(&self.planned, view, 0..view.samples(), observer);
-                let (image, rays) = &mut *result.lock().unwrap_or_else(PoisonError::into_inner);
-                tile.develop(view.samples(), image, rays);
-                done(region.pixels());
-            });
-        });
-        Ok(result.into_inner().unwrap_or_else(PoisonError::into_inner))
+        let mut film = self.start(view)?;
+        self.add(view, &mut film, view.range(), done, observer)?;
+        self.threads.install(|| Ok((film.develop()?, film.rays())))
     }
 
-    /// Starts a picture without any sample, which keeps the sums of all its pixels.
+    /// A film of a view without any sample.
     ///
     /// # Errors
-    /// If there is no memory for them.
-    pub fn start<R: Number>(&self, view: &View) -> Result<Growing<R>> {
-        let (width, height) = view.size();
-        let tile = |region| {
-            let film = self.planned.try_film::<R>(region).ok_or(Error::Memory { width, height })?;
-            Ok(Tile { region, film, secondary: 0 })
-        };
-        let tiles = self.tiles(view).into_iter().map(tile).collect::<Result<_>>()?;
-        Ok(Growing { view: *view, tiles, samples: 0 })
+    /// If there is no memory for it.
+    pub fn start(&self, view: &View) -> Result<Film> {
+        self.threads.install(|| Film::new(view, self.planned.film_words()))
     }
 
-    /// Adds the next `count` samples of each pixel to a picture, or as many as its view has: n and then n more give the
-    /// bits of 2n at once.
-    pub fn add<R>(&self, picture: &mut Growing<R>, count: u32)
+    /// Adds samples of a view to its film, in the arithmetic `R`: n and then n more give the bits of 2n at once. `done` hears of
+    /// every finished share of the pixels, and `observer` looks on.
+    ///
+    /// # Errors
+    /// The view has no such samples.
+    ///
+    /// # Panics
+    /// If the film has some of the samples, or is of another view.
+    pub fn add<R>(
+        &self,
+        view: &View,
+        film: &mut Film,
+        samples: Range<u32>,
+        done: &(dyn Fn(u64) + Sync),
+        observer: &dyn Observer<R>,
+    ) -> Result<()>
     where
         R: Number,
     {
-        let end = picture.samples.saturating_add(count).min(picture.view.samples());
-        let samples = picture.samples..end;
+        let view = view.part(view.region(), samples)?;
+        let film = Mutex::new(film);
         self.threads.install(|| {
-            let tiles = picture.tiles.par_iter_mut().with_max_len(1);
-            tiles.for_each(|tile| tile.add(&self.planned, &picture.view, samples.clone(), &()));
+            // A tile a task: coarser splitting leaves threads idle at the end.
+            self.tiles(&view).into_par_iter().with_max_len(1).for_each(|region| {
+                let mut sums = self.planned.film(region);
+                let secondary = self.planned.add(&view, region, view.range(), &mut sums, observer);
+                let exposure = Exposure { region, samples: view.range(), sums: &sums, secondary };
+                film.lock().unwrap_or_else(PoisonError::into_inner).add(exposure);
+                done(region.pixels());
+            });
         });
-        picture.samples = end;
+        Ok(())
+    }
+
+    /// Runs something on its threads.
+    pub(crate) fn install<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
+        self.threads.install(work)
     }
 
     fn tiles(&self, view: &View) -> Vec<Region> {
-        let (width, height) = view.size();
+        let Region { x: left, y: top, width, height } = view.region();
         // Records of numbers of 64 bits take twice as much.
         let slot = 2 * self.planned.plan.bytes_of(binding::PATHS);
         let mut edge = TILE;
@@ -149,40 +145,13 @@ impl<'a> Renderer<'a> {
         let edge = edge as usize;
         let rows = (0..height).step_by(edge);
         rows.flat_map(|y| (0..width).step_by(edge).map(move |x| (x, y)))
-            .map(|(x, y)| Region { x, y, width: (width - x).min(edge as u32), height: (height - y).min(edge as u32) })
+            .map(|(x, y)| Region {
+                x: left + x,
+                y: top + y,
+                width: (width - x).min(edge as u32),
+                height: (height - y).min(edge as u32),
+            })
             .collect()
-    }
-}
-
-impl<R: Number> Tile<R> {
-    fn add(&mut self, planned: &Planned<'_>, view: &View, samples: Range<u32>, observer: &dyn Observer<R>) {
-        self.secondary += planned.add(view, self.region, samples, &mut self.film, observer);
-    }
-
-    fn develop(&self, samples: u32, image: &mut Picture, rays: &mut Rays) {
-        image.develop::<R>(self.region, &self.film, samples, rays);
-        rays.secondary += self.secondary;
-        rays.primary += self.region.pixels() * u64::from(samples);
-    }
-}
-
-impl<R: Number> Growing<R> {
-    /// How many samples of each pixel it has.
-    pub fn samples(&self) -> u32 {
-        self.samples
-    }
-
-    /// The mean of its samples so far, black without any, and the rays that they took.
-    ///
-    /// # Errors
-    /// If there is no memory for the film.
-    pub fn film(&self) -> Result<(Picture, Rays)> {
-        let (width, height) = self.view.size();
-        let (mut film, mut rays) = (Picture::new(width, height)?, Rays::default());
-        if self.samples > 0 {
-            self.tiles.iter().for_each(|tile| tile.develop(self.samples, &mut film, &mut rays));
-        }
-        Ok((film, rays))
     }
 }
 
@@ -228,12 +197,14 @@ mod tests {
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         let renderer = Renderer::new(&packed, Traversal::default(), 3).unwrap();
         let (whole, rays) = renderer.render::<f32>(&view, &|_| (), &()).unwrap();
-        for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3, 99]] {
-            let mut picture = renderer.start::<f32>(&view).unwrap();
-            parts.iter().for_each(|&count| renderer.add(&mut picture, count));
-            let (film, counted) = picture.film().unwrap();
-            assert!(picture.samples() == 9 && film.bits_equal(&whole), "{parts:?}");
-            assert_eq!(counted, rays, "{parts:?}");
+        for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3]] {
+            let (mut film, mut first) = (renderer.start(&view).unwrap(), 0);
+            for &count in parts {
+                renderer.add::<f32>(&view, &mut film, first..first + count, &|_| (), &()).unwrap();
+                first += count;
+            }
+            assert!(film.develop().unwrap().bits_equal(&whole), "{parts:?}");
+            assert_eq!(film.rays(), rays, "{parts:?}");
         }
     }
 
@@ -243,13 +214,14 @@ mod tests {
         let packed = packed(&scene, Settings { size: (16, 12), samples: 2, bounces: 0, ..scene.settings });
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
-        let mut picture = renderer.start::<f32>(&view).unwrap();
-        assert!(picture.film().unwrap().0.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
-        renderer.add(&mut picture, 1);
-        let one = picture.film().unwrap().0;
-        renderer.add(&mut picture, 3);
-        let four = picture.film().unwrap().0;
-        let brightness = |film: &Picture| film.pixels.as_flattened().iter().sum::<f32>() / film.pixels.len() as f32;
+        let mut film = renderer.start(&view).unwrap();
+        assert!(film.develop().unwrap().pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        renderer.add::<f32>(&view, &mut film, 0..1, &|_| (), &()).unwrap();
+        let one = film.develop().unwrap();
+        renderer.add::<f32>(&view, &mut film, 1..4, &|_| (), &()).unwrap();
+        let four = film.develop().unwrap();
+        let brightness =
+            |picture: &Picture| picture.pixels.as_flattened().iter().sum::<f32>() / picture.pixels.len() as f32;
         assert!(brightness(&one) > 0.1 && (brightness(&one) / brightness(&four) - 1.0).abs() < 0.05);
         assert!(!one.bits_equal(&four));
     }

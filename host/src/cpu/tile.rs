@@ -56,26 +56,18 @@ impl<'a> Planned<'a> {
         Planned { laid, plan: plan.expect("a CPU has every method"), isa }
     }
 
-    /// An empty film for a region.
-    pub fn film<R: Number>(&self, region: Region) -> Vec<R::Record> {
-        vec![R::store(V3::zero(), 0); self.records(region)]
+    /// Words of a pixel of a film.
+    pub fn film_words(&self) -> u32 {
+        self.plan.film_words
     }
 
-    /// The same, or none if there is no memory for it.
-    pub fn try_film<R: Number>(&self, region: Region) -> Option<Vec<R::Record>> {
-        let (mut film, count) = (Vec::new(), self.records(region));
-        film.try_reserve_exact(count).ok()?;
-        film.resize(count, R::store(V3::zero(), 0));
-        Some(film)
+    /// An empty film for a region, for [`Planned::add`].
+    pub fn film(&self, region: Region) -> Vec<u32> {
+        vec![0; region.pixels() as usize * self.plan.film_words as usize]
     }
 
-    fn records(&self, region: Region) -> usize {
-        (self.plan.film_bytes / Plan::RECORD_BYTES * region.pixels()) as usize
-    }
-
-    /// Adds samples of a region, wherever its edges are, to its film (row-major; the integers count shadow rays; where the
-    /// integrator samples, what rounding took off follows), and
-    /// returns how many secondary rays they took. Samples that the view does not have are left out.
+    /// Adds samples of a region, wherever its edges are, to its film, and returns how many secondary rays they took. Samples that
+    /// the view does not have are left out. The view's first sample starts the film anew.
     ///
     /// # Panics
     /// If the film is not the region's.
@@ -84,14 +76,14 @@ impl<'a> Planned<'a> {
         view: &View,
         region: Region,
         samples: Range<u32>,
-        film: &mut [R::Record],
+        film: &mut [u32],
         observer: &dyn Observer<R>,
     ) -> u64 {
         let order = self.laid.specialisation().order;
         let slots = view.launch(self.laid.packed, region, 0, 1, order).slots;
         let mut records = records(&self.plan, slots);
         let mut secondary = 0;
-        for sample in samples.start..samples.end.min(view.samples()) {
+        for sample in samples.start..samples.end.min(view.range().end) {
             let frame = view.launch(self.laid.packed, region, sample, 1, order);
             let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
             let (queue, next) = (pixels.collect(), Vec::new());
@@ -114,7 +106,7 @@ struct Launch<'l, 'a, R: Number> {
     /// Those of the next.
     next: Vec<u32>,
     records: Records<R>,
-    film: &'l mut [R::Record],
+    film: &'l mut [u32],
     observer: &'l dyn Observer<R>,
     secondary: u64,
 }

@@ -1,53 +1,60 @@
-//! Pictures on the CPU that somebody may look on.
+//! Films that grow on a CPU.
+
+use std::marker::PhantomData;
 
 use eyerays_kernels_cpu::Number;
 
-use super::render::{Growing, Renderer};
+use super::render::Renderer;
 use crate::error::Result;
-use crate::picture::Picture;
-use crate::rays::Rays;
+use crate::film::Film;
 use crate::view::View;
-use crate::watch::{Grows, Watch, grow};
+use crate::watch::Grows;
 
-/// A picture, its rays and the samples of each pixel.
-pub(crate) fn rendered<R: Number>(
-    renderer: &Renderer<'_>,
-    view: &View,
-    watch: Option<&Watch<'_>>,
-    done: &(dyn Fn(u64) + Sync),
-) -> Result<(Picture, Rays, u32)> {
-    if let Some(watch) = watch {
-        match renderer.start::<R>(view) {
-            Ok(picture) => return watched(OnCpu { renderer, picture }, view, watch),
-            // Without the memory that the sums of all pixels take, nobody can look on; but all samples at once fit no time.
-            Err(error) if watch.limit.is_some() => return Err(error),
-            Err(_) => {}
-        }
-    }
-    let (film, rays) = renderer.render::<R>(view, done, &())?;
-    Ok((film, rays, view.samples()))
-}
-
-/// A picture as somebody looks on, its rays and the samples of each pixel that there are in the end.
-fn watched<R: Number>(mut growing: OnCpu<'_, R>, view: &View, watch: &Watch<'_>) -> Result<(Picture, Rays, u32)> {
-    grow(&mut growing, view.samples(), watch)?;
-    let (film, rays) = growing.picture.film()?;
-    Ok((film, rays, growing.picture.samples()))
-}
-
-/// A picture that grows on a CPU.
-struct OnCpu<'a, R: Number> {
+/// A CPU that films grow on, in the arithmetic `R`.
+pub(crate) struct OnCpu<'a, R> {
     renderer: &'a Renderer<'a>,
-    picture: Growing<R>,
+    growing: Option<Growing>,
+    number: PhantomData<R>,
+}
+
+struct Growing {
+    view: View,
+    film: Film,
+    /// The next sample.
+    next: u32,
+}
+
+impl<'a, R: Number> OnCpu<'a, R> {
+    /// Without a film.
+    pub fn new(renderer: &'a Renderer<'a>) -> Self {
+        OnCpu { renderer, growing: None, number: PhantomData }
+    }
 }
 
 impl<R: Number> Grows for OnCpu<'_, R> {
-    fn add(&mut self, count: u32) -> Result<()> {
-        self.renderer.add(&mut self.picture, count);
+    fn start(&mut self, view: &View) -> Result<()> {
+        // There may be no memory for two.
+        self.growing = None;
+        self.growing = Some(Growing { view: *view, film: self.renderer.start(view)?, next: view.range().start });
         Ok(())
     }
 
-    fn picture(&mut self) -> Result<Picture> {
-        Ok(self.picture.film()?.0)
+    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let Growing { view, film, next } = self.growing.as_mut().expect("a film was started");
+        let samples = *next..*next + count;
+        *next = samples.end;
+        self.renderer.add::<R>(view, film, samples, done, &())
+    }
+
+    fn wait(&mut self) -> Result<()> {
+        Ok(())
+    }
+
+    fn film(&mut self) -> Result<Film> {
+        Ok(self.growing.as_ref().expect("a film was started").film.clone())
+    }
+
+    fn end(&mut self) -> Result<Film> {
+        Ok(self.growing.take().expect("a film was started").film)
     }
 }

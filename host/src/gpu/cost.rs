@@ -58,7 +58,7 @@ impl Cost {
             kernels: plan.steps().map(kernel).collect(),
             scene: records.into_iter().filter(|(_, bytes)| *bytes > 0).collect(),
             sample: plan.slot_bytes.iter().map(|&(binding, bytes)| (name(binding), bytes)).collect(),
-            pixel: plan.film_bytes,
+            pixel: plan.film_bytes(),
         }
     }
 }

@@ -52,14 +52,6 @@ pub(super) struct Queue<'a> {
     waves: u32,
 }
 
-/// What [`Queue::read`] brings.
-pub(super) struct Read {
-    /// Secondary rays since [`Queue::restart`].
-    pub rays: u64,
-    /// Of all passes since [`Queue::restart`].
-    pub device_time: Option<Duration>,
-}
-
 impl<'a> Queue<'a> {
     pub fn new(gpu: &'a Gpu) -> Self {
         Queue {
@@ -78,15 +70,19 @@ impl<'a> Queue<'a> {
     }
 
     /// Does the device tell the time?
-    pub fn has_clock(&self) -> bool {
+    fn has_clock(&self) -> bool {
         self.timer.is_some()
     }
 
-    /// Counts rays and time from now on.
+    /// Of all passes whose times were read, if the device tells the time.
+    pub fn device_time(&self) -> Option<Duration> {
+        self.has_clock().then_some(self.time)
+    }
+
+    /// Counts rays from now on, and leaves out the time of passes that were not read.
     pub fn restart(&mut self, counters: &wgpu::Buffer) {
         self.gpu.queue.write_buffer(counters, 0, &[0; COUNTERS as usize]);
-        (self.passes, self.time) = (0, Duration::ZERO);
-        (self.rays, self.uncounted) = (0, 0);
+        (self.passes, self.rays, self.uncounted) = (0, 0, 0);
     }
 
     /// Pixels that were finished since this was asked last. Waits while too many launches are under way.
@@ -104,13 +100,14 @@ impl<'a> Queue<'a> {
         std::mem::take(&mut self.done) + self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>()
     }
 
-    /// Waits for everything, and reads the counters and some films.
+    /// Waits for everything, reads the counters and some films, and tells how many secondary rays there were since
+    /// [`Queue::restart`].
     pub fn read(
         &mut self,
         counters: &wgpu::Buffer,
         films: &[(&wgpu::Buffer, u64)],
         mut look: impl FnMut(usize, &[u8]),
-    ) -> Result<Read> {
+    ) -> Result<u64> {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let timed = self.timer.as_ref().filter(|_| self.passes > 0).map(|timer| {
             timer.resolve(&mut encoder, self.passes);
@@ -146,7 +143,7 @@ impl<'a> Queue<'a> {
         (self.readback, self.passes) = (Some(readback), 0);
         self.count(counters, words[counter::RAYS as usize]);
         self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
-        Ok(Read { rays: self.rays, device_time: self.has_clock().then_some(self.time) })
+        Ok(self.rays)
     }
 
     /// Takes what the device has counted of secondary rays, and lets it count anew.

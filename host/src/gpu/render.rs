@@ -1,4 +1,4 @@
-//! Pictures on the GPU: launches over bands of the image and batches of samples, whose sums the film keeps.
+//! Films on the GPU: launches over bands of the image and batches of samples, whose sums stay there until they are read.
 
 use std::borrow::Cow;
 use std::time::Duration;
@@ -7,7 +7,6 @@ use eyerays_shader::camera;
 use eyerays_shader::data::Order;
 use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
-use glam::UVec4;
 use wgpu::BufferUsages as Use;
 
 use super::bands::bands;
@@ -19,30 +18,25 @@ use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::device_scene::DeviceScene;
 use crate::error::Result;
+use crate::film::{Exposure, Film};
 use crate::method::Traversal;
-use crate::picture::Picture;
 use crate::plan::{self, Plan};
-use crate::rays::Rays;
 use crate::scene::Light;
 use crate::view::{Region, View};
-use crate::watch::{Grows, Watch, grow};
+use crate::watch::{self, Grows};
 
 /// Bytes of films that are read back at once.
 const READ: u64 = 1 << 28;
 
-/// A picture and what it took.
+/// A film and what it took.
 pub struct GpuRendering {
-    /// The picture.
-    pub picture: Picture,
-    /// Samples of each pixel.
-    pub samples: u32,
-    /// What was traced.
-    pub rays: Rays,
+    /// The film.
+    pub film: Film,
     /// Time on the device, if it has a clock.
     pub device_time: Option<Duration>,
 }
 
-/// A scene on a GPU, ready for any number of pictures: cameras, sizes and samples may change from one to the next, and
+/// A scene on a GPU, ready for any number of films: cameras, sizes and samples may change from one to the next, and
 /// neither geometry nor kernels move for that.
 pub struct Renderer<'a> {
     gpu: &'a Gpu,
@@ -54,7 +48,7 @@ pub struct Renderer<'a> {
     scene: SceneBuffers,
     most_slots: u32,
     memory: Option<Memory>,
-    picture: Option<Growing>,
+    growing: Option<Growing>,
     queue: Queue<'a>,
 }
 
@@ -65,11 +59,12 @@ pub(super) struct Memory {
     pub groups: Vec<Option<[wgpu::BindGroup; 2]>>,
 }
 
-/// A picture that samples are added to.
+/// A film that samples are added to.
 struct Growing {
     view: View,
     bands: Vec<Band>,
-    samples: u32,
+    /// The next sample.
+    next: u32,
 }
 
 /// A region of the image with its film.
@@ -81,13 +76,20 @@ pub(super) struct Band {
 }
 
 impl Grows for Renderer<'_> {
-    fn add(&mut self, count: u32) -> Result<()> {
-        Renderer::add(self, count, &|_| ())?;
+    fn start(&mut self, view: &View) -> Result<()> {
+        Renderer::start(self, view)
+    }
+
+    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        Renderer::add(self, count, done)
+    }
+
+    fn wait(&mut self) -> Result<()> {
         self.gpu.wait()
     }
 
-    fn picture(&mut self) -> Result<Picture> {
-        Ok(self.film()?.picture)
+    fn film(&mut self) -> Result<Film> {
+        Renderer::film(self)
     }
 }
 
@@ -105,7 +107,7 @@ impl<'a> Renderer<'a> {
         gpu.check()?;
         let scene = SceneBuffers::new(gpu, packed, traversal.layout, (&plan).into())?;
         let (order, queue) = (traversal.order.bits(), Queue::new(gpu));
-        Ok(Renderer { gpu, packed, order, plan, kernels, scene, most_slots, memory: None, picture: None, queue })
+        Ok(Renderer { gpu, packed, order, plan, kernels, scene, most_slots, memory: None, growing: None, queue })
     }
 
     /// Goes on with other lights: as many as the scene's, of the same kinds.
@@ -126,42 +128,37 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// Renders a picture. `done` hears of every finished share of the pixels.
+    /// Renders a view. `done` hears of every finished share of the pixels.
     ///
     /// # Errors
     /// What the GPU reports.
     pub fn render(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<GpuRendering> {
-        self.start(view)?;
-        self.add(view.samples(), done)?;
-        let rendering = self.film()?;
+        let before = self.device_time();
+        let film = watch::render(self, view, done)?;
         done(self.queue.forget());
-        Ok(rendering)
+        let device_time = self.device_time().zip(before).map(|(after, before)| after - before);
+        Ok(GpuRendering { film, device_time })
     }
 
-    /// Renders the samples of a view while somebody looks on, who may end it before.
-    ///
-    /// # Errors
-    /// What the GPU reports.
-    pub fn render_watched(&mut self, view: &View, watch: &Watch<'_>) -> Result<GpuRendering> {
-        self.start(view)?;
-        grow(self, view.samples(), watch)?;
-        Renderer::film(self)
+    /// Time on the device of all that was rendered and read, if it has a clock.
+    pub fn device_time(&self) -> Option<Duration> {
+        self.queue.device_time()
     }
 
-    /// Starts a picture without any sample. Memory is taken if no picture before needed as much.
+    /// Starts a film of a view without any sample. Memory is taken if no film before needed as much.
     ///
     /// # Errors
     /// What the GPU reports.
     pub fn start(&mut self, view: &View) -> Result<()> {
-        let (width, height) = view.size();
+        let Region { width, height, .. } = view.region();
         let wanted = u64::from(camera::slots(width, height, self.order)) * u64::from(view.samples());
         self.reserve(wanted.min(self.most_slots.into()) as u32)?;
-        let regions = bands((width, height), self.slots(), self.order);
-        let bands = match self.picture.take() {
-            Some(picture) if picture.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => picture.bands,
+        let regions = bands(view.region(), self.slots(), self.order);
+        let bands = match self.growing.take() {
+            Some(growing) if growing.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => growing.bands,
             _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
         };
-        self.picture = Some(Growing { view: *view, bands, samples: 0 });
+        self.growing = Some(Growing { view: *view, bands, next: view.range().start });
         self.queue.forget();
         let memory = self.memory.as_ref().expect("it was reserved");
         self.queue.restart(memory.buffers.of(binding::COUNTERS));
@@ -174,25 +171,25 @@ impl<'a> Renderer<'a> {
     /// [`Renderer::film`] all are.
     ///
     /// # Errors
-    /// What the GPU reports; the picture must then be started again.
+    /// What the GPU reports; the film must then be started again.
     ///
     /// # Panics
-    /// If no picture was started.
+    /// If no film was started.
     pub fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let mut picture = self.picture.take().expect("a picture was started");
-        self.add_to(&picture, count, done)?;
-        picture.samples = picture.samples.saturating_add(count).min(picture.view.samples());
-        self.picture = Some(picture);
+        let mut growing = self.growing.take().expect("a film was started");
+        let end = growing.next.saturating_add(count).min(growing.view.range().end);
+        self.add_to(&growing, end, done)?;
+        growing.next = end;
+        self.growing = Some(growing);
         Ok(())
     }
 
-    fn add_to(&mut self, picture: &Growing, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let Growing { view, bands, samples } = picture;
-        let end = samples.saturating_add(count).min(view.samples());
+    fn add_to(&mut self, growing: &Growing, end: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let Growing { view, bands, next } = growing;
         for band in bands {
             let (width, height) = (band.region.width, band.region.height);
             let batch = (self.slots() / camera::slots(width, height, self.order)).max(1);
-            let mut first = *samples;
+            let mut first = *next;
             while first < end {
                 let count = batch.min(end - first);
                 let frame = view.launch(self.packed, band.region, first, count, self.order);
@@ -200,7 +197,8 @@ impl<'a> Renderer<'a> {
                 let memory = self.memory.as_ref().expect("it was reserved");
                 let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
                 plan::run(&self.plan, &mut launch)?;
-                launch.submit(share(first + count) - share(first))?;
+                let since = first - view.range().start;
+                launch.submit(share(since + count) - share(since))?;
                 done(self.queue.finished()?);
                 first += count;
             }
@@ -208,42 +206,40 @@ impl<'a> Renderer<'a> {
         Ok(())
     }
 
-    /// Waits for the picture: the mean of its samples so far, black without any, and the rays that they took.
+    /// Waits for the samples so far, and reads their film.
     ///
     /// # Errors
     /// What the GPU reports, or if there is no memory for the film.
     ///
     /// # Panics
-    /// If no picture was started.
-    pub fn film(&mut self) -> Result<GpuRendering> {
-        let Growing { view, bands, samples } = self.picture.as_ref().expect("a picture was started");
-        let (width, height) = view.size();
-        let (mut film, mut rays) = (Picture::new(width, height)?, Rays::default());
-        let mut device_time = self.queue.has_clock().then_some(Duration::ZERO);
-        if *samples == 0 {
-            return Ok(GpuRendering { picture: film, samples: 0, rays, device_time });
+    /// If no film was started.
+    pub fn film(&mut self) -> Result<Film> {
+        let Growing { view, bands, next } = self.growing.as_ref().expect("a film was started");
+        let mut film = Film::new(view, self.plan.film_words)?;
+        let samples = view.range().start..*next;
+        if samples.is_empty() {
+            return Ok(film);
         }
         let counters = self.buffers().of(binding::COUNTERS).clone();
-        let mut rest = &bands[..];
+        let size = |band: &Band| self.plan.film_bytes() * band.region.pixels();
+        let (mut rest, mut secondary) = (&bands[..], 0);
         while !rest.is_empty() {
             let mut bytes = 0;
             let fits = |band: &&Band| {
-                bytes += self.plan.film_bytes * band.region.pixels();
+                bytes += size(band);
                 bytes <= READ
             };
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
-            let films: Vec<_> =
-                now.iter().map(|band| (&band.film, self.plan.film_bytes * band.region.pixels())).collect();
-            let read = self.queue.read(&counters, &films, |i, bytes| {
-                let records = bytemuck::try_cast_slice::<u8, UVec4>(bytes);
-                let records = records.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
-                film.develop_on_all_threads::<f32>(now[i].region, &records, *samples, &mut rays);
+            let films: Vec<_> = now.iter().map(|band| (&band.film, size(band))).collect();
+            secondary = self.queue.read(&counters, &films, |i, bytes| {
+                let sums = bytemuck::try_cast_slice::<u8, u32>(bytes);
+                let sums = sums.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
+                film.add(Exposure { region: now[i].region, samples: samples.clone(), sums: &sums, secondary: 0 });
             })?;
-            (rays.secondary, device_time) = (read.rays, read.device_time);
             rest = later;
         }
-        rays.primary = view.region().pixels() * u64::from(*samples);
-        Ok(GpuRendering { picture: film, samples: *samples, rays, device_time })
+        film.add_rays(secondary);
+        Ok(film)
     }
 
     fn buffers(&self) -> &LaunchBuffers {
@@ -261,7 +257,7 @@ impl<'a> Renderer<'a> {
         }
         // What launches under way use is given back only when they are done.
         self.gpu.wait()?;
-        (self.memory, self.picture) = (None, None);
+        (self.memory, self.growing) = (None, None);
         let (columns, rows) = camera::blocks(self.order);
         let mut refusal = None;
         let buffers = loop {
@@ -295,7 +291,7 @@ impl<'a> Renderer<'a> {
     }
 
     fn band(&self, region: Region) -> Result<Band> {
-        let size = self.plan.film_bytes * region.pixels();
+        let size = self.plan.film_bytes() * region.pixels();
         let film = buffer(self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
         let kernel = self.kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
         let group = kernel.group(self.gpu, |binding| match binding {

@@ -4,7 +4,7 @@ mod run;
 
 use eyerays_shader::data::{Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::{FILM_RECORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS};
+use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS};
 
 pub use run::{Executor, run};
 
@@ -30,7 +30,7 @@ pub enum Stage {
     Scatter,
     /// Adds what slots have summed to the film.
     Gather,
-    /// The same, and keeps what rounding takes off.
+    /// The same, with the light that their last vertices waited for.
     Accumulate,
 }
 
@@ -76,8 +76,8 @@ pub struct Plan {
     pub shadow_rays: u32,
     /// Bytes that a sample in flight takes of each buffer, by its binding.
     pub slot_bytes: Vec<(u32, u64)>,
-    /// Bytes that a pixel takes of the film.
-    pub film_bytes: u64,
+    /// Words of 4 bytes that a pixel takes of the film.
+    pub film_words: u32,
 }
 
 impl Plan {
@@ -129,8 +129,13 @@ impl Plan {
         }
         let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
         let slot_bytes = slot_bytes(needs, !further.is_empty());
-        let film_bytes = if is_sampled { u64::from(FILM_RECORDS) * Plan::RECORD_BYTES } else { Plan::RECORD_BYTES };
-        Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_bytes })
+        let film_words = if is_sampled { NOISY_FILM_WORDS } else { FILM_WORDS };
+        Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
+    }
+
+    /// Bytes that a pixel takes of the film.
+    pub fn film_bytes(&self) -> u64 {
+        4 * u64::from(self.film_words)
     }
 
     /// Bytes that a sample in flight takes of a resource, 0 if the plan has not got it.
@@ -211,7 +216,7 @@ mod tests {
         for bytes in [(binding::SHADOWS, 4), (binding::PATHS, 64), (binding::SEGMENTS, 48)] {
             assert!(plan.slot_bytes.contains(&bytes), "{bytes:?}");
         }
-        assert_eq!(plan.film_bytes, 32);
+        assert_eq!(plan.film_words, NOISY_FILM_WORDS);
         let streams = plan.steps().filter(|step| step.spec.launch.has(Launch::STREAM));
         assert!(streams.map(|step| step.stage).all(|stage| matches!(stage, Stage::Trace | Stage::Shadow)));
     }

@@ -54,7 +54,7 @@ mod xyzr;
 #[cfg(test)]
 mod tests;
 
-pub use binary::{ENDING, Hierarchy, write};
+pub use binary::{ENDING, Hierarchy, fingerprint, write};
 pub use describe::describe;
 pub use environment::Environment;
 pub use falloff::Falloff;

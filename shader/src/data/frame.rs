@@ -25,7 +25,7 @@ pub struct Frame {
     pub height: u32,
     /// Samples along a pixel's edge.
     pub samples: u32,
-    /// The launch's first sample within each pixel; number 0 starts the film anew.
+    /// The launch's first sample within each pixel.
     pub sample: u32,
     /// The region's left column.
     pub left: u32,
@@ -67,6 +67,14 @@ pub struct Frame {
     pub environment: f32,
     /// How many of the emitters are far away, which are the first, where there are [many](super::Effects::MANY_LIGHTS).
     pub far: u32,
+    /// The sample with which the film starts anew.
+    pub first: u32,
+    /// Nothing, like the next two: a record is a multiple of 16 bytes.
+    pub padding: u32,
+    /// Nothing.
+    pub padding_2: u32,
+    /// Nothing.
+    pub padding_3: u32,
 }
 
 /// A camera for an image of some size: vectors in the normalised scene. The last integer of `forward` is 1 where rays are parallel;

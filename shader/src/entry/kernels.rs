@@ -1,11 +1,13 @@
 //! Every kernel, and what they share beside stages.
 
 use crate::buffer::{read, write};
+use crate::camera;
 use crate::data::*;
 use crate::integrator::{self, Exchange, ScatterContext, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::light::Lighting;
 use crate::material::Albedos;
+use crate::real::Scalar;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
 use crate::stage::{self, ShadowInputs};

@@ -123,9 +123,11 @@ macro_rules! shading {
         }
 
         entry! {
-            /// Folds the sums of slots into pixels, and keeps what rounding takes off.
+            /// Adds what slots have summed, and the light that their last vertices waited for, to the film.
             accumulate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame shadows segments sums film] {
-                stage::accumulate::<$R>(frame, spec.order, id.x, (sums, shadows, segments), film);
+                let sample = |slot| stage::sampled::<$R>(frame, slot, (sums, shadows, segments));
+                let pixel = camera::pixel(frame, spec.order, id.x);
+                stage::expose::<$R>(frame, (pixel, id.x), stage::NOISY_FILM_WORDS, sample, film);
             }
         }
 
@@ -137,9 +139,11 @@ macro_rules! shading {
         }
 
         entry! {
-            /// Folds the sums of slots into pixels.
+            /// Adds what slots have summed to the film.
             gather<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame sums film] {
-                stage::gather::<$R>(frame, spec.order, id.x, sums, film);
+                let sample = |slot| <$R>::load(read(sums, slot));
+                let pixel = camera::pixel(frame, spec.order, id.x);
+                stage::expose::<$R>(frame, (pixel, id.x), stage::FILM_WORDS, sample, film);
             }
         }
     };

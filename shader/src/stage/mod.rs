@@ -1,12 +1,11 @@
-//! The stages of a launch (thesis chapter 6): trace, shadow, shade, and gather at its end. They exchange records through
+//! The stages of a launch (thesis chapter 6): trace, shadow, shade, and the exposure of the film at its end. They exchange records through
 //! device memory, one slot a sample of a pixel; a slot follows its ray tree depth first and keeps its own sum, so that
 //! the sum has one order however slots are scheduled.
 //!
 //! The first wave of a launch traces primary rays, one for every slot. Each further wave traces, for
 //! the slots that still have one, the next secondary ray.
 
-mod accumulate;
-mod gather;
+mod film;
 mod generate;
 mod path;
 mod path_state;
@@ -17,11 +16,13 @@ mod shadow;
 mod together;
 mod trace;
 
-pub use accumulate::{FILM_RECORDS, accumulate, brightness};
-pub use gather::{counted, gather};
+pub use film::{
+    FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST, brightness,
+    expose,
+};
 pub use generate::generate;
 pub use path::{Path, RECORDS};
-pub use path_state::{PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay};
+pub use path_state::{PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
 pub use persistent::persistent;
 pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};

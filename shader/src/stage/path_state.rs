@@ -3,7 +3,7 @@
 use super::segment::NOWHERE;
 use super::{REACHED, Segment};
 use crate::buffer::{read, write};
-use crate::data::Launch;
+use crate::data::{Frame, Launch};
 use crate::light::Viewpoint;
 use crate::real::{Real, Scalar, V3};
 use crate::scene::LaunchContext;
@@ -129,6 +129,17 @@ impl<R: Scalar> ShadowRay<R> {
         let light = R::load(read(segments, 2 * slots + slot)).0;
         if read(shadows, slot) == REACHED { light } else { V3::zero() }
     }
+}
+
+/// A sample once its slot is done: what the slot has summed, with the light that its last vertex waited for; and its counts.
+#[inline(always)]
+pub fn sampled<R: Scalar>(
+    frame: &Frame,
+    slot: u32,
+    (sums, shadows, segments): (&[R::Record], &[u32], &[R::Record]),
+) -> (V3<R>, u32) {
+    let (sum, word) = R::load(read(sums, slot));
+    (sum + ShadowRay::<R>::arrived(frame.slots, slot, shadows, segments), word)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::Launch;
 use eyerays_shader::integrator::{self, Exchange, Wave};
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::stage::{self, FILM_RECORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
+use eyerays_shader::stage::{self, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
 use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
@@ -59,7 +59,8 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut paths = vec![black; slots * STATE_RECORDS as usize];
     let mut segments = vec![black; slots * SHADOW_RECORDS as usize];
     let (mut hits, mut shadows, mut sums) = (vec![black; slots], vec![0; slots], vec![black; slots]);
-    let inside = |slot: &u32| camera::pixel(&frame, spec.order, *slot).inside;
+    let order = spec.order;
+    let inside = |slot: &u32| camera::pixel(&frame, order, *slot).inside;
     let mut queue: Vec<u32> = (0..frame.slots).filter(inside).collect();
     queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, slot, &mut paths));
     while !queue.is_empty() {
@@ -80,9 +81,10 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         }
         spec = spec.with_launch(Launch::SECONDARY);
     }
-    let mut picture = vec![black; FILM_RECORDS as usize * pixels];
-    for slot in 0..frame.pixel_slots {
-        stage::accumulate::<R>(&frame, spec.order, slot, (&sums, &shadows, &segments), &mut picture);
+    let mut picture = vec![V3::zero(); pixels];
+    for slot in (0..frame.pixel_slots).filter(inside) {
+        let index = camera::pixel(&frame, order, slot).index as usize;
+        picture[index] = stage::sampled::<R>(&frame, slot, (&sums, &shadows, &segments)).0;
     }
-    picture[..pixels].iter().map(|&record| R::load(record).0).collect()
+    picture
 }

@@ -18,7 +18,7 @@ fn pictures(packed: &Posed, what: &str) -> Vec<Vec3> {
     if let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) {
         let mut renderer = Renderer::new(&gpu, packed, true, Traversal::default()).unwrap();
         let rendering = renderer.render(&packed.view, &|_| ()).unwrap();
-        assert_same_bits(&rendering.picture, &picture, what);
+        assert_same_bits(&rendering.film.develop().unwrap(), &picture, what);
     }
     picture.pixels.iter().map(|&pixel| Vec3::from(pixel)).collect()
 }

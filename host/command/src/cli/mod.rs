@@ -3,6 +3,7 @@
 mod bench;
 mod camera;
 mod check;
+mod checkpoint;
 mod choice;
 mod console;
 mod convert;
@@ -13,8 +14,11 @@ mod footprint;
 mod generate;
 mod hush;
 mod info;
+mod look;
+mod merge;
 mod options;
 mod outline;
+mod part;
 mod progress;
 mod reading;
 mod render;
@@ -28,6 +32,7 @@ mod transport;
 mod watching;
 
 use std::process::ExitCode;
+use std::time::Duration;
 
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -61,6 +66,9 @@ enum Command {
     /// Render a scene to a picture
     #[command(after_help = render::EXAMPLES, allow_negative_numbers = true)]
     Render(Box<render::Render>),
+    /// Put the parts of a picture together
+    #[command(after_help = merge::EXAMPLES, allow_negative_numbers = true)]
+    Merge(merge::Merge),
     /// Compare two pictures, or a scene's pictures from GPU and CPU
     #[command(after_help = diff::EXAMPLES, allow_negative_numbers = true)]
     Diff(Box<diff::Diff>),
@@ -112,6 +120,7 @@ fn execute(cli: Cli) -> Result<ExitCode> {
         .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;
     match cli.command {
         Command::Render(command) => command.run(cli.quiet),
+        Command::Merge(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
         Command::Bench(command) => command.run(cli.quiet),
         Command::Tradeoff(command) => command.run(cli.quiet),
@@ -141,6 +150,12 @@ fn warn(warnings: &[String], quiet: bool) {
 /// A count with its noun.
 fn plural(count: usize, noun: &str) -> String {
     format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A time of at most a year.
+fn seconds(text: &str) -> std::result::Result<Duration, String> {
+    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.0..=31_536_000.0).contains(seconds));
+    seconds.map(Duration::from_secs_f64).ok_or_else(|| "write seconds, 0 to 31536000, for example 2.5".to_owned())
 }
 
 /// Standard output is for the JSON or for a picture.

@@ -8,21 +8,25 @@ use std::time::{Duration, Instant};
 
 use clap::Args;
 
+use super::checkpoint::{self, Checkpoint, CheckpointArgs};
 use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
-use super::exposure::{Brightness, Exposure};
+use super::look::Look;
 use super::options::{Effort, Loaded, View};
+use super::part::PartArgs;
 use super::progress;
 use super::reading::{Read, Reading};
+use super::seconds;
 use super::summary::{Summary, Times};
 use super::watching::{self, Watching};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
-use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
-use eyerays::layers::{self, Layer};
-use eyerays::render::{Backend, DeviceWish, Rendering};
+use eyerays::film::Identity;
+use eyerays::layers::{self, Layer, Values};
+use eyerays::render::{Backend, Choice, DeviceWish, Precision, Rendering};
+use eyerays::scene::{Camera, Scene};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -31,13 +35,15 @@ Examples:
   eyerays render scenes/whitted.toml -o - > whitted.png
   eyerays render scenes/cornell_path.toml --exposure 1 --tone agx
   eyerays render model.glb -o model.exr --layers albedo,normal,depth
-  eyerays render scenes/cornell.toml --settings fast.toml";
+  eyerays render scenes/cornell.toml --settings fast.toml
+  eyerays render scenes/room.toml --spp 4096 --checkpoint room.film --resume
+  eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film";
 
 #[derive(Args)]
 pub(super) struct Render {
     /// A scene (.toml, .gltf, .glb, .eyerays), or a bare mesh (.obj, .ply), which is framed and lit
     scene: PathBuf,
-    /// The picture, .png, .exr or .hdr; - writes PNG to standard output [default: SCENE.png here]
+    /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output [default: SCENE.png here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<std::ffi::OsString>,
     /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
@@ -46,21 +52,11 @@ pub(super) struct Render {
     /// Where to render [default: auto]
     #[arg(long, value_parser = choice::<DeviceWish>())]
     device: Option<DeviceWish>,
-    /// Brighten the picture by this many stops; auto makes white what all but 1 % of the pixels with light are darker than
-    #[arg(long, value_name = "EV|auto", default_value = "0", value_parser = Exposure::parse, allow_hyphen_values = true)]
-    exposure: Exposure,
-    /// Bits a channel of a PNG: 8 or 16
-    #[arg(long, value_name = "BITS", default_value_t = 8)]
-    bits: u32,
-    /// How a PNG shows light brighter than a screen's white
-    #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
-    tone: ToneMap,
+    #[command(flatten)]
+    look: Look,
     /// What an .exr file holds beside the light of each pixel, with commas between
-    #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',')]
+    #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',', conflicts_with = "samples_from")]
     layers: Vec<Layer>,
-    /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
-    #[arg(long)]
-    half: bool,
     /// Write the colours of the surfaces to the output first, by the CPU, to be seen while a GPU gets ready; the picture replaces them
     #[arg(long)]
     preview: bool,
@@ -84,32 +80,46 @@ pub(super) struct Render {
     reading: Reading,
     #[command(flatten)]
     effort: Effort,
+    #[command(flatten)]
+    part: PartArgs,
+    #[command(flatten)]
+    keeping: CheckpointArgs,
+}
+
+/// A picture that is ready to be rendered.
+struct Ready<'a> {
+    of: &'a Render,
+    destination: Destination,
+    checkpoint: Option<Checkpoint>,
+    choice: Choice,
+    loaded: Loaded,
+    scene: Scene,
+    camera: Camera,
+    quiet: bool,
 }
 
 impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
+        let mut ready = self.ready(quiet)?;
+        if self.preview {
+            ready.preview()?;
+        }
+        ready.render()
+    }
+
+    /// Checks what can be checked, reads the scene and packs it.
+    fn ready(&self, quiet: bool) -> Result<Ready<'_>> {
         let destination = match &self.output {
             Some(name) => Destination::from(name.clone()),
             None => Destination::from(default_output(&self.scene).as_path()),
         };
-        super::one_on_stdout(self.json, &destination)?;
-        if self.preview && destination.file().is_none() {
-            return Err(Error::new(
-                "--preview replaces what it wrote, which standard output can't: name a file with --output",
-            ));
-        }
-        let bits = BitDepth::from_bits(self.bits)?;
-        let mut encoding = Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone };
-        encoding.check(destination.format()?)?;
+        self.check(&destination)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
-        let layers = self.layers();
-        if !self.layers.is_empty() {
-            output::check_layers(&destination)?;
-        }
         let device = self.device.or(preset.device).unwrap_or_default();
         let choice = self.on.over(&preset, device).choice(device)?;
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
+        let checkpoint = self.keeping.beside(&destination)?;
         let mut effort = self.effort.over(&preset);
         let loading = self.reading.loading(effort.integrator());
         let read = Read::scene(&self.scene, slice::from_ref(&destination), loading, quiet)?;
@@ -117,96 +127,24 @@ impl Render {
             effort = effort.endless(&read.scene)?;
         }
         let (mut loaded, scene, camera) = self.view.pack_and_keep(read, &effort, &choice, quiet)?;
-        if self.preview {
-            progress::stage("drawing a preview", quiet || self.json, || {
-                let picture = layers::preview(&mut loaded.packed, &camera, choice.threads)?;
-                let plain = Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..encoding };
-                output::write_layers(&picture, &[], &destination, &plain)
-            })?;
-        }
-        // Nothing but layers has a use for it, and memory may be short.
-        let kept = (!layers.is_empty()).then_some((scene, camera));
-        let chosen = progress::stage("opening the device", quiet, || Backend::new(&choice))?;
-        // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
-        let chosen = ManuallyDrop::new(chosen);
-        let is_silent = quiet || self.json;
-        // Of one sample there is nothing to be seen before it is done, nor to be kept.
-        let rendering = if self.repeat == 1 && loaded.view.samples() > 1 {
-            let watching = Watching {
-                bar: progress::samples(loaded.view.samples(), is_silent),
-                destination: &destination,
-                encoding,
-                auto_exposure: self.exposure == Exposure::Auto,
-                every: self.preview_every,
-                limit: self.time_limit,
-                quiet,
-            };
-            watching.follow(|watch| chosen.render_watched(&loaded.packed, &loaded.view, watch))
-        } else {
-            let (width, height) = loaded.packed.settings().size;
-            let pixels = u64::from(width) * u64::from(height) * u64::from(self.repeat);
-            let bar = progress::pixels(pixels, is_silent);
-            let rendering = chosen.render(&loaded.packed, &loaded.view, self.repeat, &|pixels| bar.inc(pixels));
-            bar.finish_and_clear();
-            rendering
-        };
-        let rendering = rendering.map_err(|e| e.of(&self.scene))?;
-        let start = Instant::now();
-        let layers = match &kept {
-            Some((scene, camera)) => progress::stage("rendering layers", quiet || self.json, || {
-                layers::render(&chosen, &mut loaded.packed, (scene, camera), &rendering, &layers)
-            })
-            .map_err(|e| e.of(&self.scene))?,
-            None => Vec::new(),
-        };
-        let layers_time = kept.is_some().then(|| start.elapsed());
-        let brightness = Brightness::of(&rendering.picture);
-        if self.exposure == Exposure::Auto {
-            encoding.exposure_ev = brightness.exposure();
-        }
-        super::warn(self.beyond_white(&brightness, &encoding, &destination)?.as_slice(), quiet);
-        let start = Instant::now();
-        progress::stage("writing", quiet, || {
-            output::write_layers(&rendering.picture, &layers, &destination, &encoding)
-        })?;
-        let times = Times::new(&loaded, &rendering, layers_time, start.elapsed());
-        let summary = Summary::new(&destination, &choice, &loaded, &rendering, times);
-        if self.json {
-            console::print_json(&summary.json())?;
-        } else if !quiet {
-            console::say(summary);
-        }
-        Ok(self.code(&rendering, &loaded, quiet))
-    }
-}
-
-impl Render {
-    /// How the command ends: as shells have it where a signal ended the rendering.
-    fn code(&self, rendering: &Rendering, loaded: &Loaded, quiet: bool) -> ExitCode {
-        let Some(signal) = watching::ended_by() else { return ExitCode::SUCCESS };
-        let (samples, all) = (rendering.samples, loaded.view.samples());
-        if samples < all && !quiet {
-            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
-        }
-        ExitCode::from(128 + signal as u8)
+        loaded.view = self.part.of(&loaded.view)?;
+        Ok(Ready { of: self, destination, checkpoint, choice, loaded, scene, camera, quiet })
     }
 
-    /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
-    fn beyond_white(
-        &self,
-        brightness: &Brightness,
-        encoding: &Encoding,
-        destination: &Destination,
-    ) -> Result<Option<String>> {
-        if destination.format()? != Format::Png {
-            return Ok(None);
+    fn check(&self, destination: &Destination) -> Result<()> {
+        super::one_on_stdout(self.json, destination)?;
+        if self.preview && destination.file().is_none() {
+            return Err(Error::new(
+                "--preview replaces what it wrote, which standard output can't: name a file with --output",
+            ));
         }
-        let share = brightness.beyond_white(encoding.exposure_ev);
-        if share <= MOST_BEYOND_WHITE {
-            return Ok(None);
+        if destination.is_film() && (self.preview || !self.layers.is_empty()) {
+            return Err(Error::new(
+                "--preview and --layers are for pictures, not for films: drop them, or name an .exr file",
+            ));
         }
-        let (percent, stops) = (100.0 * share, brightness.exposure());
-        Ok(Some(format!("{percent:.0} % of the light in the picture is beyond white: --exposure {stops:.1} shows it")))
+        self.look.check(destination)?;
+        if self.layers.is_empty() { Ok(()) } else { output::check_layers(destination) }
     }
 
     /// The layers beside the picture, each once.
@@ -219,13 +157,113 @@ impl Render {
     }
 }
 
-/// The share of the pixels with light that may be beyond white before it is said.
-const MOST_BEYOND_WHITE: f64 = 1.0 / 3.0;
+impl Ready<'_> {
+    /// What can be seen before kernels are there.
+    fn preview(&mut self) -> Result<()> {
+        progress::stage("drawing a preview", self.is_silent(), || {
+            let window = self.loaded.view.region();
+            let picture = layers::preview(&mut self.loaded.packed, &self.camera, window, self.choice.threads)?;
+            output::write_picture(&picture, &self.destination, &self.of.look.as_it_is()?)
+        })
+    }
 
-/// A time of at most a year.
-fn seconds(text: &str) -> std::result::Result<Duration, String> {
-    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.0..=31_536_000.0).contains(seconds));
-    seconds.map(Duration::from_secs_f64).ok_or_else(|| "write seconds, 0 to 31536000, for example 2.5".to_owned())
+    fn is_silent(&self) -> bool {
+        self.quiet || self.of.json
+    }
+
+    fn render(mut self) -> Result<ExitCode> {
+        let path = &self.of.scene;
+        let of_scene = |error: eyerays::error::Error| error.of(path);
+        let identity = self.identity().map_err(of_scene)?;
+        let backend = progress::stage("opening the device", self.quiet, || Backend::new(&self.choice))?;
+        // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
+        let backend = ManuallyDrop::new(backend);
+        let identity = match self.choice.precision {
+            Precision::Fast => identity.on(&backend.description(), self.choice.traversal),
+            _ => identity,
+        };
+        let mut rendering = self.rendered(&backend, &identity)?;
+        rendering.film.identity = identity;
+        let start = Instant::now();
+        let asked = self.of.layers();
+        let is_silent = self.is_silent() || asked.is_empty();
+        let layers = progress::stage("rendering layers", is_silent, || {
+            layers::render(&backend, &mut self.loaded.packed, (&self.scene, &self.camera), &rendering, &asked)
+        });
+        let layers = layers.map_err(of_scene)?;
+        let layers_time = (!asked.is_empty()).then(|| start.elapsed());
+        let start = Instant::now();
+        progress::stage("writing", self.quiet, || self.write(&rendering, &layers))?;
+        let times = Times::new(&self.loaded, &rendering, layers_time, start.elapsed());
+        let summary = Summary::new(&self.destination, &self.choice, &self.loaded, &rendering, times);
+        if self.of.json {
+            console::print_json(&summary.json())?;
+        } else if !self.quiet {
+            console::say(summary);
+        }
+        self.end(&rendering)
+    }
+
+    /// What the picture is of. A film of one sample is not kept, and hashing the scene takes time.
+    fn identity(&self) -> eyerays::error::Result<Identity> {
+        let Loaded { packed, view, .. } = &self.loaded;
+        if view.samples() == 1 && !self.destination.is_film() && self.checkpoint.as_ref().is_none_or(|to| !to.stays()) {
+            return Ok(Identity::default());
+        }
+        Identity::of(&self.scene, packed, view, self.choice.precision)
+    }
+
+    fn rendered(&self, backend: &Backend, identity: &Identity) -> Result<Rendering> {
+        let (Loaded { packed, view, .. }, repeat) = (&self.loaded, self.of.repeat);
+        let from = match &self.checkpoint {
+            Some(checkpoint) => checkpoint.film(identity, self.quiet)?,
+            None => None,
+        };
+        // Of one sample there is nothing to be seen before it is done, nor to be kept.
+        let rendering = if repeat == 1 && (view.samples() > 1 || from.is_some()) {
+            let watching = Watching {
+                bar: progress::samples(view.samples(), self.is_silent()),
+                destination: &self.destination,
+                look: self.of.look,
+                every: self.of.preview_every,
+                limit: self.of.time_limit,
+                checkpoint: self.checkpoint.as_ref(),
+                identity,
+                quiet: self.quiet,
+            };
+            watching.follow(|watch| backend.render_watched(packed, view, from.as_ref(), watch))
+        } else {
+            let bar = progress::pixels(view.region().pixels() * u64::from(repeat), self.is_silent());
+            let rendering = backend.render(packed, view, repeat, &|pixels| bar.inc(pixels));
+            bar.finish_and_clear();
+            rendering
+        };
+        Ok(rendering.map_err(|error| error.of(&self.of.scene))?)
+    }
+
+    fn write(&self, rendering: &Rendering, layers: &[(Layer, Values)]) -> Result<()> {
+        if self.destination.is_film() {
+            return checkpoint::write(&rendering.film, self.destination.file().expect("a film is a file"));
+        }
+        let (picture, look) = (&rendering.picture, &self.of.look);
+        super::warn(look.beyond_white(picture, &self.destination)?.as_slice(), self.quiet);
+        output::write_layers(picture, layers, &self.destination, &look.encoding(picture)?)
+    }
+
+    /// How the command ends: as shells have it where a signal ended the rendering.
+    fn end(&self, rendering: &Rendering) -> Result<ExitCode> {
+        let (samples, all) = (rendering.samples, self.loaded.view.samples());
+        let signal = watching::ended_by();
+        if signal.is_some() && samples < all && !self.quiet {
+            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
+        }
+        if let Some(checkpoint) = &self.checkpoint
+            && !self.destination.is_film()
+        {
+            checkpoint.end(&rendering.film, signal.is_none() || samples == all, self.quiet)?;
+        }
+        Ok(signal.map_or(ExitCode::SUCCESS, |signal| ExitCode::from(128 + signal as u8)))
+    }
 }
 
 /// The scene's name with another ending, in the current folder.

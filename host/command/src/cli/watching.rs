@@ -6,10 +6,12 @@ use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
 
+use super::checkpoint::Checkpoint;
 use super::console;
-use super::exposure::Brightness;
+use super::look::Look;
+use crate::error::Result;
 use crate::output::{self, Destination};
-use eyerays::image::Encoding;
+use eyerays::film::{Film, Identity};
 use eyerays::watch::{Growth, Watch};
 
 /// A picture that takes longer than this is written while it is rendered ...
@@ -46,30 +48,49 @@ pub(super) fn ended_by() -> Option<i32> {
 pub(super) struct Watching<'a> {
     pub bar: ProgressBar,
     pub destination: &'a Destination,
-    pub encoding: Encoding,
-    /// Is its exposure the picture's own?
-    pub auto_exposure: bool,
+    pub look: Look,
     /// Between two pictures so far; zero is never.
     pub every: Option<Duration>,
     /// How long it may take.
     pub limit: Option<Duration>,
+    /// Where its film is kept.
+    pub checkpoint: Option<&'a Checkpoint>,
+    /// What the film is of.
+    pub identity: &'a Identity,
     pub quiet: bool,
+}
+
+/// When what was written last, and whether a fault of writing was told.
+struct Written {
+    picture: Cell<Instant>,
+    film: Cell<Instant>,
+    faulty: Cell<bool>,
 }
 
 impl Watching<'_> {
     /// Renders by `work` under the eyes of this.
     pub fn follow<T>(&self, work: impl FnOnce(&Watch<'_>) -> T) -> T {
-        let (start, written, faulty) = (Instant::now(), Cell::new(Instant::now()), Cell::new(false));
-        let can_write = output::can_replace(self.destination);
+        let start = Instant::now();
+        let written = Written { picture: Cell::new(start), film: Cell::new(start), faulty: Cell::new(false) };
+        let can_write = output::can_replace(self.destination) && !self.destination.is_film();
+        let first = Cell::new(None);
         let grown = |growth: Growth<'_>| {
             self.bar.set_length(growth.of.into());
             self.bar.set_position(growth.samples.into());
             let is_over = growth.samples == growth.of || STOP.load(Ordering::SeqCst);
-            let whole = start.elapsed().mul_f64(f64::from(growth.of) / f64::from(growth.samples));
-            let every = interval(self.every, self.limit.map_or(whole, |limit| whole.min(limit)));
-            if can_write && !is_over && every.is_some_and(|every| written.get().elapsed() >= every) {
-                self.write(growth, &faulty);
-                written.set(Instant::now());
+            // What was there before took no time.
+            let first = first.get().unwrap_or_else(|| {
+                first.set(Some(growth.samples));
+                growth.samples - 1
+            });
+            let share = f64::from(growth.of - first) / f64::from((growth.samples - first).max(1));
+            let whole = start.elapsed().mul_f64(share);
+            let whole = self.limit.map_or(whole, |limit| whole.min(limit));
+            let every = interval(self.every, whole).filter(|_| can_write);
+            let shows = every.is_some_and(|every| written.picture.get().elapsed() >= every);
+            let keeps = self.checkpoint.is_some_and(|to| to.is_due(written.film.get().elapsed(), whole));
+            if !is_over && (shows || keeps) {
+                self.write(growth, (shows, keeps), &written);
             }
         };
         WATCHED.store(true, Ordering::SeqCst);
@@ -80,19 +101,26 @@ impl Watching<'_> {
     }
 
     /// What can't be written now may be later, and the rendering goes on.
-    fn write(&self, growth: Growth<'_>, faulty: &Cell<bool>) {
+    fn write(&self, growth: Growth<'_>, (shows, keeps): (bool, bool), written: &Written) {
         let samples = growth.samples;
-        let written = growth.picture().map_err(Into::into).and_then(|picture| {
-            let own = self.auto_exposure.then(|| Brightness::of(&picture).exposure());
-            let encoding = Encoding { exposure_ev: own.unwrap_or(self.encoding.exposure_ev), ..self.encoding };
-            output::write_picture(&picture, self.destination, &encoding)
-        });
-        if let Err(error) = written
-            && !faulty.replace(true)
+        let done = growth.film().map_err(Into::into).and_then(|film| self.write_film(film, shows, keeps));
+        for (_, last) in [(shows, &written.picture), (keeps, &written.film)].iter().filter(|(is_done, _)| *is_done) {
+            last.set(Instant::now());
+        }
+        if let Err(error) = done
+            && !written.faulty.replace(true)
             && !self.quiet
         {
             self.bar.suspend(|| console::say(format_args!("warning: the picture of {samples} samples: {error}")));
         }
+    }
+
+    fn write_film(&self, mut film: Film, shows: bool, keeps: bool) -> Result<()> {
+        film.identity = self.identity.clone();
+        if let Some(checkpoint) = self.checkpoint.filter(|_| keeps) {
+            checkpoint.keep(&film)?;
+        }
+        if shows { self.look.write(&film.develop()?, self.destination) } else { Ok(()) }
     }
 }
 

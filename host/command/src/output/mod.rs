@@ -9,12 +9,13 @@ mod tests;
 
 use std::ffi::OsString;
 use std::fmt;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 use crate::error::{Error, Result};
 pub use apart::{check_apart, check_own};
+use eyerays::film::Film;
 use eyerays::image::{Encoding, Format, encode, encode_layers};
 use eyerays::layers::{Layer, Values};
 use eyerays::picture::Picture;
@@ -60,6 +61,11 @@ impl Destination {
             Destination::Stdout => None,
             Destination::File(path) => Some(path),
         }
+    }
+
+    /// Is it a film, by its name's ending, and no picture?
+    pub fn is_film(&self) -> bool {
+        self.file().and_then(Path::extension).is_some_and(|ending| ending.eq_ignore_ascii_case(Film::ENDING))
     }
 
     /// The image format: by the extension, and PNG for standard output and for a device or a
@@ -124,6 +130,22 @@ pub fn can_replace(destination: &Destination) -> bool {
 /// Those of `fill`, with `path` added if they name no file; a folder that is missing or not
 /// writable; a directory or a read-only file as `path`; a full disk.
 pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    written(path, fill, |_| Ok(()))
+}
+
+/// The same, and it is on the disk before it takes its name: a loss of power leaves the old file or the new one.
+///
+/// # Errors
+/// As [`write_atomically`].
+pub fn write_durably(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    written(path, fill, File::sync_all)
+}
+
+fn written(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<()>,
+    settle: impl FnOnce(&File) -> io::Result<()>,
+) -> Result<()> {
     let written = match Target::of(path)? {
         Target::Special => write_through(open_special(path)?, fill),
         Target::Regular { place, permissions } => {
@@ -133,7 +155,7 @@ pub fn write_atomically(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result
                     // Some file systems have none; the contents matter more.
                     let _ = temporary.file.set_permissions(permissions);
                 }
-                temporary.rename(&place).map_err(|e| write_error(&e))
+                settle(&temporary.file).and_then(|()| temporary.rename(&place)).map_err(|e| write_error(&e))
             })
         }
     };

@@ -42,6 +42,12 @@ impl Description {
         }
     }
 
+    /// The same without settings, cameras and a hierarchy.
+    pub fn bare(scene: &Scene, textures: Pictures) -> Self {
+        let all = Self::of(scene, textures, None);
+        Description { settings: Settings::default(), cameras: Vec::new(), ..all }
+    }
+
     /// Reads one.
     ///
     /// # Errors

@@ -20,7 +20,7 @@ mod tests;
 
 pub use hierarchy::Hierarchy;
 pub(super) use read::load;
-pub use write::write;
+pub use write::{fingerprint, write};
 
 /// How names of such files end.
 pub const ENDING: &str = "eyerays";

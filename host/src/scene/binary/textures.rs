@@ -99,9 +99,9 @@ impl What {
 }
 
 impl Pictures {
-    /// Those of a scene, and their texels.
-    pub fn of(scene: &Scene) -> (Pictures, Vec<u8>) {
-        let (mut textures, mut texels) = (Vec::new(), Vec::new());
+    /// Those of a scene, and the textures whose texels follow each other in a file.
+    pub fn of(scene: &Scene) -> (Pictures, Vec<Arc<Texture>>) {
+        let mut textures = Vec::new();
         let environment = scene.environment.as_ref().map(|environment| Around {
             picture: number(&mut textures, &environment.texture),
             rotation: environment.rotation,
@@ -122,8 +122,8 @@ impl Pictures {
             }
             taken.push(Taken { material, normal_scale: maps.normal_scale, maps: uses });
         }
-        let pictures = textures.iter().map(|texture| Picture::of(texture, &mut texels)).collect();
-        (Pictures { environment, pictures, taken }, texels)
+        let pictures = textures.iter().map(|texture| Picture::of(texture)).collect();
+        (Pictures { environment, pictures, taken }, textures)
     }
 
     /// Gives a scene these textures, whose texels are those of a section.
@@ -160,13 +160,9 @@ impl Pictures {
 }
 
 impl Picture {
-    /// That of a texture, whose texels it adds.
-    fn of(texture: &Texture, texels: &mut Vec<u8>) -> Self {
-        let (floats, bytes): (bool, &[u8]) = match &texture.texels {
-            Texels::Bytes(bytes) => (false, bytes.as_flattened()),
-            Texels::Floats(floats) => (true, bytemuck::cast_slice(floats)),
-        };
-        texels.extend_from_slice(bytes);
+    /// That of a texture.
+    fn of(texture: &Texture) -> Self {
+        let floats = matches!(texture.texels, Texels::Floats(_));
         Picture { name: texture.name.clone(), width: texture.width, height: texture.height, floats }
     }
 
@@ -183,6 +179,14 @@ impl Picture {
         *texels = rest;
         let texels = if floats { Texels::Floats(list(own)) } else { Texels::Bytes(list(own)) };
         Ok(Texture { name, width, height, texels })
+    }
+}
+
+/// A texture's texels as a file has them.
+pub fn bytes(texture: &Texture) -> &[u8] {
+    match &texture.texels {
+        Texels::Bytes(bytes) => bytes.as_flattened(),
+        Texels::Floats(floats) => bytemuck::cast_slice(floats),
     }
 }
 

@@ -1,0 +1,129 @@
+//! Films that are kept while they are rendered, to be gone on with.
+
+use std::fs::{self, File};
+use std::io::{BufReader, ErrorKind};
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use clap::Args;
+
+use super::{console, seconds};
+use crate::error::{Error, Result};
+use crate::output::{self, Destination};
+use eyerays::film::{Film, Identity};
+
+/// What is kept, and gone on with.
+#[derive(Args, Clone)]
+#[command(next_help_heading = "Parts")]
+pub(super) struct CheckpointArgs {
+    /// Keep the film here, to go on with it later [default: the output's name ending in .film, of what takes longer than a minute, until
+    /// the picture is done]
+    #[arg(long, value_name = "FILE", conflicts_with = "repeat")]
+    checkpoint: Option<PathBuf>,
+    /// Write it every so many seconds, 0 for only at the end
+    #[arg(long, value_name = "S", value_parser = seconds, default_value = "60", conflicts_with = "repeat")]
+    checkpoint_every: Duration,
+    /// Go on with a film that was kept, if there is one: only what it has not is rendered
+    #[arg(long, conflicts_with = "repeat")]
+    resume: bool,
+}
+
+/// A picture that takes longer is kept without being asked.
+const LONG: Duration = Duration::from_secs(60);
+
+/// Where a film is kept.
+pub(super) struct Checkpoint {
+    path: PathBuf,
+    /// Was it asked for? Then it stays.
+    stays: bool,
+    every: Duration,
+    resume: bool,
+}
+
+impl CheckpointArgs {
+    /// For a picture; none where nothing can be kept beside it.
+    pub fn beside(&self, destination: &Destination) -> Result<Option<Checkpoint>> {
+        let (path, stays) = match (&self.checkpoint, destination.file()) {
+            (Some(path), _) => (path.clone(), true),
+            (None, Some(output)) if destination.is_film() => (output.to_owned(), true),
+            (None, Some(output)) if output::can_replace(destination) => (output.with_extension(Film::ENDING), false),
+            _ if self.resume => return Err(Error::new("--resume: name the film with --checkpoint")),
+            _ => return Ok(None),
+        };
+        if stays && path.extension().is_none_or(|ending| ending != Film::ENDING) {
+            let name = path.display();
+            return Err(Error::new(format!("--checkpoint {name}: the name of a film ends in .{}", Film::ENDING)));
+        }
+        if stays {
+            output::check_writable(&Destination::File(path.clone()))?;
+        }
+        Ok(Some(Checkpoint { path, stays, every: self.checkpoint_every, resume: self.resume }))
+    }
+}
+
+impl Checkpoint {
+    /// Does it stay when the picture is done?
+    pub fn stays(&self) -> bool {
+        self.stays
+    }
+
+    /// The film to go on with. One that can't be read is as good as none, but one of another picture is refused.
+    pub fn film(&self, identity: &Identity, quiet: bool) -> Result<Option<Film>> {
+        if !self.resume {
+            return Ok(None);
+        }
+        let of_this = |error: eyerays::error::Error| error.of(&self.path);
+        match read(&self.path) {
+            Ok(None) => Ok(None),
+            Ok(Some(film)) => {
+                film.identity.check(identity).map_err(of_this)?;
+                Ok(Some(film))
+            }
+            Err(error) => {
+                super::warn(&[format!("{error}: rendering from the first sample")], quiet);
+                Ok(None)
+            }
+        }
+    }
+
+    /// Whether it is time to keep a film of a rendering that takes about so long as a whole.
+    pub fn is_due(&self, since: Duration, whole: Duration) -> bool {
+        !self.every.is_zero() && since >= self.every && (self.stays || whole > LONG)
+    }
+
+    /// Keeps a film.
+    pub fn keep(&self, film: &Film) -> Result<()> {
+        write(film, &self.path)
+    }
+
+    /// Ends with a picture that was written, all of it or not.
+    pub fn end(&self, film: &Film, is_whole: bool, quiet: bool) -> Result<()> {
+        if self.stays || !is_whole {
+            self.keep(film)?;
+            if !is_whole && !quiet {
+                console::say(format_args!("{} has what is done: --resume goes on with it", self.path.display()));
+            }
+            return Ok(());
+        }
+        match fs::remove_file(&self.path) {
+            Err(error) if error.kind() != ErrorKind::NotFound => {
+                Err(Error::file(&self.path, format!("can't be removed: {error}")))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Writes a film so that it outlives a loss of power.
+pub(super) fn write(film: &Film, path: &Path) -> Result<()> {
+    output::write_durably(path, |out| Ok(film.write(out)?))
+}
+
+/// Reads a film, if there is a file.
+pub(super) fn read(path: &Path) -> Result<Option<Film>> {
+    match File::open(path) {
+        Ok(file) => Ok(Some(Film::read(&mut BufReader::new(file)).map_err(|error| error.of(path))?)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Error::file(path, format!("cannot be read: {error}"))),
+    }
+}

@@ -1,0 +1,76 @@
+//! How a picture is written.
+
+use clap::Args;
+
+use super::choice::choice;
+use super::exposure::{Brightness, Exposure};
+use crate::error::Result;
+use crate::output::{self, Destination};
+use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
+use eyerays::picture::Picture;
+
+/// The options of what writes pictures.
+#[derive(Args, Clone, Copy)]
+pub(super) struct Look {
+    /// Brighten the picture by this many stops; auto makes white what all but 1 % of the pixels with light are darker than
+    #[arg(long, value_name = "EV|auto", default_value = "0", value_parser = Exposure::parse, allow_hyphen_values = true)]
+    exposure: Exposure,
+    /// Bits a channel of a PNG: 8 or 16
+    #[arg(long, value_name = "BITS", default_value_t = 8)]
+    bits: u32,
+    /// How a PNG shows light brighter than a screen's white
+    #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
+    tone: ToneMap,
+    /// Floats of 16 bits in an .exr file; finite values beyond ±65504 become that
+    #[arg(long)]
+    half: bool,
+}
+
+/// The share of the pixels with light that may be beyond white before it is said.
+const MOST_BEYOND_WHITE: f64 = 1.0 / 3.0;
+
+impl Look {
+    /// Refuses what the format of the destination has not.
+    pub fn check(&self, destination: &Destination) -> Result<()> {
+        BitDepth::from_bits(self.bits)?;
+        if destination.is_film() { Ok(()) } else { Ok(self.plain()?.check(destination.format()?)?) }
+    }
+
+    /// For a picture, whose brightness may decide.
+    pub fn encoding(&self, picture: &Picture) -> Result<Encoding> {
+        let exposure_ev = match self.exposure {
+            Exposure::Stops(stops) => stops,
+            Exposure::Auto => Brightness::of(picture).exposure(),
+        };
+        Ok(Encoding { exposure_ev, ..self.plain()? })
+    }
+
+    /// For a picture of something else than light: as it is.
+    pub fn as_it_is(&self) -> Result<Encoding> {
+        Ok(Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..self.plain()? })
+    }
+
+    fn plain(&self) -> Result<Encoding> {
+        let bits = BitDepth::from_bits(self.bits)?;
+        Ok(Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone })
+    }
+
+    /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
+    pub fn beyond_white(&self, picture: &Picture, destination: &Destination) -> Result<Option<String>> {
+        if destination.is_film() || destination.format()? != Format::Png {
+            return Ok(None);
+        }
+        let brightness = Brightness::of(picture);
+        let share = brightness.beyond_white(self.encoding(picture)?.exposure_ev);
+        if share <= MOST_BEYOND_WHITE {
+            return Ok(None);
+        }
+        let (percent, stops) = (100.0 * share, brightness.exposure());
+        Ok(Some(format!("{percent:.0} % of the light in the picture is beyond white: --exposure {stops:.1} shows it")))
+    }
+
+    /// Writes a picture.
+    pub fn write(&self, picture: &Picture, destination: &Destination) -> Result<()> {
+        output::write_picture(picture, destination, &self.encoding(picture)?)
+    }
+}

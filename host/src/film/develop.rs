@@ -1,0 +1,132 @@
+//! From sums to a picture.
+
+use eyerays_shader::data::Quanta;
+use eyerays_shader::stage::{LIGHT_FRACTION, NOISY_FILM_WORDS, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
+use rayon::prelude::*;
+
+use super::Film;
+use crate::error::Result;
+use crate::picture::Picture;
+use crate::rays::Rays;
+
+impl Film {
+    /// The picture of its window: every pixel the mean of its samples, black without any.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub fn develop(&self) -> Result<Picture> {
+        let (width, words) = (self.window.width, self.words);
+        let mut picture = Picture::new(width, self.window.height)?;
+        let rows = picture.pixels.par_chunks_mut(width as usize).zip(self.sums.par_chunks((words * width) as usize));
+        let noises = rows.zip(0..self.window.height).map(|((pixels, sums), y)| {
+            let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
+            let (row, mut noise) = (Row::new(0, width, words), Noise::default());
+            for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(&counts) {
+                let mean = Mean::of(PixelSums::load(sums, row, x), count);
+                *pixel = mean.light.map(|channel| channel as f32);
+                noise.add(&mean);
+            }
+            noise
+        });
+        // Added in order, so that the sum is the same however many threads there are.
+        let noise = noises.collect::<Vec<_>>().iter().fold(Noise::default(), Noise::with);
+        picture.noise = if words == NOISY_FILM_WORDS { noise.share(picture.pixels.len()) } else { None };
+        Ok(picture)
+    }
+
+    /// The standard error of each pixel's mean, of its brightness, estimated from how much its samples differ; row by row. Of samples
+    /// that are placed evenly, as Sobol's are, it is too high. Infinite with fewer than two samples, and where no noise is told.
+    pub fn errors(&self) -> Vec<f32> {
+        let (width, words) = (self.window.width, self.words);
+        let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
+        let errors = rows.flat_map_iter(|(sums, y)| {
+            let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
+            let error = move |(count, x)| match Mean::of(PixelSums::load(sums, Row::new(0, width, words), x), count) {
+                mean if count > 1 && words == NOISY_FILM_WORDS => mean.variance.sqrt() as f32,
+                _ => f32::INFINITY,
+            };
+            counts.into_iter().zip(0..).map(error)
+        });
+        errors.collect()
+    }
+
+    /// How many samples each pixel of its window has, row by row.
+    pub fn samples(&self) -> Vec<u32> {
+        let rows = self.window.y..self.window.y + self.window.height;
+        rows.flat_map(|y| self.coverage.counts(y, self.window.x, self.window.width)).collect()
+    }
+
+    /// What was traced for it.
+    pub fn rays(&self) -> Rays {
+        let (width, words) = (self.window.width, self.words);
+        let rows = self.sums.par_chunks((words * width) as usize);
+        let counted = rows.map(|sums| {
+            let of = |x| PixelSums::load(sums, Row::new(0, width, words), x).word;
+            let add = |(shadow, lost), word| {
+                (shadow + u64::from(word & !NON_FINITE), lost + u64::from(word & NON_FINITE != 0))
+            };
+            (0..width).map(of).fold((0, 0), add)
+        });
+        let (shadow, non_finite) = counted.reduce(|| (0, 0), |a: (u64, u64), b| (a.0 + b.0, a.1 + b.1));
+        let primary = self.coverage.parts().iter().map(|part| part.volume()).sum();
+        Rays { primary, shadow, secondary: self.secondary, non_finite }
+    }
+}
+
+/// A pixel's samples in the mean.
+struct Mean {
+    /// Linear RGB.
+    light: [f64; 3],
+    brightness: f64,
+    /// Of the mean brightness.
+    variance: f64,
+}
+
+impl Mean {
+    /// Rounded three times to double precision: as the sum, as the quotient and as what becomes of it.
+    fn of(sums: PixelSums, count: u32) -> Mean {
+        let count = f64::from(count.max(1));
+        let light = [sums.red, sums.green, sums.blue].map(|sum| light(sum) / count);
+        let brightness = (light[0] + light[1] + light[2]) / 3.0;
+        let of_samples = squares(sums.squares) / count - brightness * brightness;
+        Mean { light, brightness, variance: of_samples.max(0.0) / (count - 1.0).max(1.0) }
+    }
+}
+
+/// A sum of 96 bits.
+fn light(sum: Quanta) -> f64 {
+    let upper = (i64::from(sum.2 as i32) << 32) + i64::from(sum.1);
+    ((i128::from(upper) << 32) + i128::from(sum.0)) as f64 / (1u64 << LIGHT_FRACTION) as f64
+}
+
+fn squares(sum: Quanta) -> f64 {
+    let [a, b, c, d] = [sum.0, sum.1, sum.2, sum.3].map(u128::from);
+    (d << 96 | c << 64 | b << 32 | a) as f64 / (1u64 << SQUARE_FRACTION) as f64
+}
+
+/// What tells the noise of some pixels.
+#[derive(Debug, Clone, Copy, Default)]
+struct Noise {
+    /// Of each pixel's mean brightness, added.
+    variances: f64,
+    /// Pixels' mean brightness, added.
+    brightness: f64,
+}
+
+impl Noise {
+    fn add(&mut self, pixel: &Mean) {
+        self.variances += pixel.variance;
+        self.brightness += pixel.brightness;
+    }
+
+    fn with(self, other: &Noise) -> Noise {
+        Noise { variances: self.variances + other.variances, brightness: self.brightness + other.brightness }
+    }
+
+    /// The standard error of a pixel (root mean square) over the mean of all.
+    fn share(&self, pixels: usize) -> Option<f64> {
+        let pixels = pixels as f64;
+        let noise = (self.variances / pixels).sqrt() / (self.brightness / pixels);
+        (self.variances > 0.0 && noise.is_finite()).then_some(noise)
+    }
+}

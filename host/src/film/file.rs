@@ -1,0 +1,181 @@
+//! Films in files: eight bytes, then blocks of zlib's, each with its length before it. The first holds the [`Header`] as JSON, the others
+//! the sums, rows together.
+
+use std::io::{self, ErrorKind, Read, Write};
+use std::ops::Range;
+
+use flate2::Compression;
+use flate2::read::ZlibDecoder;
+use flate2::write::ZlibEncoder;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+
+use super::{Coverage, Film, Identity, Part};
+use crate::error::{Error, Result};
+use crate::picture::Picture;
+use crate::view::Region;
+use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS};
+
+/// No text begins like this; the last byte tells the version.
+const MAGIC: [u8; 8] = *b"\x89EYFILM\x01";
+/// Bytes of sums of a block.
+const BLOCK: usize = 1 << 20;
+/// The most bytes of a header: a coverage of some hundred thousand parts.
+const MOST_HEADER: u64 = 1 << 26;
+/// What helps with a file that is not as it was written.
+const AGAIN: &str = "render this part again";
+
+/// What a film is beside its sums.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Header {
+    identity: Identity,
+    size: (u32, u32),
+    window: Region,
+    words: u32,
+    parts: Vec<Part>,
+    secondary: u64,
+}
+
+impl Film {
+    /// How names of such files end.
+    pub const ENDING: &str = "film";
+
+    /// Writes it.
+    ///
+    /// # Errors
+    /// What keeps `out` from being written.
+    pub fn write(&self, out: &mut dyn Write) -> Result<()> {
+        let header = Header {
+            identity: self.identity.clone(),
+            size: self.size,
+            window: self.window,
+            words: self.words,
+            parts: self.coverage.parts().to_vec(),
+            secondary: self.secondary,
+        };
+        let header = serde_json::to_vec(&header).map_err(|error| Error::new(error.to_string()))?;
+        let written = out.write_all(&MAGIC).and_then(|()| write_block(&packed(&header)?, out));
+        written.map_err(|error| Error::writing(&error))?;
+        // A few at a time, so that there is never a second film in memory.
+        let blocks: Vec<Range<usize>> = blocks(self.sums.len()).collect();
+        for some in blocks.chunks(rayon::current_num_threads()) {
+            let packed = some.par_iter().map(|block| packed(bytemuck::cast_slice(&self.sums[block.clone()])));
+            for block in packed.collect::<Vec<_>>() {
+                block.and_then(|block| write_block(&block, out)).map_err(|error| Error::writing(&error))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads what [`Film::write`] wrote.
+    ///
+    /// # Errors
+    /// Anything else, or too little memory.
+    pub fn read(input: &mut dyn Read) -> Result<Film> {
+        let mut magic = [0; MAGIC.len()];
+        match input.read_exact(&mut magic) {
+            Ok(()) if magic == MAGIC => {}
+            Ok(()) if magic[..7] == MAGIC[..7] => {
+                return Err(Error::new(format!("a film of another version of this program; {AGAIN}")));
+            }
+            Err(error) if error.kind() != ErrorKind::UnexpectedEof => return Err(unread(&error)),
+            _ => return Err(Error::new("no film: give what render wrote to a .film file")),
+        }
+        let header = read_block(input, MOST_HEADER)?;
+        let header: Header = serde_json::from_slice(&unpacked(&header, MOST_HEADER)?)
+            .map_err(|error| Error::new(format!("its header is damaged ({error}); {AGAIN}")))?;
+        let mut film = header.film()?;
+        let blocks: Vec<Range<usize>> = blocks(film.sums.len()).collect();
+        let mut sums = &mut film.sums[..];
+        for some in blocks.chunks(rayon::current_num_threads()) {
+            let packed = some.iter().map(|_| read_block(input, 2 * BLOCK as u64)).collect::<Result<Vec<_>>>()?;
+            let (own, rest) = sums.split_at_mut(some.iter().map(Range::len).sum());
+            own.par_chunks_mut(BLOCK / 4).zip(packed).try_for_each(|(words, block)| {
+                let bytes = unpacked(&block, 4 * words.len() as u64)?;
+                if bytes.len() != 4 * words.len() {
+                    return Err(damaged());
+                }
+                bytemuck::cast_slice_mut(words).copy_from_slice(&bytes);
+                Ok(())
+            })?;
+            sums = rest;
+        }
+        match input.read(&mut [0]) {
+            Ok(0) => Ok(film),
+            Ok(_) => Err(damaged()),
+            Err(error) => Err(unread(&error)),
+        }
+    }
+}
+
+impl Header {
+    /// The film without its sums, if it can be one.
+    fn film(self) -> Result<Film> {
+        let Header { identity, size, window, words, parts, secondary } = self;
+        Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
+        let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
+        let is_whole = window.pixels() > 0 && image.around(window) == image;
+        if !is_whole || ![FILM_WORDS, NOISY_FILM_WORDS].contains(&words) {
+            return Err(damaged());
+        }
+        let mut coverage = Coverage::default();
+        for part in parts {
+            if part.volume() > 0 && window.around(part.region) != window || coverage.add(part).is_err() {
+                return Err(damaged());
+            }
+        }
+        let mut film = Film { size, window, words, sums: Vec::new(), coverage, secondary, identity };
+        film.sums = film.empty(window)?;
+        Ok(film)
+    }
+}
+
+/// The words of each block.
+fn blocks(words: usize) -> impl Iterator<Item = Range<usize>> {
+    (0..words).step_by(BLOCK / 4).map(move |first| first..(first + BLOCK / 4).min(words))
+}
+
+fn packed(bytes: &[u8]) -> io::Result<Vec<u8>> {
+    // Better compression takes several times as long for a few percent.
+    let mut encoder = ZlibEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(bytes)?;
+    encoder.finish()
+}
+
+fn unpacked(block: &[u8], most: u64) -> Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // One more than allowed, so that what is too long shows.
+    let read = ZlibDecoder::new(block).take(most + 1).read_to_end(&mut bytes);
+    read.map_err(|_| damaged())?;
+    Ok(bytes)
+}
+
+fn write_block(block: &[u8], out: &mut dyn Write) -> io::Result<()> {
+    out.write_all(&(block.len() as u64).to_le_bytes())?;
+    out.write_all(block)
+}
+
+fn read_block(input: &mut dyn Read, most: u64) -> Result<Vec<u8>> {
+    let mut length = [0; 8];
+    input.read_exact(&mut length).map_err(|error| unread(&error))?;
+    let length = u64::from_le_bytes(length);
+    if length > most {
+        return Err(damaged());
+    }
+    let mut block = Vec::new();
+    input.take(length).read_to_end(&mut block).map_err(|error| unread(&error))?;
+    if block.len() as u64 == length { Ok(block) } else { Err(cut_off()) }
+}
+
+fn unread(error: &io::Error) -> Error {
+    if error.kind() == ErrorKind::UnexpectedEof { cut_off() } else { Error::new(format!("cannot be read: {error}")) }
+}
+
+fn cut_off() -> Error {
+    Error::new(format!("the film is cut off; {AGAIN}"))
+}
+
+fn damaged() -> Error {
+    Error::new(format!("the film is damaged; {AGAIN}"))
+}

@@ -1,0 +1,104 @@
+//! What a film is of, so that only parts of one picture are merged, and only what belongs to it is gone on with.
+
+use std::collections::BTreeMap;
+
+use eyerays_shader::data::Lens;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+
+use crate::choice::Named;
+use crate::device_scene::DeviceScene;
+use crate::error::{Error, Result};
+use crate::method::Traversal;
+use crate::render::Precision;
+use crate::scene::{self, Scene, Settings};
+use crate::view::View;
+
+/// All that the bits of a sample depend on, by names: the scene, the camera, settings, the kernels, and in fast precision the device.
+/// An empty one is as good as any.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Identity(BTreeMap<String, String>);
+
+impl Identity {
+    /// Of a view of a scene, rendered with this precision. The scene is that which was packed.
+    ///
+    /// # Errors
+    /// What [`Scene::check`] refuses.
+    pub fn of(scene: &Scene, packed: &DeviceScene, view: &View, precision: Precision) -> Result<Identity> {
+        let settings = packed.settings();
+        let (width, height) = view.size();
+        let mut all = BTreeMap::from([
+            ("scene".to_owned(), hexadecimal(&scene::fingerprint(scene)?)),
+            ("camera".to_owned(), hexadecimal(&Sha256::digest(bytemuck::bytes_of::<Lens>(view.lens())))),
+            ("size".to_owned(), format!("{width}x{height}")),
+            ("precision".to_owned(), precision.name().to_owned()),
+            ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
+            ("kernels".to_owned(), eyerays_modules::SOURCE.to_owned()),
+        ]);
+        if settings.sampler.has_cells() {
+            all.insert("samples".to_owned(), settings.samples_a_pixel().to_string());
+        }
+        // Of what is asked for in numbers only these are no part of every sample.
+        let of_samples = Settings { size: (0, 0), samples: 0, spp: 0, ..*settings };
+        let value = serde_json::to_value(of_samples).map_err(|error| Error::new(error.to_string()))?;
+        add(&mut all, value);
+        Ok(Identity(all))
+    }
+
+    /// With what fast precision depends on too: the device with its driver, and how it follows rays.
+    #[must_use]
+    pub fn on(mut self, device: &str, traversal: Traversal) -> Identity {
+        self.0.insert("device".to_owned(), device.to_owned());
+        self.0.insert("traversal".to_owned(), format!("{traversal:?}"));
+        self
+    }
+
+    /// Names and values.
+    pub fn entries(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.0.iter().map(|(name, value)| (name.as_str(), value.as_str()))
+    }
+
+    /// Refuses another.
+    ///
+    /// # Errors
+    /// The first name with two values.
+    pub fn check(&self, other: &Identity) -> Result<()> {
+        if self.0.is_empty() || other.0.is_empty() {
+            return Ok(());
+        }
+        let names = self.0.keys().chain(other.0.keys().filter(|&name| !self.0.contains_key(name)));
+        for name in names {
+            let [a, b] = [self, other].map(|identity| identity.0.get(name).map_or("none", |value| short(value)));
+            if self.0.get(name) != other.0.get(name) {
+                return Err(Error::OtherFilm { what: name.clone(), one: a.to_owned(), other: b.to_owned() });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// The first digits of a hash, which tell enough.
+fn short(value: &str) -> &str {
+    let is_hash = value.len() == 64 && value.bytes().all(|byte| byte.is_ascii_hexdigit());
+    if is_hash { &value[..12] } else { value }
+}
+
+/// The numbers and names of a table and of those within.
+fn add(all: &mut BTreeMap<String, String>, value: Value) {
+    let Value::Object(fields) = value else { return };
+    for (name, value) in fields {
+        match value {
+            Value::Object(_) => add(all, value),
+            Value::Array(_) => {}
+            Value::String(text) => drop(all.insert(name, text)),
+            value if name != "samples" && name != "spp" => drop(all.insert(name, value.to_string())),
+            _ => {}
+        }
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
+}

@@ -1,0 +1,160 @@
+//! The film: what the samples of a picture come to, as a value that is added to, merged, kept and developed. Its sums have no order
+//! ([`eyerays_shader::stage::PixelSums`]), so that parts of a picture, merged in any order, have the bits of all at once.
+
+mod coverage;
+mod develop;
+mod file;
+mod identity;
+
+use std::ops::Range;
+
+use eyerays_shader::stage::{PixelSums, Row};
+use rayon::prelude::*;
+
+pub use coverage::{Coverage, Part};
+pub use identity::Identity;
+
+use crate::error::{Error, Result};
+use crate::picture::Picture;
+use crate::view::{Region, View};
+
+/// Sums of the samples of a picture, or of a part of it: 40 bytes a pixel, and 56 where noise is told.
+#[derive(Debug, Clone)]
+pub struct Film {
+    size: (u32, u32),
+    window: Region,
+    /// Of a pixel.
+    words: u32,
+    /// Row by row; in a row one word of all its pixels after another.
+    sums: Vec<u32>,
+    coverage: Coverage,
+    /// Reflected and refracted rays.
+    secondary: u64,
+    /// What it is a film of.
+    pub identity: Identity,
+}
+
+/// What a device has of some samples of a region.
+pub(crate) struct Exposure<'a> {
+    pub region: Region,
+    pub samples: Range<u32>,
+    /// Laid out as a film of the region.
+    pub sums: &'a [u32],
+    /// Reflected and refracted rays.
+    pub secondary: u64,
+}
+
+impl Film {
+    /// Without any sample, for a view; `words` are those of a pixel.
+    pub(crate) fn new(view: &View, words: u32) -> Result<Film> {
+        let mut film = Film {
+            size: view.size(),
+            window: view.region(),
+            words,
+            sums: Vec::new(),
+            coverage: Coverage::default(),
+            secondary: 0,
+            identity: Identity::default(),
+        };
+        film.sums = film.empty(film.window)?;
+        Ok(film)
+    }
+
+    /// Columns and rows of the image that it is of.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// What of the image it holds.
+    pub fn window(&self) -> Region {
+        self.window
+    }
+
+    /// Which samples it has.
+    pub fn coverage(&self) -> &Coverage {
+        &self.coverage
+    }
+
+    /// Bytes that it takes.
+    pub fn bytes(&self) -> usize {
+        size_of_val(&self.sums[..])
+    }
+
+    /// The part of a view that it should have.
+    pub fn missing(&self, view: &View) -> Vec<Part> {
+        self.coverage.missing(&view.whole())
+    }
+
+    /// Adds samples.
+    ///
+    /// # Panics
+    /// If it has some of them, or they are outside.
+    pub(crate) fn add(&mut self, exposure: Exposure<'_>) {
+        let Exposure { region, samples, sums, secondary } = exposure;
+        self.coverage.add(Part { region, samples }).expect("samples are added once");
+        self.add_sums(region, sums);
+        self.secondary += secondary;
+    }
+
+    /// Counts reflected and refracted rays.
+    pub(crate) fn add_rays(&mut self, secondary: u64) {
+        self.secondary += secondary;
+    }
+
+    /// Adds the samples of another film of the same picture.
+    ///
+    /// # Errors
+    /// Both have some samples, or they are of different pictures: then nothing has changed.
+    pub fn merge(&mut self, other: Film) -> Result<()> {
+        self.identity.check(&other.identity)?;
+        if (self.size, self.words) != (other.size, other.words) {
+            return Err(Error::new(
+                "the films are of different pictures: parts of one picture have its size and integrator",
+            ));
+        }
+        let mut coverage = self.coverage.clone();
+        for part in other.coverage.parts() {
+            let twice = |both| Error::new(format!("both films have {both}: give each part once"));
+            coverage.add(part.clone()).map_err(twice)?;
+        }
+        self.widen(other.window)?;
+        (self.coverage, self.secondary) = (coverage, self.secondary + other.secondary);
+        self.add_sums(other.window, &other.sums);
+        Ok(())
+    }
+
+    /// Makes room for a region.
+    fn widen(&mut self, region: Region) -> Result<()> {
+        let window = self.window.around(region);
+        if window != self.window {
+            let sums = self.empty(window)?;
+            let (old, old_window) = (std::mem::replace(&mut self.sums, sums), self.window);
+            self.window = window;
+            self.add_sums(old_window, &old);
+        }
+        Ok(())
+    }
+
+    fn empty(&self, window: Region) -> Result<Vec<u32>> {
+        let (width, height) = self.size;
+        Picture::check_size(width, height)?;
+        let (mut sums, count) = (Vec::new(), window.pixels() as usize * self.words as usize);
+        sums.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
+        // On all threads: a system takes long to hand so much memory to one.
+        sums.par_extend(rayon::iter::repeat_n(0, count));
+        Ok(sums)
+    }
+
+    fn add_sums(&mut self, region: Region, sums: &[u32]) {
+        let (words, width) = (self.words, self.window.width);
+        let (left, top) = (region.x - self.window.x, region.y - self.window.y);
+        let rows = self.sums.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);
+        rows.zip(sums.par_chunks((words * region.width) as usize)).for_each(|(own, added)| {
+            let (to, from) = (Row::new(0, width, words), Row::new(0, region.width, words));
+            for x in 0..region.width {
+                let both = PixelSums::load(own, to, left + x).plus(PixelSums::load(added, from, x));
+                both.store(own, to, left + x);
+            }
+        });
+    }
+}

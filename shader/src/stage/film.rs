@@ -1,0 +1,262 @@
+//! The film: what the samples of every pixel come to, in sums that have no order. So a picture has the same bits whatever its samples
+//! were parted into: launches, tiles, devices, machines.
+
+use super::NON_FINITE;
+use crate::buffer::{read, write};
+use crate::camera::Pixel;
+use crate::data::{Frame, Quanta};
+use crate::real::{Scalar, V3};
+
+/// A channel of a sample is a whole number of quanta of 2^-40, rounded to single precision before.
+pub const LIGHT_FRACTION: u32 = 40;
+/// A channel of a sample is less than 2^31 in magnitude; light beyond counts as that. 2^24 samples fit 96 bits.
+pub const LIGHT_MOST: u32 = 31;
+/// A square of a sample's [`brightness`] is a whole number of quanta of 2^-42.
+pub const SQUARE_FRACTION: u32 = 42;
+/// And less than 2^62: that of the most light.
+pub const SQUARE_MOST: u32 = 62;
+
+/// Words of a pixel that tells no noise: three a channel, and counts.
+pub const FILM_WORDS: u32 = 10;
+/// Words of a pixel with the squares of its samples' brightness.
+pub const NOISY_FILM_WORDS: u32 = 14;
+
+/// The mean of the channels: what noise is told of.
+#[inline(always)]
+pub fn brightness<R: Scalar>(colour: V3<R>) -> R {
+    const THIRD: f32 = 1.0 / 3.0;
+    (colour.x + colour.y + colour.z) * R::splat(THIRD)
+}
+
+/// What some samples of a pixel come to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct PixelSums {
+    /// Red light; of this and the next two the last word is not kept.
+    pub red: Quanta,
+    /// Green light.
+    pub green: Quanta,
+    /// Blue light.
+    pub blue: Quanta,
+    /// Shadow rays, and [`NON_FINITE`] if any sample has left something out.
+    pub word: u32,
+    /// Squares of brightness.
+    pub squares: Quanta,
+}
+
+impl PixelSums {
+    /// One sample's.
+    #[inline(always)]
+    pub fn of<R: Scalar>(light: V3<R>, word: u32) -> Self {
+        let channel = |c: R| Quanta::of(c.to_f32(), LIGHT_FRACTION, LIGHT_MOST);
+        let bright = brightness(light);
+        let squares = Quanta::of((bright * bright).to_f32(), SQUARE_FRACTION, SQUARE_MOST);
+        PixelSums { red: channel(light.x), green: channel(light.y), blue: channel(light.z), word, squares }
+    }
+
+    /// These samples and others.
+    #[inline(always)]
+    pub fn plus(self, other: Self) -> Self {
+        PixelSums {
+            red: self.red.plus(other.red),
+            green: self.green.plus(other.green),
+            blue: self.blue.plus(other.blue),
+            word: counted(self.word, other.word),
+            squares: self.squares.plus(other.squares),
+        }
+    }
+
+    /// Those of the pixel in column `x` of a row of a film, which holds one word of all its pixels after another.
+    #[inline(always)]
+    pub fn load(film: &[u32], row: Row, x: u32) -> Self {
+        let at = |word: u32| read(film, row.first + word * row.columns + x);
+        let channel = |word| Quanta(at(word), at(word + 1), at(word + 2), 0);
+        let squares =
+            if row.words == NOISY_FILM_WORDS { Quanta(at(10), at(11), at(12), at(13)) } else { Quanta::default() };
+        PixelSums { red: channel(0), green: channel(3), blue: channel(6), word: at(9), squares }
+    }
+
+    /// Keeps them there.
+    #[inline(always)]
+    pub fn store(self, film: &mut [u32], row: Row, x: u32) {
+        let mut keep = |word: u32, value| write(film, row.first + word * row.columns + x, value);
+        keep(0, self.red.0);
+        keep(1, self.red.1);
+        keep(2, self.red.2);
+        keep(3, self.green.0);
+        keep(4, self.green.1);
+        keep(5, self.green.2);
+        keep(6, self.blue.0);
+        keep(7, self.blue.1);
+        keep(8, self.blue.2);
+        keep(9, self.word);
+        if row.words == NOISY_FILM_WORDS {
+            keep(10, self.squares.0);
+            keep(11, self.squares.1);
+            keep(12, self.squares.2);
+            keep(13, self.squares.3);
+        }
+    }
+}
+
+/// Where a row of a film is.
+#[derive(Clone, Copy)]
+pub struct Row {
+    /// Its first word.
+    pub first: u32,
+    /// Its pixels.
+    pub columns: u32,
+    /// Words of a pixel: [`FILM_WORDS`] or [`NOISY_FILM_WORDS`].
+    pub words: u32,
+}
+
+impl Row {
+    /// A row of a film of so many columns.
+    #[inline(always)]
+    pub fn new(y: u32, columns: u32, words: u32) -> Self {
+        Row { first: y * words * columns, columns, words }
+    }
+}
+
+/// Adds the samples that a launch has of a pixel to the film of its region. `slot` is that of the first, `sample` tells light and
+/// counts of a slot.
+#[inline(always)]
+pub fn expose<R: Scalar>(
+    frame: &Frame,
+    (pixel, slot): (Pixel, u32),
+    words: u32,
+    sample: impl Fn(u32) -> (V3<R>, u32),
+    film: &mut [u32],
+) {
+    if !pixel.inside || slot >= frame.pixel_slots {
+        return;
+    }
+    let row = Row::new(pixel.y, frame.columns, words);
+    let mut sums = PixelSums::default();
+    if frame.sample > frame.first {
+        sums = PixelSums::load(film, row, pixel.x);
+    }
+    let mut at = slot;
+    while at < frame.slots {
+        let (light, word) = sample(at);
+        sums = sums.plus(PixelSums::of(light, word));
+        at += frame.pixel_slots;
+    }
+    sums.store(film, row, pixel.x);
+}
+
+/// The integers of two sums together: shadow rays are counted, what was left out is remembered.
+#[inline(always)]
+fn counted(word: u32, own: u32) -> u32 {
+    ((word | own) & NON_FINITE) | ((word & !NON_FINITE) + (own & !NON_FINITE)) & !NON_FINITE
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::camera;
+    use crate::data::Order;
+    use crate::stage::NON_FINITE;
+    use glam::Vec3;
+
+    const SIZE: (u32, u32) = (9, 5);
+    const PIXELS: usize = 45;
+
+    /// `batch` samples in flight of a region of 9x5 pixels, of a film that begins with sample `first`.
+    fn frame(batch: u32, sample: u32, first: u32) -> Frame {
+        let pixel_slots = camera::slots(SIZE.0, SIZE.1, Order(0));
+        Frame {
+            columns: SIZE.0,
+            rows: SIZE.1,
+            across: camera::across(SIZE.0, Order(0)),
+            pixel_slots,
+            slots: batch * pixel_slots,
+            sample,
+            first,
+            ..Frame::default()
+        }
+    }
+
+    fn exposed(frame: &Frame, words: u32, film: &mut [u32], sample: impl Fn(u32) -> (f32, u32)) {
+        for slot in 0..frame.pixel_slots {
+            let pixel = camera::pixel(frame, Order(0), slot);
+            let sample = |slot| {
+                let (light, word) = sample(slot);
+                (V3::splat(Vec3::new(light, -light, 2.0 * light)), word)
+            };
+            expose::<f32>(frame, (pixel, slot), words, sample, film);
+        }
+    }
+
+    fn pixels(film: &[u32], words: u32) -> Vec<PixelSums> {
+        let place = |i: u32| (Row::new(i / SIZE.0, SIZE.0, words), i % SIZE.0);
+        (0..PIXELS as u32).map(place).map(|(row, x)| PixelSums::load(film, row, x)).collect()
+    }
+
+    /// What a film keeps: not the last words of channels.
+    fn kept(sums: PixelSums) -> PixelSums {
+        let channel = |q: Quanta| Quanta(q.0, q.1, q.2, 0);
+        PixelSums { red: channel(sums.red), green: channel(sums.green), blue: channel(sums.blue), ..sums }
+    }
+
+    /// Numbers whose sum in single precision depends on their order.
+    const VALUES: [f32; 5] = [1e8, 1.0, -1e8, 0.5, 3e-9];
+
+    #[test]
+    fn samples_have_the_same_sum_in_any_order_and_any_launches() {
+        let sample = |value: f32| PixelSums::of::<f32>(V3::new(value, -value, 2.0 * value), 2);
+        let want = kept(VALUES.map(sample).into_iter().reduce(PixelSums::plus).unwrap());
+        let exact = (1.5 * 2f64.powi(40)) as u64 + (3e-9f32 as f64 * 2f64.powi(40)).round() as u64;
+        assert_eq!((want.red, want.word), (Quanta(exact as u32, (exact >> 32) as u32, 0, 0), 10));
+        for batches in [&[5][..], &[1, 1, 1, 1, 1], &[2, 3], &[4, 1]] {
+            for turned in 0..5 {
+                let mut film = vec![9; NOISY_FILM_WORDS as usize * PIXELS];
+                let mut first = 7;
+                for &batch in batches {
+                    let frame = frame(batch, first, 7);
+                    let value = |slot| VALUES[(first - 7 + slot / frame.pixel_slots + turned) as usize % 5];
+                    exposed(&frame, NOISY_FILM_WORDS, &mut film, |slot| (value(slot), 2));
+                    first += batch;
+                }
+                assert!(pixels(&film, NOISY_FILM_WORDS).iter().all(|&pixel| pixel == want), "{batches:?} {turned}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_pixel_has_its_own_slots_and_those_outside_have_none() {
+        let frame = frame(2, 0, 0);
+        for words in [FILM_WORDS, NOISY_FILM_WORDS] {
+            let mut film = vec![0; words as usize * PIXELS];
+            exposed(&frame, words, &mut film, |slot| (slot as f32, 1));
+            let found = pixels(&film, words);
+            for slot in 0..frame.pixel_slots {
+                let pixel = camera::pixel(&frame, Order(0), slot);
+                if pixel.inside {
+                    let light = Quanta::of((2 * slot + frame.pixel_slots) as f32, LIGHT_FRACTION, LIGHT_MOST);
+                    let PixelSums { red, word, squares, .. } = found[pixel.index as usize];
+                    assert_eq!((red, word), (light, 2));
+                    assert_eq!(squares == Quanta::default(), words == FILM_WORDS, "{slot}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_left_out_is_remembered_and_counts_still_add_up() {
+        let frame = frame(3, 0, 0);
+        let words = [3 | NON_FINITE, 4 | NON_FINITE, 5];
+        let mut film = vec![0; FILM_WORDS as usize * PIXELS];
+        exposed(&frame, FILM_WORDS, &mut film, |slot| (1.0, words[(slot / frame.pixel_slots) as usize]));
+        assert!(pixels(&film, FILM_WORDS).iter().all(|pixel| pixel.word == 12 | NON_FINITE));
+    }
+
+    /// As many samples as there may be, of the most light.
+    #[test]
+    fn the_most_light_of_the_most_samples_fits() {
+        let mut sums = PixelSums::of::<f32>(V3::new(f32::MAX, f32::MIN, 0.0), 0);
+        (0..24).for_each(|_| sums = sums.plus(sums));
+        let signed = |q: Quanta| (i128::from(q.2 as i32) << 64) + (i128::from(q.1) << 32) + i128::from(q.0);
+        let most = ((1i128 << 24) - 1) << (LIGHT_MOST + LIGHT_FRACTION);
+        assert_eq!((signed(sums.red), signed(sums.green)), (most, -most));
+    }
+}

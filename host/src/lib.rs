@@ -28,6 +28,7 @@
 // A test's expectation may err by a platform's last bit.
 #![cfg_attr(test, allow(clippy::disallowed_methods))]
 
+pub mod about;
 pub mod batch;
 pub mod choice;
 pub mod compare;

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
+use crate::about::About;
 use crate::error::{Error, Result};
 
 /// A picture in linear RGB (Rec. 709 primaries, 1.0 is a screen's white), values of any size.
@@ -15,6 +16,8 @@ pub struct Picture {
     /// `width * height` pixels, row-major from the top left.
     pub pixels: Vec<[f32; 3]>,
     pub(crate) noise: Option<f64>,
+    /// What a file says of it.
+    pub about: About,
 }
 
 impl Picture {
@@ -34,7 +37,7 @@ impl Picture {
         pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         // On all threads: a system takes 5 ms to hand the memory of 1920x1080 pixels to one.
         pixels.par_extend(rayon::iter::repeat_n([0.0; 3], count));
-        Ok(Picture { width, height, pixels, noise: None })
+        Ok(Picture { width, height, pixels, noise: None, about: About::default() })
     }
 
     /// A picture of given pixels, row-major from the top left.
@@ -42,7 +45,7 @@ impl Picture {
     /// # Errors
     /// As [`Picture::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let picture = Picture { width, height, pixels, noise: None };
+        let picture = Picture { width, height, pixels, noise: None, about: About::default() };
         picture.validate()?;
         Ok(picture)
     }

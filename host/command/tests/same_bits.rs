@@ -38,6 +38,7 @@ fn pictures_of_the_readme_and_the_gallery_are_what_the_program_renders() {
     for (name, Picture { scene, options, film_hash }) in &pictures {
         let scene = docs("..").join(scene);
         let mut arguments = vec!["render".into(), scene.into_os_string(), "-o".into(), name.into(), "--json".into()];
+        arguments.push("--reproducible".into());
         arguments.extend(options.iter().map(Into::into));
         let found = place.succeed(&arguments).json()["film_hash"].as_str().expect("a text").to_owned();
         if writes {
@@ -78,6 +79,7 @@ fn another_platform_gives_the_same_pictures_and_files() {
             program.args(["render", &scene, "-o", &name, "--json"]).current_dir(place.path(""));
             // An emulator is slow.
             program.args(["--size", "24x16", "--samples", "1", "--device", "cpu", "--exposure", "0.3", "--tone", tone]);
+            program.arg("--reproducible");
             let outcome: Outcome = program.output().expect("the program starts").into();
             assert_eq!(outcome.code, Some(0), "{program:?}: {}", outcome.stderr);
             (outcome.json()["film_hash"].take(), fs::read(place.path(&name)).unwrap())

@@ -5,6 +5,8 @@ mod coverage;
 mod develop;
 mod file;
 mod identity;
+#[cfg(test)]
+mod tests;
 
 use std::ops::Range;
 

@@ -1,13 +1,14 @@
-//! Films to the bytes of image files.
+//! Pictures to the bytes of image files.
 
 use std::fmt;
 use std::io::Write;
 
 use image::codecs::hdr::HdrEncoder;
-use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageResult};
+use png::EncodingError;
 use rayon::prelude::*;
 
+use super::SOFTWARE;
 use super::exr::{self, exposed};
 use super::transfer::{quantise, quantise_to_byte};
 use super::{BitDepth, Encoding, Format, ToneMap};
@@ -70,32 +71,38 @@ fn samples<T: Send>(picture: &Picture, tone: ToneMap, scale: f64, convert: impl 
     picture.pixels.par_iter().map(shown).collect::<Vec<_>>().into_flattened()
 }
 
-/// The chunks that say what wrote the file and that its colours are sRGB: length, type, data and
-/// CRC of each, by the PNG specification (third edition), 11.3.3.3 and 11.3.2.5.
-const PNG_CHUNKS: &[u8] = b"\
-    \x00\x00\x00\x01sRGB\x00\xae\xce\x1c\xe9\
-    \x00\x00\x00\x10tEXtSoftware\x00eyerays\xae\xad\x55\x51";
-
-/// Where a PNG's first chunk, the IHDR, ends.
-const PNG_HEADER: usize = 33;
-
-fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> ImageResult<Vec<u8>> {
+fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> std::result::Result<Vec<u8>, EncodingError> {
     match encoding.bits {
         BitDepth::Eight => {
             let values = samples(picture, encoding.tone, scale, quantise_to_byte);
-            png_of(picture, &values, ExtendedColorType::Rgb8)
+            png_of(picture, &values, png::BitDepth::Eight)
         }
         BitDepth::Sixteen => {
             let values = samples(picture, encoding.tone, scale, |v| quantise(v, 65_535.0) as u16);
-            png_of(picture, bytemuck::cast_slice(&values), ExtendedColorType::Rgb16)
+            {
+                let bytes: Vec<[u8; 2]> = values.iter().map(|value| value.to_be_bytes()).collect();
+                png_of(picture, bytes.as_flattened(), png::BitDepth::Sixteen)
+            }
         }
     }
 }
 
-fn png_of(picture: &Picture, samples: &[u8], colour: ExtendedColorType) -> ImageResult<Vec<u8>> {
+/// Tells that its colours are sRGB, what wrote it, and what the picture says of itself.
+fn png_of(picture: &Picture, samples: &[u8], depth: png::BitDepth) -> std::result::Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
-    PngEncoder::new(&mut bytes).write_image(samples, picture.width, picture.height, colour)?;
-    bytes.splice(PNG_HEADER..PNG_HEADER, PNG_CHUNKS.iter().copied());
+    let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(depth);
+    encoder.set_compression(png::Compression::Fast);
+    encoder.set_filter(png::Filter::Adaptive);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.add_text_chunk("Software".to_owned(), SOFTWARE.to_owned())?;
+    if !picture.about.is_empty() {
+        encoder.add_text_chunk("eyerays".to_owned(), picture.about.json())?;
+    }
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(samples)?;
+    writer.finish()?;
     Ok(bytes)
 }
 

@@ -1,4 +1,4 @@
-//! Films to OpenEXR files, compressed by ZIP, which loses nothing.
+//! Pictures to OpenEXR files, compressed by ZIP, which loses nothing.
 
 use std::io::Cursor;
 
@@ -9,8 +9,10 @@ use exr::image::write::layers::{LayersWriter, WritableLayers};
 use exr::prelude::*;
 use rayon::prelude::*;
 
+use super::SOFTWARE;
+use crate::about::About;
 use crate::choice::Named;
-use crate::layers::{Layer, Values};
+use crate::layers::{self, Values};
 use crate::picture::Picture;
 
 /// Blocks of 16 lines that are compressed at once: enough for every core, and few of them in memory.
@@ -40,8 +42,12 @@ fn nearest_half(v: f32) -> f16 {
 
 /// The file's bytes with layers beside the picture, whose channels have the layer's name before a point. Light is exposed, and in
 /// floats of 16 bits if those are asked for; lengths and numbers keep 32 bits.
-pub(super) fn layered(picture: &Picture, layers: &[(Layer, Values)], scale: f64, is_half: bool) -> Result<Vec<u8>> {
-    let size = Vec2(picture.width as usize, picture.height as usize);
+pub(super) fn layered(
+    picture: &Picture,
+    layers: &[(layers::Layer, Values)],
+    scale: f64,
+    is_half: bool,
+) -> Result<Vec<u8>> {
     let of = |name: String, values: &Values| match values {
         Values::Light(picture) => three(picture, &name, ["R", "G", "B"], scale, is_half),
         Values::Colours(picture) => three(picture, &name, ["R", "G", "B"], 1.0, is_half),
@@ -51,7 +57,8 @@ pub(super) fn layered(picture: &Picture, layers: &[(Layer, Values)], scale: f64,
     };
     let mut channels: SmallVec<[_; 4]> = three(picture, "", ["R", "G", "B"], scale, is_half).into();
     channels.extend(layers.iter().flat_map(|(layer, values)| of(format!("{}.", layer.name()), values)));
-    let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    let mut image = Image::from_encoded_channels(size(picture), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
+    image.layer_data.attributes = attributes(&picture.about);
     let mut bytes = Cursor::new(Vec::new());
     write(&image, &mut bytes)?;
     Ok(bytes.into_inner())
@@ -73,15 +80,33 @@ fn bytes<T>(picture: &Picture, convert: impl Fn(f32) -> T + Sync) -> Result<Vec<
 where
     T: IntoSample,
 {
-    let size = Vec2(picture.width as usize, picture.height as usize);
     let pixel = |Vec2(x, y): Vec2<usize>| {
-        let [r, g, b] = picture.pixels[y * size.0 + x];
+        let [r, g, b] = picture.pixels[y * picture.width as usize + x];
         (convert(r), convert(g), convert(b))
     };
-    let image = Image::from_encoded_channels(size, Encoding::SMALL_LOSSLESS, SpecificChannels::rgb(pixel));
+    let mut image = Image::from_encoded_channels(size(picture), Encoding::SMALL_LOSSLESS, SpecificChannels::rgb(pixel));
+    image.layer_data.attributes = attributes(&picture.about);
     let mut bytes = Cursor::new(Vec::new());
     write(&image, &mut bytes)?;
     Ok(bytes.into_inner())
+}
+
+fn size(picture: &Picture) -> Vec2<usize> {
+    Vec2(picture.width as usize, picture.height as usize)
+}
+
+/// What the picture says of itself.
+fn attributes(about: &About) -> LayerAttributes {
+    let mut attributes = LayerAttributes {
+        software_name: Text::new_or_none(SOFTWARE),
+        world_to_camera: about.matrix(About::WORLD_TO_CAMERA),
+        world_to_normalized_device: about.matrix(About::WORLD_TO_NDC),
+        ..LayerAttributes::default()
+    };
+    if let Some(text) = Text::new_or_none(about.json()).filter(|_| !about.is_empty()) {
+        attributes.other.insert("eyerays".into(), AttributeValue::Text(text));
+    }
+    attributes
 }
 
 /// Compresses on every core. The crate can as well (its feature `rayon`), but would then also read on threads on

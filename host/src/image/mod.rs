@@ -32,6 +32,9 @@ pub use tone::ToneMap;
 pub(crate) use transfer::byte_to_linear;
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
 
+/// What wrote a file.
+const SOFTWARE: &str = concat!("eyerays ", env!("CARGO_PKG_VERSION"));
+
 /// The image formats that are written and read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {

@@ -4,6 +4,7 @@ use std::path::Path;
 use proptest::prelude::*;
 
 use super::*;
+use crate::about::About;
 use crate::layers::{Layer, Values};
 use crate::picture::Picture;
 
@@ -220,11 +221,37 @@ fn a_png_has_the_values_of_its_tone_map() {
 fn png_says_what_it_is() {
     let picture = Picture::new(2, 2).unwrap();
     let png = bytes(&picture, Format::Png, &Encoding::default());
-    for chunk in [&b"sRGB\0"[..], b"tEXtSoftware\0eyerays"] {
+    let software = format!("tEXtSoftware\0eyerays {}", env!("CARGO_PKG_VERSION"));
+    for chunk in [&b"sRGB\0"[..], software.as_bytes()] {
         let at = png.windows(chunk.len()).position(|w| w == chunk).unwrap();
         assert_eq!(png[at + chunk.len()..][..4], png_crc(chunk));
         assert_eq!(png[at - 4..at], (chunk.len() as u32 - 4).to_be_bytes());
     }
+}
+
+/// As other readers see it.
+#[test]
+fn a_picture_says_how_it_was_made() {
+    let matrix: Vec<f32> = (0..16).map(|i| i as f32).collect();
+    let about = About::default().with("scene", "café").with("samples", 3).with(About::WORLD_TO_NDC, matrix.clone());
+    let picture = Picture { about: about.clone(), ..odd_picture() };
+    let png = bytes(&picture, Format::Png, &Encoding::default());
+    let reader = ::png::Decoder::new(io::Cursor::new(&png)).read_info().unwrap();
+    let texts = &reader.info().uncompressed_latin1_text;
+    let text = texts.iter().find(|text| text.keyword == "eyerays").unwrap();
+    let of = |text: &str| serde_json::from_str::<serde_json::Value>(text).unwrap();
+    assert_eq!(of(&text.text), serde_json::Value::Object(about.facts().clone()));
+    let exr = bytes(&picture, Format::Exr, &Encoding::default());
+    let meta = ::exr::meta::MetaData::read_from_buffered(io::Cursor::new(&exr), true).unwrap();
+    let own = &meta.headers[0].own_attributes;
+    assert_eq!(own.world_to_normalized_device.map(Vec::from), Some(matrix));
+    assert_eq!(own.world_to_camera, None);
+    let Some(::exr::meta::attribute::AttributeValue::Text(text)) = own.other.get(&b"eyerays"[..]) else {
+        panic!("no text: {own:?}");
+    };
+    assert_eq!(of(&text.to_string()), serde_json::Value::Object(about.facts().clone()));
+    // Without anything to say, a file has no such place.
+    assert!(!bytes(&odd_picture(), Format::Exr, &Encoding::default()).windows(7).any(|at| at == b"eyerays\0"));
 }
 
 #[test]

@@ -26,6 +26,7 @@ mod lit;
 mod load;
 mod map;
 mod material;
+mod matrices;
 mod merge;
 mod mtl;
 mod named;

@@ -11,6 +11,7 @@ use super::{console, seconds};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::{Film, Identity};
+use eyerays::view::View;
 
 /// What is kept, and gone on with.
 #[derive(Args, Clone)]
@@ -62,13 +63,8 @@ impl CheckpointArgs {
 }
 
 impl Checkpoint {
-    /// Does it stay when the picture is done?
-    pub fn stays(&self) -> bool {
-        self.stays
-    }
-
     /// The film to go on with. One that can't be read is as good as none, but one of another picture is refused.
-    pub fn film(&self, identity: &Identity, quiet: bool) -> Result<Option<Film>> {
+    pub fn film(&self, identity: &Identity, view: &View, quiet: bool) -> Result<Option<Film>> {
         if !self.resume {
             return Ok(None);
         }
@@ -77,12 +73,26 @@ impl Checkpoint {
             Ok(None) => Ok(None),
             Ok(Some(film)) => {
                 film.identity.check(identity).map_err(of_this)?;
+                self.check(&film, view)?;
                 Ok(Some(film))
             }
             Err(error) => {
                 super::warn(&[format!("{error}: rendering from the first sample")], quiet);
                 Ok(None)
             }
+        }
+    }
+
+    /// Refuses a film that has more than is asked for.
+    fn check(&self, film: &Film, view: &View) -> Result<()> {
+        let whole = view.whole();
+        match film.coverage().parts().iter().find(|&part| whole.both(part).as_ref() != Some(part)) {
+            Some(part) => {
+                let fault =
+                    format!("it has {part}, which is more than {whole}: ask for all of it, or name another film");
+                Err(Error::file(&self.path, fault))
+            }
+            None => Ok(()),
         }
     }
 

@@ -10,6 +10,7 @@ mod convert;
 mod device;
 mod diff;
 mod exposure;
+mod facts;
 mod footprint;
 mod generate;
 mod hush;

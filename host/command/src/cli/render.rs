@@ -4,6 +4,7 @@ use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::slice;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args;
@@ -12,6 +13,7 @@ use super::checkpoint::{self, Checkpoint, CheckpointArgs};
 use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
+use super::facts::Facts;
 use super::look::Look;
 use super::options::{Effort, Loaded, View};
 use super::part::PartArgs;
@@ -69,6 +71,9 @@ pub(super) struct Render {
     /// Write the picture so far to the output every so many seconds, 0 for never [default: 10, of what takes longer than 20]
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "repeat")]
     preview_every: Option<Duration>,
+    /// Leave out of the file what differs from run to run: the device and the seconds
+    #[arg(long)]
+    reproducible: bool,
     /// Print the summary as JSON to standard output
     #[arg(long)]
     json: bool,
@@ -174,8 +179,16 @@ impl Ready<'_> {
     fn render(mut self) -> Result<ExitCode> {
         let path = &self.of.scene;
         let of_scene = |error: eyerays::error::Error| error.of(path);
-        let identity = self.identity().map_err(of_scene)?;
-        let backend = progress::stage("opening the device", self.quiet, || Backend::new(&self.choice))?;
+        let (backend, identity) = progress::stage("opening the device", self.quiet, || {
+            let Loaded { packed, view, .. } = &self.loaded;
+            let precision = self.choice.precision;
+            // A driver takes longer than hashing the scene does.
+            thread::scope(|scope| {
+                let identity = scope.spawn(|| Identity::of(&self.scene, packed, view, precision));
+                (Backend::new(&self.choice), identity.join().expect("hashing does not panic"))
+            })
+        });
+        let (backend, identity) = (backend?, identity.map_err(of_scene)?);
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
         let backend = ManuallyDrop::new(backend);
         let identity = match self.choice.precision {
@@ -183,6 +196,16 @@ impl Ready<'_> {
             _ => identity,
         };
         let mut rendering = self.rendered(&backend, &identity)?;
+        let (scene, camera, view) = (path, &self.camera, &self.loaded.view);
+        let facts = Facts {
+            scene,
+            camera,
+            view,
+            identity: &identity,
+            rendering: &rendering,
+            reproducible: self.of.reproducible,
+        };
+        rendering.picture.about = facts.about();
         rendering.film.identity = identity;
         let start = Instant::now();
         let asked = self.of.layers();
@@ -204,19 +227,10 @@ impl Ready<'_> {
         self.end(&rendering)
     }
 
-    /// What the picture is of. A film of one sample is not kept, and hashing the scene takes time.
-    fn identity(&self) -> eyerays::error::Result<Identity> {
-        let Loaded { packed, view, .. } = &self.loaded;
-        if view.samples() == 1 && !self.destination.is_film() && self.checkpoint.as_ref().is_none_or(|to| !to.stays()) {
-            return Ok(Identity::default());
-        }
-        Identity::of(&self.scene, packed, view, self.choice.precision)
-    }
-
     fn rendered(&self, backend: &Backend, identity: &Identity) -> Result<Rendering> {
         let (Loaded { packed, view, .. }, repeat) = (&self.loaded, self.of.repeat);
         let from = match &self.checkpoint {
-            Some(checkpoint) => checkpoint.film(identity, self.quiet)?,
+            Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
             None => None,
         };
         // Of one sample there is nothing to be seen before it is done, nor to be kept.

@@ -86,6 +86,7 @@ impl<'a> Summary<'a> {
         let times = &self.times;
         json!({
             "output": self.destination.to_string(),
+            "picture": self.rendering.picture.about.facts(),
             "width": settings.size.0,
             "height": settings.size.1,
             "samples": settings.samples,

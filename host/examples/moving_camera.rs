@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let start = Instant::now();
     for frame in 0..frames {
         renderer.start(&view(frame)?)?;
-        renderer.add(1, &|_| ())?;
+        renderer.add(0..1, &|_| ())?;
     }
     let last = renderer.film()?.develop()?;
     println!("{frames} frames of {width}x{height} in {:.1} ms", start.elapsed().as_secs_f64() * 1e3);

@@ -91,6 +91,8 @@ pub enum Error {
         /// What the system says.
         message: String,
     },
+    /// Several devices in another precision than exact, in which they would give different pictures.
+    SeveralInexact,
     /// Reference precision, which is the CPU's alone, on a GPU.
     ReferenceOnGpu,
     /// This machine has no GPU, or no driver of it.
@@ -257,6 +259,7 @@ impl Error {
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
             Error::NoLayers { format } => format!("layers are for .exr files, not for {format}"),
             Error::Threads { threads, message } => format!("can't start {threads} threads ({message})"),
+            Error::SeveralInexact => "several devices give one picture in exact precision only".to_owned(),
             Error::ReferenceOnGpu => "reference precision is double precision on the CPU".to_owned(),
             Error::NoGpu => "there is no GPU that Vulkan, Metal or Direct3D 12 can use: install its driver".to_owned(),
             Error::NoSuchAdapter { wish, names } => {

@@ -51,6 +51,7 @@ pub mod rays;
 pub mod render;
 pub mod scene;
 pub mod stream;
+mod team;
 pub mod view;
 pub mod watch;
 mod why;

@@ -141,6 +141,11 @@ impl View {
         self.window
     }
 
+    /// These samples of all pixels that are rendered.
+    pub fn samples_of(&self, samples: Range<u32>) -> Part {
+        Part { region: self.window, samples }
+    }
+
     /// All that is rendered.
     pub fn whole(&self) -> Part {
         Part { region: self.window, samples: self.range() }
@@ -156,8 +161,7 @@ impl View {
         self.first..self.end
     }
 
-    /// The record of a launch in a scene: `count` samples of a region, from sample `first` on. The picture is started anew by
-    /// sample 0.
+    /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
     pub fn launch(&self, scene: &DeviceScene, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
         Frame {
@@ -168,7 +172,6 @@ impl View {
             height: self.height,
             samples: self.grid,
             sample: first,
-            first: self.first,
             left: region.x,
             top: region.y,
             columns: region.width,

@@ -4,14 +4,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::error::Result;
-use crate::film::Film;
+use crate::film::{Film, Part};
 use crate::picture::Picture;
-use crate::view::View;
+use crate::team::Lost;
+use crate::view::{Region, View};
 
-/// How long samples take that are added at once, where one does not take longer: so soon a rendering ends that is stopped.
-const STEP: Duration = Duration::from_secs(1);
-
-/// Who looks on, and when it ends. See [`Backend::render_watched`](crate::render::Backend::render_watched).
+/// Who looks on, and when it ends. See [`Session::render_watched`](crate::render::Session::render_watched).
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
     /// As many samples as fit so long, at least one.
@@ -51,14 +49,34 @@ impl Growth<'_> {
 
 /// A device that films grow on.
 pub(crate) trait Grows {
-    /// Starts a film of a view, without any sample.
-    fn start(&mut self, view: &View) -> Result<()>;
+    /// Starts a film of a view, without any sample. Parts that are added lie within one of these regions each, which fill its window.
+    fn start(&mut self, view: &View, regions: &[Region]) -> Result<()>;
 
-    /// Adds the next samples of the view; `done` hears of shares of the pixels.
-    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()>;
+    /// Adds a part of the view of which it has nothing. `done` hears of shares of the pixels.
+    fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()>;
 
     /// Waits until what was added is done.
     fn wait(&mut self) -> Result<()>;
+
+    /// How long samples take that are added at once, where one does not take longer: so soon a rendering ends that is stopped.
+    fn step(&self) -> Duration {
+        Duration::from_secs(1)
+    }
+
+    /// Time on the device of all that was rendered and read, if it has a clock.
+    fn device_time(&self) -> Option<Duration> {
+        None
+    }
+
+    /// Devices of several that failed since this was asked last.
+    fn lost(&mut self) -> Vec<Lost> {
+        Vec::new()
+    }
+
+    /// The picture of a film, on its threads.
+    fn develop(&self, film: &Film) -> Result<Picture> {
+        film.develop()
+    }
 
     /// The film so far.
     fn film(&mut self) -> Result<Film>;
@@ -70,9 +88,9 @@ pub(crate) trait Grows {
 }
 
 /// Renders all samples of a view at once.
-pub(crate) fn render(device: &mut impl Grows, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
-    device.start(view)?;
-    device.add(view.samples(), done)?;
+pub(crate) fn render(device: &mut dyn Grows, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
+    device.start(view, &[view.region()])?;
+    device.add(view.whole(), done)?;
     device.end()
 }
 
@@ -80,7 +98,7 @@ pub(crate) fn render(device: &mut impl Grows, view: &View, done: &(dyn Fn(u64) +
 ///
 /// # Errors
 /// What the device reports, or a film of something else.
-pub(crate) fn go_on(device: &mut impl Grows, view: &View, from: Option<Film>, watch: &Watch<'_>) -> Result<Film> {
+pub(crate) fn go_on(device: &mut dyn Grows, view: &View, from: Option<Film>, watch: &Watch<'_>) -> Result<Film> {
     let missing = match &from {
         Some(film) => film.missing(view),
         None => vec![view.whole()],
@@ -88,8 +106,8 @@ pub(crate) fn go_on(device: &mut impl Grows, view: &View, from: Option<Film>, wa
     let left = missing.iter().map(|part| part.volume()).sum();
     let mut grower = Grower { view, watch, film: from, left, start: Instant::now() };
     for part in missing {
-        device.start(&view.part(part.region, part.samples.clone())?)?;
-        let goes_on = grower.grow(device, part.samples.len() as u32, part.region.pixels())?;
+        device.start(&view.part(part.region, part.samples.clone())?, &[part.region])?;
+        let goes_on = grower.grow(device, part)?;
         grower.keep(device.end()?)?;
         if !goes_on {
             break;
@@ -98,7 +116,7 @@ pub(crate) fn go_on(device: &mut impl Grows, view: &View, from: Option<Film>, wa
     match grower.film {
         Some(film) => Ok(film),
         None => {
-            device.start(view)?;
+            device.start(view, &[view.region()])?;
             device.end()
         }
     }
@@ -116,32 +134,33 @@ struct Grower<'a> {
 }
 
 impl Grower<'_> {
-    /// Adds samples until there are `most`; false if it ends before that. Their number is chosen by what those before took.
-    fn grow(&mut self, device: &mut impl Grows, most: u32, pixels: u64) -> Result<bool> {
-        let (mut samples, mut next) = (0u32, 1u32);
+    /// Adds samples until all of a part are there; false if it ends before that. Their number is chosen by what those before took.
+    fn grow(&mut self, device: &mut dyn Grows, part: Part) -> Result<bool> {
+        let Part { region, samples: all } = part;
+        let (mut from, mut next) = (all.start, 1u32);
         while next > 0 {
             let before = Instant::now();
-            device.add(next, &|_| ())?;
+            device.add(Part { region, samples: from..from + next }, &|_| ())?;
             device.wait()?;
-            samples += next;
-            self.left -= u64::from(next) * pixels;
+            from += next;
+            self.left -= u64::from(next) * region.pixels();
             let each = (before.elapsed().as_secs_f64() / f64::from(next)).max(1e-9);
             self.tell(device);
             if self.watch.stop.load(Ordering::Relaxed) {
                 return Ok(false);
             }
-            let step = ((STEP.as_secs_f64() / each) as u32).max(1).min(next.saturating_mul(4));
+            let step = ((device.step().as_secs_f64() / each) as u32).max(1).min(next.saturating_mul(4));
             let left = match self.watch.limit {
                 // Half of what should fit, since nobody knows what it takes; in the end one by one.
                 Some(limit) => ((limit.saturating_sub(self.start.elapsed()).as_secs_f64() / each) as u32).div_ceil(2),
                 None => u32::MAX,
             };
-            next = step.min(left).min(most - samples);
+            next = step.min(left).min(all.end - from);
         }
-        Ok(samples == most)
+        Ok(from == all.end)
     }
 
-    fn tell(&self, device: &mut impl Grows) {
+    fn tell(&self, device: &mut dyn Grows) {
         let (of, whole) = (self.view.samples(), self.view.whole());
         let samples = (whole.volume() - self.left) / whole.region.pixels();
         let mut film = || self.with(device.film()?);
@@ -167,16 +186,15 @@ impl Grower<'_> {
 #[cfg(test)]
 mod tests {
     use std::cell::RefCell;
+    use std::sync::Arc;
 
     use super::*;
     use crate::cpu::{OnCpu, Renderer};
     use crate::device_scene::DeviceScene;
     use crate::error::Error;
-    use crate::film::Part;
     use crate::method::Traversal;
     use crate::quality::Bvh;
     use crate::scene::{self, Settings};
-    use crate::view::Region;
 
     /// A device whose samples take so long each, and the batches that were added.
     struct Slow {
@@ -187,12 +205,13 @@ mod tests {
     }
 
     impl Grows for Slow {
-        fn start(&mut self, view: &View) -> Result<()> {
+        fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
             self.view = Some(*view);
             Ok(())
         }
 
-        fn add(&mut self, count: u32, _: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        fn add(&mut self, part: Part, _: &(dyn Fn(u64) + Sync)) -> Result<()> {
+            let count = part.samples.len() as u32;
             self.batches.push(count);
             std::thread::sleep(self.each * count);
             if self.fails { Err(Error::NoGpu) } else { Ok(()) }
@@ -257,9 +276,9 @@ mod tests {
             stop.store(samples >= 5, Ordering::Relaxed);
             seen.borrow_mut().push((samples, of, growth.film().unwrap().coverage().parts().to_vec()));
         };
-        let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
+        let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
         let watch = Watch { limit: None, stop: &stop, grown: &grown };
-        let film = go_on(&mut OnCpu::<f32>::new(&renderer), &view, None, &watch).unwrap();
+        let film = go_on(&mut OnCpu::<f32>::new(renderer.clone()), &view, None, &watch).unwrap();
         let part = |end| vec![Part { region: view.region(), samples: 0..end }];
         assert_eq!(*seen.borrow(), [(1, 100, part(1)), (5, 100, part(5))]);
         assert_eq!(film.coverage().parts(), part(5));
@@ -269,8 +288,8 @@ mod tests {
     #[test]
     fn what_is_gone_on_with_has_the_bits_of_all_at_once() {
         let (packed, view) = cornell(9);
-        let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
-        let mut device = OnCpu::<f32>::new(&renderer);
+        let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
+        let mut device = OnCpu::<f32>::new(renderer.clone());
         let whole = render(&mut device, &view, &|_| ()).unwrap();
         let part = |region, samples| view.part(region, samples).unwrap();
         let tile = Region { x: 3, y: 2, width: 5, height: 7 };

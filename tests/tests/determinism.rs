@@ -99,7 +99,7 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
             let film_of = |tile| {
                 let view = packed.view.part(tile, packed.view.range()).unwrap();
                 let mut film = renderer.start(&view).unwrap();
-                renderer.add::<f32>(&view, &mut film, view.range(), &|_| (), &()).unwrap();
+                renderer.add::<f32>(&view, &mut film, view.whole(), &|_| (), &()).unwrap();
                 film
             };
             let mut films = tiles(SIZE, size).into_iter().map(film_of);

@@ -253,12 +253,14 @@ fn samples_in_parts() {
         let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
         // A picture that was started before, and pictures in between, change nothing.
         renderer.start(&packed.view).unwrap();
-        renderer.add(1, &|_| ()).unwrap();
+        renderer.add(0..1, &|_| ()).unwrap();
         renderer.start(&packed.view).unwrap();
         let none = renderer.film().unwrap().develop().unwrap();
         assert!(none.pixels.iter().all(|&pixel| pixel == [0.0; 3]));
+        let mut first = 0;
         for &count in parts {
-            renderer.add(count, &|_| ()).unwrap();
+            renderer.add(first..first + count, &|_| ()).unwrap();
+            first += count;
             renderer.film().unwrap();
         }
         let film = renderer.film().unwrap();

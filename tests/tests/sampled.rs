@@ -162,7 +162,8 @@ fn samples_in_parts() {
     for parts in [&[8, 8][..], &[1, 3, 12]] {
         let (mut film, mut first) = (renderer.start(&packed.view).unwrap(), 0);
         for &count in parts {
-            renderer.add::<f32>(&packed.view, &mut film, first..first + count, &|_| (), &()).unwrap();
+            let part = packed.view.samples_of(first..first + count);
+            renderer.add::<f32>(&packed.view, &mut film, part, &|_| (), &()).unwrap();
             first += count;
         }
         assert_same_bits(&film.develop().unwrap(), &picture, &format!("CPU, {parts:?}"));
@@ -174,8 +175,10 @@ fn samples_in_parts() {
         gpu.report.max_binding = gpu.report.max_buffer.min(in_flight * sample);
         let mut renderer = Renderer::new(&gpu, &packed, true, Traversal::default()).unwrap();
         renderer.start(&packed.view).unwrap();
+        let mut first = 0;
         for &count in parts {
-            renderer.add(count, &|_| ()).unwrap();
+            renderer.add(first..first + count, &|_| ()).unwrap();
+            first += count;
             renderer.film().unwrap();
         }
         let film = renderer.film().unwrap();

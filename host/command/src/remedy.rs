@@ -17,6 +17,7 @@ pub fn worded(error: &Error) -> String {
             return format!("--layers is for .exr files, not for {format}; leave it out or write .exr");
         }
         Error::Threads { .. } => ": ask for fewer",
+        Error::SeveralInexact => ": drop --precision, or name one --device",
         Error::ReferenceOnGpu => ": use --device cpu, or --precision exact",
         Error::NoGpu => ", or use --device cpu",
         Error::OnlySoftware { .. } => ", which --device gpu takes",
@@ -35,6 +36,9 @@ pub fn worded(error: &Error) -> String {
 
 /// Why a rendering ran where it did.
 pub fn why(rendering: &Rendering) -> String {
+    if rendering.device.contains(" + ") {
+        return "--device".to_owned();
+    }
     match (&rendering.why, rendering.processor) {
         (Why::Asked, Processor::Gpu) => "--device gpu".to_owned(),
         (Why::Asked, Processor::Cpu) => "--device cpu".to_owned(),

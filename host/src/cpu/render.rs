@@ -1,6 +1,5 @@
 //! Whole pictures.
 
-use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
 use eyerays_kernels_cpu::{Isa, Number};
@@ -11,7 +10,7 @@ use super::pool::pool;
 use super::tile::{Observer, Planned};
 use crate::device_scene::{DeviceScene, SceneView};
 use crate::error::Result;
-use crate::film::{Exposure, Film};
+use crate::film::{Film, Part};
 use crate::method::Traversal;
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -36,7 +35,7 @@ const TILE: u32 = 32;
 /// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
 /// let mut film = renderer.start(&view)?;
 /// for sample in view.range() {
-///     renderer.add::<f32>(&view, &mut film, sample..sample + 1, &|_| (), &())?;
+///     renderer.add::<f32>(&view, &mut film, view.samples_of(sample..sample + 1), &|_| (), &())?;
 ///     let _so_far = film.develop()?;
 /// }
 /// # Ok(())
@@ -83,7 +82,7 @@ impl<'a> Renderer<'a> {
         R: Number,
     {
         let mut film = self.start(view)?;
-        self.add(view, &mut film, view.range(), done, observer)?;
+        self.add(view, &mut film, view.whole(), done, observer)?;
         self.threads.install(|| Ok((film.develop()?, film.rays())))
     }
 
@@ -95,11 +94,11 @@ impl<'a> Renderer<'a> {
         self.threads.install(|| Film::new(view, self.planned.film_words()))
     }
 
-    /// Adds samples of a view to its film, in the arithmetic `R`: n and then n more give the bits of 2n at once. `done` hears of
+    /// Adds a part of a view to its film, in the arithmetic `R`: n and then n more give the bits of 2n at once. `done` hears of
     /// every finished share of the pixels, and `observer` looks on.
     ///
     /// # Errors
-    /// The view has no such samples.
+    /// The view has no such part.
     ///
     /// # Panics
     /// If the film has some of the samples, or is of another view.
@@ -107,25 +106,27 @@ impl<'a> Renderer<'a> {
         &self,
         view: &View,
         film: &mut Film,
-        samples: Range<u32>,
+        part: Part,
         done: &(dyn Fn(u64) + Sync),
         observer: &dyn Observer<R>,
     ) -> Result<()>
     where
         R: Number,
     {
-        let view = view.part(view.region(), samples)?;
+        let view = view.part(part.region, part.samples)?;
         let film = Mutex::new(film);
         self.threads.install(|| {
             // A tile a task: coarser splitting leaves threads idle at the end.
             self.tiles(&view).into_par_iter().with_max_len(1).for_each(|region| {
                 let mut sums = self.planned.film(region);
                 let secondary = self.planned.add(&view, region, view.range(), &mut sums, observer);
-                let exposure = Exposure { region, samples: view.range(), sums: &sums, secondary };
-                film.lock().unwrap_or_else(PoisonError::into_inner).add(exposure);
+                let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+                film.add_sums(region, &sums);
+                film.add_rays(secondary);
                 done(region.pixels());
             });
         });
+        film.into_inner().unwrap_or_else(PoisonError::into_inner).cover(view.whole());
         Ok(())
     }
 
@@ -200,7 +201,8 @@ mod tests {
         for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3]] {
             let (mut film, mut first) = (renderer.start(&view).unwrap(), 0);
             for &count in parts {
-                renderer.add::<f32>(&view, &mut film, first..first + count, &|_| (), &()).unwrap();
+                let part = view.samples_of(first..first + count);
+                renderer.add::<f32>(&view, &mut film, part, &|_| (), &()).unwrap();
                 first += count;
             }
             assert!(film.develop().unwrap().bits_equal(&whole), "{parts:?}");
@@ -216,9 +218,9 @@ mod tests {
         let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
         let mut film = renderer.start(&view).unwrap();
         assert!(film.develop().unwrap().pixels.iter().all(|&pixel| pixel == [0.0; 3]));
-        renderer.add::<f32>(&view, &mut film, 0..1, &|_| (), &()).unwrap();
+        renderer.add::<f32>(&view, &mut film, view.samples_of(0..1), &|_| (), &()).unwrap();
         let one = film.develop().unwrap();
-        renderer.add::<f32>(&view, &mut film, 1..4, &|_| (), &()).unwrap();
+        renderer.add::<f32>(&view, &mut film, view.samples_of(1..4), &|_| (), &()).unwrap();
         let four = film.develop().unwrap();
         let brightness =
             |picture: &Picture| picture.pixels.as_flattened().iter().sum::<f32>() / picture.pixels.len() as f32;

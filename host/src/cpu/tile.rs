@@ -67,7 +67,7 @@ impl<'a> Planned<'a> {
     }
 
     /// Adds samples of a region, wherever its edges are, to its film, and returns how many secondary rays they took. Samples that
-    /// the view does not have are left out. The view's first sample starts the film anew.
+    /// the view does not have are left out.
     ///
     /// # Panics
     /// If the film is not the region's.

@@ -1,18 +1,20 @@
 //! Films that grow on a CPU.
 
 use std::marker::PhantomData;
+use std::sync::Arc;
 
 use eyerays_kernels_cpu::Number;
 
 use super::render::Renderer;
 use crate::error::Result;
-use crate::film::Film;
-use crate::view::View;
+use crate::film::{Film, Part};
+use crate::picture::Picture;
+use crate::view::{Region, View};
 use crate::watch::Grows;
 
 /// A CPU that films grow on, in the arithmetic `R`.
 pub(crate) struct OnCpu<'a, R> {
-    renderer: &'a Renderer<'a>,
+    renderer: Arc<Renderer<'a>>,
     growing: Option<Growing>,
     number: PhantomData<R>,
 }
@@ -20,34 +22,34 @@ pub(crate) struct OnCpu<'a, R> {
 struct Growing {
     view: View,
     film: Film,
-    /// The next sample.
-    next: u32,
 }
 
 impl<'a, R: Number> OnCpu<'a, R> {
     /// Without a film.
-    pub fn new(renderer: &'a Renderer<'a>) -> Self {
+    pub fn new(renderer: Arc<Renderer<'a>>) -> Self {
         OnCpu { renderer, growing: None, number: PhantomData }
     }
 }
 
 impl<R: Number> Grows for OnCpu<'_, R> {
-    fn start(&mut self, view: &View) -> Result<()> {
+    fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         // There may be no memory for two.
         self.growing = None;
-        self.growing = Some(Growing { view: *view, film: self.renderer.start(view)?, next: view.range().start });
+        self.growing = Some(Growing { view: *view, film: self.renderer.start(view)? });
         Ok(())
     }
 
-    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let Growing { view, film, next } = self.growing.as_mut().expect("a film was started");
-        let samples = *next..*next + count;
-        *next = samples.end;
-        self.renderer.add::<R>(view, film, samples, done, &())
+    fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let Growing { view, film } = self.growing.as_mut().expect("a film was started");
+        self.renderer.add::<R>(view, film, part, done, &())
     }
 
     fn wait(&mut self) -> Result<()> {
         Ok(())
+    }
+
+    fn develop(&self, film: &Film) -> Result<Picture> {
+        self.renderer.install(|| film.develop())
     }
 
     fn film(&mut self) -> Result<Film> {

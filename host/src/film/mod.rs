@@ -8,8 +8,6 @@ mod identity;
 #[cfg(test)]
 mod tests;
 
-use std::ops::Range;
-
 use eyerays_shader::stage::{PixelSums, Row};
 use rayon::prelude::*;
 
@@ -34,16 +32,6 @@ pub struct Film {
     secondary: u64,
     /// What it is a film of.
     pub identity: Identity,
-}
-
-/// What a device has of some samples of a region.
-pub(crate) struct Exposure<'a> {
-    pub region: Region,
-    pub samples: Range<u32>,
-    /// Laid out as a film of the region.
-    pub sums: &'a [u32],
-    /// Reflected and refracted rays.
-    pub secondary: u64,
 }
 
 impl Film {
@@ -87,15 +75,23 @@ impl Film {
         self.coverage.missing(&view.whole())
     }
 
-    /// Adds samples.
+    /// Says that it has got samples, whose sums are added by [`Film::add_sums`].
     ///
     /// # Panics
-    /// If it has some of them, or they are outside.
-    pub(crate) fn add(&mut self, exposure: Exposure<'_>) {
-        let Exposure { region, samples, sums, secondary } = exposure;
-        self.coverage.add(Part { region, samples }).expect("samples are added once");
-        self.add_sums(region, sums);
-        self.secondary += secondary;
+    /// If it had some of them.
+    pub(crate) fn cover(&mut self, part: Part) {
+        self.coverage.add(part).expect("samples are added once");
+    }
+
+    /// Takes the sums of a film of the same window, whose samples nobody else has.
+    pub(crate) fn absorb(&mut self, other: &Film) {
+        self.add_sums(other.window, &other.sums);
+        self.secondary += other.secondary;
+    }
+
+    /// Says which samples it has.
+    pub(crate) fn set_coverage(&mut self, coverage: Coverage) {
+        self.coverage = coverage;
     }
 
     /// Counts reflected and refracted rays.
@@ -147,7 +143,8 @@ impl Film {
         Ok(sums)
     }
 
-    fn add_sums(&mut self, region: Region, sums: &[u32]) {
+    /// Adds sums that are laid out as a film of the region.
+    pub(crate) fn add_sums(&mut self, region: Region, sums: &[u32]) {
         let (words, width) = (self.words, self.window.width);
         let (left, top) = (region.x - self.window.x, region.y - self.window.y);
         let rows = self.sums.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);

@@ -29,7 +29,7 @@ fn posed(scene: &Scene, integrator: Integrator) -> (DeviceScene, View) {
 
 fn rendered(renderer: &Renderer<'_>, view: &View) -> Film {
     let mut film = renderer.start(view).unwrap();
-    renderer.add::<f32>(view, &mut film, view.range(), &|_| (), &()).unwrap();
+    renderer.add::<f32>(view, &mut film, view.whole(), &|_| (), &()).unwrap();
     film
 }
 

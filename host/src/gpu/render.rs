@@ -1,10 +1,11 @@
 //! Films on the GPU: launches over bands of the image and batches of samples, whose sums stay there until they are read.
 
 use std::borrow::Cow;
+use std::ops::Range;
 use std::time::Duration;
 
 use eyerays_shader::camera;
-use eyerays_shader::data::Order;
+use eyerays_shader::data::{Frame, Order};
 use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
 use wgpu::BufferUsages as Use;
@@ -17,8 +18,8 @@ use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::device_scene::DeviceScene;
-use crate::error::Result;
-use crate::film::{Exposure, Film};
+use crate::error::{Error, Result};
+use crate::film::{Coverage, Film, Part};
 use crate::method::Traversal;
 use crate::plan::{self, Plan};
 use crate::scene::Light;
@@ -63,29 +64,34 @@ pub(super) struct Memory {
 struct Growing {
     view: View,
     bands: Vec<Band>,
-    /// The next sample.
-    next: u32,
+    coverage: Coverage,
 }
 
 /// A region of the image with its film.
 pub(super) struct Band {
     pub region: Region,
+    /// Has it no sample?
+    is_empty: bool,
     film: wgpu::Buffer,
     /// For the steps that bind the film.
     pub group: wgpu::BindGroup,
 }
 
 impl Grows for Renderer<'_> {
-    fn start(&mut self, view: &View) -> Result<()> {
-        Renderer::start(self, view)
+    fn start(&mut self, view: &View, regions: &[Region]) -> Result<()> {
+        self.start_in(view, regions)
     }
 
-    fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        Renderer::add(self, count, done)
+    fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        self.add_part(part, done)
     }
 
     fn wait(&mut self) -> Result<()> {
         self.gpu.wait()
+    }
+
+    fn device_time(&self) -> Option<Duration> {
+        Renderer::device_time(self)
     }
 
     fn film(&mut self) -> Result<Film> {
@@ -150,58 +156,71 @@ impl<'a> Renderer<'a> {
     /// # Errors
     /// What the GPU reports.
     pub fn start(&mut self, view: &View) -> Result<()> {
-        let Region { width, height, .. } = view.region();
-        let wanted = u64::from(camera::slots(width, height, self.order)) * u64::from(view.samples());
+        self.start_in(view, &[view.region()])
+    }
+
+    /// The same, for parts that lie within one of these regions each.
+    fn start_in(&mut self, view: &View, regions: &[Region]) -> Result<()> {
+        let slots = |region: &Region| u64::from(camera::slots(region.width, region.height, self.order));
+        let wanted = regions.iter().map(slots).max().unwrap_or(0) * u64::from(view.samples());
         self.reserve(wanted.min(self.most_slots.into()) as u32)?;
-        let regions = bands(view.region(), self.slots(), self.order);
-        let bands = match self.growing.take() {
+        let regions: Vec<_> = regions.iter().flat_map(|&region| bands(region, self.slots(), self.order)).collect();
+        let mut bands = match self.growing.take() {
             Some(growing) if growing.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => growing.bands,
             _ => regions.into_iter().map(|region| self.band(region)).collect::<Result<_>>()?,
         };
-        self.growing = Some(Growing { view: *view, bands, next: view.range().start });
+        bands.iter_mut().for_each(|band| band.is_empty = true);
+        self.growing = Some(Growing { view: *view, bands, coverage: Coverage::default() });
         self.queue.forget();
         let memory = self.memory.as_ref().expect("it was reserved");
         self.queue.restart(memory.buffers.of(binding::COUNTERS));
         Ok(())
     }
 
-    /// Adds the next `count` samples of each pixel, or as many as the view has: n and then n more give the bits of 2n at
-    /// once. Does not wait for the GPU, unless it has enough to do, or reflected and refracted rays branch, where the end of
-    /// each launch is waited for. `done` hears of shares of the pixels that are known to be finished; after
-    /// [`Renderer::film`] all are.
+    /// Adds samples of each pixel: n and then n more give the bits of 2n at once, in any order. Does not wait for the GPU, unless it
+    /// has enough to do, or reflected and refracted rays branch, where the end of each launch is waited for. `done` hears of shares
+    /// of the pixels that are known to be finished; after [`Renderer::film`] all are.
     ///
     /// # Errors
-    /// What the GPU reports; the film must then be started again.
+    /// The view has no such samples, or what the GPU reports; the film must then be started again.
     ///
     /// # Panics
     /// If no film was started.
-    pub fn add(&mut self, count: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+    pub fn add(&mut self, samples: Range<u32>, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let region = self.growing.as_ref().expect("a film was started").view.region();
+        self.add_part(Part { region, samples }, done)
+    }
+
+    fn add_part(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
         let mut growing = self.growing.take().expect("a film was started");
-        let end = growing.next.saturating_add(count).min(growing.view.range().end);
-        self.add_to(&growing, end, done)?;
-        growing.next = end;
+        growing.view.part(part.region, part.samples.clone())?;
+        let within = |band: &&mut Band| part.region.around(band.region) == part.region;
+        for band in growing.bands.iter_mut().filter(within) {
+            self.add_to(band, &growing.view, part.samples.clone(), done)?;
+        }
+        let twice = |both| Error::new(format!("the film has {both} already"));
+        growing.coverage.add(part).map_err(twice)?;
         self.growing = Some(growing);
         Ok(())
     }
 
-    fn add_to(&mut self, growing: &Growing, end: u32, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let Growing { view, bands, next } = growing;
-        for band in bands {
-            let (width, height) = (band.region.width, band.region.height);
-            let batch = (self.slots() / camera::slots(width, height, self.order)).max(1);
-            let mut first = *next;
-            while first < end {
-                let count = batch.min(end - first);
-                let frame = view.launch(self.packed, band.region, first, count, self.order);
-                let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
-                let memory = self.memory.as_ref().expect("it was reserved");
-                let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
-                plan::run(&self.plan, &mut launch)?;
-                let since = first - view.range().start;
-                launch.submit(share(since + count) - share(since))?;
-                done(self.queue.finished()?);
-                first += count;
-            }
+    fn add_to(&mut self, band: &mut Band, view: &View, samples: Range<u32>, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        let (width, height) = (band.region.width, band.region.height);
+        let batch = (self.slots() / camera::slots(width, height, self.order)).max(1);
+        let mut first = samples.start;
+        while first < samples.end {
+            let count = batch.min(samples.end - first);
+            let launch = view.launch(self.packed, band.region, first, count, self.order);
+            let frame = Frame { anew: band.is_empty.into(), ..launch };
+            let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
+            let memory = self.memory.as_ref().expect("it was reserved");
+            let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
+            plan::run(&self.plan, &mut launch)?;
+            let since = first - view.range().start;
+            launch.submit(share(since + count) - share(since))?;
+            done(self.queue.finished()?);
+            band.is_empty = false;
+            first += count;
         }
         Ok(())
     }
@@ -214,18 +233,16 @@ impl<'a> Renderer<'a> {
     /// # Panics
     /// If no film was started.
     pub fn film(&mut self) -> Result<Film> {
-        let Growing { view, bands, next } = self.growing.as_ref().expect("a film was started");
+        let Growing { view, bands, coverage } = self.growing.as_ref().expect("a film was started");
         let mut film = Film::new(view, self.plan.film_words)?;
-        let samples = view.range().start..*next;
-        if samples.is_empty() {
-            return Ok(film);
-        }
+        film.set_coverage(coverage.clone());
+        let bands: Vec<&Band> = bands.iter().filter(|band| !band.is_empty).collect();
         let counters = self.buffers().of(binding::COUNTERS).clone();
         let size = |band: &Band| self.plan.film_bytes() * band.region.pixels();
         let (mut rest, mut secondary) = (&bands[..], 0);
         while !rest.is_empty() {
             let mut bytes = 0;
-            let fits = |band: &&Band| {
+            let fits = |band: &&&Band| {
                 bytes += size(band);
                 bytes <= READ
             };
@@ -234,7 +251,7 @@ impl<'a> Renderer<'a> {
             secondary = self.queue.read(&counters, &films, |i, bytes| {
                 let sums = bytemuck::try_cast_slice::<u8, u32>(bytes);
                 let sums = sums.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
-                film.add(Exposure { region: now[i].region, samples: samples.clone(), sums: &sums, secondary: 0 });
+                film.add_sums(now[i].region, &sums);
             })?;
             rest = later;
         }
@@ -299,7 +316,7 @@ impl<'a> Renderer<'a> {
             other => self.buffers().find(other, false),
         });
         self.gpu.check()?;
-        Ok(Band { region, film, group })
+        Ok(Band { region, is_empty: true, film, group })
     }
 }
 

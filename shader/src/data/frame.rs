@@ -67,8 +67,8 @@ pub struct Frame {
     pub environment: f32,
     /// How many of the emitters are far away, which are the first, where there are [many](super::Effects::MANY_LIGHTS).
     pub far: u32,
-    /// The sample with which the film starts anew.
-    pub first: u32,
+    /// Not 0 if the film starts anew with this launch.
+    pub anew: u32,
     /// Nothing, like the next two: a record is a multiple of 16 bytes.
     pub padding: u32,
     /// Nothing.

@@ -132,7 +132,7 @@ pub fn expose<R: Scalar>(
     }
     let row = Row::new(pixel.y, frame.columns, words);
     let mut sums = PixelSums::default();
-    if frame.sample > frame.first {
+    if frame.anew == 0 {
         sums = PixelSums::load(film, row, pixel.x);
     }
     let mut at = slot;
@@ -161,8 +161,8 @@ mod tests {
     const SIZE: (u32, u32) = (9, 5);
     const PIXELS: usize = 45;
 
-    /// `batch` samples in flight of a region of 9x5 pixels, of a film that begins with sample `first`.
-    fn frame(batch: u32, sample: u32, first: u32) -> Frame {
+    /// `batch` samples in flight of a region of 9x5 pixels.
+    fn frame(batch: u32, sample: u32, anew: bool) -> Frame {
         let pixel_slots = camera::slots(SIZE.0, SIZE.1, Order(0));
         Frame {
             columns: SIZE.0,
@@ -171,7 +171,7 @@ mod tests {
             pixel_slots,
             slots: batch * pixel_slots,
             sample,
-            first,
+            anew: anew.into(),
             ..Frame::default()
         }
     }
@@ -212,7 +212,7 @@ mod tests {
                 let mut film = vec![9; NOISY_FILM_WORDS as usize * PIXELS];
                 let mut first = 7;
                 for &batch in batches {
-                    let frame = frame(batch, first, 7);
+                    let frame = frame(batch, first, first == 7);
                     let value = |slot| VALUES[(first - 7 + slot / frame.pixel_slots + turned) as usize % 5];
                     exposed(&frame, NOISY_FILM_WORDS, &mut film, |slot| (value(slot), 2));
                     first += batch;
@@ -224,7 +224,7 @@ mod tests {
 
     #[test]
     fn every_pixel_has_its_own_slots_and_those_outside_have_none() {
-        let frame = frame(2, 0, 0);
+        let frame = frame(2, 0, true);
         for words in [FILM_WORDS, NOISY_FILM_WORDS] {
             let mut film = vec![0; words as usize * PIXELS];
             exposed(&frame, words, &mut film, |slot| (slot as f32, 1));
@@ -243,7 +243,7 @@ mod tests {
 
     #[test]
     fn what_was_left_out_is_remembered_and_counts_still_add_up() {
-        let frame = frame(3, 0, 0);
+        let frame = frame(3, 0, true);
         let words = [3 | NON_FINITE, 4 | NON_FINITE, 5];
         let mut film = vec![0; FILM_WORDS as usize * PIXELS];
         exposed(&frame, FILM_WORDS, &mut film, |slot| (1.0, words[(slot / frame.pixel_slots) as usize]));

@@ -105,6 +105,7 @@ impl DeviceArgs {
             no_passthrough: self.no_passthrough,
             threads,
             around: Some(hush::around),
+            several: None,
         })
     }
 }

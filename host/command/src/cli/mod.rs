@@ -8,6 +8,7 @@ mod choice;
 mod console;
 mod convert;
 mod device;
+mod devices;
 mod diff;
 mod exposure;
 mod facts;

@@ -13,6 +13,7 @@ use super::checkpoint::{self, Checkpoint, CheckpointArgs};
 use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
+use super::devices::Devices;
 use super::facts::Facts;
 use super::look::Look;
 use super::options::{Effort, Loaded, View};
@@ -51,9 +52,10 @@ pub(super) struct Render {
     /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
     #[arg(long, value_name = "FILE")]
     settings: Option<PathBuf>,
-    /// Where to render [default: auto]
-    #[arg(long, value_parser = choice::<DeviceWish>())]
-    device: Option<DeviceWish>,
+    /// Where to render: auto is a GPU when one works, else the CPU; gpu; cpu; all of them together; or several by their numbers or
+    /// names, such as gpu:0,gpu:1,cpu [default: auto]
+    #[arg(long, value_parser = Devices::parse)]
+    device: Option<Devices>,
     #[command(flatten)]
     look: Look,
     /// What an .exr file holds beside the light of each pixel, with commas between
@@ -120,8 +122,12 @@ impl Render {
         };
         self.check(&destination)?;
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
-        let device = self.device.or(preset.device).unwrap_or_default();
-        let choice = self.on.over(&preset, device).choice(device)?;
+        let (device, several) = match &self.device {
+            Some(Devices::Several(several)) => (DeviceWish::Auto, Some(several.clone())),
+            Some(Devices::One(device)) => (*device, None),
+            None => (preset.device.unwrap_or_default(), None),
+        };
+        let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
         output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
         output::check_writable(&destination)?;
         let checkpoint = self.keeping.beside(&destination)?;
@@ -196,6 +202,8 @@ impl Ready<'_> {
             _ => identity,
         };
         let mut rendering = self.rendered(&backend, &identity)?;
+        let lost = rendering.lost.iter().map(|(name, error)| format!("{name}: {error}; the others did its work"));
+        super::warn(&lost.collect::<Vec<_>>(), self.quiet);
         let (scene, camera, view) = (path, &self.camera, &self.loaded.view);
         let facts = Facts {
             scene,
@@ -245,7 +253,10 @@ impl Ready<'_> {
                 identity,
                 quiet: self.quiet,
             };
-            watching.follow(|watch| backend.render_watched(packed, view, from.as_ref(), watch))
+            backend.open(packed).and_then(|mut session| {
+                session.reserve(view)?;
+                watching.follow(|watch| session.render_watched(view, from.as_ref(), watch))
+            })
         } else {
             let bar = progress::pixels(view.region().pixels() * u64::from(repeat), self.is_silent());
             let rendering = backend.render(packed, view, repeat, &|pixels| bar.inc(pixels));

@@ -1,0 +1,141 @@
+//! From a packed scene to a picture, on the device that was asked for or fits best.
+
+mod choice;
+mod rendering;
+mod session;
+mod several;
+
+use std::time::{Duration, Instant};
+
+use crate::device_scene::DeviceScene;
+use crate::error::{Error, Result};
+use crate::gpu::{AdapterRequest, Gpu};
+use crate::method::Traversal;
+use crate::view::View;
+
+pub use self::choice::{Choice, DeviceName, DeviceWish, Precision, Several};
+pub use self::rendering::Rendering;
+pub use self::session::Session;
+use self::several::Devices;
+pub use crate::team::Lost;
+pub use crate::why::Why;
+
+/// The device of a rendering.
+enum Device {
+    Cpu,
+    Gpu(Box<Gpu>),
+    Several(Box<Devices>),
+}
+
+/// A device, and why it was taken.
+pub struct Backend {
+    device: Device,
+    choice: Choice,
+    why: Why,
+    open_time: Duration,
+}
+
+impl Backend {
+    /// Opens the device that fits the choice.
+    ///
+    /// # Errors
+    /// A GPU was asked for by name and there is none, or none that can do it.
+    pub fn new(choice: &Choice) -> Result<Backend> {
+        let start = Instant::now();
+        let chosen = |device, why| Backend { device, choice: choice.clone(), why, open_time: start.elapsed() };
+        if let Some(several) = &choice.several {
+            return Ok(chosen(Device::Several(Box::new(Devices::open(several, choice)?)), Why::Asked));
+        }
+        let cpu = |why| chosen(Device::Cpu, why);
+        if choice.device == DeviceWish::Cpu {
+            return Ok(cpu(Why::Asked));
+        }
+        if choice.precision == Precision::Reference {
+            return match choice.device {
+                DeviceWish::Gpu => Err(Error::ReferenceOnGpu),
+                _ => Ok(cpu(Why::Reference)),
+            };
+        }
+        let asked = choice.device == DeviceWish::Gpu;
+        let want = AdapterRequest {
+            adapter: choice.adapter.clone(),
+            software: asked || choice.adapter.is_some(),
+            naga: choice.no_passthrough,
+            exact: choice.precision == Precision::Exact,
+            around: choice.around,
+        };
+        match Gpu::open(&want) {
+            Ok(gpu) => {
+                let why = if asked { Why::Asked } else { Why::Works };
+                Ok(chosen(Device::Gpu(Box::new(gpu)), why))
+            }
+            Err(error) if asked || choice.adapter.is_some() => Err(error),
+            Err(error) => Ok(cpu(Why::Instead(error))),
+        }
+    }
+
+    /// The GPU, if it is one and no other device.
+    pub fn gpu(&self) -> Option<&Gpu> {
+        match &self.device {
+            Device::Gpu(gpu) => Some(gpu),
+            Device::Cpu | Device::Several(_) => None,
+        }
+    }
+
+    /// The device and its driver.
+    pub fn description(&self) -> String {
+        match &self.device {
+            Device::Cpu => "CPU".to_owned(),
+            Device::Several(devices) => devices.names(),
+            Device::Gpu(gpu) => {
+                let report = &gpu.report;
+                format!("{} ({}, {})", report.name, report.backend, report.driver)
+            }
+        }
+    }
+
+    /// What was asked for.
+    pub fn choice(&self) -> &Choice {
+        &self.choice
+    }
+
+    /// Goes on in another precision, with another traversal. A GPU that was opened for fast precision may have
+    /// no other.
+    pub fn turn(&mut self, precision: Precision, traversal: Traversal) {
+        (self.choice.precision, self.choice.traversal) = (precision, traversal);
+    }
+
+    /// Gets a scene ready for any number of pictures.
+    ///
+    /// # Errors
+    /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
+    pub fn open<'a>(&'a self, packed: &'a DeviceScene) -> Result<Session<'a>> {
+        Session::new(self, packed)
+    }
+
+    /// Renders one picture `repeat` times, at least once. `done` is called with finished shares of the pixels.
+    ///
+    /// # Errors
+    /// As [`Backend::open`] and [`Session::render`].
+    pub fn render(
+        &self,
+        packed: &DeviceScene,
+        view: &View,
+        repeat: u32,
+        done: &(dyn Fn(u64) + Sync),
+    ) -> Result<Rendering> {
+        let mut session = self.open(packed)?;
+        session.reserve(view)?;
+        session.render(view, repeat, done)
+    }
+
+    /// [`Backend::render`] after a warm-up, which counts for no time.
+    ///
+    /// # Errors
+    /// As [`Backend::render`].
+    pub fn measure(&self, packed: &DeviceScene, view: &View, repeat: u32) -> Result<Rendering> {
+        let mut session = self.open(packed)?;
+        session.reserve(view)?;
+        session.measure(view, repeat)
+    }
+}

@@ -1,0 +1,183 @@
+//! A scene on a device, ready for any number of pictures.
+
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use super::rendering::{Rendering, Taken, repeated};
+use super::several::{Devices, cpu_name};
+use super::{Backend, Device, DeviceWish, Precision, Why};
+use crate::cpu::{self, OnCpu};
+use crate::device_scene::DeviceScene;
+use crate::error::Result;
+use crate::film::Film;
+use crate::gpu::{Gpu, Renderer, warm};
+use crate::method::Processor;
+use crate::view::View;
+use crate::watch::{self, Grows, Watch};
+
+/// Pictures, with pauses to read them, raise a GPU's clocks in so long.
+const LEAST_WARMING: Duration = Duration::from_millis(500);
+
+/// A scene whose kernels are compiled and whose data are where the device wants them. Cameras, sizes, parts and samples may change
+/// from picture to picture.
+pub struct Session<'a> {
+    backend: &'a Backend,
+    packed: &'a DeviceScene,
+    device: Box<dyn Grows + 'a>,
+    name: String,
+    processor: Processor,
+    why: Why,
+    since: Instant,
+    prepare_time: Duration,
+}
+
+impl<'a> Session<'a> {
+    pub(super) fn new(backend: &'a Backend, packed: &'a DeviceScene) -> Result<Self> {
+        let since = Instant::now();
+        let session = |device, name, processor| Session {
+            backend,
+            packed,
+            device,
+            name,
+            processor,
+            why: backend.why.clone(),
+            since,
+            prepare_time: backend.open_time + since.elapsed(),
+        };
+        match &backend.device {
+            Device::Cpu => {
+                let (device, name) = on_cpu(backend, packed)?;
+                Ok(session(device, name, Processor::Cpu))
+            }
+            Device::Gpu(gpu) => match on_gpu(backend, gpu, packed) {
+                Ok((device, name)) => Ok(session(device, name, Processor::Gpu)),
+                Err(error) if backend.choice.device == DeviceWish::Auto => {
+                    let (device, name) = on_cpu(backend, packed)?;
+                    Ok(Session { why: Why::Instead(error), ..session(device, name, Processor::Cpu) })
+                }
+                Err(error) => Err(error),
+            },
+            Device::Several(devices) => {
+                let device = on_several(backend, devices, packed)?;
+                Ok(session(device, devices.names(), Processor::Gpu))
+            }
+        }
+    }
+
+    /// Takes the memory that pictures of a view need.
+    ///
+    /// # Errors
+    /// What the device reports.
+    pub fn reserve(&mut self, view: &View) -> Result<()> {
+        self.on_device(|device| device.start(view, &[view.region()]))?;
+        self.prepare_time = self.backend.open_time + self.since.elapsed();
+        Ok(())
+    }
+
+    /// Renders a picture `repeat` times, at least once. `done` is called with finished shares of the pixels.
+    ///
+    /// # Errors
+    /// What the device reports. Under `auto`, what a GPU can't do goes to the CPU.
+    pub fn render(&mut self, view: &View, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        self.rendered(repeat, |device| watch::render(device, view, done))
+    }
+
+    /// Renders while somebody looks on, who may end it before all samples of the view are done: the picture has the bits of one of
+    /// [`Rendering::samples`]. Where there is a film `from` before, only what it has not is rendered.
+    ///
+    /// # Errors
+    /// As [`Session::render`]; or a film of another picture.
+    pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
+        self.rendered(1, |device| watch::go_on(device, view, from.cloned(), watch))
+    }
+
+    /// [`Session::render`] after a warm-up, which counts for no time.
+    ///
+    /// # Errors
+    /// As [`Session::render`].
+    pub fn measure(&mut self, view: &View, repeat: u32) -> Result<Rendering> {
+        let run = |device: &mut dyn Grows| {
+            let (start, before) = (Instant::now(), device.device_time());
+            watch::render(device, view, &|_| ())?;
+            let on_device = device.device_time().zip(before).map(|(after, before)| after - before);
+            Ok(on_device.unwrap_or_else(|| start.elapsed()))
+        };
+        match self.processor {
+            Processor::Gpu => self.on_device(|device| warm(LEAST_WARMING, || run(device)))?,
+            Processor::Cpu => drop(self.on_device(run)?),
+        }
+        self.render(view, repeat, &|_| ())
+    }
+
+    /// Runs something on the device, or on the CPU where that is left to us and the GPU can't.
+    fn on_device<T>(&mut self, mut work: impl FnMut(&mut dyn Grows) -> Result<T>) -> Result<T> {
+        match work(self.device.as_mut()) {
+            Err(error) if self.processor == Processor::Gpu && self.is_left_to_us() => {
+                (self.device, self.name) = on_cpu(self.backend, self.packed)?;
+                (self.processor, self.why) = (Processor::Cpu, Why::Instead(error));
+                work(self.device.as_mut())
+            }
+            done => done,
+        }
+    }
+
+    fn is_left_to_us(&self) -> bool {
+        matches!(self.backend.device, Device::Gpu(_)) && self.backend.choice.device == DeviceWish::Auto
+    }
+
+    fn rendered(&mut self, repeat: u32, mut film: impl FnMut(&mut dyn Grows) -> Result<Film>) -> Result<Rendering> {
+        let mut device_times = Some(Vec::new());
+        let (last, times) = repeated(repeat, || {
+            self.on_device(|device| {
+                let before = device.device_time();
+                let film = film(device)?;
+                match device.device_time().zip(before).zip(device_times.as_mut()) {
+                    Some(((after, before), times)) => times.push(after - before),
+                    None => device_times = None,
+                }
+                Ok((device.develop(&film)?, film))
+            })
+        })?;
+        Ok(self.taken(times, device_times).rendering(last))
+    }
+
+    fn taken(&mut self, times: Vec<Duration>, device_times: Option<Vec<Duration>>) -> Taken {
+        Taken {
+            device: self.name.clone(),
+            processor: self.processor,
+            why: self.why.clone(),
+            prepare_time: self.prepare_time,
+            times,
+            device_times,
+            lost: self.device.lost(),
+        }
+    }
+}
+
+/// A device with its name.
+type Named<'a> = (Box<dyn Grows + 'a>, String);
+
+fn on_gpu<'a>(backend: &'a Backend, gpu: &'a Gpu, packed: &'a DeviceScene) -> Result<Named<'a>> {
+    let choice = &backend.choice;
+    let renderer = Renderer::new(gpu, packed, choice.precision == Precision::Exact, choice.traversal)?;
+    let route = if choice.no_passthrough { ", through naga" } else { "" };
+    Ok((Box::new(renderer), format!("{} ({}{route})", gpu.report.name, gpu.report.backend)))
+}
+
+fn on_cpu<'a>(backend: &'a Backend, packed: &'a DeviceScene) -> Result<Named<'a>> {
+    let choice = &backend.choice;
+    let renderer = Arc::new(cpu::Renderer::new(packed, choice.traversal, choice.threads)?);
+    let device: Box<dyn Grows + 'a> = match choice.precision {
+        Precision::Exact | Precision::Fast => Box::new(OnCpu::<f32>::new(renderer)),
+        Precision::Reference => Box::new(OnCpu::<f64>::new(renderer)),
+    };
+    let threads = match choice.threads {
+        0 => std::thread::available_parallelism().map_or(1, usize::from),
+        asked => asked,
+    };
+    Ok((device, cpu_name(threads)))
+}
+
+fn on_several<'a>(backend: &'a Backend, devices: &'a Devices, packed: &'a DeviceScene) -> Result<Box<dyn Grows + 'a>> {
+    Ok(Box::new(devices.team(backend.choice.traversal, packed)?))
+}

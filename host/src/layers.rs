@@ -2,7 +2,7 @@
 
 use crate::choice::choices;
 use crate::device_scene::{DeviceScene, Feature};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering};
 use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
@@ -75,7 +75,7 @@ pub fn render(
 ) -> Result<Vec<(Layer, Values)>> {
     let settings = *packed.settings();
     let of_picture = Settings { spp: rendering.samples, ..settings };
-    let window = rendering.film.window();
+    let window = rendering.region;
     let mut studio = Studio { backend, packed, camera, window, settings: of_picture, direct: None, places: None };
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
     let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
@@ -124,15 +124,17 @@ struct Place {
 
 impl Studio<'_> {
     fn layer(&mut self, layer: Layer, scene: &Scene, rendering: &Rendering) -> Result<Values> {
-        let Rendering { picture, film, .. } = rendering;
+        let picture = &rendering.picture;
+        let no_film = || Error::new(format!("the layer {layer} is told by the film: render with one (expose)"));
+        let film = rendering.film.as_ref().ok_or_else(no_film);
         Ok(match layer {
             Layer::Colour => Values::Light(picture.clone()),
             Layer::Albedo => Values::Colours(self.picture(Some(Feature::Albedo), self.settings)?),
             Layer::Normal => Values::Vectors(self.picture(Some(Feature::Normal), self.settings)?),
             Layer::Direct => Values::Light(self.direct()?.clone()),
             Layer::Indirect => Values::Light(less(picture, self.direct()?)?),
-            Layer::Error => Values::Lengths(film.errors()),
-            Layer::Samples => Values::Numbers(film.samples()),
+            Layer::Error => Values::Lengths(film?.errors()),
+            Layer::Samples => Values::Numbers(film?.samples()),
             Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
             Layer::Object => {
                 let objects = Objects::new(scene);

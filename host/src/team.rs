@@ -117,7 +117,7 @@ impl Grows for Team<'_> {
         let coverage = self.coverage.clone();
         let mut films = self.working().map(|member| member.device.film());
         let mut film = films.next().expect("some device is left")?;
-        films.try_for_each(|other| other.map(|other| film.absorb(&other)))?;
+        films.try_for_each(|other| film.absorb(&other?))?;
         film.set_coverage(coverage);
         Ok(film)
     }

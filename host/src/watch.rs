@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use crate::error::Result;
 use crate::film::{Film, Part};
 use crate::picture::Picture;
+use crate::rays::Rays;
 use crate::team::Lost;
 use crate::view::{Region, View};
 
@@ -76,6 +77,14 @@ pub(crate) trait Grows {
     /// The picture of a film, on its threads.
     fn develop(&self, film: &Film) -> Result<Picture> {
         film.develop()
+    }
+
+    /// Renders all samples of a view at once, to a picture without a film.
+    fn picture(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<(Picture, Rays)> {
+        self.start(view, &[view.region()])?;
+        self.add(view.whole(), done)?;
+        let film = self.end()?;
+        Ok((self.develop(&film)?, film.rays()))
     }
 
     /// The film so far.

@@ -15,9 +15,13 @@ const SPP: &str = "1500";
 
 /// Renders with a film that is written all the time.
 fn kept(place: &Place, more: &[&str]) -> Command {
+    kept_in(place, "a.film", more)
+}
+
+fn kept_in(place: &Place, film: &str, more: &[&str]) -> Command {
     let scene = shipped("bleeding");
     let render = ["render", &scene, "--device", "cpu", "--size", "32x24", "--spp", SPP, "-o", "a.exr", "--json"];
-    let keep = ["--checkpoint", "a.film", "--checkpoint-every", "0.02", "--resume", "--reproducible"];
+    let keep = ["--checkpoint", film, "--checkpoint-every", "0.02", "--resume", "--reproducible"];
     let program = place.command(&[&render[..], &keep, more].concat());
     let mut command = Command::new("env");
     command.arg("--default-signal=HUP,INT,TERM").arg(program.get_program()).args(program.get_args());
@@ -26,7 +30,7 @@ fn kept(place: &Place, more: &[&str]) -> Command {
 }
 
 fn undisturbed(place: &Place) -> String {
-    let outcome: Outcome = kept(place, &["--checkpoint", "whole.film"]).output().unwrap().into();
+    let outcome: Outcome = kept_in(place, "whole.film", &[]).output().unwrap().into();
     hash(&outcome)
 }
 
@@ -108,6 +112,29 @@ fn a_disk_that_is_full_costs_no_picture_and_no_film_that_was_there() {
     assert!(outcome.stderr.contains("a.film") && outcome.stderr.contains("ulimit -f"), "{}", outcome.stderr);
     assert_eq!(fs::read(place.path("a.film")).unwrap(), old, "the film that was there is not hurt");
     assert_eq!(hash(&kept(&place, &[]).output().unwrap().into()), want);
+}
+
+/// The name that a film has by itself is another than one that somebody gave.
+#[test]
+fn a_film_that_somebody_keeps_stays_where_it_is() {
+    let place = Place::new(&[]);
+    let scene = shipped("bleeding");
+    let render = ["render", &scene, "--device", "cpu", "--size", "32x24", "--spp", "4", "-o", "a.png", "-q"];
+    for film in ["a.film", "a.png.film"] {
+        place.succeed(&[&render[..], &["--checkpoint", film]].concat());
+        place.succeed(&render);
+        assert_eq!(
+            place.names(),
+            [film, "a.png"]
+                .map(str::to_owned)
+                .iter()
+                .cloned()
+                .collect::<std::collections::BTreeSet<_>>()
+                .into_iter()
+                .collect::<Vec<_>>()
+        );
+        fs::remove_file(place.path(film)).unwrap();
+    }
 }
 
 #[test]

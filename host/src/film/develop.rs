@@ -8,6 +8,67 @@ use super::Film;
 use crate::error::Result;
 use crate::picture::Picture;
 use crate::rays::Rays;
+use crate::view::Region;
+
+/// A picture that is developed row by row, and what its sums tell beside light.
+pub(crate) struct Developer {
+    picture: Picture,
+    noise: Noise,
+    rays: Rays,
+}
+
+/// What a row tells.
+#[derive(Default)]
+struct Told {
+    noise: Noise,
+    shadow: u64,
+    non_finite: u64,
+}
+
+impl Developer {
+    /// Of a picture of this size, from its first row on.
+    ///
+    /// # Errors
+    /// If there is no memory for it.
+    pub fn new(width: u32, height: u32) -> Result<Self> {
+        Ok(Developer { picture: Picture::new(width, height)?, noise: Noise::default(), rays: Rays::default() })
+    }
+
+    /// Develops rows from `first` on, whose sums are these; `counts` tells the samples of each pixel of a row, counted from there.
+    pub fn rows<C>(&mut self, first: u32, words: u32, sums: &[u32], counts: impl Fn(u32) -> C + Sync)
+    where
+        C: AsRef<[u32]>,
+    {
+        let width = self.picture.width;
+        let pixels = self.picture.pixels.par_chunks_mut(width as usize).skip(first as usize);
+        let rows = pixels.zip(sums.par_chunks((words * width) as usize));
+        let told = rows.enumerate().map(|(y, (pixels, sums))| {
+            let (row, mut told) = (Row::new(0, width, words), Told::default());
+            for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
+                let sums = PixelSums::load(sums, row, x);
+                let mean = Mean::of(sums, count);
+                *pixel = mean.light.map(|channel| channel as f32);
+                told.noise.add(&mean);
+                told.shadow += u64::from(sums.word & !NON_FINITE);
+                told.non_finite += u64::from(sums.word & NON_FINITE != 0);
+            }
+            told
+        });
+        // Added in order, so that the sum is the same however many threads there are.
+        for told in told.collect::<Vec<_>>() {
+            self.noise = self.noise.with(&told.noise);
+            self.rays.shadow += told.shadow;
+            self.rays.non_finite += told.non_finite;
+        }
+    }
+
+    /// The picture, and what was counted of its rays.
+    pub fn done(mut self, words: u32) -> (Picture, Rays) {
+        let pixels = self.picture.pixels.len();
+        self.picture.noise = if words == NOISY_FILM_WORDS { self.noise.share(pixels) } else { None };
+        (self.picture, self.rays)
+    }
+}
 
 impl Film {
     /// The picture of its window: every pixel the mean of its samples, black without any.
@@ -15,23 +76,10 @@ impl Film {
     /// # Errors
     /// If there is no memory for it.
     pub fn develop(&self) -> Result<Picture> {
-        let (width, words) = (self.window.width, self.words);
-        let mut picture = Picture::new(width, self.window.height)?;
-        let rows = picture.pixels.par_chunks_mut(width as usize).zip(self.sums.par_chunks((words * width) as usize));
-        let noises = rows.zip(0..self.window.height).map(|((pixels, sums), y)| {
-            let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
-            let (row, mut noise) = (Row::new(0, width, words), Noise::default());
-            for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(&counts) {
-                let mean = Mean::of(PixelSums::load(sums, row, x), count);
-                *pixel = mean.light.map(|channel| channel as f32);
-                noise.add(&mean);
-            }
-            noise
-        });
-        // Added in order, so that the sum is the same however many threads there are.
-        let noise = noises.collect::<Vec<_>>().iter().fold(Noise::default(), Noise::with);
-        picture.noise = if words == NOISY_FILM_WORDS { noise.share(picture.pixels.len()) } else { None };
-        Ok(picture)
+        let Region { x, y, width, height } = self.window;
+        let mut developer = Developer::new(width, height)?;
+        developer.rows(0, self.words, &self.sums, |row| self.coverage.counts(y + row, x, width));
+        Ok(developer.done(self.words).0)
     }
 
     /// The standard error of each pixel's mean, of its brightness, estimated from how much its samples differ; row by row. Of samples

@@ -35,6 +35,8 @@ struct Header {
     words: u32,
     parts: Vec<Part>,
     secondary: u64,
+    /// Whether sums follow: a film without samples has none.
+    has_sums: bool,
 }
 
 impl Film {
@@ -53,6 +55,7 @@ impl Film {
             words: self.words,
             parts: self.coverage.parts().to_vec(),
             secondary: self.secondary,
+            has_sums: !self.sums.is_empty(),
         };
         let header = serde_json::to_vec(&header).map_err(|error| Error::new(error.to_string()))?;
         let written = out.write_all(&MAGIC).and_then(|()| write_block(&packed(&header)?, out));
@@ -112,7 +115,7 @@ impl Film {
 impl Header {
     /// The film without its sums, if it can be one.
     fn film(self) -> Result<Film> {
-        let Header { identity, size, window, words, parts, secondary } = self;
+        let Header { identity, size, window, words, parts, secondary, has_sums } = self;
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
         let is_whole = window.pixels() > 0 && image.around(window) == image;
@@ -126,7 +129,11 @@ impl Header {
             }
         }
         let mut film = Film { size, window, words, sums: Vec::new(), coverage, secondary, identity };
-        film.sums = film.empty(window)?;
+        if has_sums {
+            let count = window.pixels() as usize * words as usize;
+            film.sums.try_reserve_exact(count).map_err(|_| Error::Memory { width: size.0, height: size.1 })?;
+            film.sums.par_extend(rayon::iter::repeat_n(0, count));
+        }
         Ok(film)
     }
 }

@@ -12,7 +12,7 @@ use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::method::Traversal;
 use crate::render::Precision;
-use crate::scene::{self, Scene, Settings};
+use crate::scene::Settings;
 use crate::view::View;
 
 /// All that the bits of a sample depend on, by names: the scene, the camera, settings, the kernels, and in fast precision the device.
@@ -22,15 +22,16 @@ use crate::view::View;
 pub struct Identity(BTreeMap<String, String>);
 
 impl Identity {
-    /// Of a view of a scene, rendered with this precision. The scene is that which was packed.
+    /// Of a view of a scene, rendered with this precision; `scene` is the [`fingerprint`](crate::scene::fingerprint) of what was
+    /// packed.
     ///
     /// # Errors
-    /// What [`Scene::check`] refuses.
-    pub fn of(scene: &Scene, packed: &DeviceScene, view: &View, precision: Precision) -> Result<Identity> {
+    /// None that settings could make.
+    pub fn of(scene: [u8; 32], packed: &DeviceScene, view: &View, precision: Precision) -> Result<Identity> {
         let settings = packed.settings();
         let (width, height) = view.size();
         let mut all = BTreeMap::from([
-            ("scene".to_owned(), hexadecimal(&scene::fingerprint(scene)?)),
+            ("scene".to_owned(), hexadecimal(&scene)),
             ("camera".to_owned(), hexadecimal(&Sha256::digest(bytemuck::bytes_of::<Lens>(view.lens())))),
             ("size".to_owned(), format!("{width}x{height}")),
             ("precision".to_owned(), precision.name().to_owned()),

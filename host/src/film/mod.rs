@@ -12,6 +12,7 @@ use eyerays_shader::stage::{PixelSums, Row};
 use rayon::prelude::*;
 
 pub use coverage::{Coverage, Part};
+pub(crate) use develop::Developer;
 pub use identity::Identity;
 
 use crate::error::{Error, Result};
@@ -25,7 +26,8 @@ pub struct Film {
     window: Region,
     /// Of a pixel.
     words: u32,
-    /// Row by row; in a row one word of all its pixels after another.
+    /// Row by row; in a row one word of all its pixels after another. Nothing before the first are added, since a system takes
+    /// milliseconds to hand over so much memory.
     sums: Vec<u32>,
     coverage: Coverage,
     /// Reflected and refracted rays.
@@ -37,7 +39,7 @@ pub struct Film {
 impl Film {
     /// Without any sample, for a view; `words` are those of a pixel.
     pub(crate) fn new(view: &View, words: u32) -> Result<Film> {
-        let mut film = Film {
+        let film = Film {
             size: view.size(),
             window: view.region(),
             words,
@@ -46,7 +48,7 @@ impl Film {
             secondary: 0,
             identity: Identity::default(),
         };
-        film.sums = film.empty(film.window)?;
+        Picture::check_size(film.size.0, film.size.1)?;
         Ok(film)
     }
 
@@ -84,9 +86,12 @@ impl Film {
     }
 
     /// Takes the sums of a film of the same window, whose samples nobody else has.
-    pub(crate) fn absorb(&mut self, other: &Film) {
-        self.add_sums(other.window, &other.sums);
+    ///
+    /// # Errors
+    /// If there is no memory for them.
+    pub(crate) fn absorb(&mut self, other: &Film) -> Result<()> {
         self.secondary += other.secondary;
+        self.add_sums(other.window, &other.sums)
     }
 
     /// Says which samples it has.
@@ -117,34 +122,39 @@ impl Film {
         }
         self.widen(other.window)?;
         (self.coverage, self.secondary) = (coverage, self.secondary + other.secondary);
-        self.add_sums(other.window, &other.sums);
-        Ok(())
+        self.add_sums(other.window, &other.sums)
     }
 
     /// Makes room for a region.
     fn widen(&mut self, region: Region) -> Result<()> {
         let window = self.window.around(region);
         if window != self.window {
-            let sums = self.empty(window)?;
-            let (old, old_window) = (std::mem::replace(&mut self.sums, sums), self.window);
+            let (old, old_window) = (std::mem::take(&mut self.sums), self.window);
             self.window = window;
-            self.add_sums(old_window, &old);
+            self.add_sums(old_window, &old)?;
         }
         Ok(())
     }
 
-    fn empty(&self, window: Region) -> Result<Vec<u32>> {
-        let (width, height) = self.size;
-        Picture::check_size(width, height)?;
-        let (mut sums, count) = (Vec::new(), window.pixels() as usize * self.words as usize);
-        sums.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
-        // On all threads: a system takes long to hand so much memory to one.
-        sums.par_extend(rayon::iter::repeat_n(0, count));
-        Ok(sums)
-    }
-
     /// Adds sums that are laid out as a film of the region.
-    pub(crate) fn add_sums(&mut self, region: Region, sums: &[u32]) {
+    ///
+    /// # Errors
+    /// If there is no memory for them.
+    pub(crate) fn add_sums(&mut self, region: Region, sums: &[u32]) -> Result<()> {
+        if sums.is_empty() {
+            return Ok(());
+        }
+        if self.sums.is_empty() {
+            let all = self.window.pixels() as usize * self.words as usize;
+            let (width, height) = self.size;
+            self.sums.try_reserve_exact(all).map_err(|_| Error::Memory { width, height })?;
+            // On all threads: a system takes long to hand so much memory to one.
+            if region == self.window {
+                self.sums.par_extend(sums.par_iter().copied());
+                return Ok(());
+            }
+            self.sums.par_extend(rayon::iter::repeat_n(0, all));
+        }
         let (words, width) = (self.words, self.window.width);
         let (left, top) = (region.x - self.window.x, region.y - self.window.y);
         let rows = self.sums.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);
@@ -155,5 +165,6 @@ impl Film {
                 both.store(own, to, left + x);
             }
         });
+        Ok(())
     }
 }

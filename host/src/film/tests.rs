@@ -120,7 +120,7 @@ fn small() -> Film {
     let (packed, view) = posed(&scene, Integrator::Path);
     let view = view.part(Region { x: 2, y: 3, width: 7, height: 5 }, 4..6).unwrap();
     let mut film = rendered(&Renderer::new(&packed, Traversal::default(), 1).unwrap(), &view);
-    film.identity = Identity::of(&scene, &packed, &view, Precision::Exact).unwrap();
+    film.identity = Identity::of(scene::fingerprint(&scene).unwrap(), &packed, &view, Precision::Exact).unwrap();
     film
 }
 
@@ -151,7 +151,7 @@ fn films_of_other_pictures_are_refused_by_name() {
         change(&mut settings);
         let packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
-        Identity::of(scene, &packed, &view, precision).unwrap()
+        Identity::of(scene::fingerprint(scene).unwrap(), &packed, &view, precision).unwrap()
     };
     let as_it_is = |_: &mut Settings| ();
     let own = identity(&scene, &as_it_is, Precision::Exact);

@@ -19,9 +19,11 @@ use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
-use crate::film::{Coverage, Film, Part};
+use crate::film::{Coverage, Developer, Film, Part};
 use crate::method::Traversal;
+use crate::picture::Picture;
 use crate::plan::{self, Plan};
+use crate::rays::Rays;
 use crate::scene::Light;
 use crate::view::{Region, View};
 use crate::watch::{self, Grows};
@@ -96,6 +98,14 @@ impl Grows for Renderer<'_> {
 
     fn film(&mut self) -> Result<Film> {
         Renderer::film(self)
+    }
+
+    fn picture(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<(Picture, Rays)> {
+        Renderer::start(self, view)?;
+        self.add_part(view.whole(), done)?;
+        let picture = self.develop()?;
+        done(self.queue.forget());
+        Ok(picture)
     }
 }
 
@@ -233,13 +243,41 @@ impl<'a> Renderer<'a> {
     /// # Panics
     /// If no film was started.
     pub fn film(&mut self) -> Result<Film> {
-        let Growing { view, bands, coverage } = self.growing.as_ref().expect("a film was started");
+        let Growing { view, coverage, .. } = self.growing.as_ref().expect("a film was started");
         let mut film = Film::new(view, self.plan.film_words)?;
         film.set_coverage(coverage.clone());
+        let secondary = self.read(|region, sums| film.add_sums(region, sums))?;
+        film.add_rays(secondary);
+        Ok(film)
+    }
+
+    /// Waits for a picture of which all samples were added, and develops it where it arrives: that saves a film of host memory, which
+    /// takes longer than all else.
+    fn develop(&mut self) -> Result<(Picture, Rays)> {
+        let Growing { view, bands, .. } = self.growing.as_ref().expect("a film was started");
+        let (view, words) = (*view, self.plan.film_words);
+        let Region { y: top, width, height, .. } = view.region();
+        if bands.iter().any(|band| band.region.width != width) {
+            let film = self.film()?;
+            return Ok((film.develop()?, film.rays()));
+        }
+        let mut developer = Developer::new(width, height)?;
+        let counts = vec![view.samples(); width as usize];
+        let secondary = self.read(|region, sums| {
+            developer.rows(region.y - top, words, sums, |_| &counts);
+            Ok(())
+        })?;
+        let (picture, rays) = developer.done(words);
+        Ok((picture, Rays { primary: view.whole().volume(), secondary, ..rays }))
+    }
+
+    /// Reads the sums of each region that has any, in the order of their rows, and tells how many secondary rays there were.
+    fn read(&mut self, mut look: impl FnMut(Region, &[u32]) -> Result<()>) -> Result<u64> {
+        let Growing { bands, .. } = self.growing.as_ref().expect("a film was started");
         let bands: Vec<&Band> = bands.iter().filter(|band| !band.is_empty).collect();
         let counters = self.buffers().of(binding::COUNTERS).clone();
         let size = |band: &Band| self.plan.film_bytes() * band.region.pixels();
-        let (mut rest, mut secondary) = (&bands[..], 0);
+        let (mut rest, mut secondary, mut looked) = (&bands[..], 0, Ok(()));
         while !rest.is_empty() {
             let mut bytes = 0;
             let fits = |band: &&&Band| {
@@ -251,12 +289,13 @@ impl<'a> Renderer<'a> {
             secondary = self.queue.read(&counters, &films, |i, bytes| {
                 let sums = bytemuck::try_cast_slice::<u8, u32>(bytes);
                 let sums = sums.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
-                film.add_sums(now[i].region, &sums);
+                if looked.is_ok() {
+                    looked = look(now[i].region, &sums);
+                }
             })?;
             rest = later;
         }
-        film.add_rays(secondary);
-        Ok(film)
+        looked.map(|()| secondary)
     }
 
     fn buffers(&self) -> &LaunchBuffers {

@@ -2,20 +2,24 @@
 
 use std::time::{Duration, Instant};
 
+use super::session::Made;
 use crate::error::Result;
 use crate::film::Film;
 use crate::method::Processor;
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::team::Lost;
+use crate::view::Region;
 use crate::why::Why;
 
 /// A picture and what it took.
 pub struct Rendering {
     /// The picture.
     pub picture: Picture,
-    /// What it was developed from.
-    pub film: Film,
+    /// What it was developed from, unless it was made by [`Session::render`](super::Session::render), which keeps none.
+    pub film: Option<Film>,
+    /// What of the image it shows.
+    pub region: Region,
     /// Samples of each pixel, in the mean of all.
     pub samples: u32,
     /// What was traced.
@@ -51,10 +55,10 @@ pub(super) struct Taken {
 }
 
 impl Taken {
-    pub fn rendering(self, (picture, film): (Picture, Film)) -> Rendering {
-        let rays = film.rays();
+    pub fn rendering(self, region: Region, ((picture, rays), film): Made) -> Rendering {
         Rendering {
-            samples: (rays.primary / film.window().pixels()) as u32,
+            samples: (rays.primary / region.pixels()) as u32,
+            region,
             picture,
             film,
             rays,

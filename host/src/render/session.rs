@@ -12,6 +12,8 @@ use crate::error::Result;
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, warm};
 use crate::method::Processor;
+use crate::picture::Picture;
+use crate::rays::Rays;
 use crate::view::View;
 use crate::watch::{self, Grows, Watch};
 
@@ -74,12 +76,12 @@ impl<'a> Session<'a> {
         Ok(())
     }
 
-    /// Renders a picture `repeat` times, at least once. `done` is called with finished shares of the pixels.
+    /// Renders a picture `repeat` times, at least once, and keeps no film. `done` is called with finished shares of the pixels.
     ///
     /// # Errors
     /// What the device reports. Under `auto`, what a GPU can't do goes to the CPU.
     pub fn render(&mut self, view: &View, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
-        self.rendered(repeat, |device| watch::render(device, view, done))
+        self.rendered(view, repeat, |device| Ok((device.picture(view, done)?, None)))
     }
 
     /// Renders while somebody looks on, who may end it before all samples of the view are done: the picture has the bits of one of
@@ -88,7 +90,21 @@ impl<'a> Session<'a> {
     /// # Errors
     /// As [`Session::render`]; or a film of another picture.
     pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
-        self.rendered(1, |device| watch::go_on(device, view, from.cloned(), watch))
+        self.rendered(view, 1, |device| {
+            let film = watch::go_on(device, view, from.cloned(), watch)?;
+            Ok(((device.develop(&film)?, film.rays()), Some(film)))
+        })
+    }
+
+    /// Renders a picture and keeps its film.
+    ///
+    /// # Errors
+    /// As [`Session::render`].
+    pub fn expose(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        self.rendered(view, 1, |device| {
+            let film = watch::render(device, view, done)?;
+            Ok(((device.develop(&film)?, film.rays()), Some(film)))
+        })
     }
 
     /// [`Session::render`] after a warm-up, which counts for no time.
@@ -98,7 +114,7 @@ impl<'a> Session<'a> {
     pub fn measure(&mut self, view: &View, repeat: u32) -> Result<Rendering> {
         let run = |device: &mut dyn Grows| {
             let (start, before) = (Instant::now(), device.device_time());
-            watch::render(device, view, &|_| ())?;
+            device.picture(view, &|_| ())?;
             let on_device = device.device_time().zip(before).map(|(after, before)| after - before);
             Ok(on_device.unwrap_or_else(|| start.elapsed()))
         };
@@ -125,20 +141,25 @@ impl<'a> Session<'a> {
         matches!(self.backend.device, Device::Gpu(_)) && self.backend.choice.device == DeviceWish::Auto
     }
 
-    fn rendered(&mut self, repeat: u32, mut film: impl FnMut(&mut dyn Grows) -> Result<Film>) -> Result<Rendering> {
+    fn rendered(
+        &mut self,
+        view: &View,
+        repeat: u32,
+        mut work: impl FnMut(&mut dyn Grows) -> Result<Made>,
+    ) -> Result<Rendering> {
         let mut device_times = Some(Vec::new());
         let (last, times) = repeated(repeat, || {
             self.on_device(|device| {
                 let before = device.device_time();
-                let film = film(device)?;
+                let made = work(device)?;
                 match device.device_time().zip(before).zip(device_times.as_mut()) {
                     Some(((after, before), times)) => times.push(after - before),
                     None => device_times = None,
                 }
-                Ok((device.develop(&film)?, film))
+                Ok(made)
             })
         })?;
-        Ok(self.taken(times, device_times).rendering(last))
+        Ok(self.taken(times, device_times).rendering(view.region(), last))
     }
 
     fn taken(&mut self, times: Vec<Duration>, device_times: Option<Vec<Duration>>) -> Taken {
@@ -153,6 +174,9 @@ impl<'a> Session<'a> {
         }
     }
 }
+
+/// A picture with what was counted, and its film where that is kept.
+pub(super) type Made = ((Picture, Rays), Option<Film>);
 
 /// A device with its name.
 type Named<'a> = (Box<dyn Grows + 'a>, String);

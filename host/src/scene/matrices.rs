@@ -16,6 +16,17 @@ impl Camera {
         DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
     }
 
+    /// Turned around its target, about its up, by a share of a whole turn.
+    #[must_use]
+    pub fn turned(&self, share: f64) -> Camera {
+        let (sin, cos) = math::sin_cos(share * std::f64::consts::TAU);
+        let (axis, away) = (self.up.as_dvec3().normalize_or_zero(), (self.eye - self.target).as_dvec3());
+        // Rodrigues' rotation.
+        let turned = away * cos + axis.cross(away) * sin + axis * axis.dot(away) * (1.0 - cos);
+        let eye = if share == 0.0 { self.eye } else { (self.target.as_dvec3() + turned).as_vec3() };
+        Camera { eye, ..self.clone() }
+    }
+
     /// From world space to an image of this size: x and y are -1 to 1 from left to right and from bottom to top, z is the distance in
     /// front of the camera's plane, all but that after a division by the last component. For column vectors.
     pub fn world_to_ndc(&self, (width, height): (u32, u32)) -> DMat4 {

@@ -1,5 +1,6 @@
 //! Films that are kept while they are rendered, to be gone on with.
 
+use std::cell::Cell;
 use std::fs::{self, File};
 use std::io::{BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -17,8 +18,8 @@ use eyerays::view::View;
 #[derive(Args, Clone)]
 #[command(next_help_heading = "Parts")]
 pub(super) struct CheckpointArgs {
-    /// Keep the film here, to go on with it later [default: the output's name ending in .film, of what takes longer than a minute, until
-    /// the picture is done]
+    /// Keep the film here, to go on with it later [default: the output's name and .film, of what takes longer than a minute, until the
+    /// picture is done]
     #[arg(long, value_name = "FILE", conflicts_with = "repeat")]
     checkpoint: Option<PathBuf>,
     /// Write it every so many seconds, 0 for only at the end
@@ -39,6 +40,8 @@ pub(super) struct Checkpoint {
     stays: bool,
     every: Duration,
     resume: bool,
+    /// Is what is there this rendering's?
+    is_own: Cell<bool>,
 }
 
 impl CheckpointArgs {
@@ -47,7 +50,11 @@ impl CheckpointArgs {
         let (path, stays) = match (&self.checkpoint, destination.file()) {
             (Some(path), _) => (path.clone(), true),
             (None, Some(output)) if destination.is_film() => (output.to_owned(), true),
-            (None, Some(output)) if output::can_replace(destination) => (output.with_extension(Film::ENDING), false),
+            (None, Some(output)) if output::can_replace(destination) => {
+                let mut name = output.as_os_str().to_owned();
+                name.push(format!(".{}", Film::ENDING));
+                (name.into(), false)
+            }
             _ if self.resume => return Err(Error::new("--resume: name the film with --checkpoint")),
             _ => return Ok(None),
         };
@@ -58,11 +65,22 @@ impl CheckpointArgs {
         if stays {
             output::check_writable(&Destination::File(path.clone()))?;
         }
-        Ok(Some(Checkpoint { path, stays, every: self.checkpoint_every, resume: self.resume }))
+        Ok(Some(Checkpoint {
+            path,
+            stays,
+            every: self.checkpoint_every,
+            resume: self.resume,
+            is_own: Cell::new(false),
+        }))
     }
 }
 
 impl Checkpoint {
+    /// Does it stay when the picture is done?
+    pub fn stays(&self) -> bool {
+        self.stays
+    }
+
     /// The film to go on with. One that can't be read is as good as none, but one of another picture is refused.
     pub fn film(&self, identity: &Identity, view: &View, quiet: bool) -> Result<Option<Film>> {
         if !self.resume {
@@ -74,6 +92,7 @@ impl Checkpoint {
             Ok(Some(film)) => {
                 film.identity.check(identity).map_err(of_this)?;
                 self.check(&film, view)?;
+                self.is_own.set(true);
                 Ok(Some(film))
             }
             Err(error) => {
@@ -103,7 +122,9 @@ impl Checkpoint {
 
     /// Keeps a film.
     pub fn keep(&self, film: &Film) -> Result<()> {
-        write(film, &self.path)
+        write(film, &self.path)?;
+        self.is_own.set(true);
+        Ok(())
     }
 
     /// Ends with a picture that was written, all of it or not.
@@ -113,6 +134,9 @@ impl Checkpoint {
             if !is_whole && !quiet {
                 console::say(format_args!("{} has what is done: --resume goes on with it", self.path.display()));
             }
+            return Ok(());
+        }
+        if !self.is_own.get() {
             return Ok(());
         }
         match fs::remove_file(&self.path) {

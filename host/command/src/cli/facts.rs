@@ -24,7 +24,7 @@ pub(super) struct Facts<'a> {
 impl Facts<'_> {
     pub fn about(&self) -> About {
         let Facts { camera, view, identity, rendering, .. } = self;
-        let (size, window) = (view.size(), rendering.film.window());
+        let (size, window) = (view.size(), view.region());
         let settings: Map<String, Value> =
             identity.entries().map(|(name, value)| (name.to_owned(), json!(value))).collect();
         let about = About::default()

@@ -24,6 +24,8 @@ mod part;
 mod progress;
 mod reading;
 mod render;
+mod sequence;
+mod shot;
 #[cfg(unix)]
 mod signals;
 mod summary;

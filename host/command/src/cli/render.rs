@@ -3,33 +3,31 @@
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::slice;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args;
 
-use super::checkpoint::{self, Checkpoint, CheckpointArgs};
+use super::checkpoint::CheckpointArgs;
 use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
 use super::devices::Devices;
-use super::facts::Facts;
 use super::look::Look;
 use super::options::{Effort, Loaded, View};
 use super::part::PartArgs;
 use super::progress;
 use super::reading::{Read, Reading};
 use super::seconds;
-use super::summary::{Summary, Times};
-use super::watching::{self, Watching};
+use super::sequence::{self, SequenceArgs, Shot};
+use super::shot::{Place, Studio};
+use super::watching;
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
-use eyerays::film::Identity;
-use eyerays::layers::{self, Layer, Values};
-use eyerays::render::{Backend, Choice, DeviceWish, Precision, Rendering};
-use eyerays::scene::{Camera, Scene};
+use eyerays::layers::{self, Layer};
+use eyerays::render::{Backend, Choice, DeviceWish};
+use eyerays::scene::{self, Scene};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -40,13 +38,17 @@ Examples:
   eyerays render model.glb -o model.exr --layers albedo,normal,depth
   eyerays render scenes/cornell.toml --settings fast.toml
   eyerays render scenes/room.toml --spp 4096 --checkpoint room.film --resume
-  eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film";
+  eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film
+  eyerays render model.glb --turntable 36 -o 'turn/{frame:04}.png'
+  eyerays render scenes/ --all-cameras -o '{name}-{camera}.png'";
 
 #[derive(Args)]
 pub(super) struct Render {
-    /// A scene (.toml, .gltf, .glb, .eyerays), or a bare mesh (.obj, .ply), which is framed and lit
-    scene: PathBuf,
-    /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output [default: SCENE.png here]
+    /// Scenes (.toml, .gltf, .glb, .eyerays), bare meshes (.obj, .ply), which are framed and lit, or folders of them
+    #[arg(required = true, value_name = "SCENE")]
+    scenes: Vec<PathBuf>,
+    /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output. Of several pictures
+    /// {name}, {camera} and {frame:04} tell them apart [default: {name}.png here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<std::ffi::OsString>,
     /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
@@ -57,7 +59,7 @@ pub(super) struct Render {
     #[arg(long, value_parser = Devices::parse)]
     device: Option<Devices>,
     #[command(flatten)]
-    look: Look,
+    pub look: Look,
     /// What an .exr file holds beside the light of each pixel, with commas between
     #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',', conflicts_with = "samples_from")]
     layers: Vec<Layer>,
@@ -66,19 +68,19 @@ pub(super) struct Render {
     preview: bool,
     /// Render this many times and tell the median time
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=10_000))]
-    repeat: u32,
+    pub repeat: u32,
     /// Render as many samples of each pixel as fit so many seconds, at least one and at most --spp; for samplers without a grid
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with_all = ["repeat", "samples"])]
-    time_limit: Option<Duration>,
+    pub time_limit: Option<Duration>,
     /// Write the picture so far to the output every so many seconds, 0 for never [default: 10, of what takes longer than 20]
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "repeat")]
-    preview_every: Option<Duration>,
+    pub preview_every: Option<Duration>,
     /// Leave out of the file what differs from run to run: the device and the seconds
     #[arg(long)]
-    reproducible: bool,
+    pub reproducible: bool,
     /// Print the summary as JSON to standard output
     #[arg(long)]
-    json: bool,
+    pub json: bool,
     #[command(flatten)]
     on: DeviceArgs,
     #[command(flatten)]
@@ -88,39 +90,45 @@ pub(super) struct Render {
     #[command(flatten)]
     effort: Effort,
     #[command(flatten)]
-    part: PartArgs,
+    sequence: SequenceArgs,
+    #[command(flatten)]
+    pub part: PartArgs,
     #[command(flatten)]
     keeping: CheckpointArgs,
 }
 
-/// A picture that is ready to be rendered.
-struct Ready<'a> {
+/// What all scenes of a command have in common.
+struct Job<'a> {
     of: &'a Render,
-    destination: Destination,
-    checkpoint: Option<Checkpoint>,
+    effort: Effort,
     choice: Choice,
-    loaded: Loaded,
-    scene: Scene,
-    camera: Camera,
     quiet: bool,
 }
 
 impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let mut ready = self.ready(quiet)?;
-        if self.preview {
-            ready.preview()?;
+        let scenes = sequence::scenes(&self.scenes)?;
+        let job = self.job(quiet)?;
+        if let [scene] = &scenes[..] {
+            return job.pictures(scene);
         }
-        ready.render()
+        job.check_names(&scenes)?;
+        let mut failed = false;
+        for scene in &scenes {
+            match job.pictures(scene) {
+                Ok(code) if watching::ended_by().is_some() => return Ok(code),
+                Ok(_) => {}
+                Err(error) => {
+                    console::say(format_args!("error: {error}"));
+                    failed = true;
+                }
+            }
+        }
+        Ok(if failed { ExitCode::from(super::BAD_INPUT) } else { ExitCode::SUCCESS })
     }
 
-    /// Checks what can be checked, reads the scene and packs it.
-    fn ready(&self, quiet: bool) -> Result<Ready<'_>> {
-        let destination = match &self.output {
-            Some(name) => Destination::from(name.clone()),
-            None => Destination::from(default_output(&self.scene).as_path()),
-        };
-        self.check(&destination)?;
+    /// Checks what can be checked without a scene.
+    fn job(&self, quiet: bool) -> Result<Job<'_>> {
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let (device, several) = match &self.device {
             Some(Devices::Several(several)) => (DeviceWish::Auto, Some(several.clone())),
@@ -128,21 +136,11 @@ impl Render {
             None => (preset.device.unwrap_or_default(), None),
         };
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
-        output::check_apart(slice::from_ref(&destination), self.settings.iter().chain([&self.scene]))?;
-        output::check_writable(&destination)?;
-        let checkpoint = self.keeping.beside(&destination)?;
-        let mut effort = self.effort.over(&preset);
-        let loading = self.reading.loading(effort.integrator());
-        let read = Read::scene(&self.scene, slice::from_ref(&destination), loading, quiet)?;
-        if self.time_limit.is_some() {
-            effort = effort.endless(&read.scene)?;
-        }
-        let (mut loaded, scene, camera) = self.view.pack_and_keep(read, &effort, &choice, quiet)?;
-        loaded.view = self.part.of(&loaded.view)?;
-        Ok(Ready { of: self, destination, checkpoint, choice, loaded, scene, camera, quiet })
+        Ok(Job { of: self, effort: self.effort.over(&preset), choice, quiet })
     }
 
-    fn check(&self, destination: &Destination) -> Result<()> {
+    /// Checks where a picture goes.
+    fn check(&self, scene: &Path, destination: &Destination) -> Result<()> {
         super::one_on_stdout(self.json, destination)?;
         if self.preview && destination.file().is_none() {
             return Err(Error::new(
@@ -155,11 +153,18 @@ impl Render {
             ));
         }
         self.look.check(destination)?;
-        if self.layers.is_empty() { Ok(()) } else { output::check_layers(destination) }
+        if !self.layers.is_empty() {
+            output::check_layers(destination)?;
+        }
+        output::check_apart(
+            std::slice::from_ref(destination),
+            self.settings.iter().map(PathBuf::as_path).chain([scene]),
+        )?;
+        output::check_writable(destination)
     }
 
     /// The layers beside the picture, each once.
-    fn layers(&self) -> Vec<Layer> {
+    pub fn layers(&self) -> Vec<Layer> {
         let mut layers = self.layers.clone();
         layers.retain(|&layer| layer != Layer::Colour);
         layers.sort_unstable();
@@ -168,130 +173,74 @@ impl Render {
     }
 }
 
-impl Ready<'_> {
-    /// What can be seen before kernels are there.
-    fn preview(&mut self) -> Result<()> {
-        progress::stage("drawing a preview", self.is_silent(), || {
-            let window = self.loaded.view.region();
-            let picture = layers::preview(&mut self.loaded.packed, &self.camera, window, self.choice.threads)?;
-            output::write_picture(&picture, &self.destination, &self.of.look.as_it_is()?)
-        })
+impl Job<'_> {
+    /// Refuses scenes whose pictures have the same names, before any is rendered.
+    fn check_names(&self, scenes: &[PathBuf]) -> Result<()> {
+        let of = |path: &PathBuf| self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()]);
+        sequence::check_distinct(&scenes.iter().map(of).collect::<Result<Vec<_>>>()?.concat())
     }
 
-    fn is_silent(&self) -> bool {
-        self.quiet || self.of.json
-    }
-
-    fn render(mut self) -> Result<ExitCode> {
-        let path = &self.of.scene;
-        let of_scene = |error: eyerays::error::Error| error.of(path);
-        let (backend, identity) = progress::stage("opening the device", self.quiet, || {
-            let Loaded { packed, view, .. } = &self.loaded;
-            let precision = self.choice.precision;
+    /// Renders the pictures of a scene.
+    fn pictures(&self, path: &Path) -> Result<ExitCode> {
+        // A wrong name shows before a scene is read, which may take long.
+        for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
+            self.of.check(path, &place)?;
+        }
+        let mut effort = self.effort;
+        let loading = self.of.reading.loading(effort.integrator());
+        let read = Read::scene(path, &[], loading, self.quiet)?;
+        if self.of.time_limit.is_some() {
+            effort = effort.endless(&read.scene)?;
+        }
+        let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
+        let shots = self.of.sequence.shots(&scene, camera)?;
+        let places = self.places(path, &loaded, &scene, shots)?;
+        if self.of.preview {
+            self.preview(&mut loaded, &places)?;
+        }
+        let (backend, hash) = progress::stage("opening the device", self.quiet, || {
             // A driver takes longer than hashing the scene does.
             thread::scope(|scope| {
-                let identity = scope.spawn(|| Identity::of(&self.scene, packed, view, precision));
-                (Backend::new(&self.choice), identity.join().expect("hashing does not panic"))
+                let hash = scope.spawn(|| scene::fingerprint(&scene));
+                (Backend::new(&self.choice), hash.join().expect("hashing does not panic"))
             })
         });
-        let (backend, identity) = (backend?, identity.map_err(of_scene)?);
         // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
-        let backend = ManuallyDrop::new(backend);
-        let identity = match self.choice.precision {
-            Precision::Fast => identity.on(&backend.description(), self.choice.traversal),
-            _ => identity,
+        let backend = ManuallyDrop::new(backend?);
+        let hash = hash.map_err(|error| error.of(path))?;
+        let studio = Studio {
+            of: self.of,
+            path,
+            scene: &scene,
+            hash,
+            choice: &self.choice,
+            backend: &backend,
+            quiet: self.quiet,
         };
-        let mut rendering = self.rendered(&backend, &identity)?;
-        let lost = rendering.lost.iter().map(|(name, error)| format!("{name}: {error}; the others did its work"));
-        super::warn(&lost.collect::<Vec<_>>(), self.quiet);
-        let (scene, camera, view) = (path, &self.camera, &self.loaded.view);
-        let facts = Facts {
-            scene,
-            camera,
-            view,
-            identity: &identity,
-            rendering: &rendering,
-            reproducible: self.of.reproducible,
-        };
-        rendering.picture.about = facts.about();
-        rendering.film.identity = identity;
-        let start = Instant::now();
-        let asked = self.of.layers();
-        let is_silent = self.is_silent() || asked.is_empty();
-        let layers = progress::stage("rendering layers", is_silent, || {
-            layers::render(&backend, &mut self.loaded.packed, (&self.scene, &self.camera), &rendering, &asked)
+        studio.pictures(&mut loaded, &places)
+    }
+
+    /// Where the pictures go, and how they are seen.
+    fn places(&self, path: &Path, loaded: &Loaded, scene: &Scene, shots: Vec<Shot>) -> Result<Vec<Place>> {
+        let destinations = self.of.sequence.destinations(self.of.output.as_deref(), path, &shots)?;
+        output::check_apart(&destinations, &scene.files)?;
+        let places = shots.into_iter().zip(destinations).map(|(shot, destination)| {
+            self.of.check(path, &destination)?;
+            let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
+            let checkpoint = self.of.keeping.beside(&destination)?;
+            Ok(Place { camera: shot.camera, view: self.of.part.of(&view)?, destination, checkpoint })
         });
-        let layers = layers.map_err(of_scene)?;
-        let layers_time = (!asked.is_empty()).then(|| start.elapsed());
-        let start = Instant::now();
-        progress::stage("writing", self.quiet, || self.write(&rendering, &layers))?;
-        let times = Times::new(&self.loaded, &rendering, layers_time, start.elapsed());
-        let summary = Summary::new(&self.destination, &self.choice, &self.loaded, &rendering, times);
-        if self.of.json {
-            console::print_json(&summary.json())?;
-        } else if !self.quiet {
-            console::say(summary);
-        }
-        self.end(&rendering)
+        places.collect()
     }
 
-    fn rendered(&self, backend: &Backend, identity: &Identity) -> Result<Rendering> {
-        let (Loaded { packed, view, .. }, repeat) = (&self.loaded, self.of.repeat);
-        let from = match &self.checkpoint {
-            Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
-            None => None,
-        };
-        // Of one sample there is nothing to be seen before it is done, nor to be kept.
-        let rendering = if repeat == 1 && (view.samples() > 1 || from.is_some()) {
-            let watching = Watching {
-                bar: progress::samples(view.samples(), self.is_silent()),
-                destination: &self.destination,
-                look: self.of.look,
-                every: self.of.preview_every,
-                limit: self.of.time_limit,
-                checkpoint: self.checkpoint.as_ref(),
-                identity,
-                quiet: self.quiet,
-            };
-            backend.open(packed).and_then(|mut session| {
-                session.reserve(view)?;
-                watching.follow(|watch| session.render_watched(view, from.as_ref(), watch))
-            })
-        } else {
-            let bar = progress::pixels(view.region().pixels() * u64::from(repeat), self.is_silent());
-            let rendering = backend.render(packed, view, repeat, &|pixels| bar.inc(pixels));
-            bar.finish_and_clear();
-            rendering
-        };
-        Ok(rendering.map_err(|error| error.of(&self.of.scene))?)
-    }
-
-    fn write(&self, rendering: &Rendering, layers: &[(Layer, Values)]) -> Result<()> {
-        if self.destination.is_film() {
-            return checkpoint::write(&rendering.film, self.destination.file().expect("a film is a file"));
+    /// What can be seen before kernels are there.
+    fn preview(&self, loaded: &mut Loaded, places: &[Place]) -> Result<()> {
+        for Place { camera, view, destination, .. } in places {
+            progress::stage("drawing a preview", self.quiet || self.of.json, || {
+                let picture = layers::preview(&mut loaded.packed, camera, view.region(), self.choice.threads)?;
+                output::write_picture(&picture, destination, &self.of.look.as_it_is()?)
+            })?;
         }
-        let (picture, look) = (&rendering.picture, &self.of.look);
-        super::warn(look.beyond_white(picture, &self.destination)?.as_slice(), self.quiet);
-        output::write_layers(picture, layers, &self.destination, &look.encoding(picture)?)
+        Ok(())
     }
-
-    /// How the command ends: as shells have it where a signal ended the rendering.
-    fn end(&self, rendering: &Rendering) -> Result<ExitCode> {
-        let (samples, all) = (rendering.samples, self.loaded.view.samples());
-        let signal = watching::ended_by();
-        if signal.is_some() && samples < all && !self.quiet {
-            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
-        }
-        if let Some(checkpoint) = &self.checkpoint
-            && !self.destination.is_film()
-        {
-            checkpoint.end(&rendering.film, signal.is_none() || samples == all, self.quiet)?;
-        }
-        Ok(signal.map_or(ExitCode::SUCCESS, |signal| ExitCode::from(128 + signal as u8)))
-    }
-}
-
-/// The scene's name with another ending, in the current folder.
-fn default_output(scene: &Path) -> PathBuf {
-    PathBuf::from(scene.file_stem().unwrap_or("eyerays".as_ref())).with_extension("png")
 }

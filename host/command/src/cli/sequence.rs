@@ -1,0 +1,239 @@
+//! Which pictures are rendered: of several scenes, from several cameras, around a thing.
+
+use std::ffi::{OsStr, OsString};
+use std::fs;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+
+use crate::error::{Error, Result};
+use crate::output::Destination;
+use eyerays::scene::{Camera, Projection, Scene};
+use glam::Vec3;
+
+/// Several pictures of a scene.
+#[derive(Args)]
+#[command(next_help_heading = "Pictures")]
+pub(super) struct SequenceArgs {
+    /// Render from every camera of the scene
+    #[arg(long, conflicts_with_all = ["camera", "eye", "target"])]
+    all_cameras: bool,
+    /// Turn the camera around its target, all the way in N pictures
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    turntable: Option<u32>,
+    /// Of a turntable only the pictures A up to, but not including, B, counted from 0
+    #[arg(long, value_name = "A..B", value_parser = frames, requires = "turntable")]
+    frames: Option<Range<u32>>,
+}
+
+/// A picture of a scene.
+pub(super) struct Shot {
+    pub camera: Camera,
+    /// Its number in a turn.
+    frame: Option<u32>,
+}
+
+impl Shot {
+    /// One before the scene is known, to check names by.
+    pub fn any() -> Shot {
+        let (eye, target, up) = (Vec3::Z, Vec3::ZERO, Vec3::Y);
+        let projection = Projection::Perspective { fov: 60.0 };
+        Shot { camera: Camera { name: "camera".to_owned(), eye, target, up, projection }, frame: None }
+    }
+}
+
+impl SequenceArgs {
+    /// How many pictures there are of a camera.
+    fn turn(&self) -> Result<Option<Range<u32>>> {
+        let Some(count) = self.turntable else { return Ok(None) };
+        let frames = self.frames.clone().unwrap_or(0..count);
+        if frames.end > count {
+            let Range { start, end } = frames;
+            return Err(Error::new(format!("--frames {start}..{end}: the turn has the pictures 0..{count}")));
+        }
+        Ok(Some(frames))
+    }
+
+    /// The pictures of a scene, from this camera unless all are asked for.
+    pub fn shots(&self, scene: &Scene, camera: Camera) -> Result<Vec<Shot>> {
+        let cameras = if self.all_cameras { scene.cameras.clone() } else { vec![camera] };
+        let (frames, count) = (self.turn()?, f64::from(self.turntable.unwrap_or(1)));
+        Ok(cameras.into_iter().flat_map(|camera| turned(camera, frames.clone(), count)).collect())
+    }
+
+    /// The name of a picture where none was given.
+    fn default_name(&self) -> String {
+        let camera = if self.all_cameras { "-{camera}" } else { "" };
+        let frame = if self.turntable.is_some() { "-{frame:04}" } else { "" };
+        format!("{{name}}{camera}{frame}.png")
+    }
+
+    /// Where the pictures of a scene go.
+    ///
+    /// # Errors
+    /// Two go to the same place.
+    pub fn destinations(&self, output: Option<&OsStr>, scene: &Path, shots: &[Shot]) -> Result<Vec<Destination>> {
+        let own = OsString::from(self.default_name());
+        let template = output.unwrap_or(&own);
+        let name = scene.file_stem().unwrap_or("eyerays".as_ref()).to_string_lossy();
+        let places = shots.iter().map(|shot| match template.to_str() {
+            Some(text) => Destination::from(OsString::from(filled(text, &name, shot))),
+            // What is not Unicode has no places to fill.
+            None => Destination::from(template.to_owned()),
+        });
+        let places: Vec<Destination> = places.collect();
+        check_distinct(&places)?;
+        Ok(places)
+    }
+}
+
+/// Refuses two pictures in one place.
+pub(super) fn check_distinct(places: &[Destination]) -> Result<()> {
+    let mut names: Vec<String> = places.iter().map(Destination::to_string).collect();
+    names.sort_unstable();
+    match names.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(Error::new(format!(
+            "two pictures would be written to {}: put {{name}}, {{camera}} or {{frame:04}} into --output",
+            pair[0]
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// A camera, or as many as a turn has of it.
+fn turned(camera: Camera, frames: Option<Range<u32>>, count: f64) -> Vec<Shot> {
+    match frames {
+        None => vec![Shot { camera, frame: None }],
+        Some(frames) => {
+            frames.map(|frame| Shot { camera: camera.turned(f64::from(frame) / count), frame: Some(frame) }).collect()
+        }
+    }
+}
+
+/// A name with what stands in braces filled in; other braces stay.
+fn filled(template: &str, name: &str, shot: &Shot) -> String {
+    let mut text = String::new();
+    let mut rest = template;
+    while let Some((before, after)) = rest.split_once('{') {
+        text.push_str(before);
+        let place = after.split_once('}').and_then(|(place, after)| Some((value(place, name, shot)?, after)));
+        match place {
+            Some((value, after)) => {
+                text.push_str(&value);
+                rest = after;
+            }
+            None => {
+                text.push('{');
+                rest = after;
+            }
+        }
+    }
+    text + rest
+}
+
+fn value(place: &str, name: &str, shot: &Shot) -> Option<String> {
+    let frame = shot.frame.unwrap_or(0);
+    match place {
+        "name" => Some(name.to_owned()),
+        // A camera may have any name, and a picture's has no folders of its own.
+        "camera" => Some(shot.camera.name.replace(['/', '\\', '\0'], "_")),
+        "frame" => Some(frame.to_string()),
+        _ => {
+            let width: usize = place.strip_prefix("frame:0")?.parse().ok().filter(|width| *width <= 20)?;
+            Some(format!("{frame:0width$}"))
+        }
+    }
+}
+
+/// Endings of scenes in a folder.
+const ENDINGS: [&str; 6] = ["toml", "gltf", "glb", "eyerays", "obj", "ply"];
+
+/// The scenes that paths name: files, and those in folders by their names.
+///
+/// # Errors
+/// A folder that can't be read or has none.
+pub(super) fn scenes(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut scenes = Vec::new();
+    for path in paths {
+        if !path.is_dir() {
+            scenes.push(path.clone());
+            continue;
+        }
+        let entries = fs::read_dir(path).map_err(|error| Error::file(path, format!("cannot be read: {error}")))?;
+        let is_scene = |path: &PathBuf| {
+            let ending = path.extension().unwrap_or_default();
+            ENDINGS.iter().any(|known| ending.eq_ignore_ascii_case(known)) && path.is_file()
+        };
+        let mut found: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(is_scene).collect();
+        if found.is_empty() {
+            return Err(Error::file(path, format!("the folder has no scene: none ends in .{}", ENDINGS.join(", ."))));
+        }
+        found.sort();
+        scenes.extend(found);
+    }
+    Ok(scenes)
+}
+
+/// `A..B`.
+fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
+    let ends = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
+    let frames = ends.filter(|frames: &Range<u32>| !frames.is_empty());
+    frames.ok_or_else(|| "write the first and the one after the last, for example 0..36".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn camera(name: &str) -> Camera {
+        let projection = Projection::Perspective { fov: 60.0 };
+        Camera { name: name.to_owned(), eye: Vec3::new(1.0, 2.0, 5.0), target: Vec3::X, up: Vec3::Y, projection }
+    }
+
+    fn shot(frame: Option<u32>) -> Shot {
+        Shot { camera: camera("a/b"), frame }
+    }
+
+    #[test]
+    fn names_are_filled_in() {
+        for (template, frame, want) in [
+            ("{name}-{camera}.png", None, "room-a_b.png"),
+            ("x{frame:04}.exr", Some(7), "x0007.exr"),
+            ("x{frame}.exr", Some(12), "x12.exr"),
+            ("{what}{frame:4}{.png", Some(1), "{what}{frame:4}{.png"),
+            ("{{name}}", None, "{room}"),
+        ] {
+            assert_eq!(filled(template, "room", &shot(frame)), want, "{template}");
+        }
+    }
+
+    #[test]
+    fn two_pictures_in_one_place_are_refused() {
+        let sequence = SequenceArgs { all_cameras: false, turntable: Some(3), frames: None };
+        let shots = turned(camera("a"), Some(0..3), 3.0);
+        let places = |output: &str| sequence.destinations(Some(output.as_ref()), "s/room.toml".as_ref(), &shots);
+        assert!(places("x.png").unwrap_err().message.contains("{frame:04}"));
+        assert_eq!(places("{frame}.png").unwrap().len(), 3);
+        let own = sequence.destinations(None, "s/room.toml".as_ref(), &shots).unwrap();
+        assert_eq!(own[2].to_string(), "room-0002.png");
+    }
+
+    /// A quarter of a turn, seen from above, is to the other side of the target.
+    #[test]
+    fn a_turn_keeps_height_and_distance_and_ends_where_it_began() {
+        let shots = turned(camera("a"), Some(0..4), 4.0);
+        assert_eq!(shots[0].camera, camera("a"));
+        for (shot, eye) in shots.iter().zip([[1.0, 2.0, 5.0], [6.0, 2.0, 0.0], [1.0, 2.0, -5.0], [-4.0, 2.0, 0.0]]) {
+            assert!((shot.camera.eye - Vec3::from(eye)).length() < 1e-6, "{}", shot.camera.eye);
+        }
+    }
+
+    #[test]
+    fn frames_are_some_of_the_turn() {
+        assert_eq!(frames("3..9"), Ok(3..9));
+        assert!(["3", "9..3", "a..b", "3..=9"].iter().all(|text| frames(text).is_err()));
+        let sequence = SequenceArgs { all_cameras: false, turntable: Some(8), frames: Some(3..9) };
+        assert!(sequence.turn().unwrap_err().message.contains("0..8"));
+    }
+}

@@ -1,0 +1,192 @@
+//! The pictures of a scene that is loaded, one after the other.
+
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use super::checkpoint::{self, Checkpoint};
+use super::console;
+use super::facts::Facts;
+use super::options::Loaded;
+use super::progress;
+use super::render::Render;
+use super::summary::{Summary, Times};
+use super::watching::{self, Watching};
+use crate::error::Result;
+use crate::output::{self, Destination};
+use eyerays::film::Identity;
+use eyerays::layers::{self, Layer, Values};
+use eyerays::render::{Backend, Choice, Precision, Rendering, Session};
+use eyerays::scene::{Camera, Scene};
+use eyerays::view::View;
+
+/// A picture that is to be rendered.
+pub(super) struct Place {
+    pub camera: Camera,
+    pub view: View,
+    pub destination: Destination,
+    pub checkpoint: Option<Checkpoint>,
+}
+
+/// What renders the pictures of a scene.
+pub(super) struct Studio<'a> {
+    pub of: &'a Render,
+    pub path: &'a Path,
+    pub scene: &'a Scene,
+    /// Of the scene.
+    pub hash: [u8; 32],
+    pub choice: &'a Choice,
+    pub backend: &'a Backend,
+    pub quiet: bool,
+}
+
+/// What a picture holds beside its light, and how long that took to render.
+type Layers = (Vec<(Layer, Values)>, Option<std::time::Duration>);
+
+impl Studio<'_> {
+    /// Renders all of them, until a signal ends one.
+    pub fn pictures(&self, loaded: &mut Loaded, places: &[Place]) -> Result<ExitCode> {
+        let asked = self.of.layers();
+        if asked.is_empty() {
+            return self.plain(loaded, places);
+        }
+        for place in places {
+            let identity = self.identity(loaded, place)?;
+            let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
+            let rendering = self.rendered(&mut session, place, &identity)?;
+            drop(session);
+            let layers = self.layers(loaded, place, &rendering, &asked)?;
+            let code = self.finish(loaded, place, identity, rendering, layers)?;
+            if watching::ended_by().is_some() {
+                return Ok(code);
+            }
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// Without layers, which need the scene for themselves.
+    fn plain(&self, loaded: &Loaded, places: &[Place]) -> Result<ExitCode> {
+        let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
+        for place in places {
+            let identity = self.identity(loaded, place)?;
+            let rendering = self.rendered(&mut session, place, &identity)?;
+            let code = self.finish(loaded, place, identity, rendering, (Vec::new(), None))?;
+            if watching::ended_by().is_some() {
+                return Ok(code);
+            }
+        }
+        Ok(ExitCode::SUCCESS)
+    }
+
+    /// What a picture is of.
+    fn identity(&self, loaded: &Loaded, place: &Place) -> Result<Identity> {
+        let precision = self.choice.precision;
+        let identity = Identity::of(self.hash, &loaded.packed, &place.view, precision)?;
+        Ok(match precision {
+            Precision::Fast => identity.on(&self.backend.description(), self.choice.traversal),
+            _ => identity,
+        })
+    }
+
+    fn rendered(&self, session: &mut Session<'_>, place: &Place, identity: &Identity) -> Result<Rendering> {
+        let (Place { view, destination, checkpoint, .. }, repeat) = (place, self.of.repeat);
+        let from = match checkpoint {
+            Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
+            None => None,
+        };
+        let is_silent = self.quiet || self.of.json;
+        session.reserve(view).map_err(|error| error.of(self.path))?;
+        // Of one sample there is nothing to be seen before it is done, nor to be kept.
+        let rendering = if repeat == 1 && (view.samples() > 1 || from.is_some()) {
+            let watching = Watching {
+                bar: progress::samples(view.samples(), is_silent),
+                destination,
+                look: self.of.look,
+                every: self.of.preview_every,
+                limit: self.of.time_limit,
+                checkpoint: checkpoint.as_ref(),
+                identity,
+                quiet: self.quiet,
+            };
+            watching.follow(|watch| session.render_watched(view, from.as_ref(), watch))
+        } else {
+            let bar = progress::pixels(view.region().pixels() * u64::from(repeat), is_silent);
+            let rendering = match self.keeps_film(place) {
+                true => session.expose(view, &|pixels| bar.inc(pixels)),
+                false => session.render(view, repeat, &|pixels| bar.inc(pixels)),
+            };
+            bar.finish_and_clear();
+            rendering
+        };
+        let rendering = rendering.map_err(|error| error.of(self.path))?;
+        let lost = rendering.lost.iter().map(|(name, error)| format!("{name}: {error}; the others did its work"));
+        super::warn(&lost.collect::<Vec<_>>(), self.quiet);
+        Ok(rendering)
+    }
+
+    fn keeps_film(&self, place: &Place) -> bool {
+        let layers = self.of.layers();
+        place.destination.is_film()
+            || place.checkpoint.as_ref().is_some_and(Checkpoint::stays)
+            || [Layer::Error, Layer::Samples].iter().any(|layer| layers.contains(layer))
+    }
+
+    fn layers(&self, loaded: &mut Loaded, place: &Place, rendering: &Rendering, asked: &[Layer]) -> Result<Layers> {
+        let start = Instant::now();
+        let layers = progress::stage("rendering layers", self.quiet || self.of.json, || {
+            layers::render(self.backend, &mut loaded.packed, (self.scene, &place.camera), rendering, asked)
+        });
+        Ok((layers.map_err(|error| error.of(self.path))?, Some(start.elapsed())))
+    }
+
+    /// Writes a picture and says what it was.
+    fn finish(
+        &self,
+        loaded: &Loaded,
+        place: &Place,
+        identity: Identity,
+        mut rendering: Rendering,
+        (layers, layers_time): Layers,
+    ) -> Result<ExitCode> {
+        let Place { camera, view, destination, .. } = place;
+        let (scene, reproducible) = (self.path, self.of.reproducible);
+        let facts = Facts { scene, camera, view, identity: &identity, rendering: &rendering, reproducible };
+        rendering.picture.about = facts.about();
+        if let Some(film) = &mut rendering.film {
+            film.identity = identity;
+        }
+        let start = Instant::now();
+        progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers))?;
+        let times = Times::new(loaded, &rendering, layers_time, start.elapsed());
+        let summary = Summary::new(destination, self.choice, loaded, &rendering, times);
+        if self.of.json {
+            console::print_json(&summary.json())?;
+        } else if !self.quiet {
+            console::say(summary);
+        }
+        self.end(place, &rendering)
+    }
+
+    fn write(&self, destination: &Destination, rendering: &Rendering, layers: &[(Layer, Values)]) -> Result<()> {
+        if let (true, Some(film)) = (destination.is_film(), &rendering.film) {
+            return checkpoint::write(film, destination.file().expect("a film is a file"));
+        }
+        let (picture, look) = (&rendering.picture, &self.of.look);
+        super::warn(look.beyond_white(picture, destination)?.as_slice(), self.quiet);
+        output::write_layers(picture, layers, destination, &look.encoding(picture)?)
+    }
+
+    /// How a picture ends: as shells have it where a signal ended the rendering.
+    fn end(&self, place: &Place, rendering: &Rendering) -> Result<ExitCode> {
+        let (samples, all) = (rendering.samples, place.view.samples());
+        let signal = watching::ended_by();
+        if signal.is_some() && samples < all && !self.quiet {
+            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
+        }
+        if let (Some(checkpoint), Some(film), false) = (&place.checkpoint, &rendering.film, place.destination.is_film())
+        {
+            checkpoint.end(film, signal.is_none() || samples == all, self.quiet)?;
+        }
+        Ok(signal.map_or(ExitCode::SUCCESS, |signal| ExitCode::from(128 + signal as u8)))
+    }
+}

@@ -16,7 +16,7 @@ use super::look::Look;
 use super::options::{Effort, Loaded, View};
 use super::part::PartArgs;
 use super::progress;
-use super::reading::{Read, Reading};
+use super::reading::{self, Read, Reading};
 use super::seconds;
 use super::summary::{Summary, Times};
 use super::watching::{self, Watching};
@@ -33,6 +33,7 @@ Examples:
   eyerays render scenes/cornell.toml -o cornell.png
   eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
   eyerays render scenes/whitted.toml -o - > whitted.png
+  eyerays render - -o picture.png < scene.toml
   eyerays render scenes/cornell_path.toml --exposure 1 --tone agx
   eyerays render model.glb -o model.exr --layers albedo,normal,depth
   eyerays render scenes/cornell.toml --settings fast.toml
@@ -41,9 +42,11 @@ Examples:
 
 #[derive(Args)]
 pub(super) struct Render {
-    /// A scene (.toml, .gltf, .glb, .eyerays), or a bare mesh (.obj, .ply), which is framed and lit
+    /// A scene (.toml, .gltf, .glb, .eyerays), or a bare mesh (.obj, .ply), which is framed and lit; - reads a TOML scene from
+    /// standard input
     scene: PathBuf,
-    /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output [default: SCENE.png here]
+    /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output [default: SCENE.png here,
+    /// or eyerays.png]
     #[arg(short, long, value_name = "FILE")]
     output: Option<std::ffi::OsString>,
     /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
@@ -172,7 +175,7 @@ impl Ready<'_> {
     }
 
     fn render(mut self) -> Result<ExitCode> {
-        let path = &self.of.scene;
+        let path = reading::called(&self.of.scene);
         let of_scene = |error: eyerays::error::Error| error.of(path);
         let identity = self.identity().map_err(of_scene)?;
         let backend = progress::stage("opening the device", self.quiet, || Backend::new(&self.choice))?;
@@ -238,7 +241,7 @@ impl Ready<'_> {
             bar.finish_and_clear();
             rendering
         };
-        Ok(rendering.map_err(|error| error.of(&self.of.scene))?)
+        Ok(rendering.map_err(|error| error.of(reading::called(&self.of.scene)))?)
     }
 
     fn write(&self, rendering: &Rendering, layers: &[(Layer, Values)]) -> Result<()> {
@@ -266,7 +269,8 @@ impl Ready<'_> {
     }
 }
 
-/// The scene's name with another ending, in the current folder.
+/// The scene's name with another ending, in the current folder; standard input has none.
 fn default_output(scene: &Path) -> PathBuf {
-    PathBuf::from(scene.file_stem().unwrap_or("eyerays".as_ref())).with_extension("png")
+    let stem = scene.file_stem().filter(|_| !reading::is_standard_input(scene));
+    PathBuf::from(stem.unwrap_or("eyerays".as_ref())).with_extension("png")
 }

@@ -26,7 +26,7 @@ use crate::preset::Preset;
 use eyerays::film::Identity;
 use eyerays::layers::{self, Layer, Values};
 use eyerays::render::{Backend, Choice, DeviceWish, Precision, Rendering};
-use eyerays::scene::{Camera, Scene};
+use eyerays::scene::{Camera, Scene, Settings};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -108,6 +108,15 @@ impl Render {
             ready.preview()?;
         }
         ready.render()
+    }
+
+    /// The scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is
+    /// rendered.
+    pub fn checked(&self, quiet: bool) -> Result<Settings> {
+        self.on.choice(self.device.unwrap_or_default())?;
+        let read = Read::scene(&self.scene, &[], self.reading.loading(self.effort.integrator()), quiet)?;
+        self.view.camera(&read.scene).map_err(|error| error.of(read.path))?;
+        self.view.settings(&read.scene, &self.effort)
     }
 
     /// Checks what can be checked, reads the scene and packs it.

@@ -8,6 +8,7 @@
 pub mod bench;
 pub mod cli;
 pub mod error;
+pub mod farm;
 pub mod flip;
 pub mod generate;
 pub mod output;

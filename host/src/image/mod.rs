@@ -13,6 +13,8 @@ mod encode;
 mod exr;
 mod hdr;
 mod jpeg;
+mod layer;
+mod parts;
 mod png;
 mod read;
 mod texels;
@@ -26,6 +28,7 @@ use crate::error::{Error, Result};
 use crate::math;
 
 pub use encode::{encode, encode_layers};
+pub use layer::{decode_layer, read_layer};
 pub use read::{decode, read};
 pub use texels::{TextureBudget, decode_texture, read_texture};
 pub use tone::ToneMap;
@@ -148,5 +151,7 @@ impl Encoding {
 
 #[cfg(test)]
 mod hostile;
+#[cfg(test)]
+mod layers;
 #[cfg(test)]
 mod tests;

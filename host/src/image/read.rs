@@ -11,7 +11,7 @@ use image::{
 
 use super::bounded::{Allowance, Bounded};
 use super::transfer::{byte_to_linear, linear_table};
-use super::{hdr, jpeg, png};
+use super::{hdr, jpeg, layer, parts, png};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::picture::Picture;
@@ -48,8 +48,11 @@ pub(super) fn open(path: &Path) -> Result<File> {
 ///
 /// # Errors
 /// What is none of these, damaged, truncated, or larger than a picture may be. They name no file.
-pub fn decode(reader: impl BufRead + Seek) -> Result<Picture> {
+pub fn decode(mut reader: impl BufRead + Seek) -> Result<Picture> {
     distrusting(|| {
+        if let Some(picture) = layer::grey(&mut reader)? {
+            return Ok(picture);
+        }
         let kinds =
             Kinds { names: "PNG, EXR or HDR", most_per_pixel, most_pixels: Picture::MAX_PIXELS, otherwise: None };
         let check = |Size { width, height, .. }| Picture::check_size(width, height).map(drop);
@@ -64,7 +67,7 @@ pub(super) fn distrusting<T>(decode: impl FnOnce() -> Result<T>) -> Result<T> {
 }
 
 /// The most bytes that are read before the size of an image is known: its header, and what describes it.
-const MOST_HEADER: u64 = 16 << 20;
+pub(super) const MOST_HEADER: u64 = 16 << 20;
 /// What decoding takes: two buffers of four floats.
 const MEMORY_PER_PIXEL: u64 = 32;
 
@@ -169,36 +172,20 @@ fn not_read(mut reader: impl BufRead, names: &str) -> io::Result<String> {
 }
 
 /// Refuses pixels of so many bytes each that there is no memory for.
-fn room(width: u32, height: u32, each: u64) -> Result<()> {
+pub(super) fn room(width: u32, height: u32, each: u64) -> Result<()> {
     let bytes = u64::from(width) * u64::from(height) * each;
     Room::now().check(bytes).map_err(|why| {
         Error::new(format!("has {width}x{height} pixels, which {why}; end other programs or make it smaller"))
     })
 }
 
-/// Refuses an EXR whose parts hold more than their pixels may: a decoder takes memory by the size of the data, and
-/// `image` asks for that of the display alone.
+/// Refuses an EXR without colours, or with parts that are too large.
 fn check_parts(reader: &mut impl BufRead) -> Result<()> {
-    let damaged = |error| match error {
-        ::exr::error::Error::Io(error) => unreadable(error),
-        _ => Error::new("is damaged; write the image again"),
-    };
-    let parts = ::exr::meta::MetaData::read_from_buffered(reader, false).map_err(damaged)?.headers;
-    let most = most_per_pixel(ImageFormat::OpenExr).unwrap_or(0);
-    let has = |part: &::exr::meta::header::Header, name: &str| part.channels.list.iter().any(|of| of.name.eq(name));
-    if !parts.iter().any(|part| ["R", "G", "B"].into_iter().all(|name| has(part, name))) {
+    let parts = parts::headers(reader)?;
+    if !parts::have(&parts, &["R", "G", "B"]) {
         return Err(Error::new("has no channels called R, G and B; write it with these"));
     }
-    parts.iter().try_for_each(|part| {
-        let [width, height] =
-            [part.layer_size.0, part.layer_size.1].map(|side| u32::try_from(side).unwrap_or(u32::MAX));
-        Picture::check_size(width, height)?;
-        let each = part.channels.bytes_per_pixel as u64;
-        if each > most {
-            return Err(Error::new(format!("has pixels of more than {most} bytes; write fewer layers")));
-        }
-        room(width, height, each)
-    })
+    parts::check(&parts)
 }
 
 fn linear_pixels(image: DynamicImage) -> Vec<[f32; 3]> {
@@ -234,7 +221,7 @@ fn decode_error(error: ImageError) -> Error {
 }
 
 /// The error of what can not be read.
-fn unreadable(error: io::Error) -> Error {
+pub(super) fn unreadable(error: io::Error) -> Error {
     Error::new(read_error(&error))
 }
 

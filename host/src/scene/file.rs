@@ -109,6 +109,19 @@ pub fn read(path: &Path, most: u64) -> Unplaced<Vec<u8>> {
     open(path, most)?.whole()
 }
 
+/// The 1 to `most` bytes of what is no file, such as standard input.
+pub fn read_stream(stream: impl Read, most: u64) -> Unplaced<Vec<u8>> {
+    let mut bytes = Vec::new();
+    stream.take(most + 1).read_to_end(&mut bytes).map_err(|error| explain(&error))?;
+    match bytes.len() as u64 {
+        0 => Err("it is empty; write a scene to it".into()),
+        count if count > most => {
+            Err(format!("it holds more than {most} bytes, which is the most that is read; split it"))
+        }
+        _ => Ok(bytes),
+    }
+}
+
 /// An operating system's error as a fault and a remedy.
 pub fn explain(error: &std::io::Error) -> String {
     match error.kind() {

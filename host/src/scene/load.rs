@@ -1,5 +1,6 @@
 //! From a path to a scene.
 
+use std::io::Read;
 use std::path::Path;
 
 use glam::Vec3;
@@ -57,6 +58,16 @@ pub struct Loading {
 /// Those of [`load`].
 pub fn load_as(path: &Path, loading: Loading) -> Result<(Scene, Vec<String>)> {
     load_within(path, Budget::new(Room::now()), loading)
+}
+
+/// As [`load_as`], of a TOML scene that comes from no file, such as standard input. Errors call it `name`, and the files that it
+/// names are relative to the folder of that.
+///
+/// # Errors
+/// Those of [`load_as`].
+pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scene, Vec<String>)> {
+    let bytes = file::read_stream(stream, file::MOST_TEXT).map_err(|fault| Error::file(name, fault))?;
+    parse(name, &bytes, Budget::new(Room::now()), loading)
 }
 
 /// As [`load_as`], of a scene within the budget.

@@ -62,7 +62,7 @@ pub use falloff::Falloff;
 pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
 pub use light_unit::LightUnit;
-pub use load::{Loading, load, load_as, read_table};
+pub use load::{Loading, load, load_as, read_as, read_table};
 pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use primitive::{Disk, Primitives, Sphere};
 pub use projection::Projection;

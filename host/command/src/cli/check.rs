@@ -16,7 +16,7 @@ use eyerays::view::View;
 
 #[derive(Args)]
 pub(super) struct Check {
-    /// The scene
+    /// The scene; - reads a TOML scene from standard input
     scene: PathBuf,
     /// Take every warning for an error
     #[arg(long)]
@@ -27,8 +27,8 @@ pub(super) struct Check {
 
 impl Check {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let Read { scene, warnings, .. } = Read::scene(&self.scene, &[], self.reading.loading(None), quiet)?;
-        let named = |e: eyerays::error::Error| e.of(&self.scene);
+        let Read { path, scene, warnings, .. } = Read::scene(&self.scene, &[], self.reading.loading(None), quiet)?;
+        let named = |e: eyerays::error::Error| e.of(path);
         let quality = scene.hierarchy.as_ref().map_or(Quality::Fast, |kept| kept.quality().quality());
         let pack = || DeviceScene::new(&scene, scene.settings, quality);
         let packed = progress::stage("building", quiet, pack).map_err(named)?;
@@ -37,13 +37,13 @@ impl Check {
         }
         if self.strict && warnings > 0 {
             let fault = format!("{} under --strict; mend what they name, or drop it", plural(warnings, "warning"));
-            return Err(Error::file(&self.scene, fault));
+            return Err(Error::file(path, fault));
         }
         if !quiet {
             let cameras: Vec<String> = scene.cameras.iter().map(|c| format!("\"{}\"", c.name)).collect();
             console::print_line(format_args!(
                 "{}: {}, {}, {}; cameras {}",
-                self.scene.display(),
+                path.display(),
                 primitives(&scene),
                 plural(scene.materials.len(), "material"),
                 plural(scene.lights.len(), "light"),

@@ -25,6 +25,7 @@ pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays diff before.png after.png -o difference.png
   eyerays diff before.exr after.exr --flip-map seen.png
+  eyerays diff before.exr after.exr --layer depth
   eyerays diff scenes/cornell.toml --size 256x256
 Exit code 1 tells that the pictures differ by more than the tolerance.";
 
@@ -43,6 +44,9 @@ pub(super) struct Diff {
         "allow_outside", "light_unit",
     ])]
     second: Option<PathBuf>,
+    /// Compare this layer of two .exr files instead of their colours, for example depth, normal or ViewLayer.Mist
+    #[arg(long, value_name = "NAME", requires = "second")]
+    layer: Option<String>,
     /// Write a heat map of the difference (black where bits are equal)
     #[arg(short, long, value_name = "FILE")]
     output: Option<OsString>,
@@ -121,7 +125,11 @@ impl Diff {
             }
         }
         let names = [&self.first, second].map(|path| path.display().to_string());
-        Ok((image::read(&self.first)?, image::read(second)?, names))
+        let read = |path: &Path| match &self.layer {
+            Some(name) => image::read_layer(path, name),
+            None => image::read(path),
+        };
+        Ok((read(&self.first)?, read(second)?, names))
     }
 
     /// The unquantised pictures of a scene from GPU and CPU.
@@ -155,13 +163,14 @@ impl Diff {
         let mean = flip.map(Flip::mean);
         if self.json {
             return console::print_json(
-                &json!({ "first": names[0], "second": names[1], "comparison": comparison, "mean_flip": mean }),
+                &json!({ "first": names[0], "second": names[1], "layer": self.layer, "comparison": comparison, "mean_flip": mean }),
             );
         }
         if quiet {
             return Ok(());
         }
-        console::print_line(format_args!("{} against {}", names[0], names[1]))?;
+        let layer = self.layer.as_ref().map_or_else(String::new, |name| format!(", layer {name}"));
+        console::print_line(format_args!("{} against {}{layer}", names[0], names[1]))?;
         console::print(&comparison.to_string())?;
         mean.map_or(Ok(()), |mean| console::print_line(format_args!("mean FLIP           {mean:.6}")))
     }

@@ -25,7 +25,8 @@ use eyerays::quality::Bvh;
 
 #[derive(Args)]
 pub(super) struct Info {
-    /// A scene, to tell where its meshes are, its hierarchy's figures and what a GPU runs for it instead
+    /// A scene, to tell where its meshes are, its hierarchy's figures and what a GPU runs for it instead; - is a TOML scene from
+    /// standard input
     scene: Option<PathBuf>,
     /// Build the hierarchy in this quality only [default: each in turn]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>(), requires = "scene")]
@@ -62,7 +63,8 @@ impl Info {
 
     /// Where the meshes are, and the thesis' table 7.1 for every quality of the hierarchy, with its cost and memory.
     fn scene(&self, path: &Path, quiet: bool) -> Result<()> {
-        let scene = Read::scene(path, &[], self.reading.loading(None), quiet)?.unbuilt();
+        let read = Read::scene(path, &[], self.reading.loading(None), quiet)?;
+        let (path, scene) = (read.path, read.unbuilt());
         let outline = Outline::of(&scene);
         let (mut rows, mut cost) = (Vec::new(), None);
         let qualities = self.bvh.as_ref().map_or(Bvh::VARIANTS, std::slice::from_ref);

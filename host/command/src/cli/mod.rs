@@ -12,6 +12,7 @@ mod devices;
 mod diff;
 mod exposure;
 mod facts;
+mod farm;
 mod footprint;
 mod generate;
 mod hush;
@@ -73,6 +74,9 @@ enum Command {
     /// Put the parts of a picture together
     #[command(after_help = merge::EXAMPLES, allow_negative_numbers = true)]
     Merge(merge::Merge),
+    /// Divide a picture among machines: write a job for a render farm or a cluster
+    #[command(after_help = farm::EXAMPLES)]
+    Farm(farm::Farm),
     /// Compare two pictures, or a scene's pictures from GPU and CPU
     #[command(after_help = diff::EXAMPLES, allow_negative_numbers = true)]
     Diff(Box<diff::Diff>),
@@ -125,6 +129,7 @@ fn execute(cli: Cli) -> Result<ExitCode> {
     match cli.command {
         Command::Render(command) => command.run(cli.quiet),
         Command::Merge(command) => command.run(cli.quiet),
+        Command::Farm(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
         Command::Bench(command) => command.run(cli.quiet),
         Command::Tradeoff(command) => command.run(cli.quiet),

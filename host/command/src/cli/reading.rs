@@ -1,5 +1,7 @@
 //! Reading a scene for a command.
 
+use std::borrow::Cow;
+use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -29,6 +31,25 @@ impl Reading {
     }
 }
 
+/// What a scene file is called that comes from standard input.
+const STANDARD_INPUT: &str = "standard input";
+
+/// Does the command line's name of a scene stand for standard input?
+pub(super) fn is_standard_input(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// What messages call a scene of this name.
+pub(super) fn called(path: &Path) -> &Path {
+    if is_standard_input(path) { Path::new(STANDARD_INPUT) } else { path }
+}
+
+/// What pictures of a scene of this name are called, or of one that standard input gives.
+pub(super) fn stem(path: &Path) -> Cow<'_, str> {
+    let named = path.file_stem().filter(|_| !is_standard_input(path) && path != Path::new(STANDARD_INPUT));
+    named.unwrap_or("eyerays".as_ref()).to_string_lossy()
+}
+
 /// A scene that was read, from which file, and what that took.
 pub(super) struct Read<'a> {
     pub path: &'a Path,
@@ -39,10 +60,16 @@ pub(super) struct Read<'a> {
 }
 
 impl<'a> Read<'a> {
-    /// Reads a scene and says what of it is not drawn. None of the files that it names may be among `outputs`.
+    /// Reads a scene, from standard input if its name is `-`, and says what of it is not drawn. None of the files that it names may
+    /// be among `outputs`.
     pub fn scene(path: &'a Path, outputs: &[Destination], loading: Loading, quiet: bool) -> Result<Self> {
         let start = Instant::now();
-        let (scene, warnings) = progress::stage("reading", quiet, || scene::load_as(path, loading))?;
+        let load = || match is_standard_input(path) {
+            true => scene::read_as(io::stdin().lock(), called(path), loading),
+            false => scene::load_as(path, loading),
+        };
+        let (scene, warnings) = progress::stage("reading", quiet, load)?;
+        let path = called(path);
         let time = start.elapsed();
         super::warn(&warnings, quiet);
         output::check_apart(outputs, &scene.files)?;

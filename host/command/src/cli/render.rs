@@ -17,7 +17,7 @@ use super::look::Look;
 use super::options::{Effort, Loaded, View};
 use super::part::PartArgs;
 use super::progress;
-use super::reading::{Read, Reading};
+use super::reading::{self, Read, Reading};
 use super::seconds;
 use super::sequence::{self, SequenceArgs, Shot};
 use super::shot::{Place, Studio};
@@ -27,13 +27,14 @@ use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{self, Scene};
+use eyerays::scene::{self, Scene, Settings};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
   eyerays render scenes/cornell.toml -o cornell.png
   eyerays render model.obj --size 1920x1080 --samples 3 --device cpu
   eyerays render scenes/whitted.toml -o - > whitted.png
+  eyerays render - -o picture.png < scene.toml
   eyerays render scenes/cornell_path.toml --exposure 1 --tone agx
   eyerays render model.glb -o model.exr --layers albedo,normal,depth
   eyerays render scenes/cornell.toml --settings fast.toml
@@ -44,7 +45,8 @@ Examples:
 
 #[derive(Args)]
 pub(super) struct Render {
-    /// Scenes (.toml, .gltf, .glb, .eyerays), bare meshes (.obj, .ply), which are framed and lit, or folders of them
+    /// Scenes (.toml, .gltf, .glb, .eyerays), bare meshes (.obj, .ply), which are framed and lit, or folders of them; - reads a TOML
+    /// scene from standard input
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output. Of several pictures
@@ -127,6 +129,18 @@ impl Render {
         Ok(if failed { ExitCode::from(super::BAD_INPUT) } else { ExitCode::SUCCESS })
     }
 
+    /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is
+    /// rendered.
+    pub fn checked(&self, quiet: bool) -> Result<Settings> {
+        let job = self.job(quiet)?;
+        let [scene] = &self.scenes[..] else {
+            return Err(Error::new("a job renders one scene: name one, and its options after --"));
+        };
+        let read = Read::scene(scene, &[], self.reading.loading(job.effort.integrator()), quiet)?;
+        self.view.camera(&read.scene).map_err(|error| error.of(read.path))?;
+        self.view.settings(&read.scene, &job.effort)
+    }
+
     /// Checks what can be checked without a scene.
     fn job(&self, quiet: bool) -> Result<Job<'_>> {
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
@@ -189,6 +203,7 @@ impl Job<'_> {
         let mut effort = self.effort;
         let loading = self.of.reading.loading(effort.integrator());
         let read = Read::scene(path, &[], loading, self.quiet)?;
+        let path = reading::called(path);
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 
+use super::reading;
 use crate::error::{Error, Result};
 use crate::output::Destination;
 use eyerays::scene::{Camera, Projection, Scene};
@@ -76,7 +77,7 @@ impl SequenceArgs {
     pub fn destinations(&self, output: Option<&OsStr>, scene: &Path, shots: &[Shot]) -> Result<Vec<Destination>> {
         let own = OsString::from(self.default_name());
         let template = output.unwrap_or(&own);
-        let name = scene.file_stem().unwrap_or("eyerays".as_ref()).to_string_lossy();
+        let name = reading::stem(scene);
         let places = shots.iter().map(|shot| match template.to_str() {
             Some(text) => Destination::from(OsString::from(filled(text, &name, shot))),
             // What is not Unicode has no places to fill.

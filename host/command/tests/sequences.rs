@@ -1,0 +1,81 @@
+//! Many pictures by one command, and what they say of themselves.
+
+mod program;
+
+use std::collections::BTreeSet;
+use std::fs;
+
+use eyerays::image;
+use program::{Place, SCENE, shipped};
+use serde_json::Value;
+
+const SMALL: [&str; 4] = ["--device", "cpu", "--size", "16x12"];
+
+#[test]
+fn a_turn_is_as_many_pictures_and_its_first_is_the_camera_s_own() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    fs::create_dir(place.path("turn")).unwrap();
+    place.succeed(&[&["render", "scene.toml", "--turntable", "4", "-o", "turn/{frame:03}.png"], &SMALL[..]].concat());
+    place.succeed(&[&["render", "scene.toml", "-o", "one.png"], &SMALL[..]].concat());
+    let read = |name: &str| image::read(&place.path(name)).unwrap();
+    assert!(read("turn/000.png").bits_equal(&read("one.png")));
+    assert_eq!(fs::read_dir(place.path("turn")).unwrap().count(), 4);
+    // The half of it that another machine would render.
+    let part = ["render", "scene.toml", "--turntable", "4", "--frames", "2..4", "-o", "{name}-{frame}.png"];
+    place.succeed(&[&part, &SMALL[..]].concat());
+    assert!(read("scene-3.png").bits_equal(&read("turn/003.png")) && !place.path("scene-1.png").exists());
+    place.refuse(&[&["render", "scene.toml", "--turntable", "4", "-o", "x.png"], &SMALL[..]].concat(), &["x.png", "{frame:04}"]);
+}
+
+#[test]
+fn a_scene_that_fails_does_not_stop_the_others() {
+    let camera = "[[camera]]\nname = \"side\"\neye = [4, 0, 0]\ntarget = [0, 0, 0]\n";
+    let both = format!("{SCENE}\n{camera}");
+    let place = Place::new(&[("a.toml", "size = 3"), ("b.toml", &both), ("notes.txt", "no scene")]);
+    let outcome = place.run(&[&["render", ".", "--all-cameras", "-o", "{name}-{camera}.png"], &SMALL[..]].concat());
+    assert_eq!(outcome.code, Some(2));
+    assert!(outcome.stderr.contains("error: ./a.toml:1: "), "{}", outcome.stderr);
+    assert_eq!(place.names(), ["a.toml", "b-front.png", "b-side.png", "b.toml", "notes.txt"]);
+    place.refuse(&["render", "a.toml", "b.toml", "-o", "x.png"], &["x.png", "{name}"]);
+    fs::create_dir(place.path("empty")).unwrap();
+    place.refuse(&["render", "empty"], &["empty: ", "no scene"]);
+}
+
+/// The names of a schema's properties, and those that it asks for.
+fn names(schema: &Value) -> (BTreeSet<&str>, BTreeSet<&str>) {
+    let all = schema["properties"].as_object().unwrap().keys().map(String::as_str).collect();
+    (all, schema["required"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect())
+}
+
+#[test]
+fn the_summary_has_what_its_schema_says() {
+    let schema = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/summary.schema.json");
+    let schema: Value = serde_json::from_str(&fs::read_to_string(schema).unwrap()).unwrap();
+    let place = Place::new(&[]);
+    for (scene, more) in [("bleeding", &["--spp", "4"][..]), ("glass", &["--reproducible"])] {
+        let scene = shipped(scene);
+        let summary = place.succeed(&[&["render", &scene, "-o", "p.exr", "--json"], &SMALL[..], more].concat()).json();
+        for (found, schema) in [(&summary, &schema), (&summary["picture"], &schema["$defs"]["picture"])] {
+            let (all, required) = names(schema);
+            let found: BTreeSet<&str> = found.as_object().unwrap().keys().map(String::as_str).collect();
+            assert!(found.is_subset(&all), "{:?} are not in the schema", found.difference(&all));
+            assert!(required.is_subset(&found), "{:?} are missing", required.difference(&found));
+        }
+        let is_told = summary["picture"].get("seconds").is_some();
+        assert_eq!(is_told, !more.contains(&"--reproducible"));
+    }
+}
+
+/// Where no figure of time or of a device is in it.
+#[test]
+fn reproducible_pictures_are_equal_files() {
+    let place = Place::new(&[]);
+    let scene = shipped("bleeding");
+    for (first, second) in [("a.exr", "b.exr"), ("a.png", "b.png")] {
+        for (name, threads) in [(first, "1"), (second, "2")] {
+            let render = ["render", &scene, "-o", name, "--reproducible", "--spp", "2", "--threads", threads];
+            place.succeed(&[&render, &SMALL[..]].concat());
+        }
+        assert!(fs::read(place.path(first)).unwrap() == fs::read(place.path(second)).unwrap(), "{first}");
+    }
+}

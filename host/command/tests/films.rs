@@ -217,3 +217,27 @@ fn parts_of_different_devices_are_one_picture() {
     render("cpu", "q.exr", &[]);
     place.succeed(&["diff", "p.exr", "q.exr"]);
 }
+
+/// Whatever each of them did of it.
+#[test]
+fn several_devices_render_the_picture_of_one() {
+    if !program::has_gpu() {
+        return;
+    }
+    let place = Place::new(&[]);
+    for (scene, more) in [("whitted", &["--samples", "2"][..]), ("lights", &["--spp", "40", "--sampler", "sobol"])] {
+        let scene = shipped(scene);
+        let render = |device: &str, name: &str| {
+            let render = ["render", &scene, "--size", "70x90", "-o", name, "--json", "--device", device];
+            place.succeed(&[&render[..], more].concat()).json()
+        };
+        let (both, one) = (render("gpu:0,cpu", "p.exr"), render("cpu", "q.exr"));
+        assert!(both["device"].as_str().unwrap().contains(" + CPU ("), "{both}");
+        assert_eq!((&both["film_hash"], &both["rays"]), (&one["film_hash"], &one["rays"]));
+    }
+    place.refuse(&["render", &shipped("whitted"), "--device", "cpu,cpu"], &["twice"]);
+    place.refuse(
+        &["render", &shipped("whitted"), "--device", "gpu:0,cpu", "--precision", "fast"],
+        &["exact precision only"],
+    );
+}

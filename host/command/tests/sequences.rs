@@ -24,7 +24,10 @@ fn a_turn_is_as_many_pictures_and_its_first_is_the_camera_s_own() {
     let part = ["render", "scene.toml", "--turntable", "4", "--frames", "2..4", "-o", "{name}-{frame}.png"];
     place.succeed(&[&part, &SMALL[..]].concat());
     assert!(read("scene-3.png").bits_equal(&read("turn/003.png")) && !place.path("scene-1.png").exists());
-    place.refuse(&[&["render", "scene.toml", "--turntable", "4", "-o", "x.png"], &SMALL[..]].concat(), &["x.png", "{frame:04}"]);
+    place.refuse(
+        &[&["render", "scene.toml", "--turntable", "4", "-o", "x.png"], &SMALL[..]].concat(),
+        &["x.png", "{frame:04}"],
+    );
 }
 
 #[test]

@@ -24,7 +24,7 @@ pub(super) fn pixels(count: u64, quiet: bool) -> ProgressBar {
 
 /// A bar over the samples of each pixel.
 pub(super) fn samples(count: u32, quiet: bool) -> ProgressBar {
-    let template = "rendering {bar:40} {pos} of {len} samples {elapsed} (left {eta})";
+    let template = "rendering {bar:40} {pos} of {len} samples{msg} {elapsed} (left {eta})";
     styled(ProgressBar::new(count.into()), template, quiet)
 }
 

@@ -65,13 +65,20 @@ struct Written {
     picture: Cell<Instant>,
     film: Cell<Instant>,
     faulty: Cell<bool>,
+    /// How many rays there were when.
+    rays: Cell<(Instant, u64)>,
 }
 
 impl Watching<'_> {
     /// Renders by `work` under the eyes of this.
     pub fn follow<T>(&self, work: impl FnOnce(&Watch<'_>) -> T) -> T {
         let start = Instant::now();
-        let written = Written { picture: Cell::new(start), film: Cell::new(start), faulty: Cell::new(false) };
+        let written = Written {
+            picture: Cell::new(start),
+            film: Cell::new(start),
+            faulty: Cell::new(false),
+            rays: Cell::new((start, 0)),
+        };
         let can_write = output::can_replace(self.destination) && !self.destination.is_film();
         let first = Cell::new(None);
         let grown = |growth: Growth<'_>| {
@@ -103,7 +110,7 @@ impl Watching<'_> {
     /// What can't be written now may be later, and the rendering goes on.
     fn write(&self, growth: Growth<'_>, (shows, keeps): (bool, bool), written: &Written) {
         let samples = growth.samples;
-        let done = growth.film().map_err(Into::into).and_then(|film| self.write_film(film, shows, keeps));
+        let done = growth.film().map_err(Into::into).and_then(|film| self.write_film(film, (shows, keeps), written));
         for (_, last) in [(shows, &written.picture), (keeps, &written.film)].iter().filter(|(is_done, _)| *is_done) {
             last.set(Instant::now());
         }
@@ -115,13 +122,23 @@ impl Watching<'_> {
         }
     }
 
-    fn write_film(&self, mut film: Film, shows: bool, keeps: bool) -> Result<()> {
+    fn write_film(&self, mut film: Film, (shows, keeps): (bool, bool), written: &Written) -> Result<()> {
         film.identity = self.identity.clone();
         if let Some(checkpoint) = self.checkpoint.filter(|_| keeps) {
             checkpoint.keep(&film)?;
         }
-        if shows { self.look.write(&film.develop()?, self.destination) } else { Ok(()) }
+        let picture = film.develop()?;
+        let before = written.rays.replace((Instant::now(), film.rays().total()));
+        self.bar.set_message(told(picture.noise(), before, written.rays.get()));
+        if shows { self.look.write(&picture, self.destination) } else { Ok(()) }
     }
+}
+
+/// What is told of a rendering beside its samples: noise, and rays a second since it was told before.
+fn told(noise: Option<f64>, before: (Instant, u64), now: (Instant, u64)) -> String {
+    let noise = noise.map_or(String::new(), |noise| format!(", noise {:.1} %", 100.0 * noise));
+    let seconds = now.0.duration_since(before.0).as_secs_f64().max(1e-9);
+    format!("{noise}, {:.0} Mrays/s", now.1.saturating_sub(before.1) as f64 / seconds / 1e6)
 }
 
 /// How often the picture so far is written of a rendering that takes about so long as a whole, if ever; zero was asked for for never.
@@ -135,6 +152,14 @@ fn interval(asked: Option<Duration>, whole: Duration) -> Option<Duration> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn noise_and_rays_a_second_are_told() {
+        let start = Instant::now();
+        let later = start + Duration::from_secs(2);
+        assert_eq!(told(Some(0.0321), (start, 10), (later, 4_000_010)), ", noise 3.2 %, 2 Mrays/s");
+        assert_eq!(told(None, (start, 0), (later, 6_000_000)), ", 3 Mrays/s");
+    }
 
     #[test]
     fn long_renderings_show_what_they_have_unless_nobody_wants_that() {

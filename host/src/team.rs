@@ -62,6 +62,8 @@ impl<'a> Team<'a> {
                 }
             });
             let mut work = locked(&work);
+            // Whoever left the rest to a member that failed is needed again.
+            work.members.iter_mut().for_each(|pace| pace.is_done = false);
             let faults = std::mem::take(&mut work.faults);
             if self.members.iter().all(|member| member.is_lost) {
                 let fault = faults.into_iter().next().map(|(_, error)| error);
@@ -91,7 +93,11 @@ impl Grows for Team<'_> {
     fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
         let todo = strips(part.region, STRIPS * self.members.len() as u32);
         let todo = todo.into_iter().map(|region| Part { region, samples: part.samples.clone() }).collect();
-        let members = self.members.iter().map(|member| Pace { is_lost: member.is_lost, rate: member.rate }).collect();
+        let members = self
+            .members
+            .iter()
+            .map(|member| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate })
+            .collect();
         self.share(Mutex::new(Work { todo, members, faults: Vec::new() }))?;
         let (pixels, samples) = (part.region.pixels(), part.samples.len() as u64);
         self.coverage.add(part).map_err(|both| Error::new(format!("the film has {both} already")))?;
@@ -135,8 +141,18 @@ struct Work {
 #[derive(Clone, Copy)]
 struct Pace {
     is_lost: bool,
+    /// Does it leave the rest to others?
+    is_done: bool,
     /// Samples of a pixel a second, once that is known.
     rate: Option<f64>,
+}
+
+impl Pace {
+    /// Is it faster than another member? Of two that are alike the first is.
+    fn is_faster(&self, number: usize, other: Pace, other_number: usize) -> bool {
+        let [own, other] = [self.rate, other.rate].map(|rate| rate.unwrap_or(0.0));
+        own > other || own == other && number < other_number
+    }
 }
 
 impl Work {
@@ -146,11 +162,17 @@ impl Work {
         let (at, strip) = self.todo.iter().enumerate().max_by_key(|(_, part)| part.samples.len())?;
         let (pixels, all) = (strip.region.pixels() as f64, strip.samples.len() as f64);
         let working = self.members.iter().filter(|member| !member.is_lost).count() as f64;
-        let others = self.members.iter().enumerate().filter(|&(other, pace)| other != number && !pace.is_lost);
-        let others: f64 = others.filter_map(|(_, pace)| pace.rate).sum();
-        let samples = match self.members[number].rate {
+        let own = self.members[number];
+        // Only those count that stay: the fastest always does, so that some member does the rest.
+        let stays =
+            |&(other, pace): &(usize, &Pace)| !pace.is_lost && !pace.is_done && pace.is_faster(other, own, number);
+        let others: f64 = self.members.iter().enumerate().filter(stays).filter_map(|(_, pace)| pace.rate).sum();
+        let samples = match own.rate {
             None => 1.0,
-            Some(rate) if others > 0.0 && pixels / rate > left as f64 / others => return None,
+            Some(rate) if others > 0.0 && pixels / rate > left as f64 / others => {
+                self.members[number].is_done = true;
+                return None;
+            }
             // Less towards the end, so that all end together.
             Some(rate) => (rate * BLOCK).min(left as f64 / (2.0 * working)) / pixels,
         };
@@ -303,6 +325,34 @@ mod tests {
         let (film, _, want) = rendered(&[(1000, NEVER), (0, NEVER)]);
         assert_same(&film.unwrap(), &want);
         assert!(start.elapsed() < Duration::from_millis(2500), "it took a second part: {:?}", start.elapsed());
+    }
+
+    /// Three of one pace, and one that is slow: each would be done sooner by the others together.
+    #[test]
+    fn alike_devices_do_not_wait_for_each_other() {
+        let (film, _, want) = rendered(&[(2, NEVER), (2, NEVER), (2, NEVER), (20, NEVER)]);
+        assert_same(&film.unwrap(), &want);
+    }
+
+    /// Whatever the paces are, somebody takes the rest.
+    #[test]
+    fn the_fastest_member_always_takes_what_is_left() {
+        let region = Region { x: 0, y: 0, width: 10, height: 8 };
+        for rates in [[1.0, 1.0, 1.0], [5.0, 5.0, 0.1], [3.0, 2.0, 2.5], [1e9, 1e9, 1e3]] {
+            let members = rates.map(|rate| Pace { is_lost: false, is_done: false, rate: Some(rate) }).to_vec();
+            let mut work = Work { todo: vec![Part { region, samples: 0..7 }], members, faults: Vec::new() };
+            let mut rounds = 0;
+            while !work.todo.is_empty() {
+                let taken = [0, 1, 2].map(|number| work.take(number));
+                assert!(
+                    taken.iter().any(Option::is_some) || work.todo.is_empty(),
+                    "{rates:?}: nobody takes {:?}",
+                    work.todo
+                );
+                rounds += 1;
+            }
+            assert!(rounds <= 7);
+        }
     }
 
     #[test]

@@ -161,8 +161,8 @@ impl Work {
         let left: u64 = self.todo.iter().map(Part::volume).sum();
         let (at, strip) = self.todo.iter().enumerate().max_by_key(|(_, part)| part.samples.len())?;
         let (pixels, all) = (strip.region.pixels() as f64, strip.samples.len() as f64);
-        let working = self.members.iter().filter(|member| !member.is_lost).count() as f64;
         let own = self.members[number];
+        let all_rates: f64 = self.members.iter().filter(|pace| !pace.is_lost).filter_map(|pace| pace.rate).sum();
         // Only those count that stay: the fastest always does, so that some member does the rest.
         let stays =
             |&(other, pace): &(usize, &Pace)| !pace.is_lost && !pace.is_done && pace.is_faster(other, own, number);
@@ -173,8 +173,8 @@ impl Work {
                 self.members[number].is_done = true;
                 return None;
             }
-            // Less towards the end, so that all end together.
-            Some(rate) => (rate * BLOCK).min(left as f64 / (2.0 * working)) / pixels,
+            // Less towards the end, and half of its share at most, so that all end together.
+            Some(rate) => (rate * BLOCK).min(left as f64 * rate / (2.0 * all_rates.max(rate))) / pixels,
         };
         let taken = samples.clamp(1.0, all) as u32;
         let part = &mut self.todo[at];

@@ -46,9 +46,11 @@ impl Developer {
             let (row, mut told) = (Row::new(0, width, words), Told::default());
             for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
                 let sums = PixelSums::load(sums, row, x);
-                let mean = Mean::of(sums, count);
-                *pixel = mean.light.map(|channel| channel as f32);
-                told.noise.add(&mean);
+                let light = mean_light(&sums, count);
+                *pixel = light.map(|channel| channel as f32);
+                if words == NOISY_FILM_WORDS {
+                    told.noise.add(&Mean::of(&sums, count));
+                }
                 told.shadow += u64::from(sums.word & !NON_FINITE);
                 told.non_finite += u64::from(sums.word & NON_FINITE != 0);
             }
@@ -89,7 +91,7 @@ impl Film {
         let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
-            let error = move |(count, x)| match Mean::of(PixelSums::load(sums, Row::new(0, width, words), x), count) {
+            let error = move |(count, x)| match Mean::of(&PixelSums::load(sums, Row::new(0, width, words), x), count) {
                 mean if count > 1 && words == NOISY_FILM_WORDS => mean.variance.sqrt() as f32,
                 _ => f32::INFINITY,
             };
@@ -123,28 +125,37 @@ impl Film {
 
 /// A pixel's samples in the mean.
 struct Mean {
-    /// Linear RGB.
-    light: [f64; 3],
     brightness: f64,
     /// Of the mean brightness.
     variance: f64,
 }
 
 impl Mean {
-    /// Rounded three times to double precision: as the sum, as the quotient and as what becomes of it.
-    fn of(sums: PixelSums, count: u32) -> Mean {
+    fn of(sums: &PixelSums, count: u32) -> Mean {
+        let light = mean_light(sums, count);
         let count = f64::from(count.max(1));
-        let light = [sums.red, sums.green, sums.blue].map(|sum| light(sum) / count);
         let brightness = (light[0] + light[1] + light[2]) / 3.0;
         let of_samples = squares(sums.squares) / count - brightness * brightness;
-        Mean { light, brightness, variance: of_samples.max(0.0) / (count - 1.0).max(1.0) }
+        Mean { brightness, variance: of_samples.max(0.0) / (count - 1.0).max(1.0) }
     }
+}
+
+/// Linear RGB, rounded to double precision as a sum and as a quotient.
+fn mean_light(sums: &PixelSums, count: u32) -> [f64; 3] {
+    let count = f64::from(count.max(1));
+    [sums.red, sums.green, sums.blue].map(|sum| light(sum) / count)
 }
 
 /// A sum of 96 bits.
 fn light(sum: Quanta) -> f64 {
-    let upper = (i64::from(sum.2 as i32) << 32) + i64::from(sum.1);
-    ((i128::from(upper) << 32) + i128::from(sum.0)) as f64 / (1u64 << LIGHT_FRACTION) as f64
+    let quanta = if sum.2 as i32 == sum.1 as i32 >> 31 {
+        // Of light up to 2^23; a conversion of 128 bits takes several times as long.
+        ((i64::from(sum.1 as i32) << 32) + i64::from(sum.0)) as f64
+    } else {
+        let upper = (i64::from(sum.2 as i32) << 32) + i64::from(sum.1);
+        ((i128::from(upper) << 32) + i128::from(sum.0)) as f64
+    };
+    quanta / (1u64 << LIGHT_FRACTION) as f64
 }
 
 fn squares(sum: Quanta) -> f64 {
@@ -176,5 +187,21 @@ impl Noise {
         let pixels = pixels as f64;
         let noise = (self.variances / pixels).sqrt() / (self.brightness / pixels);
         (self.variances > 0.0 && noise.is_finite()).then_some(noise)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Short sums and long ones, of either sign: the conversion is that of 128 bits.
+        #[test]
+        fn a_sum_is_its_nearest_number(high in prop_oneof![Just(0i64), Just(-1), -4i64..4, any::<i32>().prop_map(i64::from)], low: u64) {
+            let sum = Quanta(low as u32, (low >> 32) as u32, high as u32, 0);
+            let whole = (i128::from(high) << 64) + i128::from(low);
+            prop_assert_eq!(light(sum), whole as f64 / 2f64.powi(40));
+        }
     }
 }

@@ -69,6 +69,8 @@ pub enum Error {
         /// And in the other.
         other: String,
     },
+    /// A film that is cut off or damaged, which no reading brings back.
+    BrokenFilm(&'static str),
     /// Floats of 16 bits, in a format that has none.
     NoHalf {
         /// The format.
@@ -255,6 +257,7 @@ impl Error {
             Error::OtherFilm { what, one, other } => {
                 format!("a film of another picture: {what} is {one} in one and {other} in the other")
             }
+            Error::BrokenFilm(what) => format!("the film is {what}; render this part again"),
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
             Error::NoLayers { format } => format!("layers are for .exr files, not for {format}"),

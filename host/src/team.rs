@@ -52,8 +52,20 @@ impl<'a> Team<'a> {
         Team { members, view: None, coverage: Coverage::default(), lost: Vec::new() }
     }
 
+    /// Fails with the last fault if every device is lost.
+    fn check(&mut self) -> Result<()> {
+        if self.members.iter().any(|member| !member.is_lost) {
+            return Ok(());
+        }
+        let fault = self.lost.pop().map(|(_, error)| error);
+        Err(fault.unwrap_or_else(|| Error::new("every device has failed: render on another")))
+    }
+
     /// Lets every member work until all is done. Fails if all are lost.
-    fn share(&mut self, work: Mutex<Work>) -> Result<()> {
+    fn share(&mut self, todo: Vec<Part>) -> Result<()> {
+        let pace = |member: &Member<'_>| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate };
+        let members = self.members.iter().map(pace).collect();
+        let work = Mutex::new(Work { todo, members, faults: Vec::new() });
         while !locked(&work).todo.is_empty() {
             thread::scope(|scope| {
                 for (number, member) in self.members.iter_mut().enumerate().filter(|(_, member)| !member.is_lost) {
@@ -65,27 +77,25 @@ impl<'a> Team<'a> {
             // Whoever left the rest to a member that failed is needed again.
             work.members.iter_mut().for_each(|pace| pace.is_done = false);
             let faults = std::mem::take(&mut work.faults);
-            if self.members.iter().all(|member| member.is_lost) {
-                let fault = faults.into_iter().next().map(|(_, error)| error);
-                return Err(fault.unwrap_or_else(|| Error::new("every device has failed: render on another")));
-            }
+            drop(work);
             self.lost.extend(faults);
+            self.check()?;
         }
         Ok(())
-    }
-
-    fn working(&mut self) -> impl Iterator<Item = &mut Member<'a>> {
-        self.members.iter_mut().filter(|member| !member.is_lost)
     }
 }
 
 impl Grows for Team<'_> {
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         let strips = strips(view.region(), STRIPS * self.members.len() as u32);
-        self.working().try_for_each(|member| {
+        for member in self.members.iter_mut().filter(|member| !member.is_lost) {
             member.has = Coverage::default();
-            member.device.start(view, &strips)
-        })?;
+            if let Err(error) = member.device.start(view, &strips) {
+                member.is_lost = true;
+                self.lost.push((member.name.clone(), error));
+            }
+        }
+        self.check()?;
         (self.view, self.coverage) = (Some(*view), Coverage::default());
         Ok(())
     }
@@ -93,12 +103,7 @@ impl Grows for Team<'_> {
     fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
         let todo = strips(part.region, STRIPS * self.members.len() as u32);
         let todo = todo.into_iter().map(|region| Part { region, samples: part.samples.clone() }).collect();
-        let members = self
-            .members
-            .iter()
-            .map(|member| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate })
-            .collect();
-        self.share(Mutex::new(Work { todo, members, faults: Vec::new() }))?;
+        self.share(todo)?;
         let (pixels, samples) = (part.region.pixels(), part.samples.len() as u64);
         self.coverage.add(part).map_err(|both| Error::new(format!("the film has {both} already")))?;
         let all = self.view.as_ref().map_or(1, View::samples);
@@ -120,12 +125,31 @@ impl Grows for Team<'_> {
     }
 
     fn film(&mut self) -> Result<Film> {
-        let coverage = self.coverage.clone();
-        let mut films = self.working().map(|member| member.device.film());
-        let mut film = films.next().expect("some device is left")?;
-        films.try_for_each(|other| film.absorb(&other?))?;
-        film.set_coverage(coverage);
-        Ok(film)
+        loop {
+            let mut redo = Vec::new();
+            let mut films = Vec::new();
+            for member in self.members.iter_mut().filter(|member| !member.is_lost) {
+                match member.device.film() {
+                    Ok(film) => films.push(film),
+                    Err(error) => {
+                        member.is_lost = true;
+                        redo.extend_from_slice(member.has.parts());
+                        self.lost.push((member.name.clone(), error));
+                    }
+                }
+            }
+            self.check()?;
+            if !redo.is_empty() {
+                // What went with it is done by the others, and then read with the rest.
+                self.share(redo)?;
+                continue;
+            }
+            let mut films = films.into_iter();
+            let mut film = films.next().expect("some device is left");
+            films.try_for_each(|other| film.absorb(&other))?;
+            film.set_coverage(self.coverage.clone());
+            return Ok(film);
+        }
     }
 }
 
@@ -269,7 +293,10 @@ mod tests {
         }
 
         fn film(&mut self) -> Result<Film> {
-            self.device.film()
+            match self.fails_after {
+                0 => Err(Error::DeviceFailed { device: "odd".to_owned(), message: "it is lost".to_owned() }),
+                _ => self.device.film(),
+            }
         }
     }
 

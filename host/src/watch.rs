@@ -3,7 +3,7 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::{Film, Part};
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -108,6 +108,7 @@ pub(crate) fn render(device: &mut dyn Grows, view: &View, done: &(dyn Fn(u64) + 
 /// # Errors
 /// What the device reports, or a film of something else.
 pub(crate) fn go_on(device: &mut dyn Grows, view: &View, from: Option<Film>, watch: &Watch<'_>) -> Result<Film> {
+    let from = from.map(|film| prepared(film, view)).transpose()?;
     let missing = match &from {
         Some(film) => film.missing(view),
         None => vec![view.whole()],
@@ -129,6 +130,15 @@ pub(crate) fn go_on(device: &mut dyn Grows, view: &View, from: Option<Film>, wat
             device.end()
         }
     }
+}
+
+/// A film as large as a view that goes on with it.
+fn prepared(mut film: Film, view: &View) -> Result<Film> {
+    film.widen(view.region())?;
+    if film.window() != view.region() {
+        return Err(Error::new("the film is of more than is rendered: render all that it shows, or name another film"));
+    }
+    Ok(film)
 }
 
 /// What a rendering has got, and what it has yet to get.
@@ -200,7 +210,6 @@ mod tests {
     use super::*;
     use crate::cpu::{OnCpu, Renderer};
     use crate::device_scene::DeviceScene;
-    use crate::error::Error;
     use crate::method::Traversal;
     use crate::quality::Bvh;
     use crate::scene::{self, Settings};

@@ -122,6 +122,7 @@ fn a_film_that_somebody_keeps_stays_where_it_is() {
     let render = ["render", &scene, "--device", "cpu", "--size", "32x24", "--spp", "4", "-o", "a.png", "-q"];
     for film in ["a.film", "a.png.film"] {
         place.succeed(&[&render[..], &["--checkpoint", film]].concat());
+        place.refuse(&[&render[..], &["--checkpoint", film]].concat(), &[film, "--resume"]);
         place.succeed(&render);
         assert_eq!(
             place.names(),
@@ -181,8 +182,10 @@ fn films_of_other_pictures_are_refused_with_what_differs() {
     film("c.film", &["--samples-from", "2", "--tile", "0,0,16,5"]);
     place.refuse(&["merge", "a.film", "b.film", "-o", "p.png"], &["b.film: ", "seed is 0", "7"]);
     place.refuse(&["merge", "a.film", "a.film", "-o", "p.png"], &["a.film: ", "samples 0 to 2"]);
-    place
-        .refuse(&["merge", "a.film", "c.film", "-o", "p.png"], &["1 hole", "samples 2 to 4 of the 16x7 pixels at 0,5"]);
+    place.refuse(
+        &["merge", "a.film", "c.film", "-o", "p.png"],
+        &["1 hole", "samples 2 to 4 of the 16x7 pixels at 0,5", "--part"],
+    );
     place.refuse(&["merge", "a.film", "none.film", "-o", "p.png"], &["none.film: ", "no such file"]);
     place.refuse(&["merge", &scene, "-o", "p.png"], &["no film"]);
     let on = |more: [&'static str; 2]| {
@@ -193,7 +196,14 @@ fn films_of_other_pictures_are_refused_with_what_differs() {
     place.refuse(&on(["--tile", "1,2,16,3"]), &["--tile 1,2,16,3", "16x12"]);
     place.refuse(&on(["--samples-from", "4"]), &["--samples-from 4", "0 to 4", "--spp"]);
     film("d.film", &["--samples-from", "2"]);
+    place.refuse(&["merge", "d.film", "-o", "p.exr"], &["samples 0 to 2"]);
+    film("tile.film", &["--tile", "0,0,16,5"]);
+    place.refuse(&["merge", "tile.film", "-o", "p.exr"], &["samples 0 to 4 of the 16x7 pixels at 0,5"]);
+    place.succeed(&["merge", "tile.film", "-o", "tile.exr", "--part"]);
+    // A tile is gone on with to the whole image.
+    place.succeed(&[&render[..], &["t.exr", "--checkpoint", "tile.film", "--resume"]].concat());
     place.succeed(&["merge", "d.film", "a.film", "-o", "p.exr"]);
+    place.succeed(&["diff", "p.exr", "t.exr"]);
     place.succeed(&[&render[..], &["q.exr"]].concat());
     place.succeed(&["diff", "p.exr", "q.exr"]);
 }

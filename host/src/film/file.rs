@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use super::{Coverage, Film, Identity, Part};
 use crate::error::{Error, Result};
 use crate::picture::Picture;
+use crate::scene::Settings;
 use crate::view::Region;
 use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS};
 
@@ -20,10 +21,10 @@ use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS};
 const MAGIC: [u8; 8] = *b"\x89EYFILM\x01";
 /// Bytes of sums of a block.
 const BLOCK: usize = 1 << 20;
-/// The most bytes of a header: a coverage of some hundred thousand parts.
-const MOST_HEADER: u64 = 1 << 26;
-/// What helps with a file that is not as it was written.
-const AGAIN: &str = "render this part again";
+/// The most bytes of a header.
+const MOST_HEADER: u64 = 1 << 24;
+/// The most parts of a coverage, each of which is compared with all others.
+const MOST_PARTS: usize = 8192;
 
 /// What a film is beside its sums.
 #[derive(Serialize, Deserialize)]
@@ -80,29 +81,25 @@ impl Film {
         match input.read_exact(&mut magic) {
             Ok(()) if magic == MAGIC => {}
             Ok(()) if magic[..7] == MAGIC[..7] => {
-                return Err(Error::new(format!("a film of another version of this program; {AGAIN}")));
+                return Err(Error::new("a film of another version of this program, which that version goes on with"));
             }
             Err(error) if error.kind() != ErrorKind::UnexpectedEof => return Err(unread(&error)),
             _ => return Err(Error::new("no film: give what render wrote to a .film file")),
         }
         let header = read_block(input, MOST_HEADER)?;
-        let header: Header = serde_json::from_slice(&unpacked(&header, MOST_HEADER)?)
-            .map_err(|error| Error::new(format!("its header is damaged ({error}); {AGAIN}")))?;
-        let mut film = header.film()?;
-        let blocks: Vec<Range<usize>> = blocks(film.sums.len()).collect();
-        let mut sums = &mut film.sums[..];
+        let header: Header = serde_json::from_slice(&unpacked(&header, MOST_HEADER)?).map_err(|_| damaged())?;
+        let (mut film, count) = header.film()?;
+        let blocks: Vec<Range<usize>> = blocks(count).collect();
         for some in blocks.chunks(rayon::current_num_threads()) {
             let packed = some.iter().map(|_| read_block(input, 2 * BLOCK as u64)).collect::<Result<Vec<_>>>()?;
-            let (own, rest) = sums.split_at_mut(some.iter().map(Range::len).sum());
-            own.par_chunks_mut(BLOCK / 4).zip(packed).try_for_each(|(words, block)| {
-                let bytes = unpacked(&block, 4 * words.len() as u64)?;
-                if bytes.len() != 4 * words.len() {
-                    return Err(damaged());
-                }
-                bytemuck::cast_slice_mut(words).copy_from_slice(&bytes);
-                Ok(())
-            })?;
-            sums = rest;
+            let unpacked = packed.par_iter().zip(some).map(|(packed, block)| {
+                let bytes = unpacked(packed, 4 * block.len() as u64)?;
+                if bytes.len() == 4 * block.len() { Ok(bytes) } else { Err(damaged()) }
+            });
+            // As they come: a file that is short takes no memory for what it only promises.
+            for bytes in unpacked.collect::<Result<Vec<_>>>()? {
+                film.sums.extend(bytemuck::pod_collect_to_vec::<u8, u32>(&bytes));
+            }
         }
         match input.read(&mut [0]) {
             Ok(0) => Ok(film),
@@ -113,28 +110,27 @@ impl Film {
 }
 
 impl Header {
-    /// The film without its sums, if it can be one.
-    fn film(self) -> Result<Film> {
+    /// The film without its sums, if it can be one, and how many there are.
+    fn film(self) -> Result<(Film, usize)> {
         let Header { identity, size, window, words, parts, secondary, has_sums } = self;
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
-        let is_whole = window.pixels() > 0 && image.around(window) == image;
-        if !is_whole || ![FILM_WORDS, NOISY_FILM_WORDS].contains(&words) {
+        let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
+        let is_known = [FILM_WORDS, NOISY_FILM_WORDS].contains(&words);
+        if !is_within(window, image) || !is_known || has_sums == parts.is_empty() || parts.len() > MOST_PARTS {
             return Err(damaged());
         }
         let mut coverage = Coverage::default();
         for part in parts {
-            if part.volume() > 0 && window.around(part.region) != window || coverage.add(part).is_err() {
+            let is_some = !part.samples.is_empty() && part.samples.end <= Settings::MOST_SPP;
+            if !is_some || !is_within(part.region, window) || coverage.add(part).is_err() {
                 return Err(damaged());
             }
         }
         let mut film = Film { size, window, words, sums: Vec::new(), coverage, secondary, identity };
-        if has_sums {
-            let count = window.pixels() as usize * words as usize;
-            film.sums.try_reserve_exact(count).map_err(|_| Error::Memory { width: size.0, height: size.1 })?;
-            film.sums.par_extend(rayon::iter::repeat_n(0, count));
-        }
-        Ok(film)
+        let count = if has_sums { window.pixels() as usize * words as usize } else { 0 };
+        film.sums.try_reserve_exact(count).map_err(|_| Error::Memory { width: size.0, height: size.1 })?;
+        Ok((film, count))
     }
 }
 
@@ -180,9 +176,9 @@ fn unread(error: &io::Error) -> Error {
 }
 
 fn cut_off() -> Error {
-    Error::new(format!("the film is cut off; {AGAIN}"))
+    Error::BrokenFilm("cut off")
 }
 
 fn damaged() -> Error {
-    Error::new(format!("the film is damaged; {AGAIN}"))
+    Error::BrokenFilm("damaged")
 }

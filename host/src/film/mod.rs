@@ -90,7 +90,7 @@ impl Film {
     /// # Errors
     /// If there is no memory for them.
     pub(crate) fn absorb(&mut self, other: &Film) -> Result<()> {
-        self.secondary += other.secondary;
+        self.secondary = self.secondary.saturating_add(other.secondary);
         self.add_sums(other.window, &other.sums)
     }
 
@@ -121,12 +121,15 @@ impl Film {
             coverage.add(part.clone()).map_err(twice)?;
         }
         self.widen(other.window)?;
-        (self.coverage, self.secondary) = (coverage, self.secondary + other.secondary);
+        if self.identity == Identity::default() {
+            self.identity = other.identity;
+        }
+        (self.coverage, self.secondary) = (coverage, self.secondary.saturating_add(other.secondary));
         self.add_sums(other.window, &other.sums)
     }
 
     /// Makes room for a region.
-    fn widen(&mut self, region: Region) -> Result<()> {
+    pub(crate) fn widen(&mut self, region: Region) -> Result<()> {
         let window = self.window.around(region);
         if window != self.window {
             let (old, old_window) = (std::mem::take(&mut self.sums), self.window);

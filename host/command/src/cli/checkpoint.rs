@@ -1,8 +1,9 @@
 //! Films that are kept while they are rendered, to be gone on with.
 
 use std::cell::Cell;
+use std::ffi::OsStr;
 use std::fs::{self, File};
-use std::io::{BufReader, ErrorKind};
+use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -42,11 +43,21 @@ pub(super) struct Checkpoint {
     resume: bool,
     /// Is what is there this rendering's?
     is_own: Cell<bool>,
+    /// Samples of all pixels that it has.
+    kept: Cell<u64>,
 }
 
 impl CheckpointArgs {
-    /// For a picture; none where nothing can be kept beside it.
-    pub fn beside(&self, destination: &Destination) -> Result<Option<Checkpoint>> {
+    /// Was a place asked for?
+    pub fn is_named(&self) -> bool {
+        self.checkpoint.is_some()
+    }
+
+    /// For a picture; none where nothing can be kept beside it. What is there is not replaced unless it is gone on with.
+    pub fn beside(&self, destination: &Destination, quiet: bool) -> Result<Option<Checkpoint>> {
+        if self.is_named() && destination.is_film() {
+            return Err(Error::new("--checkpoint: a .film output is kept as it is; leave the option out"));
+        }
         let (path, stays) = match (&self.checkpoint, destination.file()) {
             (Some(path), _) => (path.clone(), true),
             (None, Some(output)) if destination.is_film() => (output.to_owned(), true),
@@ -58,12 +69,25 @@ impl CheckpointArgs {
             _ if self.resume => return Err(Error::new("--resume: name the film with --checkpoint")),
             _ => return Ok(None),
         };
-        if stays && path.extension().is_none_or(|ending| ending != Film::ENDING) {
+        let is_film = |ending: &OsStr| ending.eq_ignore_ascii_case(Film::ENDING);
+        if stays && !path.extension().is_some_and(is_film) {
             let name = path.display();
             return Err(Error::new(format!("--checkpoint {name}: the name of a film ends in .{}", Film::ENDING)));
         }
+        let place = Destination::File(path.clone());
         if stays {
-            output::check_writable(&Destination::File(path.clone()))?;
+            output::check_writable(&place)?;
+            if !output::can_replace(&place) {
+                return Err(Error::file(&path, "is no regular file, and a film is to be read again; name a file"));
+            }
+        }
+        if path.exists() && !self.resume && !destination.is_film() {
+            let there = "is there from before: --resume goes on with it";
+            if stays {
+                return Err(Error::file(&path, format!("{there}, or remove it")));
+            }
+            super::warn(&[format!("{} {there}; this rendering keeps none", path.display())], quiet);
+            return Ok(None);
         }
         Ok(Some(Checkpoint {
             path,
@@ -71,6 +95,7 @@ impl CheckpointArgs {
             every: self.checkpoint_every,
             resume: self.resume,
             is_own: Cell::new(false),
+            kept: Cell::new(0),
         }))
     }
 }
@@ -81,24 +106,30 @@ impl Checkpoint {
         self.stays
     }
 
-    /// The film to go on with. One that can't be read is as good as none, but one of another picture is refused.
+    /// The film to go on with, if there is one. One that is cut off or damaged is as good as none; all else that is not of this
+    /// picture is refused.
     pub fn film(&self, identity: &Identity, view: &View, quiet: bool) -> Result<Option<Film>> {
         if !self.resume {
             return Ok(None);
         }
-        let of_this = |error: eyerays::error::Error| error.of(&self.path);
+        let none = |why: String| {
+            super::warn(&[format!("{why}: rendering from the first sample")], quiet);
+            Ok(None)
+        };
         match read(&self.path) {
-            Ok(None) => Ok(None),
+            Ok(None) => none(format!("there is no {}", self.path.display())),
             Ok(Some(film)) => {
-                film.identity.check(identity).map_err(of_this)?;
+                film.identity.check(identity).map_err(|error| error.of(&self.path))?;
                 self.check(&film, view)?;
                 self.is_own.set(true);
+                self.kept.set(volume(&film));
                 Ok(Some(film))
             }
-            Err(error) => {
-                super::warn(&[format!("{error}: rendering from the first sample")], quiet);
-                Ok(None)
+            Err(error) if matches!(error.fault(), eyerays::error::Error::BrokenFilm(_)) => {
+                self.is_own.set(true);
+                none(error.to_string())
             }
+            Err(error) => Err(error.into()),
         }
     }
 
@@ -120,10 +151,14 @@ impl Checkpoint {
         !self.every.is_zero() && since >= self.every && (self.stays || whole > LONG)
     }
 
-    /// Keeps a film.
+    /// Keeps a film, unless more is kept already: a device that took over from one that failed begins again.
     pub fn keep(&self, film: &Film) -> Result<()> {
-        write(film, &self.path)?;
-        self.is_own.set(true);
+        let volume = volume(film);
+        if volume >= self.kept.get() {
+            write(film, &self.path)?;
+            self.is_own.set(true);
+            self.kept.set(volume);
+        }
         Ok(())
     }
 
@@ -154,10 +189,21 @@ pub(super) fn write(film: &Film, path: &Path) -> Result<()> {
 }
 
 /// Reads a film, if there is a file.
-pub(super) fn read(path: &Path) -> Result<Option<Film>> {
-    match File::open(path) {
-        Ok(file) => Ok(Some(Film::read(&mut BufReader::new(file)).map_err(|error| error.of(path))?)),
+pub(super) fn read(path: &Path) -> eyerays::error::Result<Option<Film>> {
+    let unread = |error: io::Error| eyerays::error::Error::file(path, format!("cannot be read: {error}"));
+    match fs::metadata(path) {
+        // To open a pipe waits for a writer.
+        Ok(found) if !found.is_file() => Err(eyerays::error::Error::file(path, "is no regular file; name a film")),
+        Ok(_) => {
+            let file = File::open(path).map_err(unread)?;
+            Ok(Some(Film::read(&mut BufReader::new(file)).map_err(|error| error.of(path))?))
+        }
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
-        Err(error) => Err(Error::file(path, format!("cannot be read: {error}"))),
+        Err(error) => Err(unread(error)),
     }
+}
+
+/// Samples of all pixels that a film has.
+fn volume(film: &Film) -> u64 {
+    film.coverage().parts().iter().map(|part| part.volume()).sum()
 }

@@ -13,6 +13,7 @@ use super::progress;
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::{Film, Part};
+use eyerays::view::Region;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -31,6 +32,9 @@ pub(super) struct Merge {
     /// The picture, .png, .exr or .hdr; or a .film file, which may have holes
     #[arg(short, long, value_name = "FILE")]
     output: std::ffi::OsString,
+    /// Write a picture of what the films have, though it is not the whole image or not from the first sample on
+    #[arg(long)]
+    part: bool,
     #[command(flatten)]
     look: Look,
 }
@@ -45,14 +49,14 @@ impl Merge {
         if destination.is_film() {
             checkpoint::write(&film, destination.file().expect("a film is a file"))?;
         } else {
-            whole(&film)?;
+            self.whole(&film)?;
             let picture = film.develop()?;
             super::warn(self.look.beyond_white(&picture, &destination)?.as_slice(), quiet);
             self.look.write(&picture, &destination)?;
         }
         if !quiet {
-            let parts = super::plural(self.parts.len(), "part");
-            console::say(format_args!("{destination}: {} of {parts}", described(&film)));
+            let parts = super::plural(self.parts.len(), "film");
+            console::say(format_args!("{destination}: {} from {parts}", described(&film)));
         }
         Ok(ExitCode::SUCCESS)
     }
@@ -69,18 +73,28 @@ impl Merge {
         }
         Ok(all.expect("one part at least"))
     }
+
+    /// Refuses a film of which some pixels have other samples than others, or, unless a part will do, not those of a whole picture.
+    fn whole(&self, film: &Film) -> Result<()> {
+        let samples = film.coverage().parts().iter().map(|part| part.samples.clone());
+        let samples = samples.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
+        let Some(samples) = samples else { return Err(Error::new("the films have no samples: render some")) };
+        let (width, height) = film.size();
+        let whole = match self.part {
+            true => Part { region: film.window(), samples },
+            false => Part { region: Region { x: 0, y: 0, width, height }, samples: 0..samples.end },
+        };
+        has_all(film, &whole)
+    }
 }
 
-/// Refuses a film of which some pixels have other samples than others.
-fn whole(film: &Film) -> Result<()> {
-    let parts = film.coverage().parts();
-    let samples = parts.iter().map(|part| part.samples.clone()).reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
-    let Some(samples) = samples else { return Err(Error::new("the films have no samples: render some")) };
-    let missing = film.coverage().missing(&Part { region: film.window(), samples });
+/// Refuses a film with holes.
+fn has_all(film: &Film, whole: &Part) -> Result<()> {
+    let missing = film.coverage().missing(whole);
     match &missing[..] {
         [] => Ok(()),
         [hole, ..] => Err(Error::new(format!(
-            "the picture has {}, the first is {hole}: give their films too, or merge to a .film file",
+            "the picture has {}, the first is {hole}: give their films too, add --part, or merge to a .film file",
             super::plural(missing.len(), "hole")
         ))),
     }

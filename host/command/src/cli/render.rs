@@ -1,5 +1,6 @@
 //! `eyerays render`.
 
+use std::cell::{OnceCell, RefCell};
 use std::mem::ManuallyDrop;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -40,7 +41,7 @@ Examples:
   eyerays render scenes/cornell.toml --settings fast.toml
   eyerays render scenes/room.toml --spp 4096 --checkpoint room.film --resume
   eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film
-  eyerays render model.glb --turntable 36 -o 'turn/{frame:04}.png'
+  eyerays render model.glb --turntable 36 -o 'turn-{frame:04}.png'
   eyerays render scenes/ --all-cameras -o '{name}-{camera}.png'";
 
 #[derive(Args)]
@@ -105,6 +106,11 @@ struct Job<'a> {
     effort: Effort,
     choice: Choice,
     quiet: bool,
+    /// Opened once, and not closed: the end of the process takes everything back at once, and a driver takes 70 ms for it one by one
+    /// (an H200).
+    backend: OnceCell<ManuallyDrop<Backend>>,
+    /// Where pictures have gone.
+    places: RefCell<Vec<Destination>>,
 }
 
 impl Render {
@@ -114,6 +120,7 @@ impl Render {
         if let [scene] = &scenes[..] {
             return job.pictures(scene);
         }
+        self.check_many()?;
         job.check_names(&scenes)?;
         let mut failed = false;
         for scene in &scenes {
@@ -150,7 +157,19 @@ impl Render {
             None => (preset.device.unwrap_or_default(), None),
         };
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
-        Ok(Job { of: self, effort: self.effort.over(&preset), choice, quiet })
+        let (backend, places) = Default::default();
+        Ok(Job { of: self, effort: self.effort.over(&preset), choice, quiet, backend, places })
+    }
+
+    /// Refuses what is for one picture.
+    fn check_many(&self) -> Result<()> {
+        match (self.preview, self.keeping.is_named()) {
+            (true, _) => Err(Error::new("--preview is for one picture: leave it out")),
+            (_, true) => {
+                Err(Error::new("--checkpoint keeps the film of one picture: leave it out, or give .film outputs"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Checks where a picture goes.
@@ -190,15 +209,20 @@ impl Render {
 impl Job<'_> {
     /// Refuses scenes whose pictures have the same names, before any is rendered.
     fn check_names(&self, scenes: &[PathBuf]) -> Result<()> {
+        if self.of.sequence.names_cameras(self.of.output.as_deref()) {
+            return Ok(());
+        }
         let of = |path: &PathBuf| self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()]);
         sequence::check_distinct(&scenes.iter().map(of).collect::<Result<Vec<_>>>()?.concat())
     }
 
     /// Renders the pictures of a scene.
     fn pictures(&self, path: &Path) -> Result<ExitCode> {
-        // A wrong name shows before a scene is read, which may take long.
-        for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
-            self.of.check(path, &place)?;
+        // A wrong name shows before a scene is read, which may take long, unless it is of what only the scene tells.
+        if !self.of.sequence.names_cameras(self.of.output.as_deref()) {
+            for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
+                self.of.check(path, &place)?;
+            }
         }
         let mut effort = self.effort;
         let loading = self.of.reading.loading(effort.integrator());
@@ -213,36 +237,42 @@ impl Job<'_> {
         if self.of.preview {
             self.preview(&mut loaded, &places)?;
         }
-        let (backend, hash) = progress::stage("opening the device", self.quiet, || {
-            // A driver takes longer than hashing the scene does.
-            thread::scope(|scope| {
-                let hash = scope.spawn(|| scene::fingerprint(&scene));
-                (Backend::new(&self.choice), hash.join().expect("hashing does not panic"))
-            })
-        });
-        // The end of the process takes everything back at once; a driver takes 70 ms for it one by one (an H200).
-        let backend = ManuallyDrop::new(backend?);
-        let hash = hash.map_err(|error| error.of(path))?;
-        let studio = Studio {
-            of: self.of,
-            path,
-            scene: &scene,
-            hash,
-            choice: &self.choice,
-            backend: &backend,
-            quiet: self.quiet,
-        };
+        let hash = self.opened(&scene)?.map_err(|error| error.of(path))?;
+        let backend = self.backend.get().expect("it was opened");
+        let studio =
+            Studio { of: self.of, path, scene: &scene, hash, choice: &self.choice, backend, quiet: self.quiet };
         studio.pictures(&mut loaded, &places)
+    }
+
+    /// Opens the device, unless that was done for another scene, and hashes the scene meanwhile: a driver takes longer for it.
+    fn opened(&self, scene: &Scene) -> Result<eyerays::error::Result<[u8; 32]>> {
+        let opening = || {
+            thread::scope(|scope| {
+                let hash = scope.spawn(|| scene::fingerprint(scene));
+                let backend = self.backend.get().is_none().then(|| Backend::new(&self.choice));
+                (backend, hash.join().expect("hashing does not panic"))
+            })
+        };
+        let (backend, hash) = progress::stage("opening the device", self.quiet, opening);
+        if let Some(backend) = backend.transpose()? {
+            self.backend.get_or_init(|| ManuallyDrop::new(backend));
+        }
+        Ok(hash)
     }
 
     /// Where the pictures go, and how they are seen.
     fn places(&self, path: &Path, loaded: &Loaded, scene: &Scene, shots: Vec<Shot>) -> Result<Vec<Place>> {
         let destinations = self.of.sequence.destinations(self.of.output.as_deref(), path, &shots)?;
+        self.places.borrow_mut().extend(destinations.iter().cloned());
+        sequence::check_distinct(&self.places.borrow())?;
+        if self.places.borrow().len() > 1 {
+            self.of.check_many()?;
+        }
         output::check_apart(&destinations, &scene.files)?;
         let places = shots.into_iter().zip(destinations).map(|(shot, destination)| {
             self.of.check(path, &destination)?;
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
-            let checkpoint = self.of.keeping.beside(&destination)?;
+            let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;
             Ok(Place { camera: shot.camera, view: self.of.part.of(&view)?, destination, checkpoint })
         });
         places.collect()

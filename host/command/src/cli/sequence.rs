@@ -70,6 +70,13 @@ impl SequenceArgs {
         format!("{{name}}{camera}{frame}.png")
     }
 
+    /// Do pictures have names that only a scene or a frame tells?
+    pub fn names_cameras(&self, output: Option<&OsStr>) -> bool {
+        let own = OsString::from(self.default_name());
+        let template = output.unwrap_or(&own).to_string_lossy();
+        template.contains("{camera}") || template.contains("{frame")
+    }
+
     /// Where the pictures of a scene go.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ use super::progress;
 use super::render::Render;
 use super::summary::{Summary, Times};
 use super::watching::{self, Watching};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::Identity;
 use eyerays::layers::{self, Layer, Values};
@@ -94,6 +94,9 @@ impl Studio<'_> {
             Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
             None => None,
         };
+        if repeat > 1 && self.keeps_film(place) {
+            return Err(Error::new("--repeat measures and keeps no film: drop it, or what needs one"));
+        }
         let is_silent = self.quiet || self.of.json;
         session.reserve(view).map_err(|error| error.of(self.path))?;
         // Of one sample there is nothing to be seen before it is done, nor to be kept.
@@ -118,7 +121,16 @@ impl Studio<'_> {
             bar.finish_and_clear();
             rendering
         };
-        let rendering = rendering.map_err(|error| error.of(self.path))?;
+        let mut rendering = rendering.map_err(|error| error.of(self.path))?;
+        if let Some(film) = &mut rendering.film {
+            film.identity = identity.clone();
+            // Before layers and files, which may fail.
+            if let Some(checkpoint) =
+                checkpoint.as_ref().filter(|checkpoint| checkpoint.stays() && !destination.is_film())
+            {
+                checkpoint.keep(film)?;
+            }
+        }
         let lost = rendering.lost.iter().map(|(name, error)| format!("{name}: {error}; the others did its work"));
         super::warn(&lost.collect::<Vec<_>>(), self.quiet);
         Ok(rendering)
@@ -152,9 +164,6 @@ impl Studio<'_> {
         let (scene, reproducible) = (self.path, self.of.reproducible);
         let facts = Facts { scene, camera, view, identity: &identity, rendering: &rendering, reproducible };
         rendering.picture.about = facts.about();
-        if let Some(film) = &mut rendering.film {
-            film.identity = identity;
-        }
         let start = Instant::now();
         progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers))?;
         let times = Times::new(loaded, &rendering, layers_time, start.elapsed());
@@ -182,6 +191,9 @@ impl Studio<'_> {
         let signal = watching::ended_by();
         if signal.is_some() && samples < all && !self.quiet {
             console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
+        }
+        if signal.is_some() && samples < all && place.destination.is_film() && !self.quiet {
+            console::say(format_args!("{} has what is done: --resume goes on with it", place.destination));
         }
         if let (Some(checkpoint), Some(film), false) = (&place.checkpoint, &rendering.film, place.destination.is_film())
         {

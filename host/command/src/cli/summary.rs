@@ -123,7 +123,12 @@ impl fmt::Display for Summary<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (width, height) = self.loaded.packed.settings().size;
         let (rendering, rays) = (self.rendering, self.rendering.rays);
-        write!(out, "{}: {width}x{height} in {} precision", self.destination, self.precision())?;
+        write!(out, "{}: {width}x{height}", self.destination)?;
+        let region = rendering.region;
+        if (region.width, region.height) != (width, height) {
+            write!(out, ", of it {}x{} at {},{}", region.width, region.height, region.x, region.y)?;
+        }
+        write!(out, " in {} precision", self.precision())?;
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;
         if let Some(noise) = rendering.picture.noise() {
             write!(out, ", {} samples a pixel, noise {:.2} %", rendering.samples, 100.0 * noise)?;

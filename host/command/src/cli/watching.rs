@@ -88,9 +88,10 @@ impl Watching<'_> {
             // What was there before took no time.
             let first = first.get().unwrap_or_else(|| {
                 first.set(Some(growth.samples));
-                growth.samples - 1
+                growth.samples.saturating_sub(1)
             });
-            let share = f64::from(growth.of - first) / f64::from((growth.samples - first).max(1));
+            let share =
+                f64::from(growth.of.saturating_sub(first)) / f64::from(growth.samples.saturating_sub(first).max(1));
             let whole = start.elapsed().mul_f64(share);
             let whole = self.limit.map_or(whole, |limit| whole.min(limit));
             let every = interval(self.every, whole).filter(|_| can_write);

@@ -77,14 +77,10 @@ impl Film {
     /// # Errors
     /// Anything else, or too little memory.
     pub fn read(input: &mut dyn Read) -> Result<Film> {
-        let mut magic = [0; MAGIC.len()];
-        match input.read_exact(&mut magic) {
-            Ok(()) if magic == MAGIC => {}
-            Ok(()) if magic[..7] == MAGIC[..7] => {
-                return Err(Error::new("a film of another version of this program, which that version goes on with"));
-            }
-            Err(error) if error.kind() != ErrorKind::UnexpectedEof => return Err(unread(&error)),
-            _ => return Err(Error::new("no film: give what render wrote to a .film file")),
+        let mut magic = Vec::new();
+        input.take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(|error| unread(&error))?;
+        if magic != MAGIC {
+            return Err(no_film(&magic));
         }
         let header = read_block(input, MOST_HEADER)?;
         let header: Header = serde_json::from_slice(&unpacked(&header, MOST_HEADER)?).map_err(|_| damaged())?;
@@ -173,6 +169,17 @@ fn read_block(input: &mut dyn Read, most: u64) -> Result<Vec<u8>> {
 
 fn unread(error: &io::Error) -> Error {
     if error.kind() == ErrorKind::UnexpectedEof { cut_off() } else { Error::new(format!("cannot be read: {error}")) }
+}
+
+/// What begins like this and not as a film does.
+fn no_film(start: &[u8]) -> Error {
+    if MAGIC.starts_with(start) {
+        cut_off()
+    } else if start.starts_with(&MAGIC[..7]) {
+        Error::new("a film of another version of this program, which that version goes on with")
+    } else {
+        Error::new("no film: give what render wrote to a .film file")
+    }
 }
 
 fn cut_off() -> Error {

@@ -29,7 +29,8 @@ pub struct Session<'a> {
     name: String,
     processor: Processor,
     why: Why,
-    since: Instant,
+    /// What opening the device took and getting the scene there, until a picture has told it.
+    opening: Duration,
     prepare_time: Duration,
 }
 
@@ -43,8 +44,8 @@ impl<'a> Session<'a> {
             name,
             processor,
             why: backend.why.clone(),
-            since,
-            prepare_time: backend.open_time + since.elapsed(),
+            opening: backend.open_time + since.elapsed(),
+            prepare_time: Duration::ZERO,
         };
         match &backend.device {
             Device::Cpu => {
@@ -66,13 +67,14 @@ impl<'a> Session<'a> {
         }
     }
 
-    /// Takes the memory that pictures of a view need.
+    /// Takes the memory that pictures of a view need. What that and all before took is told with the next picture.
     ///
     /// # Errors
     /// What the device reports.
     pub fn reserve(&mut self, view: &View) -> Result<()> {
+        let start = Instant::now();
         self.on_device(|device| device.start(view, &[view.region()]))?;
-        self.prepare_time = self.backend.open_time + self.since.elapsed();
+        self.prepare_time = std::mem::take(&mut self.opening) + start.elapsed();
         Ok(())
     }
 

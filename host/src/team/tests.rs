@@ -1,0 +1,151 @@
+//! Devices that take longer than others, and devices that fail.
+
+use std::sync::Arc;
+
+use super::work::Pace;
+use super::*;
+use crate::cpu::{OnCpu, Renderer};
+use crate::device_scene::DeviceScene;
+use crate::method::Traversal;
+use crate::quality::Bvh;
+use crate::scene::{self, Settings};
+use crate::watch;
+
+fn posed() -> (DeviceScene, View) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
+    let (scene, _) = scene::load(path.as_ref()).unwrap();
+    let settings = Settings { size: (24, 70), spp: 40, bounces: 1, ..scene.settings };
+    let packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let view = View::new(&packed, &scene.cameras[0]).unwrap();
+    (packed, view)
+}
+
+/// A device that takes so much longer, and fails after so many parts.
+struct Odd<G> {
+    device: G,
+    pause: Duration,
+    fails_after: usize,
+}
+
+impl<G: Grows> Grows for Odd<G> {
+    fn start(&mut self, view: &View, regions: &[Region]) -> Result<()> {
+        self.device.start(view, regions)
+    }
+
+    fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
+        thread::sleep(self.pause);
+        match self.fails_after.checked_sub(1) {
+            Some(left) => self.fails_after = left,
+            None => return Err(Error::DeviceFailed { device: "odd".to_owned(), message: "it is lost".to_owned() }),
+        }
+        self.device.add(part, done)
+    }
+
+    fn wait(&mut self) -> Result<()> {
+        self.device.wait()
+    }
+
+    fn film(&mut self) -> Result<Film> {
+        match self.fails_after {
+            0 => Err(Error::DeviceFailed { device: "odd".to_owned(), message: "it is lost".to_owned() }),
+            _ => self.device.film(),
+        }
+    }
+}
+
+/// Devices, each with a pause in milliseconds and the parts after which it fails.
+fn rendered(devices: &[(u64, usize)]) -> (Result<Film>, Vec<Lost>, Film) {
+    let (packed, view) = posed();
+    let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
+    let member = |(number, &(pause, fails_after)): (usize, &(u64, usize))| {
+        let (device, pause) = (OnCpu::<f32>::new(renderer.clone()), Duration::from_millis(pause));
+        Member::new(format!("device {number}"), Odd { device, pause, fails_after })
+    };
+    let mut team = Team::new(devices.iter().enumerate().map(member).collect());
+    let film = watch::render(&mut team, &view, &|_| ());
+    let lost = team.lost();
+    (film, lost, watch::render(&mut OnCpu::<f32>::new(renderer.clone()), &view, &|_| ()).unwrap())
+}
+
+fn assert_same(film: &Film, want: &Film) {
+    assert!(film.develop().unwrap().bits_equal(&want.develop().unwrap()));
+    assert_eq!((film.rays(), film.coverage()), (want.rays(), want.coverage()));
+}
+
+const NEVER: usize = usize::MAX;
+
+#[test]
+fn a_film_of_several_devices_has_the_bits_of_one() {
+    for devices in [&[(0, NEVER)][..], &[(0, NEVER), (0, NEVER)], &[(0, NEVER), (30, NEVER), (1, NEVER)]] {
+        let (film, lost, want) = rendered(devices);
+        assert_same(&film.unwrap(), &want);
+        assert!(lost.is_empty());
+    }
+}
+
+#[test]
+fn what_a_lost_device_had_is_done_by_the_others() {
+    for fails_after in [0, 1, 5] {
+        let (film, lost, want) = rendered(&[(1, fails_after), (3, NEVER), (0, NEVER)]);
+        assert_same(&film.unwrap(), &want);
+        assert!(matches!(&lost[..], [(name, Error::DeviceFailed { .. })] if name == "device 0"), "{lost:?}");
+    }
+}
+
+#[test]
+fn the_loss_of_the_last_device_is_a_fault() {
+    let (film, _, _) = rendered(&[(0, 2), (0, 4)]);
+    assert!(matches!(film, Err(Error::DeviceFailed { .. })));
+}
+
+/// One takes a second for anything, the other nearly nothing for everything.
+#[test]
+fn a_slow_device_does_not_hold_up_a_fast_one() {
+    let start = Instant::now();
+    let (film, _, want) = rendered(&[(1000, NEVER), (0, NEVER)]);
+    assert_same(&film.unwrap(), &want);
+    assert!(start.elapsed() < Duration::from_millis(2500), "it took a second part: {:?}", start.elapsed());
+}
+
+/// Three of one pace, and one that is slow: each would be done sooner by the others together.
+#[test]
+fn alike_devices_do_not_wait_for_each_other() {
+    let (film, _, want) = rendered(&[(2, NEVER), (2, NEVER), (2, NEVER), (20, NEVER)]);
+    assert_same(&film.unwrap(), &want);
+}
+
+/// Whatever the paces are, somebody takes the rest.
+#[test]
+fn the_fastest_member_always_takes_what_is_left() {
+    let region = Region { x: 0, y: 0, width: 10, height: 8 };
+    for rates in [[1.0, 1.0, 1.0], [5.0, 5.0, 0.1], [3.0, 2.0, 2.5], [1e9, 1e9, 1e3]] {
+        let members = rates.map(|rate| Pace { is_lost: false, is_done: false, rate: Some(rate) }).to_vec();
+        let mut work = Work { todo: vec![Part { region, samples: 0..7 }], members, faults: Vec::new() };
+        let mut rounds = 0;
+        while !work.todo.is_empty() {
+            let taken = [0, 1, 2].map(|number| work.take(number));
+            assert!(
+                taken.iter().any(Option::is_some) || work.todo.is_empty(),
+                "{rates:?}: nobody takes {:?}",
+                work.todo
+            );
+            rounds += 1;
+        }
+        assert!(rounds <= 7);
+    }
+}
+
+#[test]
+fn strips_fill_a_region() {
+    for (height, count) in [(1, 4), (8, 4), (70, 24), (1080, 24), (2160, 96)] {
+        let region = Region { x: 3, y: 5, width: 9, height };
+        let strips = strips(region, count);
+        assert!(strips.len() <= count as usize && strips.iter().all(|strip| (strip.x, strip.width) == (3, 9)));
+        let ends = strips.iter().map(|strip| strip.y + strip.height);
+        assert_eq!(
+            ends.collect::<Vec<_>>().split_last().unwrap().1,
+            strips[1..].iter().map(|s| s.y).collect::<Vec<_>>()
+        );
+        assert_eq!(strips.iter().map(|strip| strip.height).sum::<u32>(), height);
+    }
+}

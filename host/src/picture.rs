@@ -105,7 +105,7 @@ impl Picture {
             let bytes: Vec<[u8; 4]> = run.as_flattened().iter().map(|v| v.to_le_bytes()).collect();
             digest.update(bytes.as_flattened());
         }
-        digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect()
+        hexadecimal(&digest.finalize())
     }
 
     /// Whether size and every bit agree: 0 and -0 differ, equal NaNs do not.
@@ -115,6 +115,11 @@ impl Picture {
             && self.pixels.len() == other.pixels.len()
             && self.pixels.iter().zip(&other.pixels).all(|(&a, &b)| !bits_differ(a, b))
     }
+}
+
+/// Bytes of a hash as people write them.
+pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// Whether two pixels differ in any bit.

@@ -33,6 +33,19 @@ impl Region {
         u64::from(self.width) * u64::from(self.height)
     }
 
+    /// Cut into pieces of so many columns and rows, smaller at the right and at the bottom; row by row.
+    pub fn pieces(self, columns: u32, rows: u32) -> impl Iterator<Item = Region> {
+        let Region { x: left, y: top, width, height } = self;
+        let corners = (0..height).step_by(rows as usize);
+        let corners = corners.flat_map(move |y| (0..width).step_by(columns as usize).map(move |x| (x, y)));
+        corners.map(move |(x, y)| Region {
+            x: left + x,
+            y: top + y,
+            width: (width - x).min(columns),
+            height: (height - y).min(rows),
+        })
+    }
+
     /// The least region that holds both.
     pub fn around(&self, other: Region) -> Region {
         let (x, y) = (self.x.min(other.x), self.y.min(other.y));

@@ -74,17 +74,22 @@ pub(crate) trait Grows {
         Vec::new()
     }
 
-    /// The picture of a film, on its threads.
-    fn develop(&self, film: &Film) -> Result<Picture> {
-        film.develop()
+    /// The picture of a film, developed on its threads, and the rays that it took.
+    fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {
+        film.developed()
     }
 
-    /// Renders all samples of a view at once, to a picture without a film.
-    fn picture(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<(Picture, Rays)> {
+    /// Renders all samples of a view at once.
+    fn expose(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
         self.start(view, &[view.region()])?;
         self.add(view.whole(), done)?;
-        let film = self.end()?;
-        Ok((self.develop(&film)?, film.rays()))
+        self.end()
+    }
+
+    /// The same to a picture, without a film.
+    fn picture(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<(Picture, Rays)> {
+        let film = self.expose(view, done)?;
+        self.develop(&film)
     }
 
     /// The film so far.
@@ -94,13 +99,6 @@ pub(crate) trait Grows {
     fn end(&mut self) -> Result<Film> {
         self.film()
     }
-}
-
-/// Renders all samples of a view at once.
-pub(crate) fn render(device: &mut dyn Grows, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Film> {
-    device.start(view, &[view.region()])?;
-    device.add(view.whole(), done)?;
-    device.end()
 }
 
 /// Renders what a film has not yet of a view, until all is there, the time is up or somebody stops it.
@@ -308,11 +306,11 @@ mod tests {
         let (packed, view) = cornell(9);
         let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
         let mut device = OnCpu::<f32>::new(renderer.clone());
-        let whole = render(&mut device, &view, &|_| ()).unwrap();
+        let whole = device.expose(&view, &|_| ()).unwrap();
         let part = |region, samples| view.part(region, samples).unwrap();
         let tile = Region { x: 3, y: 2, width: 5, height: 7 };
-        let mut from = render(&mut device, &part(tile, 0..4), &|_| ()).unwrap();
-        from.merge(render(&mut device, &part(view.region(), 5..7), &|_| ()).unwrap()).unwrap();
+        let mut from = device.expose(&part(tile, 0..4), &|_| ()).unwrap();
+        from.merge(device.expose(&part(view.region(), 5..7), &|_| ()).unwrap()).unwrap();
         let (stop, seen) = (AtomicBool::new(false), RefCell::new(Vec::new()));
         let grown = |growth: Growth<'_>| seen.borrow_mut().push((growth.samples, growth.of));
         let film = go_on(&mut device, &view, Some(from), &Watch { limit: None, stop: &stop, grown: &grown }).unwrap();

@@ -83,7 +83,7 @@ impl<'a> Renderer<'a> {
     {
         let mut film = self.start(view)?;
         self.add(view, &mut film, view.whole(), done, observer)?;
-        self.threads.install(|| Ok((film.develop()?, film.rays())))
+        self.threads.install(|| film.developed())
     }
 
     /// A film of a view without any sample.
@@ -142,23 +142,13 @@ impl<'a> Renderer<'a> {
     }
 
     fn tiles(&self, view: &View) -> Vec<Region> {
-        let Region { x: left, y: top, width, height } = view.region();
         // Records of numbers of 64 bits take twice as much.
         let slot = 2 * self.planned.plan.bytes_of(binding::PATHS);
         let mut edge = TILE;
         while edge > 8 && u64::from(edge * edge) * slot > PATH_MEMORY {
             edge /= 2;
         }
-        let edge = edge as usize;
-        let rows = (0..height).step_by(edge);
-        rows.flat_map(|y| (0..width).step_by(edge).map(move |x| (x, y)))
-            .map(|(x, y)| Region {
-                x: left + x,
-                y: top + y,
-                width: (width - x).min(edge as u32),
-                height: (height - y).min(edge as u32),
-            })
-            .collect()
+        view.region().pieces(edge, edge).collect()
     }
 }
 

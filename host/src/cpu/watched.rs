@@ -9,6 +9,7 @@ use super::render::Renderer;
 use crate::error::Result;
 use crate::film::{Film, Part};
 use crate::picture::Picture;
+use crate::rays::Rays;
 use crate::view::{Region, View};
 use crate::watch::Grows;
 
@@ -48,8 +49,8 @@ impl<R: Number> Grows for OnCpu<'_, R> {
         Ok(())
     }
 
-    fn develop(&self, film: &Film) -> Result<Picture> {
-        self.renderer.install(|| film.develop())
+    fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {
+        self.renderer.install(|| film.developed())
     }
 
     fn film(&mut self) -> Result<Film> {

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
+use crate::error::Error;
 use crate::view::Region;
 
 /// Samples of every pixel of a region: what a film is made of.
@@ -20,6 +21,11 @@ impl Part {
     /// How many samples of how many pixels that is, multiplied.
     pub fn volume(&self) -> u64 {
         self.region.pixels() * self.samples.len() as u64
+    }
+
+    /// What is wrong with adding what a film has.
+    pub(crate) fn twice(self) -> Error {
+        Error::new(format!("the film has {self} already"))
     }
 
     /// Columns, rows and samples.
@@ -92,6 +98,11 @@ impl Coverage {
         &self.0
     }
 
+    /// Samples of all pixels together.
+    pub fn volume(&self) -> u64 {
+        self.0.iter().map(Part::volume).sum()
+    }
+
     /// Adds a part.
     ///
     /// # Errors
@@ -117,7 +128,7 @@ impl Coverage {
     fn close(&mut self) {
         let around = self.0.iter().cloned().reduce(|a, b| a.around(&b));
         if let Some(whole) = around
-            && self.0.iter().map(Part::volume).sum::<u64>() == whole.volume()
+            && self.volume() == whole.volume()
         {
             self.0 = vec![whole];
         }

@@ -49,7 +49,7 @@ impl Developer {
                 let light = mean_light(&sums, count);
                 *pixel = light.map(|channel| channel as f32);
                 if words == NOISY_FILM_WORDS {
-                    told.noise.add(&Mean::of(&sums, count));
+                    told.noise.add(&Mean::of(&sums, light, count));
                 }
                 told.shadow += u64::from(sums.word & !NON_FINITE);
                 told.non_finite += u64::from(sums.word & NON_FINITE != 0);
@@ -78,10 +78,19 @@ impl Film {
     /// # Errors
     /// If there is no memory for it.
     pub fn develop(&self) -> Result<Picture> {
+        Ok(self.developed()?.0)
+    }
+
+    /// The same, with what was traced for it, which one look at the sums tells as well.
+    ///
+    /// # Errors
+    /// As [`Film::develop`].
+    pub fn developed(&self) -> Result<(Picture, Rays)> {
         let Region { x, y, width, height } = self.window;
         let mut developer = Developer::new(width, height)?;
         developer.rows(0, self.words, &self.sums, |row| self.coverage.counts(y + row, x, width));
-        Ok(developer.done(self.words).0)
+        let (picture, rays) = developer.done(self.words);
+        Ok((picture, Rays { primary: self.coverage.volume(), secondary: self.secondary, ..rays }))
     }
 
     /// The standard error of each pixel's mean, of its brightness, estimated from how much its samples differ; row by row. Of samples
@@ -91,9 +100,12 @@ impl Film {
         let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
-            let error = move |(count, x)| match Mean::of(&PixelSums::load(sums, Row::new(0, width, words), x), count) {
-                mean if count > 1 && words == NOISY_FILM_WORDS => mean.variance.sqrt() as f32,
-                _ => f32::INFINITY,
+            let error = move |(count, x)| {
+                if count < 2 || words != NOISY_FILM_WORDS {
+                    return f32::INFINITY;
+                }
+                let sums = PixelSums::load(sums, Row::new(0, width, words), x);
+                Mean::of(&sums, mean_light(&sums, count), count).variance.sqrt() as f32
             };
             counts.into_iter().zip(0..).map(error)
         });
@@ -118,8 +130,7 @@ impl Film {
             (0..width).map(of).fold((0, 0), add)
         });
         let (shadow, non_finite) = counted.reduce(|| (0, 0), |a: (u64, u64), b| (a.0 + b.0, a.1 + b.1));
-        let primary = self.coverage.parts().iter().map(|part| part.volume()).sum();
-        Rays { primary, shadow, secondary: self.secondary, non_finite }
+        Rays { primary: self.coverage.volume(), shadow, secondary: self.secondary, non_finite }
     }
 }
 
@@ -131,8 +142,8 @@ struct Mean {
 }
 
 impl Mean {
-    fn of(sums: &PixelSums, count: u32) -> Mean {
-        let light = mean_light(sums, count);
+    /// Of a pixel whose channels are these in the mean.
+    fn of(sums: &PixelSums, light: [f64; 3], count: u32) -> Mean {
         let count = f64::from(count.max(1));
         let brightness = (light[0] + light[1] + light[2]) / 3.0;
         let of_samples = squares(sums.squares) / count - brightness * brightness;

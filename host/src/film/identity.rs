@@ -11,6 +11,7 @@ use crate::choice::Named;
 use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::method::Traversal;
+use crate::picture::hexadecimal;
 use crate::render::Precision;
 use crate::scene::Settings;
 use crate::view::View;
@@ -98,8 +99,4 @@ fn add(all: &mut BTreeMap<String, String>, value: Value) {
             _ => {}
         }
     }
-}
-
-fn hexadecimal(bytes: &[u8]) -> String {
-    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

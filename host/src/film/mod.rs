@@ -67,11 +67,6 @@ impl Film {
         &self.coverage
     }
 
-    /// Bytes that it takes.
-    pub fn bytes(&self) -> usize {
-        size_of_val(&self.sums[..])
-    }
-
     /// The part of a view that it should have.
     pub fn missing(&self, view: &View) -> Vec<Part> {
         self.coverage.missing(&view.whole())

@@ -7,19 +7,10 @@ use crate::view::Region;
 
 /// Cuts what is rendered of an image into regions of at most `slots` slots: whole rows, if that many fit.
 pub(super) fn bands(window: Region, slots: u32, order: Order) -> Vec<Region> {
-    let Region { x: left, y: top, width, height } = window;
     let (least, most) = camera::blocks(order);
-    let columns = width.min((slots / (least * most) * least).max(least));
+    let columns = window.width.min((slots / (least * most) * least).max(least));
     let rows = (slots / camera::slots(columns, most, order) * most).max(most);
-    let tops = (0..height).step_by(rows as usize);
-    tops.flat_map(|y| (0..width).step_by(columns as usize).map(move |x| (x, y)))
-        .map(|(x, y)| Region {
-            x: left + x,
-            y: top + y,
-            width: (width - x).min(columns),
-            height: (height - y).min(rows),
-        })
-        .collect()
+    window.pieces(columns, rows).collect()
 }
 
 #[cfg(test)]

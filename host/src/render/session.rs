@@ -94,7 +94,7 @@ impl<'a> Session<'a> {
     pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
         self.rendered(view, 1, |device| {
             let film = watch::go_on(device, view, from.cloned(), watch)?;
-            Ok(((device.develop(&film)?, film.rays()), Some(film)))
+            Ok((device.develop(&film)?, Some(film)))
         })
     }
 
@@ -104,8 +104,8 @@ impl<'a> Session<'a> {
     /// As [`Session::render`].
     pub fn expose(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
         self.rendered(view, 1, |device| {
-            let film = watch::render(device, view, done)?;
-            Ok(((device.develop(&film)?, film.rays()), Some(film)))
+            let film = device.expose(view, done)?;
+            Ok((device.develop(&film)?, Some(film)))
         })
     }
 

@@ -109,7 +109,7 @@ impl Grows for Team<'_> {
         let todo = todo.into_iter().map(|region| Part { region, samples: part.samples.clone() }).collect();
         self.share(todo)?;
         let (pixels, samples) = (part.region.pixels(), part.samples.len() as u64);
-        self.coverage.add(part).map_err(|both| Error::new(format!("the film has {both} already")))?;
+        self.coverage.add(part).map_err(Part::twice)?;
         let all = self.view.as_ref().map_or(1, View::samples);
         done(pixels * samples / u64::from(all));
         Ok(())
@@ -186,8 +186,6 @@ fn locked(work: &Mutex<Work>) -> MutexGuard<'_, Work> {
 
 /// About so many strips of whole rows.
 fn strips(region: Region, count: u32) -> Vec<Region> {
-    let Region { x, y, width, height } = region;
-    let rows = height.div_ceil(count.max(1)).next_multiple_of(ROWS);
-    let tops = (0..height).step_by(rows as usize);
-    tops.map(|top| Region { x, y: y + top, width, height: (height - top).min(rows) }).collect()
+    let rows = region.height.div_ceil(count.max(1)).next_multiple_of(ROWS);
+    region.pieces(region.width, rows).collect()
 }

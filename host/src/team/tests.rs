@@ -9,7 +9,6 @@ use crate::device_scene::DeviceScene;
 use crate::method::Traversal;
 use crate::quality::Bvh;
 use crate::scene::{self, Settings};
-use crate::watch;
 
 fn posed() -> (DeviceScene, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
@@ -62,9 +61,9 @@ fn rendered(devices: &[(u64, usize)]) -> (Result<Film>, Vec<Lost>, Film) {
         Member::new(format!("device {number}"), Odd { device, pause, fails_after })
     };
     let mut team = Team::new(devices.iter().enumerate().map(member).collect());
-    let film = watch::render(&mut team, &view, &|_| ());
+    let film = team.expose(&view, &|_| ());
     let lost = team.lost();
-    (film, lost, watch::render(&mut OnCpu::<f32>::new(renderer.clone()), &view, &|_| ()).unwrap())
+    (film, lost, OnCpu::<f32>::new(renderer.clone()).expose(&view, &|_| ()).unwrap())
 }
 
 fn assert_same(film: &Film, want: &Film) {

@@ -1,7 +1,6 @@
 //! Films that are kept while they are rendered, to be gone on with.
 
 use std::cell::Cell;
-use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -69,12 +68,11 @@ impl CheckpointArgs {
             _ if self.resume => return Err(Error::new("--resume: name the film with --checkpoint")),
             _ => return Ok(None),
         };
-        let is_film = |ending: &OsStr| ending.eq_ignore_ascii_case(Film::ENDING);
-        if stays && !path.extension().is_some_and(is_film) {
+        let place = Destination::File(path.clone());
+        if stays && !place.is_film() {
             let name = path.display();
             return Err(Error::new(format!("--checkpoint {name}: the name of a film ends in .{}", Film::ENDING)));
         }
-        let place = Destination::File(path.clone());
         if stays {
             output::check_writable(&place)?;
             if !output::can_replace(&place) {
@@ -122,7 +120,7 @@ impl Checkpoint {
                 film.identity.check(identity).map_err(|error| error.of(&self.path))?;
                 self.check(&film, view)?;
                 self.is_own.set(true);
-                self.kept.set(volume(&film));
+                self.kept.set(film.coverage().volume());
                 Ok(Some(film))
             }
             Err(error) if matches!(error.fault(), eyerays::error::Error::BrokenFilm(_)) => {
@@ -153,7 +151,7 @@ impl Checkpoint {
 
     /// Keeps a film, unless more is kept already: a device that took over from one that failed begins again.
     pub fn keep(&self, film: &Film) -> Result<()> {
-        let volume = volume(film);
+        let volume = film.coverage().volume();
         if volume >= self.kept.get() {
             write(film, &self.path)?;
             self.is_own.set(true);
@@ -201,9 +199,4 @@ pub(super) fn read(path: &Path) -> eyerays::error::Result<Option<Film>> {
         Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
         Err(error) => Err(unread(error)),
     }
-}
-
-/// Samples of all pixels that a film has.
-fn volume(film: &Film) -> u64 {
-    film.coverage().parts().iter().map(|part| part.volume()).sum()
 }

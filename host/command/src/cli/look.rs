@@ -56,12 +56,17 @@ impl Look {
     }
 
     /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
-    pub fn beyond_white(&self, picture: &Picture, destination: &Destination) -> Result<Option<String>> {
+    pub fn beyond_white(
+        &self,
+        picture: &Picture,
+        encoding: &Encoding,
+        destination: &Destination,
+    ) -> Result<Option<String>> {
         if destination.is_film() || destination.format()? != Format::Png {
             return Ok(None);
         }
         let brightness = Brightness::of(picture);
-        let share = brightness.beyond_white(self.encoding(picture)?.exposure_ev);
+        let share = brightness.beyond_white(encoding.exposure_ev);
         if share <= MOST_BEYOND_WHITE {
             return Ok(None);
         }

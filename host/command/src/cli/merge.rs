@@ -51,8 +51,9 @@ impl Merge {
         } else {
             self.whole(&film)?;
             let picture = film.develop()?;
-            super::warn(self.look.beyond_white(&picture, &destination)?.as_slice(), quiet);
-            self.look.write(&picture, &destination)?;
+            let encoding = self.look.encoding(&picture)?;
+            super::warn(self.look.beyond_white(&picture, &encoding, &destination)?.as_slice(), quiet);
+            output::write_picture(&picture, &destination, &encoding)?;
         }
         if !quiet {
             let parts = super::plural(self.parts.len(), "film");

@@ -207,9 +207,14 @@ impl Render {
 }
 
 impl Job<'_> {
+    /// Do pictures have names that only a scene or a frame tells?
+    fn names_cameras(&self) -> bool {
+        self.of.sequence.names_cameras(self.of.output.as_deref())
+    }
+
     /// Refuses scenes whose pictures have the same names, before any is rendered.
     fn check_names(&self, scenes: &[PathBuf]) -> Result<()> {
-        if self.of.sequence.names_cameras(self.of.output.as_deref()) {
+        if self.names_cameras() {
             return Ok(());
         }
         let of = |path: &PathBuf| self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()]);
@@ -219,7 +224,7 @@ impl Job<'_> {
     /// Renders the pictures of a scene.
     fn pictures(&self, path: &Path) -> Result<ExitCode> {
         // A wrong name shows before a scene is read, which may take long, unless it is of what only the scene tells.
-        if !self.of.sequence.names_cameras(self.of.output.as_deref()) {
+        if !self.names_cameras() {
             for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
                 self.of.check(path, &place)?;
             }
@@ -237,7 +242,7 @@ impl Job<'_> {
         if self.of.preview {
             self.preview(&mut loaded, &places)?;
         }
-        let hash = self.opened(&scene)?.map_err(|error| error.of(path))?;
+        let hash = self.opened(&scene, path)?;
         let backend = self.backend.get().expect("it was opened");
         let studio =
             Studio { of: self.of, path, scene: &scene, hash, choice: &self.choice, backend, quiet: self.quiet };
@@ -245,7 +250,7 @@ impl Job<'_> {
     }
 
     /// Opens the device, unless that was done for another scene, and hashes the scene meanwhile: a driver takes longer for it.
-    fn opened(&self, scene: &Scene) -> Result<eyerays::error::Result<[u8; 32]>> {
+    fn opened(&self, scene: &Scene, path: &Path) -> Result<[u8; 32]> {
         let opening = || {
             thread::scope(|scope| {
                 let hash = scope.spawn(|| scene::fingerprint(scene));
@@ -257,7 +262,7 @@ impl Job<'_> {
         if let Some(backend) = backend.transpose()? {
             self.backend.get_or_init(|| ManuallyDrop::new(backend));
         }
-        Ok(hash)
+        Ok(hash.map_err(|error| error.of(path))?)
     }
 
     /// Where the pictures go, and how they are seen.
@@ -270,7 +275,10 @@ impl Job<'_> {
         }
         output::check_apart(&destinations, &scene.files)?;
         let places = shots.into_iter().zip(destinations).map(|(shot, destination)| {
-            self.of.check(path, &destination)?;
+            // Others were checked before the scene was read.
+            if self.names_cameras() {
+                self.of.check(path, &destination)?;
+            }
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
             let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;
             Ok(Place { camera: shot.camera, view: self.of.part.of(&view)?, destination, checkpoint })

@@ -48,34 +48,24 @@ impl Studio<'_> {
     pub fn pictures(&self, loaded: &mut Loaded, places: &[Place]) -> Result<ExitCode> {
         let asked = self.of.layers();
         if asked.is_empty() {
-            return self.plain(loaded, places);
+            let mut session = self.open(loaded)?;
+            return each(places, |place| {
+                let identity = self.identity(loaded, place)?;
+                let rendering = self.rendered(&mut session, place, &identity)?;
+                self.finish(loaded, place, identity, rendering, (Vec::new(), None))
+            });
         }
-        for place in places {
+        // Layers need the scene for themselves, so that each picture has its own session.
+        each(places, |place| {
             let identity = self.identity(loaded, place)?;
-            let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
-            let rendering = self.rendered(&mut session, place, &identity)?;
-            drop(session);
+            let rendering = self.rendered(&mut self.open(loaded)?, place, &identity)?;
             let layers = self.layers(loaded, place, &rendering, &asked)?;
-            let code = self.finish(loaded, place, identity, rendering, layers)?;
-            if watching::ended_by().is_some() {
-                return Ok(code);
-            }
-        }
-        Ok(ExitCode::SUCCESS)
+            self.finish(loaded, place, identity, rendering, layers)
+        })
     }
 
-    /// Without layers, which need the scene for themselves.
-    fn plain(&self, loaded: &Loaded, places: &[Place]) -> Result<ExitCode> {
-        let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
-        for place in places {
-            let identity = self.identity(loaded, place)?;
-            let rendering = self.rendered(&mut session, place, &identity)?;
-            let code = self.finish(loaded, place, identity, rendering, (Vec::new(), None))?;
-            if watching::ended_by().is_some() {
-                return Ok(code);
-            }
-        }
-        Ok(ExitCode::SUCCESS)
+    fn open<'a>(&'a self, loaded: &'a Loaded) -> Result<Session<'a>> {
+        Ok(self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?)
     }
 
     /// What a picture is of.
@@ -181,8 +171,9 @@ impl Studio<'_> {
             return checkpoint::write(film, destination.file().expect("a film is a file"));
         }
         let (picture, look) = (&rendering.picture, &self.of.look);
-        super::warn(look.beyond_white(picture, destination)?.as_slice(), self.quiet);
-        output::write_layers(picture, layers, destination, &look.encoding(picture)?)
+        let encoding = look.encoding(picture)?;
+        super::warn(look.beyond_white(picture, &encoding, destination)?.as_slice(), self.quiet);
+        output::write_layers(picture, layers, destination, &encoding)
     }
 
     /// How a picture ends: as shells have it where a signal ended the rendering.
@@ -201,4 +192,15 @@ impl Studio<'_> {
         }
         Ok(signal.map_or(ExitCode::SUCCESS, |signal| ExitCode::from(128 + signal as u8)))
     }
+}
+
+/// Renders pictures one after the other, until a signal ends one.
+fn each(places: &[Place], mut render: impl FnMut(&Place) -> Result<ExitCode>) -> Result<ExitCode> {
+    for place in places {
+        let code = render(place)?;
+        if watching::ended_by().is_some() {
+            return Ok(code);
+        }
+    }
+    Ok(ExitCode::SUCCESS)
 }

@@ -128,8 +128,8 @@ impl Watching<'_> {
         if let Some(checkpoint) = self.checkpoint.filter(|_| keeps) {
             checkpoint.keep(&film)?;
         }
-        let picture = film.develop()?;
-        let before = written.rays.replace((Instant::now(), film.rays().total()));
+        let (picture, rays) = film.developed()?;
+        let before = written.rays.replace((Instant::now(), rays.total()));
         self.bar.set_message(told(picture.noise(), before, written.rays.get()));
         if shows { self.look.write(&picture, self.destination) } else { Ok(()) }
     }

@@ -19,7 +19,7 @@ use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::scene::SceneBuffers;
 use crate::device_scene::DeviceScene;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::film::{Coverage, Film, Part};
 use crate::method::Traversal;
 use crate::picture::Picture;
@@ -27,7 +27,7 @@ use crate::plan::{self, Plan};
 use crate::rays::Rays;
 use crate::scene::Light;
 use crate::view::{Region, View};
-use crate::watch::{self, Grows};
+use crate::watch::Grows;
 
 /// A film and what it took.
 pub struct GpuRendering {
@@ -148,7 +148,7 @@ impl<'a> Renderer<'a> {
     /// What the GPU reports.
     pub fn render(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<GpuRendering> {
         let before = self.device_time();
-        let film = watch::render(self, view, done)?;
+        let film = self.expose(view, done)?;
         done(self.queue.forget());
         let device_time = self.device_time().zip(before).map(|(after, before)| after - before);
         Ok(GpuRendering { film, device_time })
@@ -206,8 +206,7 @@ impl<'a> Renderer<'a> {
         for band in growing.bands.iter_mut().filter(within) {
             self.add_to(band, &growing.view, part.samples.clone(), done)?;
         }
-        let twice = |both| Error::new(format!("the film has {both} already"));
-        growing.coverage.add(part).map_err(twice)?;
+        growing.coverage.add(part).map_err(Part::twice)?;
         self.growing = Some(growing);
         Ok(())
     }

@@ -38,8 +38,7 @@ impl Renderer<'_> {
         let (view, words) = (*view, self.plan.film_words);
         let Region { y: top, width, height, .. } = view.region();
         if bands.iter().any(|band| band.region.width != width) {
-            let film = self.film()?;
-            return Ok((film.develop()?, film.rays()));
+            return self.film()?.developed();
         }
         let mut developer = Developer::new(width, height)?;
         let counts = vec![view.samples(); width as usize];

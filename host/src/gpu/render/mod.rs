@@ -117,9 +117,14 @@ impl<'a> Renderer<'a> {
         let plan = Plan::new(packed, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
         let most_slots = most_slots(gpu, &plan, traversal.order.bits())?;
         let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
-        let kernels = compile(gpu, &recipes);
+        // The scene goes to the device while the driver's compiler works.
+        let (kernels, scene) = std::thread::scope(|scope| {
+            let kernels = scope.spawn(|| compile(gpu, &recipes));
+            let scene = SceneBuffers::new(gpu, packed, traversal.layout, (&plan).into());
+            (kernels.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), scene)
+        });
         gpu.check()?;
-        let scene = SceneBuffers::new(gpu, packed, traversal.layout, (&plan).into())?;
+        let scene = scene?;
         let (order, queue) = (traversal.order.bits(), Queue::new(gpu));
         Ok(Renderer { gpu, packed, order, plan, kernels, scene, most_slots, memory: None, growing: None, queue })
     }

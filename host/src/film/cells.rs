@@ -114,7 +114,8 @@ impl Film {
                 let light = mean_light(&sums, count);
                 let mean = Mean::of(&sums, light, count, BLOCK);
                 let share = if mean.brightness > 0.0 { mean.variance.sqrt() / mean.brightness } else { 0.0 };
-                squares += target.seen_error(light, share).powi(2);
+                let error = target.seen_error(light, share);
+                squares += error * error;
             }
         }
         (squares / cell.pixels() as f64).sqrt()

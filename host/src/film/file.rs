@@ -172,7 +172,7 @@ impl KeptCells {
         let can_be = |(&count, cell): (&u32, Region)| {
             whole_blocks(count) == count && count <= self.most && (count == 0 || !is_outside(cell))
         };
-        let is_sound = self.most <= Settings::MOST_SPP
+        let is_sound = (Target::LEAST_SAMPLES..=Settings::MOST_SPP).contains(&self.most)
             && Target::around(window, size) == window
             && self.counts.len() == cells.counts.len()
             && self.counts.iter().zip(Target::cells(image)).all(can_be);

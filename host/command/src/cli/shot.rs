@@ -185,6 +185,7 @@ impl Studio<'_> {
         }
         let (picture, look) = (&rendering.picture, &self.of.look);
         let encoding = look.encoding(picture)?;
+        // What is cut off at white counts as without noise, whatever holds the light.
         let shown = if self.of.noise.is_asked() { &Destination::Stdout } else { destination };
         super::warn(look.beyond_white(picture, &encoding, shown)?.as_slice(), self.quiet);
         output::write_layers(picture, layers, destination, &encoding)

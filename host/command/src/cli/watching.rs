@@ -96,7 +96,8 @@ impl Watching<'_> {
             });
             let share =
                 f64::from(growth.of.saturating_sub(first)) / f64::from(growth.samples.saturating_sub(first).max(1));
-            let whole = start.elapsed().mul_f64(share);
+            // What ends by its noise may end at any time.
+            let whole = if growth.cells.is_some() { start.elapsed() } else { start.elapsed().mul_f64(share) };
             let whole = self.limit.map_or(whole, |limit| whole.min(limit));
             let every = interval(self.every, whole).filter(|_| can_write);
             let shows = every.is_some_and(|every| written.picture.get().elapsed() >= every);

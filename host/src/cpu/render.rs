@@ -42,7 +42,7 @@ const TILE: u32 = 32;
 /// # }
 /// ```
 pub struct Renderer<'a> {
-    planned: Planned<'a>,
+    pub(super) planned: Planned<'a>,
     threads: rayon::ThreadPool,
 }
 

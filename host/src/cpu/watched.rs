@@ -1,6 +1,7 @@
 //! Films that grow on a CPU.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use eyerays_kernels_cpu::Number;
@@ -8,6 +9,7 @@ use eyerays_kernels_cpu::Number;
 use super::render::Renderer;
 use crate::error::Result;
 use crate::film::{Film, Part};
+use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::{Region, View};
@@ -47,6 +49,10 @@ impl<R: Number> Grows for OnCpu<'_, R> {
 
     fn wait(&mut self) -> Result<()> {
         Ok(())
+    }
+
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+        Ok(self.renderer.cells::<R>(view, cells, samples))
     }
 
     fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {

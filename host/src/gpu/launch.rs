@@ -10,7 +10,7 @@ use eyerays_shader::resources::binding;
 use super::device::Gpu;
 use super::kernel::Kernel;
 use super::readback::{self, Readback};
-use super::render::{Band, Memory};
+use super::render::Memory;
 use super::timer::Timer;
 use crate::error::Result;
 use crate::integrator::Waves;
@@ -175,7 +175,8 @@ impl<'a> Queue<'a> {
 pub(super) struct Launch<'l, 'a> {
     kernels: &'l [Kernel],
     memory: &'l Memory,
-    band: &'l Band,
+    /// For the steps that bind the film.
+    film: &'l wgpu::BindGroup,
     frame: &'l Frame,
     queue: &'l mut Queue<'a>,
     plan: &'l Plan,
@@ -197,7 +198,7 @@ impl<'l, 'a> Launch<'l, 'a> {
         plan: &'l Plan,
         kernels: &'l [Kernel],
         memory: &'l Memory,
-        band: &'l Band,
+        film: &'l wgpu::BindGroup,
         frame: &'l Frame,
         queue: &'l mut Queue<'a>,
     ) -> Result<Self> {
@@ -221,7 +222,7 @@ impl<'l, 'a> Launch<'l, 'a> {
         Ok(Launch {
             kernels,
             memory,
-            band,
+            film,
             frame,
             queue,
             plan,
@@ -276,7 +277,7 @@ impl Executor for Launch<'_, '_> {
         let kernel = &self.kernels[index];
         let group = match &self.memory.groups[index] {
             Some(groups) => &groups[usize::from(self.is_second)],
-            None => &self.band.group,
+            None => self.film,
         };
         let pass = self.pass.get_or_insert_with(|| self.queue.pass(&mut self.encoder));
         let rows = if step.stage == Stage::Shadow { self.frame.shadow_rays } else { 1 };

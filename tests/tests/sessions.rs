@@ -104,7 +104,7 @@ fn lights_that_were_changed_stay_so_where_a_renderer_turns() {
         }
     }
     let mut renderer = Renderer::new(&gpu, &job, true, Traversal::default()).unwrap();
-    let mut rendered = |renderer: &mut Renderer| renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
+    let rendered = |renderer: &mut Renderer| renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
     let before = rendered(&mut renderer);
     renderer.set_lights(&lights).unwrap();
     let dimmed = rendered(&mut renderer);

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::image::Format;
 use crate::line::one_line;
 use crate::picture::Picture;
+use crate::scene::Integrator;
 
 /// The result of everything that can fail on what the caller gave.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -71,6 +72,11 @@ pub enum Error {
     },
     /// A film that is cut off or damaged, which no reading brings back.
     BrokenFilm(&'static str),
+    /// A picture that ends by its noise, of an integrator that has none.
+    NoNoise {
+        /// The integrator.
+        integrator: Integrator,
+    },
     /// Floats of 16 bits, in a format that has none.
     NoHalf {
         /// The format.
@@ -258,6 +264,9 @@ impl Error {
                 format!("a film of another picture: {what} is {one} in one and {other} in the other")
             }
             Error::BrokenFilm(what) => format!("the film is {what}; render this part again"),
+            Error::NoNoise { integrator } => {
+                format!("the integrator {integrator} does not sample, so that its pictures have no noise to end by")
+            }
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
             Error::NoLayers { format } => format!("layers are for .exr files, not for {format}"),

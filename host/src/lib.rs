@@ -45,6 +45,7 @@ pub mod line;
 pub mod math;
 pub mod memory;
 pub mod method;
+pub mod noise;
 pub mod picture;
 pub mod plan;
 pub mod quality;

@@ -1,11 +1,13 @@
 //! Films that grow by samples while somebody looks on, and end early where that is wanted.
 
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::film::{Film, Part};
 use crate::job::Job;
+use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::team::Lost;
@@ -26,9 +28,11 @@ pub struct Watch<'a> {
 pub struct Growth<'a> {
     /// Samples of each pixel, in the mean of all.
     pub samples: u32,
-    /// Samples that it shall have.
+    /// Samples that it shall have, or has at most where noise decides.
     pub of: u32,
-    film: &'a mut dyn FnMut() -> Result<Film>,
+    /// Where noise decides, how many cells have enough samples, and how many there are.
+    pub cells: Option<(usize, usize)>,
+    pub(crate) film: &'a mut dyn FnMut() -> Result<Film>,
 }
 
 impl Growth<'_> {
@@ -77,6 +81,9 @@ pub(crate) trait Grows {
     fn lost(&mut self) -> Vec<Lost> {
         Vec::new()
     }
+
+    /// Whole blocks of samples of cells of a view, which may be others each time: their sums, which are of no film that was started.
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums>;
 
     /// The picture of a film, developed on its threads, and the rays that it took.
     fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {
@@ -185,7 +192,7 @@ impl Grower<'_> {
         let (of, whole) = (self.view.samples(), self.view.whole());
         let samples = (whole.volume() - self.left) / whole.region.pixels();
         let mut film = || self.with(device.film()?);
-        (self.watch.grown)(Growth { samples: samples as u32, of, film: &mut film });
+        (self.watch.grown)(Growth { samples: samples as u32, of, cells: None, film: &mut film });
     }
 
     fn with(&self, part: Film) -> Result<Film> {
@@ -243,6 +250,10 @@ mod tests {
 
         fn wait(&mut self) -> Result<()> {
             Ok(())
+        }
+
+        fn cells(&mut self, _: &View, _: &[Region], _: Range<u32>) -> Result<CellSums> {
+            Err(Error::NoGpu)
         }
 
         fn film(&mut self) -> Result<Film> {

@@ -59,7 +59,7 @@ pub trait Number: Scalar<Record: Send + Sync> {
     fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]);
 
     /// The same, with the light that their last vertices waited for.
-    fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]);
+    fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
 }
 
 /// Compiles every stage for a number.
@@ -68,7 +68,7 @@ macro_rules! number {
         $(impl Number for $number {
             fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]) {
                 for &slot in slots {
-                    stage::generate::<Self>(frame, spec, slot, paths);
+                    stage::generate::<Self>(frame, spec, &[], slot, paths);
                 }
             }
 
@@ -103,12 +103,16 @@ macro_rules! number {
                 }
             }
 
-            fn accumulate(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]) {
+            fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
                 let Records { shadows, segments, sums, .. } = records;
                 let sample = |slot| stage::sampled::<Self>(frame, slot, (sums, shadows, segments));
                 for slot in 0..frame.pixel_slots {
-                    let pixel = camera::pixel(frame, order, slot);
-                    stage::expose::<Self>(frame, (pixel, slot), stage::NOISY_FILM_WORDS, sample, film);
+                    let pixel = camera::pixel(frame, spec.order, slot);
+                    if spec.launch.has(Launch::BLOCKS) {
+                        stage::expose_blocks::<Self>(frame, (pixel, slot), sample, film);
+                    } else {
+                        stage::expose::<Self>(frame, (pixel, slot), stage::NOISY_FILM_WORDS, sample, film);
+                    }
                 }
             }
         })*

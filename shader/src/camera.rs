@@ -1,5 +1,6 @@
 //! Pixels to rays.
 
+use crate::buffer::read;
 use crate::data::{Frame, Launch, Order};
 use crate::real::{Scalar, V3};
 use crate::sampler::{self, Key, Sample};
@@ -58,6 +59,18 @@ pub fn pixel(frame: &Frame, order: Order, slot: u32) -> Pixel {
         if order.has(Order::MORTON) { (even(lane), even(lane >> 1)) } else { (lane % columns, lane / columns) };
     let (x, y) = (block % across * columns + right, block / across * rows + down);
     Pixel { x, y, inside: x < width && y < height, index: y * width + x, sample }
+}
+
+/// Columns and rows of a cell: what decides together how many samples it gets.
+pub const CELL: u32 = 16;
+
+/// A pixel of a launch over cells, whose region is cells beside and below each other, as a pixel of the image: `cells` has the
+/// column and, in the upper half, the row of each cell's first pixel.
+#[inline(always)]
+pub fn in_cell(frame: &Frame, cells: &[u32], pixel: Pixel) -> Pixel {
+    let corner = read(cells, pixel.y / CELL * (frame.columns / CELL) + pixel.x / CELL);
+    let (x, y) = ((corner & 0xffff) + pixel.x % CELL, (corner >> 16) + pixel.y % CELL);
+    Pixel { x, y, inside: pixel.inside && x < frame.width && y < frame.height, ..pixel }
 }
 
 /// Which sample of its pixel a slot follows.
@@ -202,5 +215,21 @@ mod tests {
                 assert_eq!(ray::<f64>(&part, launch, at(x, y)).1, d, "in a region");
             }
         }
+    }
+
+    /// Two cells beside and two below each other, of which one sticks out of the image and one is none.
+    #[test]
+    fn cells_are_where_their_table_has_them() {
+        let frame = Frame { width: 70, height: 40, columns: 2 * CELL, rows: 2 * CELL, ..Frame::default() };
+        let cells = [48 | 16 << 16, 0, 64 | 32 << 16, u32::MAX];
+        let at = |x, y| {
+            let found = in_cell(&frame, &cells, Pixel { x, y, inside: true, index: 5, sample: 3 });
+            assert_eq!((found.index, found.sample), (5, 3));
+            found.inside.then_some((found.x, found.y))
+        };
+        assert_eq!((at(0, 0), at(15, 2)), (Some((48, 16)), Some((63, 18))));
+        assert_eq!(at(16, 15), Some((0, 15)));
+        assert_eq!((at(5, 23), at(6, 16), at(0, 24)), (Some((69, 39)), None, None));
+        assert_eq!(at(31, 31), None);
     }
 }

@@ -60,6 +60,7 @@ macro_rules! resources {
             28 environment ENVIRONMENT: Read u32, "environment";
             29 albedos ALBEDOS: Read u32, "albedos of facets";
             30 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
+            31 cells CELLS: Read u32, "table of cells";
         }
     };
 }

@@ -16,6 +16,7 @@ pub fn worded(error: &Error) -> String {
         Error::NoLayers { format } => {
             return format!("--layers is for .exr files, not for {format}; leave it out or write .exr");
         }
+        Error::NoNoise { .. } => ": drop --noise, or use --integrator path",
         Error::Threads { .. } => ": ask for fewer",
         Error::SeveralInexact => ": drop --precision, or name one --device",
         Error::ReferenceOnGpu => ": use --device cpu, or --precision exact",

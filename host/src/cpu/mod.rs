@@ -1,6 +1,7 @@
 //! The kernels on the CPU: tiles in parallel, each with the memory of a small launch.
 
 mod cast;
+mod cells;
 mod pool;
 mod render;
 mod tile;

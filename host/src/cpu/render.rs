@@ -43,7 +43,7 @@ const TILE: u32 = 32;
 /// # }
 /// ```
 pub struct Renderer {
-    planned: Planned,
+    pub(super) planned: Planned,
     threads: Arc<rayon::ThreadPool>,
 }
 

@@ -8,7 +8,7 @@ use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::ShadowInputs;
+use eyerays_shader::stage::{BLOCK, ShadowInputs};
 
 use crate::device_scene::SceneView;
 use crate::error::Result;
@@ -45,6 +45,8 @@ pub struct Planned {
     /// The scene.
     pub laid: SceneView,
     pub(super) plan: Plan,
+    /// For whole blocks of samples.
+    blocks: Option<Plan>,
     pub(super) isa: Isa,
 }
 
@@ -53,7 +55,9 @@ impl Planned {
     pub fn new(laid: SceneView, isa: Isa) -> Self {
         let traversal = laid.traversal;
         let plan = Plan::new(&laid.job, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
-        Planned { laid, plan: plan.expect("a CPU has every method"), isa }
+        let plan = plan.expect("a CPU has every method");
+        let blocks = plan.in_blocks(0);
+        Planned { laid, plan, blocks, isa }
     }
 
     /// Words of a pixel of a film.
@@ -80,18 +84,43 @@ impl Planned {
         observer: &dyn Observer<R>,
     ) -> u64 {
         let order = self.laid.specialisation().order;
-        let slots = view.launch(&self.laid.job, region, 0, 1, order).slots;
-        let mut records = records(&self.plan, slots);
-        let mut secondary = 0;
-        for sample in samples.start..samples.end.min(view.range().end) {
-            let frame = view.launch(&self.laid.job, region, sample, 1, order);
-            let pixels = (0..slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
+        let frame = |sample| view.launch(&self.laid.job, region, sample, 1, order);
+        let frames = (samples.start..samples.end.min(view.range().end)).map(frame);
+        self.run(&self.plan, frames, film, observer)
+    }
+
+    /// The film of whole blocks of samples of a region, which keeps the squares of blocks, and how many secondary rays they took.
+    ///
+    /// # Panics
+    /// If the integrator does not sample.
+    pub(super) fn blocks<R: Number>(&self, view: &View, region: Region, samples: Range<u32>) -> (Vec<u32>, u64) {
+        let plan = self.blocks.as_ref().expect("noise is of integrators that sample");
+        let order = self.laid.specialisation().order;
+        let frame = |first| view.launch(&self.laid.job, region, first, BLOCK, order);
+        let mut film = self.film(region);
+        let secondary = self.run::<R>(plan, samples.step_by(BLOCK as usize).map(frame), &mut film, &());
+        (film, secondary)
+    }
+
+    /// Runs launches of the same slots, and returns how many secondary rays they took.
+    fn run<R: Number>(
+        &self,
+        plan: &Plan,
+        frames: impl Iterator<Item = Frame>,
+        film: &mut [u32],
+        observer: &dyn Observer<R>,
+    ) -> u64 {
+        let order = self.laid.specialisation().order;
+        let (mut memory, mut secondary) = (None, 0);
+        for frame in frames {
+            let records = memory.take().unwrap_or_else(|| records(plan, frame.slots));
+            let pixels = (0..frame.slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
             let (queue, next) = (pixels.collect(), Vec::new());
             let mut launch =
                 Launch { planned: self, frame: &frame, queue, next, records, film, observer, secondary: 0 };
-            plan::run(&self.plan, &mut launch).expect("a CPU reports no errors");
+            plan::run(plan, &mut launch).expect("a CPU reports no errors");
             secondary += launch.secondary;
-            records = launch.records;
+            memory = Some(launch.records);
         }
         secondary
     }
@@ -127,7 +156,7 @@ impl<R: Number> Executor for Launch<'_, R> {
             Stage::Generate => R::generate(self.frame, step.spec, &self.queue, &mut self.records.paths),
             Stage::Scatter => self.scatter(&scene),
             Stage::Gather => R::gather(self.frame, step.spec.order, &self.records, self.film),
-            Stage::Accumulate => R::accumulate(self.frame, step.spec.order, &self.records, self.film),
+            Stage::Accumulate => R::accumulate(self.frame, step.spec, &self.records, self.film),
         }
         Ok(())
     }

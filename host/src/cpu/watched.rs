@@ -1,6 +1,7 @@
 //! Films that grow on a CPU.
 
 use std::marker::PhantomData;
+use std::ops::Range;
 use std::sync::Arc;
 
 use eyerays_kernels_cpu::Number;
@@ -9,6 +10,7 @@ use super::render::Renderer;
 use crate::error::Result;
 use crate::film::{Film, Part};
 use crate::job::Job;
+use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::{Region, View};
@@ -54,6 +56,10 @@ impl<R: Number> Grows for OnCpu<R> {
 
     fn wait(&mut self) -> Result<()> {
         Ok(())
+    }
+
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+        Ok(self.renderer.cells::<R>(view, cells, samples))
     }
 
     fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {

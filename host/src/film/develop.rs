@@ -15,6 +15,7 @@ pub(crate) struct Developer {
     picture: Picture,
     noise: Noise,
     rays: Rays,
+    samples_a_square: u32,
 }
 
 /// What a row tells.
@@ -31,7 +32,8 @@ impl Developer {
     /// # Errors
     /// If there is no memory for it.
     pub fn new(width: u32, height: u32) -> Result<Self> {
-        Ok(Developer { picture: Picture::new(width, height)?, noise: Noise::default(), rays: Rays::default() })
+        let picture = Picture::new(width, height)?;
+        Ok(Developer { picture, noise: Noise::default(), rays: Rays::default(), samples_a_square: 1 })
     }
 
     /// Develops rows from `first` on, whose sums are these; `counts` tells the samples of each pixel of a row, counted from there.
@@ -40,6 +42,7 @@ impl Developer {
         C: AsRef<[u32]>,
     {
         let width = self.picture.width;
+        let samples_a_square = self.samples_a_square;
         let pixels = self.picture.pixels.par_chunks_mut(width as usize).skip(first as usize);
         let rows = pixels.zip(sums.par_chunks((words * width) as usize));
         let told = rows.enumerate().map(|(y, (pixels, sums))| {
@@ -49,7 +52,7 @@ impl Developer {
                 let light = mean_light(&sums, count);
                 *pixel = light.map(|channel| channel as f32);
                 if words == NOISY_FILM_WORDS {
-                    told.noise.add(&Mean::of(&sums, light, count));
+                    told.noise.add(&Mean::of(&sums, light, count, samples_a_square));
                 }
                 told.shadow += u64::from(sums.word & !NON_FINITE);
                 told.non_finite += u64::from(sums.word & NON_FINITE != 0);
@@ -86,26 +89,28 @@ impl Film {
     /// # Errors
     /// As [`Film::develop`].
     pub fn developed(&self) -> Result<(Picture, Rays)> {
-        let Region { x, y, width, height } = self.window;
-        let mut developer = Developer::new(width, height)?;
-        developer.rows(0, self.words, &self.sums, |row| self.coverage.counts(y + row, x, width));
+        let Region { width, height, .. } = self.window;
+        let developer = Developer::new(width, height)?;
+        let mut developer = Developer { samples_a_square: self.samples_a_square(), ..developer };
+        developer.rows(0, self.words, &self.sums, |row| self.counts(row));
         let (picture, rays) = developer.done(self.words);
-        Ok((picture, Rays { primary: self.coverage.volume(), secondary: self.secondary, ..rays }))
+        Ok((picture, Rays { primary: self.volume(), secondary: self.secondary, ..rays }))
     }
 
     /// The standard error of each pixel's mean, of its brightness, estimated from how much its samples differ; row by row. Of samples
-    /// that are placed evenly, as Sobol's are, it is too high. Infinite with fewer than two samples, and where no noise is told.
+    /// that are placed evenly, as Sobol's are, it is too high, unless noise decides how many there are: then it is estimated from blocks of
+    /// samples. Infinite with fewer than two samples, and where no noise is told.
     pub fn errors(&self) -> Vec<f32> {
-        let (width, words) = (self.window.width, self.words);
+        let (width, words, samples_a_square) = (self.window.width, self.words, self.samples_a_square());
         let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
-            let counts = self.coverage.counts(self.window.y + y, self.window.x, width);
+            let counts = self.counts(y);
             let error = move |(count, x)| {
-                if count < 2 || words != NOISY_FILM_WORDS {
+                if count < 2 * samples_a_square || words != NOISY_FILM_WORDS {
                     return f32::INFINITY;
                 }
                 let sums = PixelSums::load(sums, Row::new(0, width, words), x);
-                Mean::of(&sums, mean_light(&sums, count), count).variance.sqrt() as f32
+                Mean::of(&sums, mean_light(&sums, count), count, samples_a_square).variance.sqrt() as f32
             };
             counts.into_iter().zip(0..).map(error)
         });
@@ -114,8 +119,7 @@ impl Film {
 
     /// How many samples each pixel of its window has, row by row.
     pub fn samples(&self) -> Vec<u32> {
-        let rows = self.window.y..self.window.y + self.window.height;
-        rows.flat_map(|y| self.coverage.counts(y, self.window.x, self.window.width)).collect()
+        (0..self.window.height).flat_map(|row| self.counts(row)).collect()
     }
 
     /// What was traced for it.
@@ -130,21 +134,21 @@ impl Film {
             (0..width).map(of).fold((0, 0), add)
         });
         let (shadow, non_finite) = counted.reduce(|| (0, 0), |a: (u64, u64), b| (a.0 + b.0, a.1 + b.1));
-        Rays { primary: self.coverage.volume(), shadow, secondary: self.secondary, non_finite }
+        Rays { primary: self.volume(), shadow, secondary: self.secondary, non_finite }
     }
 }
 
 /// A pixel's samples in the mean.
-struct Mean {
-    brightness: f64,
+pub(super) struct Mean {
+    pub brightness: f64,
     /// Of the mean brightness.
-    variance: f64,
+    pub variance: f64,
 }
 
 impl Mean {
-    /// Of a pixel whose channels are these in the mean.
-    fn of(sums: &PixelSums, light: [f64; 3], count: u32) -> Mean {
-        let count = f64::from(count.max(1));
+    /// Of a pixel whose channels are these in the mean of so many samples, of which each square is of some.
+    pub fn of(sums: &PixelSums, light: [f64; 3], samples: u32, samples_a_square: u32) -> Mean {
+        let count = f64::from((samples / samples_a_square).max(1));
         let brightness = (light[0] + light[1] + light[2]) / 3.0;
         let of_samples = squares(sums.squares) / count - brightness * brightness;
         Mean { brightness, variance: of_samples.max(0.0) / (count - 1.0).max(1.0) }
@@ -152,7 +156,7 @@ impl Mean {
 }
 
 /// Linear RGB, rounded to double precision as a sum and as a quotient.
-fn mean_light(sums: &PixelSums, count: u32) -> [f64; 3] {
+pub(super) fn mean_light(sums: &PixelSums, count: u32) -> [f64; 3] {
     let count = f64::from(count.max(1));
     [sums.red, sums.green, sums.blue].map(|sum| light(sum) / count)
 }

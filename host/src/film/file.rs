@@ -1,5 +1,6 @@
 //! Films in files: eight bytes, then blocks of zlib's, each with its length before it. The first holds the [`Header`] as JSON, the others
-//! the sums, rows together.
+//! the sums, rows together. Films of pictures that end by their noise have a version of their own, since other programs would take the
+//! squares of their blocks for those of samples.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::ops::Range;
@@ -10,8 +11,9 @@ use flate2::write::ZlibEncoder;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use super::{Coverage, Film, Identity, Part};
+use super::{Cells, Coverage, Film, Identity, Part};
 use crate::error::{Error, Result};
+use crate::noise::{Target, whole_blocks};
 use crate::picture::Picture;
 use crate::scene::Settings;
 use crate::view::Region;
@@ -19,6 +21,8 @@ use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS};
 
 /// No text begins like this; the last byte tells the version.
 const MAGIC: [u8; 8] = *b"\x89EYFILM\x01";
+/// Of a film whose cells noise decides about.
+const MAGIC_OF_CELLS: [u8; 8] = *b"\x89EYFILM\x02";
 /// Bytes of sums of a block.
 const BLOCK: usize = 1 << 20;
 /// The most bytes of a header.
@@ -38,6 +42,19 @@ struct Header {
     secondary: u64,
     /// Whether sums follow: a film without samples has none.
     has_sums: bool,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cells: Option<KeptCells>,
+}
+
+/// Which samples cells have, and when they have enough.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct KeptCells {
+    noise: String,
+    exposure: String,
+    tone: String,
+    most: u32,
+    counts: Vec<u32>,
 }
 
 impl Film {
@@ -57,9 +74,11 @@ impl Film {
             parts: self.coverage.parts().to_vec(),
             secondary: self.secondary,
             has_sums: !self.sums.is_empty(),
+            cells: self.cells.as_ref().map(KeptCells::of),
         };
+        let magic = if self.cells.is_some() { MAGIC_OF_CELLS } else { MAGIC };
         let header = serde_json::to_vec(&header).map_err(|error| Error::new(error.to_string()))?;
-        let written = out.write_all(&MAGIC).and_then(|()| write_block(&packed(&header)?, out));
+        let written = out.write_all(&magic).and_then(|()| write_block(&packed(&header)?, out));
         written.map_err(|error| Error::writing(&error))?;
         // A few at a time, so that there is never a second film in memory.
         let blocks: Vec<Range<usize>> = blocks(self.sums.len()).collect();
@@ -79,11 +98,14 @@ impl Film {
     pub fn read(input: &mut dyn Read) -> Result<Film> {
         let mut magic = Vec::new();
         input.take(MAGIC.len() as u64).read_to_end(&mut magic).map_err(|error| unread(&error))?;
-        if magic != MAGIC {
+        if magic != MAGIC && magic != MAGIC_OF_CELLS {
             return Err(no_film(&magic));
         }
         let header = read_block(input, MOST_HEADER)?;
         let header: Header = serde_json::from_slice(&unpacked(&header, MOST_HEADER)?).map_err(|_| damaged())?;
+        if header.cells.is_some() != (magic == MAGIC_OF_CELLS) {
+            return Err(damaged());
+        }
         let (mut film, count) = header.film()?;
         let blocks: Vec<Range<usize>> = blocks(count).collect();
         for some in blocks.chunks(rayon::current_num_threads()) {
@@ -108,12 +130,17 @@ impl Film {
 impl Header {
     /// The film without its sums, if it can be one, and how many there are.
     fn film(self) -> Result<(Film, usize)> {
-        let Header { identity, size, window, words, parts, secondary, has_sums } = self;
+        let Header { identity, size, window, words, parts, secondary, has_sums, cells } = self;
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
         let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
         let is_known = [FILM_WORDS, NOISY_FILM_WORDS].contains(&words);
-        if !is_within(window, image) || !is_known || has_sums == parts.is_empty() || parts.len() > MOST_PARTS {
+        if !is_within(window, image) || !is_known || parts.len() > MOST_PARTS {
+            return Err(damaged());
+        }
+        let cells = cells.map(|cells| cells.cells(size, window)).transpose()?;
+        let has_some = cells.as_ref().map_or(!parts.is_empty(), |cells| cells.counts.iter().any(|&count| count > 0));
+        if has_some != has_sums || cells.is_some() && (!parts.is_empty() || words != NOISY_FILM_WORDS) {
             return Err(damaged());
         }
         let mut coverage = Coverage::default();
@@ -123,10 +150,37 @@ impl Header {
                 return Err(damaged());
             }
         }
-        let mut film = Film { size, window, words, sums: Vec::new(), coverage, secondary, identity };
+        let mut film = Film { size, window, words, sums: Vec::new(), coverage, cells, secondary, identity };
         let count = if has_sums { window.pixels() as usize * words as usize } else { 0 };
         film.sums.try_reserve_exact(count).map_err(|_| Error::Memory { width: size.0, height: size.1 })?;
         Ok((film, count))
+    }
+}
+
+impl KeptCells {
+    fn of(cells: &Cells) -> KeptCells {
+        let [noise, exposure, tone] = cells.target.entries().map(|(_, value)| value);
+        KeptCells { noise, exposure, tone, most: cells.most, counts: cells.counts.clone() }
+    }
+
+    /// What was kept, if an image of this size can have it in this window.
+    fn cells(self, size: (u32, u32), window: Region) -> Result<Cells> {
+        let target = Target::of_entries([&self.noise, &self.exposure, &self.tone]).map_err(|_| damaged())?;
+        let mut cells = Cells::new(size, target, self.most);
+        let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
+        let is_outside = |cell: Region| window.around(cell) != window;
+        let can_be = |(&count, cell): (&u32, Region)| {
+            whole_blocks(count) == count && count <= self.most && (count == 0 || !is_outside(cell))
+        };
+        let is_sound = (Target::LEAST_SAMPLES..=Settings::MOST_SPP).contains(&self.most)
+            && Target::around(window, size) == window
+            && self.counts.len() == cells.counts.len()
+            && self.counts.iter().zip(Target::cells(image)).all(can_be);
+        if !is_sound {
+            return Err(damaged());
+        }
+        cells.counts = self.counts;
+        Ok(cells)
     }
 }
 
@@ -173,7 +227,7 @@ fn unread(error: &io::Error) -> Error {
 
 /// What begins like this and not as a film does.
 fn no_film(start: &[u8]) -> Error {
-    if MAGIC.starts_with(start) {
+    if MAGIC.starts_with(start) || MAGIC_OF_CELLS.starts_with(start) {
         cut_off()
     } else if start.starts_with(&MAGIC[..7]) {
         Error::new("a film of another version of this program, which that version goes on with")

@@ -11,6 +11,7 @@ use crate::choice::Named;
 use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::method::Traversal;
+use crate::noise::Target;
 use crate::picture::hexadecimal;
 use crate::render::Precision;
 use crate::scene::Settings;
@@ -54,6 +55,13 @@ impl Identity {
     pub fn on(mut self, device: &str, traversal: Traversal) -> Identity {
         self.0.insert("device".to_owned(), device.to_owned());
         self.0.insert("traversal".to_owned(), format!("{traversal:?}"));
+        self
+    }
+
+    /// With what decides how many samples a pixel has.
+    #[must_use]
+    pub fn until(mut self, target: &Target) -> Identity {
+        self.0.extend(target.entries().map(|(name, value)| (name.to_owned(), value)));
         self
     }
 

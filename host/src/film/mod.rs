@@ -1,6 +1,7 @@
 //! The film: what the samples of a picture come to, as a value that is added to, merged, kept and developed. Its sums have no order
 //! ([`eyerays_shader::stage::PixelSums`]), so that parts of a picture, merged in any order, have the bits of all at once.
 
+mod cells;
 mod coverage;
 mod develop;
 mod file;
@@ -11,6 +12,7 @@ mod tests;
 use eyerays_shader::stage::{PixelSums, Row};
 use rayon::prelude::*;
 
+pub use cells::Cells;
 pub use coverage::{Coverage, Part};
 pub(crate) use develop::Developer;
 pub use identity::Identity;
@@ -29,7 +31,10 @@ pub struct Film {
     /// Row by row; in a row one word of all its pixels after another. Nothing before the first are added, since a system takes
     /// milliseconds to hand over so much memory.
     sums: Vec<u32>,
+    /// Empty where `cells` tell the samples.
     coverage: Coverage,
+    /// Of a picture that ends by its noise.
+    cells: Option<Cells>,
     /// Reflected and refracted rays.
     secondary: u64,
     /// What it is a film of.
@@ -45,6 +50,7 @@ impl Film {
             words,
             sums: Vec::new(),
             coverage: Coverage::default(),
+            cells: None,
             secondary: 0,
             identity: Identity::default(),
         };
@@ -62,7 +68,7 @@ impl Film {
         self.window
     }
 
-    /// Which samples it has.
+    /// Which samples it has, unless noise decides about them ([`Film::cells`]).
     pub fn coverage(&self) -> &Coverage {
         &self.coverage
     }
@@ -110,6 +116,7 @@ impl Film {
                 "the films are of different pictures: parts of one picture have its size and integrator",
             ));
         }
+        let cells = self.merged_cells(&other)?;
         let mut coverage = self.coverage.clone();
         for part in other.coverage.parts() {
             let twice = |both| Error::new(format!("both films have {both}: give each part once"));
@@ -119,7 +126,8 @@ impl Film {
         if self.identity == Identity::default() {
             self.identity = other.identity;
         }
-        (self.coverage, self.secondary) = (coverage, self.secondary.saturating_add(other.secondary));
+        (self.coverage, self.cells) = (coverage, cells);
+        self.secondary = self.secondary.saturating_add(other.secondary);
         self.add_sums(other.window, &other.sums)
     }
 
@@ -153,16 +161,31 @@ impl Film {
             }
             self.sums.par_extend(rayon::iter::repeat_n(0, all));
         }
-        let (words, width) = (self.words, self.window.width);
-        let (left, top) = (region.x - self.window.x, region.y - self.window.y);
-        let rows = self.sums.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);
-        rows.zip(sums.par_chunks((words * region.width) as usize)).for_each(|(own, added)| {
+        Layout { region: self.window, words: self.words }.add(&mut self.sums, region, sums);
+        Ok(())
+    }
+}
+
+/// How sums lie in memory: row by row of a region, in a row one word of all its pixels after another.
+#[derive(Clone, Copy)]
+pub(crate) struct Layout {
+    pub region: Region,
+    /// Of a pixel.
+    pub words: u32,
+}
+
+impl Layout {
+    /// Adds sums of a region within this one.
+    pub fn add(self, own: &mut [u32], region: Region, added: &[u32]) {
+        let Layout { region: Region { x, y, width, .. }, words } = self;
+        let (left, top) = (region.x - x, region.y - y);
+        let rows = own.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);
+        rows.zip(added.par_chunks((words * region.width) as usize)).with_min_len(16).for_each(|(own, added)| {
             let (to, from) = (Row::new(0, width, words), Row::new(0, region.width, words));
             for x in 0..region.width {
                 let both = PixelSums::load(own, to, left + x).plus(PixelSums::load(added, from, x));
                 both.store(own, to, left + x);
             }
         });
-        Ok(())
     }
 }

@@ -4,7 +4,7 @@ use std::any::Any;
 use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
-use super::recipe::Target;
+use super::recipe::{Target, parse_ahead};
 use crate::error::{Error, Result};
 use crate::method::{Coherence, Method, Processor, Scheduling, Traversal};
 
@@ -56,6 +56,7 @@ impl Gpu {
     /// If there is none.
     pub fn open(want: &AdapterRequest) -> Result<Gpu> {
         let _around = want.around.map(|begin| begin());
+        parse_ahead(want.exact);
         let (index, adapter) = adapter::choose(&adapter::instance(), want.adapter.as_deref())?;
         let report = AdapterReport::of(index, &adapter);
         if report.is_software() && !want.software {

@@ -10,7 +10,7 @@ use eyerays_shader::resources::binding;
 use super::device::Gpu;
 use super::kernel::Kernel;
 use super::readback::{self, Readback};
-use super::render::{Band, Memory};
+use super::render::Memory;
 use super::timer::Timer;
 use crate::error::Result;
 use crate::integrator::Waves;
@@ -175,7 +175,8 @@ impl Queue {
 pub(super) struct Launch<'l> {
     kernels: &'l [Kernel],
     memory: &'l Memory,
-    band: &'l Band,
+    /// For the steps that bind the film.
+    film: &'l wgpu::BindGroup,
     frame: &'l Frame,
     queue: &'l mut Queue,
     plan: &'l Plan,
@@ -197,7 +198,7 @@ impl<'l> Launch<'l> {
         plan: &'l Plan,
         kernels: &'l [Kernel],
         memory: &'l Memory,
-        band: &'l Band,
+        film: &'l wgpu::BindGroup,
         frame: &'l Frame,
         queue: &'l mut Queue,
     ) -> Result<Self> {
@@ -220,7 +221,7 @@ impl<'l> Launch<'l> {
         Ok(Launch {
             kernels,
             memory,
-            band,
+            film,
             frame,
             queue,
             plan,
@@ -275,7 +276,7 @@ impl Executor for Launch<'_> {
         let kernel = &self.kernels[index];
         let group = match &self.memory.groups[index] {
             Some(groups) => &groups[usize::from(self.is_second)],
-            None => &self.band.group,
+            None => self.film,
         };
         let pass = self.pass.get_or_insert_with(|| self.queue.pass(&mut self.encoder));
         let rows = if step.stage == Stage::Shadow { self.frame.shadow_rays } else { 1 };

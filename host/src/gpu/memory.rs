@@ -51,6 +51,7 @@ pub(super) fn buffer(gpu: &Gpu, binding: u32, size: u64, usage: Use) -> wgpu::Bu
 }
 
 /// What the steps of a launch exchange.
+#[derive(Clone)]
 pub(super) struct LaunchBuffers {
     /// For so many slots.
     pub slots: u32,

@@ -18,6 +18,13 @@ fn parse(module: &[u8]) -> Kernels {
     Kernels::parse(module).unwrap_or_else(|e| panic!("a committed module: {e}"))
 }
 
+/// Begins to parse the module of a precision on a thread of its own: it is there by the time that a driver has opened its device.
+pub(super) fn parse_ahead(exact: bool) {
+    let module: &'static Module = if exact { &EXACT } else { &FAST };
+    // Without a thread, whoever cuts the first kernel parses it.
+    let _ = std::thread::Builder::new().spawn(|| LazyLock::force(module));
+}
+
 /// Which of a step's kernels a device takes.
 #[derive(Debug, Clone, Copy)]
 pub struct Target {

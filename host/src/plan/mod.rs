@@ -129,6 +129,18 @@ impl Plan {
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
 
+    /// The same for whole blocks of samples, whose film keeps the squares of blocks; with `launch`, what else its launches are. None of an
+    /// integrator that does not sample.
+    pub fn in_blocks(&self, launch: u32) -> Option<Plan> {
+        let mut plan = self.clone();
+        plan.first.iter_mut().filter(|step| step.stage == Stage::Generate).for_each(|step| {
+            step.spec = step.spec.with_launch(launch);
+        });
+        let film = plan.last.iter_mut().find(|step| step.stage == Stage::Accumulate)?;
+        film.spec = film.spec.with_launch(Launch::BLOCKS);
+        Some(plan)
+    }
+
     /// Bytes that a pixel takes of the film.
     pub fn film_bytes(&self) -> u64 {
         4 * u64::from(self.film_words)

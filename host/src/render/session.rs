@@ -7,11 +7,13 @@ use super::rendering::{Rendering, Taken, repeated};
 use super::several::{Devices, cpu_name};
 use super::{Backend, DeviceWish, Opened, Precision, Why};
 use crate::cpu::{self, OnCpu};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, warm};
+use crate::integrator::needs;
 use crate::job::Job;
 use crate::method::Processor;
+use crate::noise::{self, Target};
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::View;
@@ -109,6 +111,28 @@ impl Session {
     pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
         self.rendered(view, 1, |device| {
             let film = watch::go_on(device, view, from.cloned(), watch)?;
+            Ok((device.develop(&film)?, Some(film)))
+        })
+    }
+
+    /// Renders until the noise of what is seen is low enough, or cells have all samples of the view, while somebody looks on: each cell
+    /// of [`Target::CELL`] pixels an edge gets as many samples as it needs. Where there is a film `from` before, it is gone on with.
+    ///
+    /// # Errors
+    /// As [`Session::render_watched`]; an integrator that does not sample, a tile that cuts cells, or too few samples to decide.
+    pub fn render_until(
+        &mut self,
+        view: &View,
+        target: &Target,
+        from: Option<&Film>,
+        watch: &Watch<'_>,
+    ) -> Result<Rendering> {
+        if !needs(&self.job).is_sampled {
+            return Err(Error::NoNoise { integrator: self.job.settings().transport.integrator });
+        }
+        self.prepare_time = std::mem::take(&mut self.opening);
+        self.rendered(view, 1, |device| {
+            let film = noise::go_on(device, view, target, from.cloned(), watch)?;
             Ok((device.develop(&film)?, Some(film)))
         })
     }

@@ -1,11 +1,13 @@
 //! Several devices at one film: each takes samples of some strip of the image as soon as it is done with those before. Sums have no
 //! order, so the film has the bits of any one device.
 
+mod cells;
 mod work;
 
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -14,6 +16,7 @@ use self::work::{Pace, Work};
 use crate::error::{Error, Result};
 use crate::film::{Coverage, Film, Part};
 use crate::job::Job;
+use crate::noise::CellSums;
 use crate::view::{Region, View};
 use crate::watch::Grows;
 
@@ -33,12 +36,14 @@ pub(crate) struct Member {
     is_lost: bool,
     /// Samples of a pixel a second, once that is known.
     rate: Option<f64>,
+    /// The same for samples of cells.
+    cell_rate: Option<f64>,
 }
 
 impl Member {
     /// A device that is ready, by its name.
     pub fn new(name: String, device: impl Grows + Send + 'static) -> Self {
-        Member { name, device: Box::new(device), has: Coverage::default(), is_lost: false, rate: None }
+        Member { name, device: Box::new(device), has: Coverage::default(), is_lost: false, rate: None, cell_rate: None }
     }
 }
 
@@ -133,6 +138,10 @@ impl Grows for Team {
         Ok(())
     }
 
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+        self.share_cells(view, cells, samples)
+    }
+
     fn lost(&mut self) -> Vec<Lost> {
         std::mem::take(&mut self.lost)
     }
@@ -194,7 +203,7 @@ impl Member {
     }
 }
 
-fn locked(work: &Mutex<Work>) -> MutexGuard<'_, Work> {
+fn locked<T>(work: &Mutex<T>) -> MutexGuard<'_, T> {
     work.lock().unwrap_or_else(PoisonError::into_inner)
 }
 

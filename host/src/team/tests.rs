@@ -1,19 +1,27 @@
 //! Devices that take longer than others, and devices that fail.
 
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 use super::work::Pace;
 use super::*;
 use crate::cpu::{OnCpu, Renderer};
+use crate::image::ToneMap;
 use crate::job::Job;
 use crate::method::Traversal;
+use crate::noise::{self, Target};
 use crate::quality::Bvh;
 use crate::scene::{self, Settings};
+use crate::watch::Watch;
 
 fn posed() -> (Job, View) {
+    posed_with(40)
+}
+
+fn posed_with(spp: u32) -> (Job, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
     let (scene, _) = scene::load(path.as_ref()).unwrap();
-    let settings = Settings { size: (24, 70), spp: 40, bounces: 1, ..scene.settings };
+    let settings = Settings { size: (24, 70), spp, bounces: 1, ..scene.settings };
     let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
@@ -46,6 +54,15 @@ impl<G: Grows> Grows for Odd<G> {
 
     fn wait(&mut self) -> Result<()> {
         self.device.wait()
+    }
+
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+        thread::sleep(self.pause);
+        match self.fails_after.checked_sub(1) {
+            Some(left) => self.fails_after = left,
+            None => return Err(Error::DeviceFailed { device: "odd".to_owned(), message: "it is lost".to_owned() }),
+        }
+        self.device.cells(view, cells, samples)
     }
 
     fn film(&mut self) -> Result<Film> {
@@ -151,4 +168,34 @@ fn strips_fill_a_region() {
         );
         assert_eq!(strips.iter().map(|strip| strip.height).sum::<u32>(), height);
     }
+}
+
+/// Cells by devices, each with a pause in milliseconds and the calls after which it fails.
+fn by_cells(devices: &[(u64, usize)]) -> (Result<Film>, usize, Film) {
+    let (packed, view) = posed_with(200);
+    let target = Target::new(0.2, 0.0, ToneMap::None).unwrap();
+    let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
+    let stop = AtomicBool::new(false);
+    let render = |device: &mut dyn Grows| {
+        noise::go_on(device, &view, &target, None, &Watch { limit: None, stop: &stop, grown: &|_| () })
+    };
+    let member = |(number, &(pause, fails_after)): (usize, &(u64, usize))| {
+        let (device, pause) = (OnCpu::<f32>::new(renderer.clone()), Duration::from_millis(pause));
+        Member::new(format!("device {number}"), Odd { device, pause, fails_after })
+    };
+    let mut team = Team::new(devices.iter().enumerate().map(member).collect());
+    let film = render(&mut team);
+    (film, team.lost().len(), render(&mut OnCpu::<f32>::new(renderer.clone())).unwrap())
+}
+
+#[test]
+fn cells_by_devices_of_which_some_fail_have_the_bits_of_one() {
+    for (devices, lost) in [(&[(0, 99), (3, 99)][..], 0), (&[(0, 1), (2, 99), (1, 99)], 1), (&[(5, 0), (0, 99)], 1)] {
+        let (film, failed, want) = by_cells(devices);
+        let film = film.unwrap();
+        assert_eq!((film.samples(), film.rays(), failed), (want.samples(), want.rays(), lost), "{devices:?}");
+        assert_same(&film, &want);
+    }
+    let (film, failed, _) = by_cells(&[(0, 1), (0, 0)]);
+    assert!(film.is_err() && failed == 1, "the last fault is the rendering's");
 }

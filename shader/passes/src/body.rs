@@ -1,7 +1,7 @@
 //! Dead instructions within a function: pure ones whose result nothing needs, and stores to a
 //! local variable that is never read.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{GlslStd450Op, MemoryAccess, Op, StorageClass, Word};
@@ -32,13 +32,13 @@ pub fn glsl_set(module: &Module) -> Option<Word> {
 struct Liveness {
     glsl: Option<Word>,
     /// The local variable that a pointer leads to.
-    bases: HashMap<Word, Word>,
-    live: HashSet<Word>,
+    bases: FxHashMap<Word, Word>,
+    live: FxHashSet<Word>,
 }
 
 impl Liveness {
     fn of(function: &Function, glsl: Option<Word>) -> Self {
-        let mut this = Liveness { glsl, bases: bases(function), live: HashSet::new() };
+        let mut this = Liveness { glsl, bases: bases(function), live: FxHashSet::default() };
         this.mark(function);
         this
     }
@@ -58,7 +58,7 @@ impl Liveness {
     }
 
     fn mark(&mut self, function: &Function) {
-        let mut definitions: HashMap<Word, Vec<&Instruction>> = HashMap::new();
+        let mut definitions: FxHashMap<Word, Vec<&Instruction>> = FxHashMap::default();
         let mut open = Vec::new();
         for inst in function.all_inst_iter() {
             if let Some(base) = self.stored(inst) {
@@ -79,8 +79,8 @@ impl Liveness {
     }
 }
 
-fn bases(function: &Function) -> HashMap<Word, Word> {
-    let mut bases = HashMap::new();
+fn bases(function: &Function) -> FxHashMap<Word, Word> {
+    let mut bases = FxHashMap::default();
     for inst in function.all_inst_iter() {
         let Some(id) = inst.result_id else { continue };
         let base = match inst.class.opcode {

@@ -1,6 +1,6 @@
 //! Capabilities: only what a module uses, since a device is asked for each.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use rspirv::dr::{Module, Operand};
 use rspirv::spirv::Capability;
@@ -30,9 +30,9 @@ pub fn prune(module: &mut Module) {
 
 /// The operands of group operations name alternatives, which their instructions decide; only
 /// built-in variables count beside these.
-fn needed(module: &Module) -> HashSet<Capability> {
+fn needed(module: &Module) -> FxHashSet<Capability> {
     let bodies = module.functions.iter().flat_map(|f| f.all_inst_iter());
-    let mut needed = HashSet::new();
+    let mut needed = FxHashSet::default();
     for inst in bodies.chain(&module.annotations) {
         needed.extend(inst.class.capabilities);
         let builtins = inst.operands.iter().filter(|o| matches!(o, Operand::BuiltIn(_)));

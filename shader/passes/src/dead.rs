@@ -1,6 +1,6 @@
 //! Dead code: whatever no entry point needs.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rspirv::dr::{Instruction, Module};
 use rspirv::spirv::Word;
@@ -47,7 +47,7 @@ fn globals(module: &mut Module) {
     let is_live = |inst: &Instruction| inst.result_id.is_none_or(|id| live.contains(&id));
     module.types_global_values.retain(is_live);
     module.ext_inst_imports.retain(is_live);
-    let local: HashSet<Word> = module
+    let local: FxHashSet<Word> = module
         .functions
         .iter()
         .flat_map(|function| function.all_inst_iter())
@@ -61,13 +61,13 @@ fn globals(module: &mut Module) {
     module.annotations.retain(has_target);
 }
 
-fn live_globals(module: &Module) -> HashSet<Word> {
-    let definitions: HashMap<Word, &Instruction> =
+fn live_globals(module: &Module) -> FxHashSet<Word> {
+    let definitions: FxHashMap<Word, &Instruction> =
         module.types_global_values.iter().filter_map(|inst| Some((inst.result_id?, inst))).collect();
     let bodies = module.functions.iter().flat_map(|f| f.all_inst_iter());
     let mut open: Vec<Word> =
         module.entry_points.iter().chain(&module.execution_modes).chain(bodies).flat_map(reach::mentioned).collect();
-    let mut live = HashSet::new();
+    let mut live = FxHashSet::default();
     while let Some(id) = open.pop() {
         if live.insert(id)
             && let Some(definition) = definitions.get(&id)

@@ -1,6 +1,6 @@
 //! One kernel as a module of its own.
 
-use std::collections::HashSet;
+use rustc_hash::FxHashSet;
 
 use rspirv::binary::Assemble;
 use rspirv::dr::{self, Instruction, Module, Operand};
@@ -60,7 +60,7 @@ impl Kernel {
 
     /// The paths of its functions in the source, as far as the module tells them.
     pub fn functions(&self) -> Vec<&str> {
-        let ids: HashSet<Word> = self.module.functions.iter().filter_map(|function| function.def_id()).collect();
+        let ids: FxHashSet<Word> = self.module.functions.iter().filter_map(|function| function.def_id()).collect();
         let named =
             |inst: &Instruction| inst.class.opcode == Op::Name && ids.contains(&inst.operands[0].unwrap_id_ref());
         let names = self.module.debug_names.iter().filter(|inst| named(inst));

@@ -1,6 +1,6 @@
 //! What a function reaches.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rspirv::dr::{Function, Instruction, Module};
 use rspirv::spirv::{Op, Word};
@@ -11,10 +11,10 @@ pub fn mentioned(inst: &Instruction) -> impl Iterator<Item = Word> {
 }
 
 /// The functions that those in `roots` call, and `roots`.
-pub fn functions(module: &Module, roots: impl IntoIterator<Item = Word>) -> HashSet<Word> {
-    let by_id: HashMap<Word, &Function> =
+pub fn functions(module: &Module, roots: impl IntoIterator<Item = Word>) -> FxHashSet<Word> {
+    let by_id: FxHashMap<Word, &Function> =
         module.functions.iter().filter_map(|function| Some((function.def_id()?, function))).collect();
-    let mut reached = HashSet::new();
+    let mut reached = FxHashSet::default();
     let mut open: Vec<Word> = roots.into_iter().collect();
     while let Some(id) = open.pop() {
         if let Some(function) = by_id.get(&id)
@@ -27,7 +27,7 @@ pub fn functions(module: &Module, roots: impl IntoIterator<Item = Word>) -> Hash
 }
 
 /// Every id that the functions reached from `root` mention.
-pub fn ids(module: &Module, root: Word) -> HashSet<Word> {
+pub fn ids(module: &Module, root: Word) -> FxHashSet<Word> {
     let reached = functions(module, [root]);
     module
         .functions

@@ -1,13 +1,13 @@
 //! Ids: dense, in order of appearance, so that removed debug information leaves no trace.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use rspirv::dr::{Instruction, Module};
 use rspirv::spirv::Word;
 
 /// Renumbers every id and sets the module's bound.
 pub fn compact(module: &mut Module) {
-    let mut numbers = Numbers(HashMap::new());
+    let mut numbers = Numbers(FxHashMap::default());
     for inst in module.all_inst_iter_mut() {
         numbers.renumber(inst);
     }
@@ -16,7 +16,7 @@ pub fn compact(module: &mut Module) {
     }
 }
 
-struct Numbers(HashMap<Word, Word>);
+struct Numbers(FxHashMap<Word, Word>);
 
 impl Numbers {
     fn bound(&self) -> Word {

@@ -1,6 +1,6 @@
 //! A module's words, apart by function: a kernel is parsed without the others beside it.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
 
 use rspirv::spirv::{Op, Word};
@@ -18,7 +18,7 @@ pub struct Sliced {
     globals: Range<usize>,
     functions: Vec<Function>,
     /// By name as it stands in the module.
-    entries: HashMap<String, Word>,
+    entries: FxHashMap<String, Word>,
 }
 
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ impl Sliced {
         if !rest.is_empty() || words.len() < HEADER || words[0] != rspirv::spirv::MAGIC_NUMBER {
             return Err(Error::Malformed("these bytes are no module".to_owned()));
         }
-        let mut this = Sliced { globals: 0..words.len(), words, functions: Vec::new(), entries: HashMap::new() };
+        let mut this = Sliced { globals: 0..words.len(), words, functions: Vec::new(), entries: FxHashMap::default() };
         let mut at = HEADER;
         while at < this.words.len() {
             let end = at + (this.words[at] >> 16) as usize;
@@ -84,7 +84,7 @@ impl Sliced {
     /// There is no such entry point.
     pub fn of_entry(&self, entry: &str) -> Result<Vec<u32>> {
         let &root = self.entries.get(entry).ok_or_else(|| Error::NoEntry(entry.to_owned()))?;
-        let mut reached = HashSet::new();
+        let mut reached = FxHashSet::default();
         let mut open = vec![root];
         while let Some(id) = open.pop() {
             if reached.insert(id) {
@@ -92,12 +92,44 @@ impl Sliced {
                 open.extend(called.flat_map(|function| &function.calls));
             }
         }
-        let mut words = self.words[self.globals.clone()].to_vec();
-        for function in self.functions.iter().filter(|function| reached.contains(&function.id)) {
+        let functions = || self.functions.iter().filter(|function| reached.contains(&function.id));
+        let mentioned = self.mentioned(functions());
+        let mut words = self.words[..HEADER].to_vec();
+        for inst in self.preceding() {
+            // Of ten thousand names and decorations a kernel has some hundred.
+            if !is_note(inst) || mentioned.contains(&inst[1]) {
+                words.extend_from_slice(inst);
+            }
+        }
+        for function in functions() {
             words.extend_from_slice(&self.words[function.words.clone()]);
         }
         Ok(words)
     }
+
+    /// What functions mention and what the globals consist of, names and decorations aside: their ids, and literals beside them.
+    fn mentioned<'f>(&self, functions: impl Iterator<Item = &'f Function>) -> FxHashSet<u32> {
+        let globals = self.preceding().filter(|inst| !is_note(inst)).flatten();
+        let bodies = functions.flat_map(|function| &self.words[function.words.clone()]);
+        globals.chain(bodies).copied().collect()
+    }
+
+    /// The instructions that precede the functions.
+    fn preceding(&self) -> impl Iterator<Item = &[u32]> {
+        let mut rest = &self.words[HEADER..self.globals.end];
+        std::iter::from_fn(move || {
+            // The lengths were checked as the module was read.
+            let (inst, others) = rest.split_at_checked((*rest.first()? >> 16) as usize)?;
+            rest = others;
+            Some(inst)
+        })
+    }
+}
+
+/// Is it a name or a decoration of something?
+fn is_note(inst: &[u32]) -> bool {
+    const NOTES: [Op; 4] = [Op::Name, Op::MemberName, Op::Decorate, Op::MemberDecorate];
+    inst.len() > 1 && NOTES.iter().any(|&note| inst[0] & 0xffff == note as u32)
 }
 
 /// A literal string: bytes in words, the first in the lowest, up to a zero.

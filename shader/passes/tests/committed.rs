@@ -5,6 +5,7 @@ use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
 use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
+use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
     [eyerays_modules::exact(), eyerays_modules::fast()]
@@ -143,6 +144,22 @@ fn what_a_path_does_not_meet_is_not_in_its_kernel() {
         let emissive = effects(Effects::EMISSIVE);
         assert!(count(emissive.with_launch(way)) < count(emissive), "{way:#x} weighs nothing");
     }
+}
+
+/// Only a picture that ends by its noise pays for what decides about it.
+#[test]
+fn cells_and_blocks_are_in_no_kernel_that_is_not_asked_for_them() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let cut = |entry: &str, bits| kernels.cut(entry, &effects(0).with_launch(bits).constants()).unwrap();
+    let [plain, cells] = [0, Launch::CELLS].map(|bits| cut("exact::generate", bits));
+    assert_eq!(plain.bindings(), [binding::FRAME, binding::PATHS]);
+    assert_eq!(cells.bindings(), [binding::FRAME, binding::PATHS, binding::CELLS]);
+    assert!(plain.instructions() < cells.instructions());
+    let [plain, blocks] = [0, Launch::BLOCKS].map(|bits| cut("exact::accumulate", bits));
+    assert_eq!(plain.bindings(), blocks.bindings());
+    assert!(plain.instructions() != blocks.instructions());
+    assert_eq!(cut("exact::accumulate", Launch::CELLS).instructions(), plain.instructions());
+    assert_eq!(cut("exact::generate", Launch::BLOCKS).bindings(), [binding::FRAME, binding::PATHS]);
 }
 
 /// Functions of their own that one effect, or any of some, alone needs.

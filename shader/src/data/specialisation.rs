@@ -129,6 +129,10 @@ bits! {
         PARALLEL = 17;
         /// Lanes of a subgroup vote where their slots join the next wave.
         SUBGROUPS = 18;
+        /// Pixels are those of cells that a table lists, wherever they are in the image.
+        CELLS = 19;
+        /// The film keeps squares of what blocks of samples are in the mean, instead of squares of samples.
+        BLOCKS = 20;
     }
 }
 

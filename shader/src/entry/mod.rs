@@ -115,9 +115,9 @@ macro_rules! shading {
 
         entry! {
             /// Starts the paths of a launch.
-            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths] {
+            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths cells] {
                 if id.x < frame.slots {
-                    stage::generate::<$R>(frame, spec, id.x, paths);
+                    stage::generate::<$R>(frame, spec, cells, id.x, paths);
                 }
             }
         }
@@ -127,7 +127,11 @@ macro_rules! shading {
             accumulate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame shadows segments sums film] {
                 let sample = |slot| stage::sampled::<$R>(frame, slot, (sums, shadows, segments));
                 let pixel = camera::pixel(frame, spec.order, id.x);
-                stage::expose::<$R>(frame, (pixel, id.x), stage::NOISY_FILM_WORDS, sample, film);
+                if spec.launch.has(Launch::BLOCKS) {
+                    stage::expose_blocks::<$R>(frame, (pixel, id.x), sample, film);
+                } else {
+                    stage::expose::<$R>(frame, (pixel, id.x), stage::NOISY_FILM_WORDS, sample, film);
+                }
             }
         }
 

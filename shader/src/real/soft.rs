@@ -1,8 +1,7 @@
 //! Correctly rounded division and square root in integers, for devices that promise neither.
 //!
-//! The device's own reciprocal of a mantissa, or its inverse root, gives an estimate within a few units in the last place. The exact
-//! remainder times that reciprocal tells how many units are missing, to within one, and a comparison with the remainder settles that
-//! one. Nothing branches: compilers copy these functions into a kernel a hundred times, and what they take grows faster with blocks
+//! The device's own reciprocal of a mantissa, or its inverse root, gives an estimate within a few units in the last place. A step of
+//! Newton's method in single precision brings it to within one, and the exact remainder in integers settles that one. Nothing branches: compilers copy these functions into a kernel a hundred times, and what they take grows faster with blocks
 //! than with instructions. Subnormal operands count as zero and subnormal results become zero. [`native`] gives the same bits from a
 //! CPU's instructions.
 
@@ -35,32 +34,27 @@ fn fraction(bits: u32) -> f32 {
     f32::from_bits((bits & FRACTION) | ONE)
 }
 
-/// The whole number nearest to a small one.
+/// A number of units that is within one of the nearest to `whole / divisor`, and its remainder, made the nearest and its own remainder.
+/// Remainders have a sign and fit 31 bits.
 #[inline(always)]
-fn nearest(x: f32) -> i32 {
-    // One and a half times 2^23, beside which no fraction has room.
-    const ALL_WHOLE: f32 = 12_582_912.0;
-    (x + ALL_WHOLE).to_bits() as i32 - ALL_WHOLE.to_bits() as i32
-}
-
-/// A number of units near `whole / divisor`, and its remainder, made the nearest number and its own remainder; `inverse` is about one
-/// over the divisor. Remainders have a sign and fit 31 bits where the number is off by a few units.
-#[inline(always)]
-fn settled(q: u32, rest: u32, divisor: u32, inverse: f32) -> (u32, i32) {
-    let missing = nearest(rest as i32 as f32 * inverse);
-    let (divisor, rest) = (divisor as i32, (rest as i32).wrapping_sub(missing.wrapping_mul(divisor as i32)));
+fn settled(q: u32, rest: u32, divisor: u32) -> (u32, i32) {
+    let (divisor, rest) = (divisor as i32, rest as i32);
     let more = (2 * rest > divisor) as i32 - (2 * rest < -divisor) as i32;
-    (q.wrapping_add((missing + more) as u32), rest - more * divisor)
+    (q.wrapping_add(more as u32), rest - more * divisor)
 }
 
-/// The quotient of two mantissas, the first not less, in units of 2^-23, from an estimate of one over the second's fraction; and what
-/// is left of the first. No quotient lies halfway between two numbers.
+/// The quotient of two mantissas, the first not less, in units of 2^-23, from the second's fraction and an estimate of one over it; and
+/// what is left of the first. No quotient lies halfway between two numbers.
 #[inline(always)]
-fn quotient(ma: u32, mb: u32, inverse: f32) -> (u32, i32) {
+fn quotient(ma: u32, mb: u32, fraction: f32, inverse: f32) -> (u32, i32) {
+    let whole = ma as f32 * UNIT;
+    let estimate = whole * inverse;
+    // What is left after rounding of the product, and of this sum, is less than one unit and a half.
+    let nearer = estimate + (whole - estimate * fraction) * inverse;
     // The bits of numbers around 1 and 2 are units, but for a binade's end, where half of them or two of them are one.
-    let q = (ma as f32 * UNIT * inverse).to_bits().wrapping_sub(ONE - HIDDEN);
+    let q = nearer.to_bits().wrapping_sub(ONE - HIDDEN);
     // Only the low 32 bits: the true remainder of so close a quotient fits them.
-    settled(q, (ma << 23).wrapping_sub(q.wrapping_mul(mb)), mb, inverse * UNIT)
+    settled(q, (ma << 23).wrapping_sub(q.wrapping_mul(mb)), mb)
 }
 
 /// A biased exponent as it is, but for that of zero and infinity far outside of what any result has.
@@ -83,7 +77,8 @@ pub fn div(a: f32, b: f32) -> f32 {
     let (ea, eb) = (exponent(ua), exponent(ub));
     let (ma, mb) = (mantissa(ua), mantissa(ub));
     let less = (ma < mb) as u32;
-    let (q, rest) = quotient(ma << less, mb, 1.0 / fraction(ub));
+    let divisor = fraction(ub);
+    let (q, rest) = quotient(ma << less, mb, divisor, 1.0 / divisor);
     let biased = stretched(ea) - stretched(eb) + 127 - less as i32;
     // The quotient halfway between the least normal number and the greatest subnormal one rounds up to even, as all above it do.
     let least = (biased == 0) & (q == HIDDEN + FRACTION) & (rest >= 0);
@@ -96,12 +91,13 @@ pub fn div(a: f32, b: f32) -> f32 {
     f32::from_bits(if is_nan { NAN } else { magnitude | ((ua ^ ub) & SIGN) })
 }
 
-/// 2^47 over a mantissa, rounded, from an estimate of one over its fraction.
+/// 2^47 over a mantissa, rounded, from its fraction and an estimate of one over that.
 #[inline(always)]
-fn inverse(m: u32, estimate: f32) -> u32 {
+fn inverse(m: u32, fraction: f32, estimate: f32) -> u32 {
+    let nearer = estimate + (1.0 - estimate * fraction) * estimate;
     // In units of 2^-24, from 1/2 to 1. No quotient lies halfway.
-    let q = estimate.to_bits().wrapping_sub(HALF - HIDDEN);
-    settled(q, 0u32.wrapping_sub(q.wrapping_mul(m)), m, estimate * UNIT).0
+    let q = nearer.to_bits().wrapping_sub(HALF - HIDDEN);
+    settled(q, 0u32.wrapping_sub(q.wrapping_mul(m)), m).0
 }
 
 /// One over a number, rounded to nearest: [`div`] where neither the number nor the result is zero, subnormal,
@@ -109,7 +105,8 @@ fn inverse(m: u32, estimate: f32) -> u32 {
 #[inline(never)]
 pub fn reciprocal(b: f32) -> f32 {
     let bits = b.to_bits();
-    let q = inverse(mantissa(bits), 1.0 / fraction(bits));
+    let fraction = fraction(bits);
+    let q = inverse(mantissa(bits), fraction, 1.0 / fraction);
     // The mantissa's highest bit adds one to the exponent, and that of a power of two's reciprocal adds two.
     f32::from_bits((bits & SIGN) | (252u32.wrapping_sub(exponent(bits)) << 23).wrapping_add(q))
 }
@@ -118,13 +115,12 @@ pub fn reciprocal(b: f32) -> f32 {
 /// over the root.
 #[inline(always)]
 fn root(square: u32, value: f32, inverse: f32) -> u32 {
-    let s = (value * inverse).to_bits().wrapping_sub(ONE - HIDDEN);
-    let rest = square.wrapping_sub(s.wrapping_mul(s)) as i32;
-    let missing = nearest(rest as f32 * (inverse * (0.5 * UNIT)));
-    let nearer = s as i32 + missing;
-    let rest = rest.wrapping_sub(missing.wrapping_mul(s as i32 + nearer));
+    let estimate = value * inverse;
+    let nearer = estimate + (value - estimate * estimate) * (0.5 * inverse);
+    let s = nearer.to_bits().wrapping_sub(ONE - HIDDEN) as i32;
+    let rest = (square as i32).wrapping_sub(s.wrapping_mul(s));
     // No root lies halfway: the square of that is no whole number.
-    (nearer + (rest > nearer) as i32 - (rest <= -nearer) as i32) as u32
+    (s + (rest > s) as i32 - (rest <= -s) as i32) as u32
 }
 
 /// About one over a root. Vulkan allows the device 2 units in the last place.
@@ -172,7 +168,9 @@ pub mod native {
 
 #[cfg(test)]
 mod tests {
-    use super::{HALF, HIDDEN, div, fraction, inverse, native, quotient, reciprocal, root, sqrt};
+    use std::ops::RangeInclusive;
+
+    use super::{HALF, HIDDEN, ONE, div, fraction, inverse, mantissa, native, quotient, reciprocal, root, sqrt};
     use proptest::prelude::*;
 
     /// Operands whose quotients lie on ties or at the ends of the range, and every special value.
@@ -217,13 +215,19 @@ mod tests {
         }
     }
 
-    /// Every mantissa, and every exponent that has a normal reciprocal.
+    /// What a device may be off by: Vulkan allows a reciprocal 2.5 units in the last place and an inverse root 2.
+    const MAY_BE_OFF: RangeInclusive<i32> = -3..=3;
+
+    /// Every mantissa with every estimate that a device may have, and every exponent that has a normal reciprocal.
     #[test]
     fn reciprocals_equal_the_processors() {
-        for bits in 0x3f80_0000..=0x4000_0000u32 {
-            let x = f32::from_bits(bits);
-            assert_eq!(reciprocal(x).to_bits(), (1.0 / x).to_bits(), "{bits:08x}");
-            assert_eq!(reciprocal(-x).to_bits(), (-1.0 / x).to_bits(), "-{bits:08x}");
+        for m in HIDDEN..2 * HIDDEN {
+            let (x, want) = (fraction(m), 1.0 / fraction(m));
+            assert_eq!(reciprocal(x).to_bits(), want.to_bits(), "{x:e}");
+            assert_eq!(reciprocal(-x).to_bits(), (-want).to_bits(), "-{x:e}");
+            for off in MAY_BE_OFF {
+                assert_eq!(inverse(m, x, beside(want, off)), want.to_bits() - (HALF - HIDDEN), "{x:e}, off by {off}");
+            }
         }
         for exponent in 1..253u32 {
             for fraction in [0, 1, 0x12_3456, 0x40_0000, 0x7f_ffff] {
@@ -241,12 +245,18 @@ mod tests {
         }
     }
 
-    /// Every mantissa with both parities of the exponent, which covers all of the root's rounding.
+    /// Every mantissa with both parities of the exponent, which covers all of the root's rounding, and every estimate that a device
+    /// may have.
     #[test]
     fn roots_of_all_mantissas_equal_the_processors() {
         for bits in 0x3f80_0000..0x4080_0000u32 {
             let x = f32::from_bits(bits);
             assert_eq!(sqrt(x).to_bits(), x.sqrt().to_bits(), "{bits:08x}");
+            let (square, units) =
+                (mantissa(bits) << (if x < 2.0 { 23 } else { 24 }), x.sqrt().to_bits() - (ONE - HIDDEN));
+            for off in MAY_BE_OFF {
+                assert_eq!(root(square, x, beside(1.0 / x.sqrt(), off)), units, "{x:e}, off by {off}");
+            }
         }
     }
 
@@ -259,10 +269,10 @@ mod tests {
     fn estimates_may_leave_their_binade() {
         for off in -8..=8 {
             for m in [HIDDEN, HIDDEN + 1, 2 * HIDDEN - 1] {
-                assert_eq!(quotient(m, m, beside(1.0 / fraction(m), off)), (1 << 23, 0));
+                assert_eq!(quotient(m, m, fraction(m), beside(1.0 / fraction(m), off)), (1 << 23, 0));
             }
             let (most, least) = (2 * HIDDEN - 1, HIDDEN);
-            assert_eq!(quotient(most, least, beside(1.0, off)), (most, 0));
+            assert_eq!(quotient(most, least, 1.0, beside(1.0, off)), (most, 0));
             assert_eq!(root(HIDDEN << 23, 1.0, beside(1.0, off)), 1 << 23);
             let below_four = f32::from_bits(0x407f_ffff);
             assert_eq!(root((2 * HIDDEN - 1) << 24, below_four, beside(0.5, off)), 2 * HIDDEN - 1);
@@ -276,7 +286,7 @@ mod tests {
         #[test]
         fn estimates_may_be_off(a in HIDDEN..2 * HIDDEN, b in HIDDEN..2 * HIDDEN, odd: bool, off in -8i32..=8) {
             let (more, less) = (a.max(b), a.min(b));
-            let (q, rest) = quotient(more, less, beside(1.0 / fraction(less), off));
+            let (q, rest) = quotient(more, less, fraction(less), beside(1.0 / fraction(less), off));
             let (whole, less) = (i64::from(more) << 23, i64::from(less));
             prop_assert_eq!(i64::from(rest), whole - i64::from(q) * less);
             prop_assert!(2 * i64::from(rest).abs() < less, "{rest} is left of {less}");
@@ -286,7 +296,7 @@ mod tests {
             // Twice a root has one more bit, which rounds it.
             prop_assert_eq!(u64::from(s), (4 * square).isqrt().div_ceil(2));
             let reciprocal = 1.0 / fraction(a);
-            prop_assert_eq!(inverse(a, beside(reciprocal, off)), reciprocal.to_bits() - (HALF - HIDDEN));
+            prop_assert_eq!(inverse(a, fraction(a), beside(reciprocal, off)), reciprocal.to_bits() - (HALF - HIDDEN));
         }
 
         #[test]

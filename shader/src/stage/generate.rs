@@ -2,15 +2,16 @@
 
 use super::PathState;
 use crate::camera;
-use crate::data::{Frame, Specialisation};
+use crate::data::{Frame, Launch, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
 /// Starts a slot's path: with the camera's ray, brought near where the camera is far from the scene. The ray of a slot outside
-/// the region meets nothing.
+/// the region meets nothing. `cells` are those of a launch over cells.
 #[inline(always)]
-pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, slot: u32, paths: &mut [R::Record]) {
+pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, cells: &[u32], slot: u32, paths: &mut [R::Record]) {
     let pixel = camera::pixel(frame, spec.order, slot);
+    let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
     let (origin, direction) = camera::ray(frame, spec.launch, pixel);
     let near = Ray::from_afar(origin, direction);
     let path = PathState {

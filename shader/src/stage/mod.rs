@@ -17,8 +17,8 @@ mod together;
 mod trace;
 
 pub use film::{
-    FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST, brightness,
-    expose,
+    BLOCK, FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST,
+    brightness, expose, expose_blocks,
 };
 pub use generate::generate;
 pub use path::{Path, RECORDS};

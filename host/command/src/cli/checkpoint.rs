@@ -120,7 +120,7 @@ impl Checkpoint {
                 film.identity.check(identity).map_err(|error| error.of(&self.path))?;
                 self.check(&film, view)?;
                 self.is_own.set(true);
-                self.kept.set(film.coverage().volume());
+                self.kept.set(film.volume());
                 Ok(Some(film))
             }
             Err(error) if matches!(error.fault(), eyerays::error::Error::BrokenFilm(_)) => {
@@ -151,7 +151,7 @@ impl Checkpoint {
 
     /// Keeps a film, unless more is kept already: a device that took over from one that failed begins again.
     pub fn keep(&self, film: &Film) -> Result<()> {
-        let volume = film.coverage().volume();
+        let volume = film.volume();
         if volume >= self.kept.get() {
             write(film, &self.path)?;
             self.is_own.set(true);

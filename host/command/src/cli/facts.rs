@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eyerays::about::About;
-use eyerays::film::Identity;
+use eyerays::film::{Film, Identity};
 use eyerays::render::Rendering;
 use eyerays::scene::Camera;
 use eyerays::view::View;
@@ -39,6 +39,7 @@ impl Facts<'_> {
             .with("first_sample", view.range().start)
             .with("samples", rendering.samples)
             .with("noise", rendering.picture.noise())
+            .with("noise_target", rendering.film.as_ref().and_then(Film::cells).map(|cells| cells.target().noise()))
             .with("identity", settings);
         if self.reproducible {
             return about;

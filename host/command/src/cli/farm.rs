@@ -45,7 +45,7 @@ pub(super) struct Farm {
 
 /// Options of `render` that no part of a picture takes: what the job says itself, what films do not hold, and files that other
 /// machines may not have.
-const NOT_OF_PARTS: [&str; 16] = [
+const NOT_OF_PARTS: [&str; 17] = [
     "all_cameras",
     "turntable",
     "frames",
@@ -61,6 +61,7 @@ const NOT_OF_PARTS: [&str; 16] = [
     "preview_every",
     "repeat",
     "time_limit",
+    "noise",
     "json",
 ];
 

@@ -50,6 +50,16 @@ impl Look {
         Ok(Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..self.plain()? })
     }
 
+    /// How bright it is shown.
+    pub fn exposure(&self) -> Exposure {
+        self.exposure
+    }
+
+    /// How light brighter than white is shown.
+    pub fn tone(&self) -> ToneMap {
+        self.tone
+    }
+
     fn plain(&self) -> Result<Encoding> {
         let bits = BitDepth::from_bits(self.bits)?;
         Ok(Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone })

@@ -75,8 +75,27 @@ impl Merge {
         Ok(all.expect("one part at least"))
     }
 
+    /// Refuses a film with cells that need more samples, or have none, or, unless a part will do, one of a part of the image.
+    fn all_cells(&self, film: &Film) -> Result<()> {
+        let ((width, height), left) = (film.size(), film.cells_left());
+        if left > 0 {
+            let cells = super::plural(left, "cell");
+            let remedy = "give the films of all, or go on with them by render --resume, or merge to a .film file";
+            return Err(Error::new(format!("{cells} of 16x16 pixels need more samples for their noise: {remedy}")));
+        }
+        if !self.part && film.window() != (Region { x: 0, y: 0, width, height }) {
+            let Region { x, y, width, height } = film.window();
+            let has = format!("the picture has {width}x{height} pixels at {x},{y} alone");
+            return Err(Error::new(format!("{has}: give the other films too, add --part, or merge to a .film file")));
+        }
+        Ok(())
+    }
+
     /// Refuses a film of which some pixels have other samples than others, or, unless a part will do, not those of a whole picture.
     fn whole(&self, film: &Film) -> Result<()> {
+        if film.cells().is_some() {
+            return self.all_cells(film);
+        }
         let samples = film.coverage().parts().iter().map(|part| part.samples.clone());
         let samples = samples.reduce(|a, b| a.start.min(b.start)..a.end.max(b.end));
         let Some(samples) = samples else { return Err(Error::new("the films have no samples: render some")) };
@@ -103,6 +122,10 @@ fn has_all(film: &Film, whole: &Part) -> Result<()> {
 
 /// What it has, in words.
 fn described(film: &Film) -> String {
+    if let Some(cells) = film.cells() {
+        let samples = film.volume() / film.window().pixels();
+        return format!("{samples} samples a pixel for a noise of {}", cells.target().noise());
+    }
     match film.coverage().parts() {
         [part] => part.to_string(),
         parts => super::plural(parts.len(), "part"),

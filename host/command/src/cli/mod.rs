@@ -19,6 +19,7 @@ mod hush;
 mod info;
 mod look;
 mod merge;
+mod noise;
 mod options;
 mod outline;
 mod part;

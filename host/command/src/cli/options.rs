@@ -96,15 +96,20 @@ impl Effort {
 
     /// As many samples as a pixel may have, unless a number is asked for.
     pub fn endless(self, scene: &Scene) -> Result<Effort> {
+        self.without_grid(scene, "--time-limit", Settings::MOST_SPP)
+    }
+
+    /// At most so many samples, unless a number is asked for: for an option that decides how many there are.
+    pub fn without_grid(self, scene: &Scene, option: &str, most: u32) -> Result<Effort> {
         let sampler = self.sampler.unwrap_or(scene.settings.sampler);
         if sampler.has_cells() {
             let name = sampler.name();
             let remedy = "add --sampler sobol";
             return Err(Error::new(format!(
-                "--time-limit: the sampler {name} has a grid of a fixed number of samples; {remedy}"
+                "{option}: the sampler {name} has a grid of a fixed number of samples; {remedy}"
             )));
         }
-        Ok(Effort { samples: None, spp: self.spp.or(Some(Settings::MOST_SPP)), ..self })
+        Ok(Effort { samples: None, spp: self.spp.or(Some(most)), ..self })
     }
 
     /// The integrator that is asked for.

@@ -28,6 +28,12 @@ pub(super) fn samples(count: u32, quiet: bool) -> ProgressBar {
     styled(ProgressBar::new(count.into()), template, quiet)
 }
 
+/// A bar over the cells of a picture that ends by its noise.
+pub(super) fn cells(quiet: bool) -> ProgressBar {
+    let template = "rendering {bar:40} {pos} of {len} cells{msg} {elapsed}";
+    styled(ProgressBar::new(1), template, quiet)
+}
+
 /// A bar over named steps.
 pub(super) fn steps(count: usize, quiet: bool) -> ProgressBar {
     styled(ProgressBar::new(count as u64), "{bar:40} {pos}/{len} {elapsed} (left {eta}) {wide_msg}", quiet)

@@ -15,6 +15,7 @@ use super::console;
 use super::device::DeviceArgs;
 use super::devices::Devices;
 use super::look::Look;
+use super::noise::NoiseArgs;
 use super::options::{Effort, Loaded, View};
 use super::part::PartArgs;
 use super::progress;
@@ -40,6 +41,7 @@ Examples:
   eyerays render model.glb -o model.exr --layers albedo,normal,depth
   eyerays render scenes/cornell.toml --settings fast.toml
   eyerays render scenes/room.toml --spp 4096 --checkpoint room.film --resume
+  eyerays render scenes/room.toml --noise 0.02 -o room.png
   eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film
   eyerays render model.glb --turntable 36 -o 'turn-{frame:04}.png'
   eyerays render scenes/ --all-cameras -o '{name}-{camera}.png'";
@@ -75,6 +77,8 @@ pub(super) struct Render {
     /// Render as many samples of each pixel as fit so many seconds, at least one and at most --spp; for samplers without a grid
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with_all = ["repeat", "samples"])]
     pub time_limit: Option<Duration>,
+    #[command(flatten)]
+    pub noise: NoiseArgs,
     /// Write the picture so far to the output every so many seconds, 0 for never [default: 10, of what takes longer than 20]
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "repeat")]
     pub preview_every: Option<Duration>,
@@ -156,6 +160,7 @@ impl Render {
             Some(Devices::One(device)) => (*device, None),
             None => (preset.device.unwrap_or_default(), None),
         };
+        self.noise.target(&self.look)?;
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
         let (backend, places) = Default::default();
         Ok(Task { of: self, effort: self.effort.over(&preset), choice, quiet, backend, places })
@@ -233,6 +238,7 @@ impl Task<'_> {
         let loading = self.of.reading.loading(effort.integrator());
         let read = Read::scene(path, &[], loading, self.quiet)?;
         let path = reading::called(path);
+        effort = self.of.noise.effort(effort, &read.scene)?;
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
@@ -281,7 +287,9 @@ impl Task<'_> {
             }
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
             let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;
-            Ok(Place { camera: shot.camera, view: self.of.part.of(&view)?, destination, checkpoint })
+            let view = self.of.part.of(&view)?;
+            self.of.noise.check(&view)?;
+            Ok(Place { camera: shot.camera, view, destination, checkpoint })
         });
         places.collect()
     }

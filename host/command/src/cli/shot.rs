@@ -14,7 +14,7 @@ use super::summary::{Summary, Times};
 use super::watching::{self, Watching};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
-use eyerays::film::Identity;
+use eyerays::film::{Film, Identity};
 use eyerays::layers::{self, Layer, Values};
 use eyerays::render::{Backend, Choice, Precision, Rendering, Session};
 use eyerays::scene::{Camera, Scene};
@@ -59,6 +59,10 @@ impl Studio<'_> {
     fn identity(&self, loaded: &Loaded, place: &Place) -> Result<Identity> {
         let precision = self.choice.precision;
         let identity = Identity::of(self.hash, &loaded.packed, &place.view, precision)?;
+        let identity = match self.of.noise.target(&self.of.look)? {
+            Some(target) => identity.until(&target),
+            None => identity,
+        };
         Ok(match precision {
             Precision::Fast => identity.on(&self.backend.description(), self.choice.traversal),
             _ => identity,
@@ -75,11 +79,17 @@ impl Studio<'_> {
             return Err(Error::new("--repeat measures and keeps no film: drop it, or what needs one"));
         }
         let is_silent = self.quiet || self.of.json;
-        session.reserve(view).map_err(|error| error.of(self.path))?;
+        let target = self.of.noise.target(&self.of.look)?;
+        if target.is_none() {
+            session.reserve(view).map_err(|error| error.of(self.path))?;
+        }
         // Of one sample there is nothing to be seen before it is done, nor to be kept.
         let rendering = if repeat == 1 && (view.samples() > 1 || from.is_some()) {
             let watching = Watching {
-                bar: progress::samples(view.samples(), is_silent),
+                bar: match target {
+                    Some(_) => progress::cells(is_silent),
+                    None => progress::samples(view.samples(), is_silent),
+                },
                 destination,
                 look: self.of.look,
                 every: self.of.preview_every,
@@ -88,7 +98,10 @@ impl Studio<'_> {
                 identity,
                 quiet: self.quiet,
             };
-            watching.follow(|watch| session.render_watched(view, from.as_ref(), watch))
+            watching.follow(|watch| match &target {
+                Some(target) => session.render_until(view, target, from.as_ref(), watch),
+                None => session.render_watched(view, from.as_ref(), watch),
+            })
         } else {
             let bar = progress::pixels(view.region().pixels() * u64::from(repeat), is_silent);
             let rendering = match self.keeps_film(place) {
@@ -163,23 +176,30 @@ impl Studio<'_> {
         }
         let (picture, look) = (&rendering.picture, &self.of.look);
         let encoding = look.encoding(picture)?;
-        super::warn(look.beyond_white(picture, &encoding, destination)?.as_slice(), self.quiet);
+        // What is cut off at white counts as without noise, whatever holds the light.
+        let shown = if self.of.noise.is_asked() { &Destination::Stdout } else { destination };
+        super::warn(look.beyond_white(picture, &encoding, shown)?.as_slice(), self.quiet);
         output::write_layers(picture, layers, destination, &encoding)
     }
 
     /// How a picture ends: as shells have it where a signal ended the rendering.
     fn end(&self, place: &Place, rendering: &Rendering) -> Result<ExitCode> {
         let (samples, all) = (rendering.samples, place.view.samples());
+        let cells_left = rendering.film.as_ref().map_or(0, Film::cells_left);
+        let is_whole = if self.of.noise.is_asked() { cells_left == 0 } else { samples == all };
         let signal = watching::ended_by();
-        if signal.is_some() && samples < all && !self.quiet {
-            console::say(format_args!("ended after {samples} of {all} samples of each pixel"));
+        if signal.is_some() && !is_whole && !self.quiet {
+            match self.of.noise.is_asked() {
+                true => console::say(format_args!("ended while {cells_left} cells of 16x16 pixels had more noise")),
+                false => console::say(format_args!("ended after {samples} of {all} samples of each pixel")),
+            }
         }
-        if signal.is_some() && samples < all && place.destination.is_film() && !self.quiet {
+        if signal.is_some() && !is_whole && place.destination.is_film() && !self.quiet {
             console::say(format_args!("{} has what is done: --resume goes on with it", place.destination));
         }
         if let (Some(checkpoint), Some(film), false) = (&place.checkpoint, &rendering.film, place.destination.is_film())
         {
-            checkpoint.end(film, signal.is_none() || samples == all, self.quiet)?;
+            checkpoint.end(film, signal.is_none() || is_whole, self.quiet)?;
         }
         Ok(signal.map_or(ExitCode::SUCCESS, |signal| ExitCode::from(128 + signal as u8)))
     }

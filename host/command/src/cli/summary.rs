@@ -76,6 +76,11 @@ impl<'a> Summary<'a> {
         format!("{:?}", self.choice.precision).to_lowercase()
     }
 
+    /// What noise was asked for, if it decided.
+    fn noise_target(&self) -> Option<f64> {
+        self.rendering.film.as_ref()?.cells().map(|cells| cells.target().noise())
+    }
+
     /// Millions of rays a second of some time.
     fn mrays(&self, time: Duration) -> f64 {
         self.rendering.rays.total() as f64 / time.as_secs_f64().max(1e-9) / 1e6
@@ -94,6 +99,7 @@ impl<'a> Summary<'a> {
             "integrator": settings.transport.integrator.name(),
             "seed": settings.transport.seed,
             "noise": self.rendering.picture.noise(),
+            "noise_target": self.noise_target(),
             "sampler": settings.sampler.name(),
             "bounces": settings.bounces,
             "precision": self.precision(),
@@ -132,6 +138,9 @@ impl fmt::Display for Summary<'_> {
         write!(out, " on {} ({})", rendering.device, remedy::why(rendering))?;
         if let Some(noise) = rendering.picture.noise() {
             write!(out, ", {} samples a pixel, noise {:.2} %", rendering.samples, 100.0 * noise)?;
+        }
+        if let Some(target) = self.noise_target() {
+            write!(out, ", asked for {} % of what is seen", 100.0 * target)?;
         }
         write!(out, "; {} primary, {} shadow, {} secondary rays", rays.primary, rays.shadow, rays.secondary)?;
         write!(out, ", {:.1} Mrays/s", self.mrays(self.times.render))?;

@@ -82,9 +82,13 @@ impl Watching<'_> {
         let can_write = output::can_replace(self.destination) && !self.destination.is_film();
         let first = Cell::new(None);
         let grown = |growth: Growth<'_>| {
-            self.bar.set_length(growth.of.into());
-            self.bar.set_position(growth.samples.into());
-            let is_over = growth.samples == growth.of || STOP.load(Ordering::SeqCst);
+            let (done, of) = match growth.cells {
+                Some((done, of)) => (done as u64, of as u64),
+                None => (growth.samples.into(), growth.of.into()),
+            };
+            self.bar.set_length(of);
+            self.bar.set_position(done);
+            let is_over = done == of || STOP.load(Ordering::SeqCst);
             // What was there before took no time.
             let first = first.get().unwrap_or_else(|| {
                 first.set(Some(growth.samples));
@@ -92,7 +96,8 @@ impl Watching<'_> {
             });
             let share =
                 f64::from(growth.of.saturating_sub(first)) / f64::from(growth.samples.saturating_sub(first).max(1));
-            let whole = start.elapsed().mul_f64(share);
+            // What ends by its noise may end at any time.
+            let whole = if growth.cells.is_some() { start.elapsed() } else { start.elapsed().mul_f64(share) };
             let whole = self.limit.map_or(whole, |limit| whole.min(limit));
             let every = interval(self.every, whole).filter(|_| can_write);
             let shows = every.is_some_and(|every| written.picture.get().elapsed() >= every);
@@ -130,7 +135,8 @@ impl Watching<'_> {
         }
         let (picture, rays) = film.developed()?;
         let before = written.rays.replace((Instant::now(), rays.total()));
-        self.bar.set_message(told(picture.noise(), before, written.rays.get()));
+        let asked = film.cells().map_or(String::new(), |cells| format!(" with noise {}", cells.target().noise()));
+        self.bar.set_message(asked + &told(picture.noise(), before, written.rays.get()));
         if shows { self.look.write(&picture, self.destination) } else { Ok(()) }
     }
 }

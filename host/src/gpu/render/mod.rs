@@ -1,5 +1,6 @@
 //! Films on the GPU: launches over bands of the image and batches of samples, whose sums stay there until they are read.
 
+mod cells;
 mod read;
 
 use std::ops::Range;
@@ -14,6 +15,7 @@ use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
 use wgpu::BufferUsages as Use;
 
+use self::cells::Cells;
 use super::bands::bands;
 use super::device::Gpu;
 use super::kernel::{Kernel, Known};
@@ -25,6 +27,7 @@ use crate::error::Result;
 use crate::film::{Coverage, Film, Part};
 use crate::job::Job;
 use crate::method::Traversal;
+use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
@@ -59,6 +62,7 @@ pub struct Renderer {
     most_slots: u32,
     memory: Option<Memory>,
     growing: Option<Growing>,
+    cells: Option<Cells>,
     queue: Queue,
 }
 
@@ -66,8 +70,11 @@ pub struct Renderer {
 pub(super) struct Memory {
     pub buffers: LaunchBuffers,
     /// By the plan's steps; none for those that bind the film.
-    pub groups: Vec<Option<[wgpu::BindGroup; 2]>>,
+    pub groups: Vec<Groups>,
 }
+
+/// For a wave and the next, unless they are of a step that binds the film.
+type Groups = Option<[wgpu::BindGroup; 2]>;
 
 /// A film that samples are added to.
 struct Growing {
@@ -77,13 +84,13 @@ struct Growing {
 }
 
 /// A region of the image with its film.
-pub(super) struct Band {
-    pub region: Region,
+struct Band {
+    region: Region,
     /// Has it no sample?
     is_empty: bool,
     film: wgpu::Buffer,
     /// For the steps that bind the film.
-    pub group: wgpu::BindGroup,
+    group: wgpu::BindGroup,
 }
 
 impl Grows for Renderer {
@@ -101,6 +108,10 @@ impl Grows for Renderer {
 
     fn wait(&mut self) -> Result<()> {
         self.gpu.wait()
+    }
+
+    fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+        self.render_cells(view, cells, samples)
     }
 
     fn device_time(&self) -> Option<Duration> {
@@ -143,6 +154,7 @@ impl Renderer {
             most_slots,
             memory: None,
             growing: None,
+            cells: None,
             queue: Queue::new(gpu),
         })
     }
@@ -154,7 +166,7 @@ impl Renderer {
     /// As [`Renderer::new`].
     pub fn turn(&mut self, job: &Job) -> Result<()> {
         // Its groups bind the buffers of the plan before.
-        (self.memory, self.growing) = (None, None);
+        (self.memory, self.growing, self.cells) = (None, None, None);
         let is_other = !Arc::ptr_eq(self.job.scene(), job.scene());
         if is_other {
             (self.scene, self.relit) = (SceneBuffers::default(), None);
@@ -267,7 +279,7 @@ impl Renderer {
             let frame = Frame { anew: band.is_empty.into(), ..launch };
             let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
             let memory = self.memory.as_ref().expect("it was reserved");
-            let mut launch = Launch::new(&self.plan, &self.kernels, memory, band, &frame, &mut self.queue)?;
+            let mut launch = Launch::new(&self.plan, &self.kernels, memory, &band.group, &frame, &mut self.queue)?;
             plan::run(&self.plan, &mut launch)?;
             let since = first - view.range().start;
             launch.submit(share(since + count) - share(since))?;
@@ -294,6 +306,7 @@ impl Renderer {
         // What launches under way use is given back only when they are done.
         self.gpu.wait()?;
         (self.memory, self.growing) = (None, None);
+        self.cells.iter_mut().for_each(Cells::forget);
         let (columns, rows) = camera::blocks(self.order);
         let mut refusal = None;
         let buffers = loop {
@@ -313,27 +326,37 @@ impl Renderer {
             (arguments[of as usize + 1], arguments[of as usize + 2]) = (rows, 1);
         }
         self.gpu.queue.write_buffer(buffers.of(binding::ARGUMENTS), 0, bytemuck::cast_slice::<u32, u8>(&arguments));
-        let group = |kernel: &Kernel, is_second| {
-            kernel.group(&self.gpu, |binding| {
-                let binding = kernel.source(binding, &self.plan);
-                self.scene.find(binding).or_else(|| buffers.find(binding, is_second))
-            })
-        };
-        let both = |kernel: &Kernel| [group(kernel, false), group(kernel, true)];
-        let groups = self.kernels.iter().map(|kernel| (!kernel.binds(binding::FILM)).then(|| both(kernel))).collect();
+        let groups = self.groups(&self.kernels, &buffers, None);
         self.gpu.check()?;
         self.memory = Some(Memory { buffers, groups });
         Ok(())
     }
 
+    /// What kernels bind that do not bind the film; those over cells bind their table, too.
+    fn groups(&self, kernels: &[Kernel], buffers: &LaunchBuffers, table: Option<&wgpu::Buffer>) -> Vec<Groups> {
+        let group = |kernel: &Kernel, is_second| {
+            kernel.group(&self.gpu, |binding| match kernel.source(binding, &self.plan) {
+                binding::CELLS => table,
+                binding => self.scene.find(binding).or_else(|| buffers.find(binding, is_second)),
+            })
+        };
+        let both = |kernel: &Kernel| [group(kernel, false), group(kernel, true)];
+        kernels.iter().map(|kernel| (!kernel.binds(binding::FILM)).then(|| both(kernel))).collect()
+    }
+
+    /// What the kernel that keeps the film binds.
+    fn film_group(&self, kernels: &[Kernel], film: &wgpu::Buffer) -> wgpu::BindGroup {
+        let kernel = kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
+        kernel.group(&self.gpu, |binding| match binding {
+            binding::FILM => Some(film),
+            other => self.buffers().find(other, false),
+        })
+    }
+
     fn band(&self, region: Region) -> Result<Band> {
         let size = self.plan.film_bytes() * region.pixels();
         let film = buffer(&self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
-        let kernel = self.kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
-        let group = kernel.group(&self.gpu, |binding| match binding {
-            binding::FILM => Some(&film),
-            other => self.buffers().find(other, false),
-        });
+        let group = self.film_group(&self.kernels, &film);
         self.gpu.check()?;
         Ok(Band { region, is_empty: true, film, group })
     }

@@ -35,7 +35,7 @@ fn protected(module: &Module) -> HashSet<Word> {
         .iter()
         .filter(|function| inlining::is_protected(function))
         .filter_map(|function| function.def_id());
-    reach::functions(module, marked)
+    reach::functions(module, marked).into_iter().collect()
 }
 
 fn no_contraction(id: Word) -> Instruction {

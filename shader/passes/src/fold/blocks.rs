@@ -1,9 +1,13 @@
 //! The blocks of a function and the ways between them.
 
-use std::collections::{BTreeSet, HashMap, HashSet};
+use std::collections::BTreeSet;
 
-use rspirv::dr::{Block, Function, Instruction, Module, Operand};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use rspirv::dr::{Block, Function, Instruction, Operand};
 use rspirv::spirv::{Op, Word};
+
+use super::constants::Constants;
 
 /// The blocks that a block's last instruction may go to.
 pub fn targets(last: &Instruction) -> impl Iterator<Item = Word> {
@@ -33,7 +37,7 @@ fn merge(block: &Block) -> Option<&Instruction> {
 
 /// Removes the blocks that are not reached. Where a selection or loop goes on that is left by no way, and where a loop
 /// goes round that never does, a block must stay; it is emptied.
-pub fn remove_unreachable(function: &mut Function, module: &mut Module) {
+pub fn remove_unreachable(function: &mut Function, constants: &mut Constants) {
     let reached = reached(function);
     let ends = ends(function, &reached);
     function.blocks.retain_mut(|block| {
@@ -47,7 +51,7 @@ pub fn remove_unreachable(function: &mut Function, module: &mut Module) {
             None => false,
         }
     });
-    prune_phis(function, &reached, module);
+    prune_phis(function, &reached, constants);
 }
 
 /// The id that branches to a block name.
@@ -55,10 +59,10 @@ pub fn label(block: &Block) -> Word {
     block.label.as_ref().and_then(|label| label.result_id).unwrap_or_default()
 }
 
-fn reached(function: &Function) -> HashSet<Word> {
-    let by_label: HashMap<Word, &Block> = function.blocks.iter().map(|block| (label(block), block)).collect();
+fn reached(function: &Function) -> FxHashSet<Word> {
+    let by_label: FxHashMap<Word, &Block> = function.blocks.iter().map(|block| (label(block), block)).collect();
     let mut open: Vec<Word> = function.blocks.first().map(label).into_iter().collect();
-    let mut reached = HashSet::new();
+    let mut reached = FxHashSet::default();
     while let Some(id) = open.pop() {
         if reached.insert(id) {
             open.extend(by_label.get(&id).and_then(|block| block.instructions.last()).into_iter().flat_map(targets));
@@ -68,8 +72,8 @@ fn reached(function: &Function) -> HashSet<Word> {
 }
 
 /// The blocks that must stay though they are not reached, and what they then consist of.
-fn ends(function: &Function, reached: &HashSet<Word>) -> HashMap<Word, Instruction> {
-    let mut ends = HashMap::new();
+fn ends(function: &Function, reached: &FxHashSet<Word>) -> FxHashMap<Word, Instruction> {
+    let mut ends = FxHashMap::default();
     for block in function.blocks.iter().filter(|block| reached.contains(&label(block))) {
         let Some(merge) = merge(block) else { continue };
         let unreachable = Instruction::new(Op::Unreachable, None, None, Vec::new());
@@ -84,8 +88,8 @@ fn ends(function: &Function, reached: &HashSet<Word>) -> HashMap<Word, Instructi
 }
 
 /// Forgets values that come from no predecessor; from an emptied one comes no value in particular.
-fn prune_phis(function: &mut Function, reached: &HashSet<Word>, module: &mut Module) {
-    let mut sources: HashMap<Word, BTreeSet<Word>> = HashMap::new();
+fn prune_phis(function: &mut Function, reached: &FxHashSet<Word>, constants: &mut Constants) {
+    let mut sources: FxHashMap<Word, BTreeSet<Word>> = FxHashMap::default();
     for block in &function.blocks {
         for target in block.instructions.last().into_iter().flat_map(targets) {
             sources.entry(target).or_default().insert(label(block));
@@ -104,23 +108,10 @@ fn prune_phis(function: &mut Function, reached: &HashSet<Word>, module: &mut Mod
             }
             // An emptied block may go where it did not before.
             for source in open {
-                kept.extend([Operand::IdRef(undefined(module, phi.result_type)), Operand::IdRef(source)]);
+                let undefined = constants.undefined(phi.result_type);
+                kept.extend([Operand::IdRef(undefined), Operand::IdRef(source)]);
             }
             phi.operands = kept;
         }
     }
-}
-
-/// No value in particular of a type.
-fn undefined(module: &mut Module, kind: Option<Word>) -> Word {
-    let globals = &mut module.types_global_values;
-    let there = globals.iter().find(|inst| inst.class.opcode == Op::Undef && inst.result_type == kind);
-    if let Some(id) = there.and_then(|inst| inst.result_id) {
-        return id;
-    }
-    let Some(header) = &mut module.header else { return 0 };
-    let id = header.bound;
-    header.bound += 1;
-    globals.push(Instruction::new(Op::Undef, kind, Some(id), Vec::new()));
-    id
 }

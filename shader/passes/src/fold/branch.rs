@@ -1,57 +1,68 @@
 //! Branches whose way is known.
 
-use rspirv::dr::{Block, Function, Instruction, Module, Operand};
+use rspirv::dr::{Block, Function, Instruction, Operand};
 use rspirv::spirv::{Op, Word};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::blocks;
 use super::constants::Constants;
 
 /// Lets every branch whose condition is constant go its one way and removes the blocks that nothing reaches any more;
 /// tells whether there was any.
-pub fn fold(module: &mut Module) -> bool {
-    let constants = Constants::of(module);
-    let mut functions = std::mem::take(&mut module.functions);
-    let mut any = false;
-    for function in &mut functions {
-        let mut folded = false;
-        for index in 0..function.blocks.len() {
-            folded |= straighten(function, index, &constants);
-        }
-        if folded {
-            blocks::remove_unreachable(function, module);
-        }
-        any |= folded;
+pub fn fold(function: &mut Function, constants: &mut Constants) -> bool {
+    let places = Places::of(function);
+    let mut folded = false;
+    for (index, block) in function.blocks.iter_mut().enumerate() {
+        folded |= straighten(block, index, &places, constants);
     }
-    module.functions = functions;
-    any
+    if folded {
+        blocks::remove_unreachable(function, constants);
+    }
+    folded
+}
+
+/// What must be known of a function's other blocks where one is straightened.
+struct Places {
+    /// The blocks in their order, by label.
+    order: FxHashMap<Word, usize>,
+    /// Where branches without a selection of their own go.
+    bare: FxHashSet<Word>,
+}
+
+impl Places {
+    fn of(function: &Function) -> Places {
+        let order = function.blocks.iter().enumerate().map(|(index, block)| (blocks::label(block), index)).collect();
+        let is_bare = |block: &&Block| !blocks::has_merge(block);
+        let last = function.blocks.iter().filter(is_bare).filter_map(|block| block.instructions.last());
+        let bare = last.filter(|last| last.class.opcode == Op::BranchConditional).flat_map(blocks::targets).collect();
+        Places { order, bare }
+    }
+
+    /// Whether a branch of a block may go round a loop again: a loop must keep its one way back, even if it is never taken.
+    fn goes_back(&self, index: usize, last: &Instruction) -> bool {
+        blocks::targets(last).any(|target| self.order.get(&target).is_some_and(|&at| at <= index))
+    }
 }
 
 /// Lets a block's branch go its one way, if that is known and not yet so.
-fn straighten(function: &mut Function, index: usize, constants: &Constants) -> bool {
-    let block = &function.blocks[index];
+fn straighten(block: &mut Block, index: usize, places: &Places, constants: &Constants) -> bool {
     let Some(last) = block.instructions.last() else { return false };
     let Some(target) = way(last, constants) else { return false };
-    if goes_back(function, index, last) {
+    if places.goes_back(index, last) {
         return false;
     }
     let merge = selection_merge(block);
     let is_switch = last.class.opcode == Op::Switch;
-    if merge.is_some_and(|merge| is_switch || leaves_early(function, index, merge)) {
-        return narrow(&mut function.blocks[index], target);
+    // A branch without a selection of its own may leave a selection for its end, for the sake of this selection alone.
+    if merge.is_some_and(|merge| is_switch || places.bare.contains(&merge)) {
+        return narrow(block, target);
     }
-    let instructions = &mut function.blocks[index].instructions;
-    instructions.pop();
+    block.instructions.pop();
     if merge.is_some() {
-        instructions.pop();
+        block.instructions.pop();
     }
-    instructions.push(Instruction::new(Op::Branch, None, None, vec![Operand::IdRef(target)]));
+    block.instructions.push(Instruction::new(Op::Branch, None, None, vec![Operand::IdRef(target)]));
     true
-}
-
-/// Whether a branch may go round a loop again: a loop must keep its one way back, even if it is never taken.
-fn goes_back(function: &Function, index: usize, last: &Instruction) -> bool {
-    let before: Vec<Word> = function.blocks[..=index].iter().map(blocks::label).collect();
-    blocks::targets(last).any(|target| before.contains(&target))
 }
 
 /// Where a conditional branch or switch goes, if that is constant.
@@ -73,16 +84,6 @@ fn way(last: &Instruction, constants: &Constants) -> Option<Word> {
 fn selection_merge(block: &Block) -> Option<Word> {
     let before = block.instructions.iter().rev().nth(1)?;
     (before.class.opcode == Op::SelectionMerge).then(|| before.operands[0].unwrap_id_ref())
-}
-
-/// Whether a branch without a selection of its own may leave a selection for its end. It is allowed to for the sake of
-/// this selection alone.
-fn leaves_early(function: &Function, header: usize, merge: Word) -> bool {
-    function.blocks.iter().enumerate().any(|(index, block)| {
-        let Some(last) = block.instructions.last() else { return false };
-        let is_bare = index != header && last.class.opcode == Op::BranchConditional && !blocks::has_merge(block);
-        is_bare && blocks::targets(last).any(|target| target == merge)
-    })
 }
 
 /// Leaves a selection in place whose branch goes one way; tells whether it went more.

@@ -1,36 +1,48 @@
 //! Parts of composites that were put there before.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
-use rspirv::dr::{Instruction, Module, Operand};
+use rspirv::dr::{Function, Instruction, Module, Operand};
 use rspirv::spirv::{Op, Word};
 
-/// The composites of a module that instructions make of parts.
-pub struct Composites<'m> {
-    made: HashMap<Word, &'m Instruction>,
+/// What a module's types and constants say of composites.
+pub struct Globals<'m> {
+    made: FxHashMap<Word, &'m Instruction>,
     /// Vectors, whose parts may be vectors themselves, by their numbers of components.
-    vectors: HashMap<Word, usize>,
+    vectors: FxHashMap<Word, usize>,
 }
 
-impl<'m> Composites<'m> {
+impl<'m> Globals<'m> {
     /// Those of a module.
     pub fn of(module: &'m Module) -> Self {
-        let mut this = Composites { made: HashMap::new(), vectors: HashMap::new() };
-        let bodies =
-            module.functions.iter().flat_map(|function| &function.blocks).flat_map(|block| &block.instructions);
-        for inst in module.types_global_values.iter().chain(bodies) {
-            let Some(id) = inst.result_id else { continue };
-            match inst.class.opcode {
-                Op::TypeVector => {
-                    this.vectors.insert(id, literal(&inst.operands[1]) as usize);
-                }
-                Op::ConstantComposite | Op::CompositeConstruct | Op::CompositeInsert | Op::Phi => {
-                    this.made.insert(id, inst);
-                }
-                _ => {}
-            }
-        }
-        this
+        let globals = &module.types_global_values;
+        let vectors = globals.iter().filter(|inst| inst.class.opcode == Op::TypeVector);
+        let vectors = vectors.filter_map(|inst| Some((inst.result_id?, literal(&inst.operands[1]) as usize))).collect();
+        Globals { made: made(globals), vectors }
+    }
+}
+
+/// The composites of a function that instructions make of parts.
+pub struct Composites<'f> {
+    globals: &'f Globals<'f>,
+    made: FxHashMap<Word, &'f Instruction>,
+}
+
+fn made<'i>(instructions: impl IntoIterator<Item = &'i Instruction>) -> FxHashMap<Word, &'i Instruction> {
+    let makes = |inst: &&Instruction| {
+        matches!(inst.class.opcode, Op::ConstantComposite | Op::CompositeConstruct | Op::CompositeInsert | Op::Phi)
+    };
+    instructions.into_iter().filter(makes).filter_map(|inst| Some((inst.result_id?, inst))).collect()
+}
+
+impl<'f> Composites<'f> {
+    /// Those of a function.
+    pub fn of(function: &'f Function, globals: &'f Globals<'f>) -> Self {
+        Composites { globals, made: made(function.blocks.iter().flat_map(|block| &block.instructions)) }
+    }
+
+    fn made(&self, id: Word) -> Option<&'f Instruction> {
+        self.made.get(&id).or_else(|| self.globals.made.get(&id)).copied()
     }
 
     /// The id of what an instruction takes out of a composite, if it was put there as it is, whichever way led there.
@@ -43,7 +55,7 @@ impl<'m> Composites<'m> {
 
     /// The first step into a composite of parts.
     fn given<'p>(&self, from: &Instruction, path: &'p [Operand]) -> Option<(Word, &'p [Operand])> {
-        let whole = from.result_type.and_then(|kind| self.vectors.get(&kind));
+        let whole = from.result_type.and_then(|kind| self.globals.vectors.get(&kind));
         if whole.is_some_and(|&components| components != from.operands.len()) {
             return None;
         }
@@ -53,21 +65,21 @@ impl<'m> Composites<'m> {
 }
 
 /// A search for a part, which forks at phis.
-struct Search<'s, 'm> {
-    composites: &'s Composites<'m>,
+struct Search<'s> {
+    composites: &'s Composites<'s>,
     /// Phis that were come by, and how many steps were left there: loops come back to them.
     seen: Vec<(Word, usize)>,
     /// What every way so far has led to.
     found: Option<Word>,
 }
 
-impl Search<'_, '_> {
+impl Search<'_> {
     /// Follows all ways to the part at a path of a composite; none where it is not known, or they lead to several.
     ///
     /// One part on all ways is there wherever they join: it is older than any composite that holds it.
     fn part(&mut self, mut id: Word, mut path: &[Operand]) -> Option<()> {
         while !path.is_empty() {
-            let from = self.composites.made.get(&id)?;
+            let from = self.composites.made(id)?;
             (id, path) = match from.class.opcode {
                 Op::Phi => return self.fork(id, from, path),
                 Op::CompositeInsert => inserted(from, path)?,

@@ -1,6 +1,6 @@
 //! The integer and boolean constants of a module.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 use rspirv::dr::{Instruction, Module, Operand};
 use rspirv::spirv::{Op, Word};
@@ -13,10 +13,12 @@ enum Kind {
 }
 
 /// Constants by id and by value; a condition is 0 or 1.
+#[derive(Default)]
 pub struct Constants {
-    kinds: HashMap<Word, Kind>,
-    values: HashMap<Word, u32>,
-    ids: HashMap<(Word, u32), Word>,
+    kinds: FxHashMap<Word, Kind>,
+    values: FxHashMap<Word, u32>,
+    ids: FxHashMap<(Word, u32), Word>,
+    undefined: FxHashMap<Option<Word>, Word>,
     new: Vec<Instruction>,
     bound: Word,
 }
@@ -25,8 +27,7 @@ impl Constants {
     /// Those of a module.
     pub fn of(module: &Module) -> Self {
         let bound = module.header.as_ref().map_or(0, |header| header.bound);
-        let mut this =
-            Constants { kinds: HashMap::new(), values: HashMap::new(), ids: HashMap::new(), new: Vec::new(), bound };
+        let mut this = Constants { bound, ..Constants::default() };
         for inst in &module.types_global_values {
             let Some(id) = inst.result_id else { continue };
             match inst.class.opcode {
@@ -34,6 +35,7 @@ impl Constants {
                 Op::TypeInt if inst.operands[0] == Operand::LiteralBit32(32) => {
                     this.kinds.insert(id, Kind::Int);
                 }
+                Op::Undef => drop(this.undefined.insert(inst.result_type, id)),
                 _ => this.note(inst, id),
             }
         }
@@ -78,6 +80,17 @@ impl Constants {
         self.values.insert(id, value);
         self.ids.insert((kind, value), id);
         id
+    }
+
+    /// No value in particular of a type.
+    pub fn undefined(&mut self, kind: Option<Word>) -> Word {
+        let (new, bound) = (&mut self.new, &mut self.bound);
+        *self.undefined.entry(kind).or_insert_with(|| {
+            let id = *bound;
+            *bound += 1;
+            new.push(Instruction::new(Op::Undef, kind, Some(id), Vec::new()));
+            id
+        })
     }
 
     /// Adds the new constants to the module that these are of.

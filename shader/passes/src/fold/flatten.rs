@@ -2,7 +2,7 @@
 //!
 //! A driver's compiler takes time by the blocks of a kernel, more than by its instructions, and would not branch there either.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rspirv::dr::{Block, Function, Instruction, Module, Operand};
 use rspirv::spirv::{Op, Word};
@@ -24,7 +24,7 @@ pub fn flatten(module: &mut Module) {
 }
 
 /// The types whose values can be selected by one condition in every version of SPIR-V.
-fn scalars(module: &Module) -> HashSet<Word> {
+fn scalars(module: &Module) -> FxHashSet<Word> {
     let is_scalar = |inst: &&Instruction| matches!(inst.class.opcode, Op::TypeInt | Op::TypeFloat | Op::TypeBool);
     module.types_global_values.iter().filter(is_scalar).filter_map(|inst| inst.result_id).collect()
 }
@@ -40,9 +40,9 @@ struct Selection {
 }
 
 /// Flattens every selection that is not part of another one that was; tells whether there was any.
-fn flatten_all(function: &mut Function, scalars: &HashSet<Word>) -> bool {
+fn flatten_all(function: &mut Function, scalars: &FxHashSet<Word>) -> bool {
     let map = Map::of(function);
-    let mut touched = HashSet::new();
+    let mut touched = FxHashSet::default();
     let mut any = false;
     for header in 0..function.blocks.len() {
         let Some(selection) = map.selection(function, header, scalars) else { continue };
@@ -60,16 +60,16 @@ fn flatten_all(function: &mut Function, scalars: &HashSet<Word>) -> bool {
 
 /// The ways between the blocks of a function.
 struct Map {
-    indices: HashMap<Word, usize>,
+    indices: FxHashMap<Word, usize>,
     /// How many ways lead to a block.
-    ways: HashMap<Word, usize>,
+    ways: FxHashMap<Word, usize>,
     /// Where a selection or loop ends or goes round.
-    ends: HashMap<Word, usize>,
+    ends: FxHashMap<Word, usize>,
 }
 
 impl Map {
     fn of(function: &Function) -> Map {
-        let mut map = Map { indices: HashMap::new(), ways: HashMap::new(), ends: HashMap::new() };
+        let mut map = Map { indices: FxHashMap::default(), ways: FxHashMap::default(), ends: FxHashMap::default() };
         for (index, block) in function.blocks.iter().enumerate() {
             map.indices.insert(blocks::label(block), index);
             block.instructions.last().into_iter().flat_map(blocks::targets).for_each(|to| {
@@ -81,7 +81,7 @@ impl Map {
     }
 
     /// The selection that begins with a block, if both of its sides are small and nothing else leads to its end.
-    fn selection(&self, function: &Function, header: usize, scalars: &HashSet<Word>) -> Option<Selection> {
+    fn selection(&self, function: &Function, header: usize, scalars: &FxHashSet<Word>) -> Option<Selection> {
         let block = &function.blocks[header];
         let [.., merge, branch] = &block.instructions[..] else { return None };
         if merge.class.opcode != Op::SelectionMerge || branch.class.opcode != Op::BranchConditional {

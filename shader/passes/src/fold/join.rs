@@ -1,6 +1,6 @@
 //! Blocks that follow one another without a choice.
 
-use std::collections::{HashMap, HashSet};
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use rspirv::dr::{Block, Function, Module};
 use rspirv::spirv::{Op, Word};
@@ -17,7 +17,7 @@ pub fn join(module: &mut Module) {
 pub fn join_blocks(function: &mut Function) {
     let followers = followers(function);
     let mut rest: Vec<Option<Block>> = std::mem::take(&mut function.blocks).into_iter().map(Some).collect();
-    let mut joined = HashMap::new();
+    let mut joined = FxHashMap::default();
     for index in 0..rest.len() {
         let Some(mut block) = rest[index].take() else { continue };
         let name = blocks::label(&block);
@@ -45,9 +45,9 @@ fn only_way(block: &Block) -> Option<Word> {
 }
 
 /// The blocks, by label, that a single other one goes to, and where no selection or loop ends or goes round.
-fn followers(function: &Function) -> HashMap<Word, usize> {
-    let mut ways: HashMap<Word, u32> = HashMap::new();
-    let mut ends = HashSet::new();
+fn followers(function: &Function) -> FxHashMap<Word, usize> {
+    let mut ways: FxHashMap<Word, u32> = FxHashMap::default();
+    let mut ends = FxHashSet::default();
     for block in &function.blocks {
         block
             .instructions

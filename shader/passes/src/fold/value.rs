@@ -1,27 +1,24 @@
 //! Values that follow from constants.
 
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
-use rspirv::dr::{Instruction, Module};
+use rspirv::dr::{Function, Instruction};
 use rspirv::spirv::{Op, Word};
 
-use super::composite::Composites;
+use super::composite::{Composites, Globals};
 use super::constants::Constants;
 use super::evaluate::{Known, evaluate};
 
 /// Replaces what is known by constants and by what it is the same as; tells whether there was anything.
-pub fn fold(module: &mut Module) -> bool {
-    let mut constants = Constants::of(module);
-    let composites = Composites::of(module);
+pub fn fold(function: &mut Function, constants: &mut Constants, globals: &Globals<'_>) -> bool {
+    let composites = Composites::of(function, globals);
     let mut known = Replacements::default();
-    let bodies = module.functions.iter().flat_map(|function| &function.blocks);
-    for inst in bodies.flat_map(|block| &block.instructions) {
-        if let Some((id, with)) = replacement(inst, &mut constants, &composites, &known) {
+    for inst in function.blocks.iter().flat_map(|block| &block.instructions) {
+        if let Some((id, with)) = replacement(inst, constants, &composites, &known) {
             known.0.insert(id, with);
         }
     }
-    constants.finish(module);
-    known.apply(module);
+    known.apply(function);
     !known.0.is_empty()
 }
 
@@ -29,7 +26,7 @@ pub fn fold(module: &mut Module) -> bool {
 fn replacement(
     inst: &Instruction,
     constants: &mut Constants,
-    composites: &Composites,
+    composites: &Composites<'_>,
     known: &Replacements,
 ) -> Option<(Word, Word)> {
     let (id, kind) = (inst.result_id?, inst.result_type?);
@@ -45,7 +42,7 @@ fn replacement(
 
 /// By the id that goes, the id that stands for it.
 #[derive(Default)]
-struct Replacements(HashMap<Word, Word>);
+struct Replacements(FxHashMap<Word, Word>);
 
 impl Replacements {
     fn of(&self, mut id: Word) -> Word {
@@ -55,8 +52,11 @@ impl Replacements {
         id
     }
 
-    fn apply(&self, module: &mut Module) {
-        for block in module.functions.iter_mut().flat_map(|function| &mut function.blocks) {
+    fn apply(&self, function: &mut Function) {
+        if self.0.is_empty() {
+            return;
+        }
+        for block in &mut function.blocks {
             block.instructions.retain(|inst| inst.result_id.is_none_or(|id| !self.0.contains_key(&id)));
             let operands = block.instructions.iter_mut().flat_map(|inst| &mut inst.operands);
             for id in operands.filter_map(|operand| operand.id_ref_any_mut()) {

@@ -4,8 +4,8 @@ use std::error::Error;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
 use eyerays::scene::{self, Camera};
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     let (scene, warnings) = scene::load(&file)?;
     warnings.iter().for_each(|warning| println!("{warning}"));
-    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
     let Ok(gpu) = Gpu::open(&AdapterRequest { software: true, exact: true, ..AdapterRequest::default() }) else {
         println!("there is no GPU that renders exactly");
         return Ok(());

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use eyerays::batch::{Batch, Ray};
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterRequest, Caster, Gpu};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method};
 use eyerays::quality::Bvh;
 use eyerays::scene;
@@ -15,7 +15,7 @@ use glam::Vec3;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
-    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
 
     // From the middle of the room through the cells of a cube around it.
     let (edge, middle) = (22, Vec3::new(0.0, 1.0, 0.0));

@@ -1,8 +1,8 @@
 //! A scene that code makes, not a file: a square on a floor, rendered on the CPU and, where there is one, on the GPU.
 
 use eyerays::compare::compare;
-use eyerays::device_scene::DeviceScene;
 use eyerays::error::{Error, Result};
+use eyerays::job::Job;
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish, Rendering};
 use eyerays::scene::{Background, Camera, Light, Material, Mesh, Projection, Scene, Settings};
@@ -11,7 +11,7 @@ use glam::{Vec3, vec3};
 
 fn main() -> Result<()> {
     let scene = scene();
-    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Medium.quality())?;
+    let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
     let view = View::new(&packed, &scene.cameras[0])?;
     let cpu = render(&packed, &view, DeviceWish::Cpu)?;
     println!("{}: {} rays", cpu.device, cpu.rays.total());
@@ -34,7 +34,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn render(packed: &DeviceScene, view: &View, device: DeviceWish) -> Result<Rendering> {
+fn render(packed: &Job, view: &View, device: DeviceWish) -> Result<Rendering> {
     let choice = Choice { device, ..Choice::default() };
     Backend::new(&choice)?.render(packed, view, 1, &|_| ())
 }

@@ -4,7 +4,7 @@ use eyerays_shader::ray;
 use eyerays_shader::real::V3;
 use glam::{DVec3, UVec4, Vec3};
 
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 use crate::stream::{Answers, Stream, StreamRay};
 
 /// A ray in the scene's units.
@@ -33,11 +33,11 @@ pub struct Hit {
 /// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
 ///
 /// ```
-/// # use eyerays::{cpu, device_scene::DeviceScene, method::Method, quality::Bvh, scene, stream::Question};
+/// # use eyerays::{cpu, job::Job, method::Method, quality::Bvh, scene, stream::Question};
 /// use eyerays::batch::{Batch, Ray};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
-/// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let device_scene = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let down = Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into());
 /// let batch = Batch::new(&device_scene, &[down]);
 /// let (answers, _time) = cpu::cast(&device_scene, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
@@ -64,7 +64,7 @@ impl Ray {
 
 impl Batch {
     /// Rays through a scene. One that starts so far away that its place can't be told, or goes nowhere, meets nothing.
-    pub fn new(packed: &DeviceScene, rays: &[Ray]) -> Self {
+    pub fn new(packed: &Job, rays: &[Ray]) -> Self {
         let scale = packed.normalisation().scale;
         let placed: Vec<(StreamRay, f64)> = rays.iter().map(|ray| placed(packed, ray)).collect();
         let (stream, moved): (Vec<StreamRay>, Vec<f64>) = placed.into_iter().unzip();
@@ -77,7 +77,7 @@ impl Batch {
     }
 
     /// What each ray met, from a device's answers to [`crate::stream::Question::Closest`]; nothing from other answers.
-    pub fn hits(&self, packed: &DeviceScene, answers: &Answers) -> Vec<Option<Hit>> {
+    pub fn hits(&self, packed: &Job, answers: &Answers) -> Vec<Option<Hit>> {
         match answers {
             Answers::Closest(records) => {
                 records.iter().zip(&self.moved).map(|(&record, &moved)| self.hit(packed, record, moved)).collect()
@@ -86,7 +86,7 @@ impl Batch {
         }
     }
 
-    fn hit(&self, packed: &DeviceScene, record: UVec4, moved: f64) -> Option<Hit> {
+    fn hit(&self, packed: &Job, record: UVec4, moved: f64) -> Option<Hit> {
         let primitive = packed.primitives().get(record.w as usize)?.number();
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
         Some(Hit { distance: moved + f64::from(t) / self.scale, primitive, coordinates: [u, v] })
@@ -94,7 +94,7 @@ impl Batch {
 }
 
 /// A ray in the normalised scene, and how far it was moved along itself, in the scene's units.
-fn placed(packed: &DeviceScene, ray: &Ray) -> (StreamRay, f64) {
+fn placed(packed: &Job, ray: &Ray) -> (StreamRay, f64) {
     let normalisation = packed.normalisation();
     let direction = ray.direction.as_dvec3().normalize_or_zero().as_vec3();
     let (origin, length) = match normalisation.place_anywhere(ray.origin) {
@@ -124,7 +124,7 @@ mod tests {
     fn distances_are_in_the_scenes_units_from_where_a_ray_starts() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
         let scene = scene::load(path.as_ref()).unwrap().0;
-        let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+        let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let bottom = scene.mesh.positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let corner = scene.mesh.positions.iter().copied().reduce(Vec3::min).unwrap() + Vec3::new(0.25, 0.0, 0.25);
         let up = |height: f32| Vec3::new(corner.x, bottom + height, corner.z);

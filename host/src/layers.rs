@@ -1,10 +1,11 @@
 //! A picture in layers: beside its light what the camera sees, for those who denoise pictures or put them together.
 
 use crate::choice::choices;
-use crate::device_scene::{DeviceScene, Feature};
+use crate::device_scene::Feature;
 use crate::error::{Error, Result};
+use crate::job::Job;
 use crate::picture::Picture;
-use crate::render::{Backend, Choice, DeviceWish, Rendering};
+use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
 use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
 use crate::view::{Region, View};
 
@@ -61,49 +62,47 @@ impl Values {
     }
 }
 
-/// Renders the layers beside a picture, each with as many samples as the picture got, and with its numbers drawn for the same
-/// places. The scene's settings are left as they were.
+/// Renders the layers beside a picture of the session's job, each with as many samples as the picture got, and with its numbers drawn
+/// for the same places. The session goes on with the job that it had.
 ///
 /// # Errors
-/// As [`Backend::render`].
+/// As [`Session::turn`] and [`Session::render`].
 pub fn render(
-    backend: &Backend,
-    packed: &mut DeviceScene,
+    session: &mut Session,
     (scene, camera): (&Scene, &Camera),
     rendering: &Rendering,
     layers: &[Layer],
 ) -> Result<Vec<(Layer, Values)>> {
-    let settings = *packed.settings();
-    let of_picture = Settings { spp: rendering.samples, ..settings };
-    let window = rendering.region;
-    let mut studio = Studio { backend, packed, camera, window, settings: of_picture, direct: None, places: None };
+    let job = session.job().clone();
+    let settings = Settings { spp: rendering.samples, ..*job.settings() };
+    let mut studio = Studio { session, camera, window: rendering.region, settings, direct: None, places: None };
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
     let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
-    packed.show(None);
-    packed.set(settings)?;
+    session.turn(&job)?;
     rendered
 }
 
 /// What can be seen before a GPU's driver has compiled the kernels of a picture: the colours of its surfaces at the middle of each
-/// pixel of a part of the image, by this many threads of the CPU, 0 for one a core. The scene's settings are left as they were.
+/// pixel of a part of the image, by this many threads of the CPU, 0 for one a core.
 ///
 /// # Errors
-/// As [`Backend::render`].
-pub fn preview(packed: &mut DeviceScene, camera: &Camera, window: Region, threads: usize) -> Result<Picture> {
-    let backend = &Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
-    let settings = *packed.settings();
-    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..settings };
-    let mut studio = Studio { backend, packed, camera, window, settings, direct: None, places: None };
-    let picture = studio.picture(Some(Feature::Albedo), middle);
-    packed.show(None);
-    packed.set(settings)?;
-    picture
+/// As [`Backend::open`] and [`Session::render`].
+pub fn preview(job: &Job, camera: &Camera, window: Region, threads: usize) -> Result<Picture> {
+    let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*job.settings() };
+    let job = job.with(middle)?.showing(Some(Feature::Albedo));
+    Ok(backend.open(&job)?.render(&seen(&job, camera, window)?, 1, &|_| ())?.picture)
+}
+
+/// A part of the image that a camera has of a job.
+fn seen(job: &Job, camera: &Camera, window: Region) -> Result<View> {
+    let view = View::new(job, camera)?;
+    view.part(window, view.range())
 }
 
 /// What all layers are rendered with, and what several of them take.
 struct Studio<'a> {
-    backend: &'a Backend,
-    packed: &'a mut DeviceScene,
+    session: &'a mut Session,
     camera: &'a Camera,
     /// What of the image it shows.
     window: Region,
@@ -159,7 +158,7 @@ impl Studio<'_> {
     fn places(&mut self) -> Result<&[Place]> {
         if self.places.is_none() {
             let middle = Settings { spp: 1, sampler: Sampler::Regular, ..self.settings };
-            let scale = self.packed.normalisation().scale;
+            let scale = self.session.job().normalisation().scale;
             let place = |[depth, low, high]: [f32; 3]| {
                 let primitive = (low as usize + ((high as usize) << 16)).checked_sub(1);
                 let depth = if primitive.is_some() { (f64::from(depth) / scale) as f32 } else { f32::INFINITY };
@@ -171,11 +170,9 @@ impl Studio<'_> {
     }
 
     fn picture(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
-        self.packed.show(feature);
-        self.packed.set(settings)?;
-        let view = View::new(self.packed, self.camera)?;
-        let view = view.part(self.window, view.range())?;
-        Ok(self.backend.render(self.packed, &view, 1, &|_| ())?.picture)
+        let job = self.session.job().with(settings)?.showing(feature);
+        self.session.turn(&job)?;
+        Ok(self.session.render(&seen(&job, self.camera, self.window)?, 1, &|_| ())?.picture)
     }
 }
 

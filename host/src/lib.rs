@@ -1,11 +1,11 @@
 //! Eyerays: a ray tracer whose kernels are written once, for the CPU and for GPUs, with the same bits on both.
 //!
-//! A [`scene`] becomes a [`device_scene::DeviceScene`]: normalised, checked, with its hierarchy. A [`view::View`] says from
+//! A [`scene`] becomes a [`job::Job`]: normalised, checked, with its hierarchy. A [`view::View`] says from
 //! where it is seen. [`render::Backend`] renders on the device that fits; [`cpu::Renderer`] and [`gpu::Renderer`] keep a
 //! scene for many pictures.
 //!
 //! ```
-//! use eyerays::device_scene::DeviceScene;
+//! use eyerays::job::Job;
 //! use eyerays::quality::Bvh;
 //! use eyerays::render::{Backend, Choice, DeviceWish};
 //! use eyerays::scene::{self, Settings};
@@ -14,7 +14,7 @@
 //! # fn main() -> eyerays::error::Result<()> {
 //! let (scene, _warnings) = scene::load("../scenes/cornell.toml".as_ref())?;
 //! let settings = Settings { size: (32, 32), samples: 1, ..scene.settings };
-//! let device_scene = DeviceScene::new(&scene, settings, Bvh::Medium.quality())?;
+//! let device_scene = Job::new(&scene, settings, Bvh::Medium.quality())?;
 //! let view = View::new(&device_scene, &scene.cameras[0])?;
 //! let backend = Backend::new(&Choice { device: DeviceWish::Cpu, ..Choice::default() })?;
 //! let rendering = backend.render(&device_scene, &view, 1, &|_pixels| ())?;
@@ -39,6 +39,7 @@ pub mod film;
 pub mod gpu;
 pub mod image;
 pub mod integrator;
+pub mod job;
 pub mod layers;
 pub mod line;
 pub mod math;

@@ -7,9 +7,10 @@ use eyerays_shader::data::{Frame, Lens, Order, numbers};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::device_scene::{DeviceScene, flushed};
+use crate::device_scene::flushed;
 use crate::error::{Error, Result};
 use crate::film::Part;
+use crate::job::Job;
 use crate::math;
 use crate::picture::Picture;
 use crate::scene::{Camera, Projection, Settings};
@@ -77,7 +78,7 @@ impl View {
     ///
     /// # Errors
     /// There is no way to look so, or the camera is too far away for the scene's numbers.
-    pub fn new(packed: &DeviceScene, camera: &Camera) -> Result<View> {
+    pub fn new(packed: &Job, camera: &Camera) -> Result<View> {
         View::seen(packed, camera, packed.settings())
     }
 
@@ -85,12 +86,12 @@ impl View {
     ///
     /// # Errors
     /// As [`View::new`]; or a size that [`Picture::check_size`] refuses, or no sample or too many.
-    pub fn of(packed: &DeviceScene, camera: &Camera, size: (u32, u32), samples: u32) -> Result<View> {
+    pub fn of(packed: &Job, camera: &Camera, size: (u32, u32), samples: u32) -> Result<View> {
         crate::error::within("samples", &[samples], 1..=Settings::MOST_SAMPLES)?;
         View::seen(packed, camera, &Settings { size, samples, spp: 0, ..*packed.settings() })
     }
 
-    fn seen(packed: &DeviceScene, camera: &Camera, settings: &Settings) -> Result<View> {
+    fn seen(packed: &Job, camera: &Camera, settings: &Settings) -> Result<View> {
         let (width, height) = settings.size;
         Picture::check_size(width, height)?;
         let grid = settings.grid()?;
@@ -175,7 +176,7 @@ impl View {
     }
 
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
-    pub fn launch(&self, scene: &DeviceScene, region: Region, first: u32, count: u32, order: Order) -> Frame {
+    pub fn launch(&self, scene: &Job, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
         Frame {
             lens: self.lens,
@@ -202,10 +203,10 @@ mod tests {
     use glam::Vec3;
 
     use super::*;
+    use crate::cpu;
     use crate::method::Traversal;
     use crate::quality::Bvh;
     use crate::scene::{self, Background, Projection, Scene};
-    use crate::{cpu, device_scene};
 
     /// A square of edge 1 seen from so far away before black, and how many of 64 x 64 pixels it covers.
     fn covered(projection: Projection, distance: f32) -> usize {
@@ -225,7 +226,7 @@ mod tests {
         let camera = &mut scene.cameras[0];
         (camera.eye, camera.target, camera.projection) = (Vec3::Z * distance, Vec3::ZERO, projection);
         let settings = Settings { size: (64, 64), samples: 1, bounces: 0, ..scene.settings };
-        let packed = device_scene::DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+        let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         let picture = cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).unwrap().0;
         picture.pixels.iter().filter(|pixel| pixel.iter().any(|&v| v > 0.0)).count()
@@ -243,7 +244,7 @@ mod tests {
     fn a_scene_without_orthographic_cameras_has_no_kernel_for_one() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
         let (scene, _) = scene::load(path.as_ref()).unwrap();
-        let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+        let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let camera = Camera { projection: Projection::Orthographic { height: 1.0 }, ..scene.cameras[0].clone() };
         let message = View::new(&packed, &camera).unwrap_err().to_string();
         assert!(message.contains("add it to the scene's cameras before it is packed"), "{message}");

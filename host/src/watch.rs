@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
 use crate::film::{Film, Part};
+use crate::job::Job;
 use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -54,6 +55,9 @@ impl Growth<'_> {
 
 /// A device that films grow on.
 pub(crate) trait Grows {
+    /// Goes on with another job. The film is then to be started again.
+    fn turn(&mut self, job: &Job) -> Result<()>;
+
     /// Starts a film of a view, without any sample. Parts that are added lie within one of these regions each, which fill its window.
     fn start(&mut self, view: &View, regions: &[Region]) -> Result<()>;
 
@@ -214,7 +218,7 @@ mod tests {
 
     use super::*;
     use crate::cpu::{OnCpu, Renderer};
-    use crate::device_scene::DeviceScene;
+    use crate::job::Job;
     use crate::method::Traversal;
     use crate::quality::Bvh;
     use crate::scene::{self, Settings};
@@ -228,6 +232,10 @@ mod tests {
     }
 
     impl Grows for Slow {
+        fn turn(&mut self, _: &Job) -> Result<()> {
+            Ok(())
+        }
+
         fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
             self.view = Some(*view);
             Ok(())
@@ -257,11 +265,11 @@ mod tests {
         Slow { each, batches: Vec::new(), fails: false, view: None }
     }
 
-    fn cornell(spp: u32) -> (DeviceScene, View) {
+    fn cornell(spp: u32) -> (Job, View) {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
         let (scene, _) = scene::load(path.as_ref()).unwrap();
         let settings = Settings { size: (16, 12), spp, bounces: 1, ..scene.settings };
-        let packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+        let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         (packed, view)
     }

@@ -16,7 +16,7 @@ use crate::isa::Isa;
 use crate::way::Way;
 
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.
-pub enum Job<'a, R: Scalar> {
+pub enum Query<'a, R: Scalar> {
     /// Their closest hits, of paths or a stream's rays.
     Trace(&'a [R::Record], &'a mut [R::Record]),
     /// Whether something is on their way to a light, or before the ends of a stream's rays.
@@ -34,17 +34,17 @@ macro_rules! follows {
 }
 
 /// Follows the rays of slots by a method, with the instructions of an [`Isa`].
-pub fn follow<R: Scalar>(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
+pub fn follow<R: Scalar>(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, R>) {
     let follows = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK) {
         among::<R, Primitives>(way)
     } else {
         among::<R, Triangles>(way)
     };
-    follows(isa, geometry, slots, job);
+    follows(isa, geometry, slots, query);
 }
 
 /// How slots' rays are followed: see [`follow`].
-type Follows<R> = fn(Isa, &TraceContext<'_>, &[u32], Job<'_, R>);
+type Follows<R> = fn(Isa, &TraceContext<'_>, &[u32], Query<'_, R>);
 
 /// Follows rays by a method among leaves of these.
 fn among<R: Scalar, L: Leaf>(way: Way) -> Follows<R> {
@@ -55,13 +55,13 @@ fn among<R: Scalar, L: Leaf>(way: Way) -> Follows<R> {
 struct Slots<'a, R: Scalar, L, M> {
     geometry: TraceContext<'a>,
     slots: &'a [u32],
-    job: Job<'a, R>,
+    query: Query<'a, R>,
     how: PhantomData<(L, M)>,
 }
 
 impl<'a, R: Scalar, L, M> Slots<'a, R, L, M> {
-    fn new(geometry: &TraceContext<'a>, slots: &'a [u32], job: Job<'a, R>) -> Self {
-        Slots { geometry: *geometry, slots, job, how: PhantomData }
+    fn new(geometry: &TraceContext<'a>, slots: &'a [u32], query: Query<'a, R>) -> Self {
+        Slots { geometry: *geometry, slots, query, how: PhantomData }
     }
 }
 
@@ -72,41 +72,45 @@ fn alone<R: Scalar, L: Leaf, M: traverse::Method<R>>(
     isa: Isa,
     geometry: &TraceContext<'_>,
     slots: &[u32],
-    job: Job<'_, R>,
+    query: Query<'_, R>,
 ) {
-    isa.run::<R>(EachAlone::<R, L, M>(Slots::new(geometry, slots, job)));
+    isa.run::<R>(EachAlone::<R, L, M>(Slots::new(geometry, slots, query)));
 }
 
 impl<R: Scalar, L: Leaf, M: traverse::Method<R>> Task<R> for EachAlone<'_, R, L, M> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        one_by_one::<R, L, M>(&self.0.geometry, self.0.slots, self.0.job);
+        one_by_one::<R, L, M>(&self.0.geometry, self.0.slots, self.0.query);
     }
 }
 
 /// Every ray by itself through nodes of eight children, whose boxes and triangles take all lanes.
 struct Nodes<'a, R: Scalar, L>(Slots<'a, R, L, ()>);
 
-fn nodes<R: Scalar, L: Leaf>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    isa.run::<R>(Nodes::<R, L>(Slots::new(geometry, slots, job)));
+fn nodes<R: Scalar, L: Leaf>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, R>) {
+    isa.run::<R>(Nodes::<R, L>(Slots::new(geometry, slots, query)));
 }
 
 impl<R: Scalar, L: Leaf> Task<R> for Nodes<'_, R, L> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        one_by_one::<R, L, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.job);
+        one_by_one::<R, L, Bvh8Method<V>>(&self.0.geometry, self.0.slots, self.0.query);
     }
 }
 
 #[inline(always)]
-fn one_by_one<R: Scalar, L: Leaf, M: traverse::Method<R>>(geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    match job {
-        Job::Trace(paths, hits) => {
+fn one_by_one<R: Scalar, L: Leaf, M: traverse::Method<R>>(
+    geometry: &TraceContext<'_>,
+    slots: &[u32],
+    query: Query<'_, R>,
+) {
+    match query {
+        Query::Trace(paths, hits) => {
             for (&slot, hit) in slots.iter().zip(hits) {
                 *hit = stage::trace::<R, M, L>(geometry, slot, paths);
             }
         }
-        Job::Shadow(asking, light, answers) => {
+        Query::Shadow(asking, light, answers) => {
             for (&slot, answer) in slots.iter().zip(answers) {
                 *answer = stage::shadow::<R, M, L>(geometry, asking, slot, light);
             }
@@ -117,33 +121,38 @@ fn one_by_one<R: Scalar, L: Leaf, M: traverse::Method<R>>(geometry: &TraceContex
 /// Neighbours together.
 struct Neighbours<'a, R: Scalar, L, M>(Slots<'a, R, L, M>);
 
-fn together<R: Scalar, L: Leaf, M: Together>(isa: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    isa.run::<R>(Neighbours::<R, L, M>(Slots::new(geometry, slots, job)));
+fn together<R: Scalar, L: Leaf, M: Together>(
+    isa: Isa,
+    geometry: &TraceContext<'_>,
+    slots: &[u32],
+    query: Query<'_, R>,
+) {
+    isa.run::<R>(Neighbours::<R, L, M>(Slots::new(geometry, slots, query)));
 }
 
 /// As [`together`], with the instructions that every processor has and leaves that may hold anything: the hybrids are there to be
 /// compared, and to compile them for every ISA and kind of leaf would take as long as all else.
 // The table of methods gives every way a kind of leaf.
 #[allow(clippy::extra_unused_type_parameters)]
-fn plainly<R: Scalar, L, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, R>) {
-    Neighbours::<R, Primitives, M>(Slots::new(geometry, slots, job)).run::<Native>();
+fn plainly<R: Scalar, L, M: Together>(_: Isa, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, R>) {
+    Neighbours::<R, Primitives, M>(Slots::new(geometry, slots, query)).run::<Native>();
 }
 
 impl<R: Scalar, L: Leaf, M: Together> Task<R> for Neighbours<'_, R, L, M> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        let Slots { geometry, slots, job, .. } = self.0;
+        let Slots { geometry, slots, query, .. } = self.0;
         let most = stage::most::<R, V::Packet>();
         let mut segments: Vec<Segment<R>> = Vec::with_capacity(most);
-        match job {
-            Job::Trace(paths, hits) => {
+        match query {
+            Query::Trace(paths, hits) => {
                 for (slots, hits) in slots.chunks(most).zip(hits.chunks_mut(most)) {
                     segments.clear();
                     segments.extend(slots.iter().map(|&slot| stage::traced::<R>(&geometry, slot, paths)));
                     stage::trace_together::<R, V::Packet, M, L>(&geometry, &segments, |i, record| hits[i] = record);
                 }
             }
-            Job::Shadow(asking, light, answers) => {
+            Query::Shadow(asking, light, answers) => {
                 let mut places = Vec::with_capacity(most);
                 let mut rays = slots.iter().zip(answers).peekable();
                 while rays.peek().is_some() {

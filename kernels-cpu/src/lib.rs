@@ -9,7 +9,7 @@ mod number;
 mod records;
 mod way;
 
-pub use follow::Job;
+pub use follow::Query;
 pub use isa::Isa;
 pub use number::{Number, Queues, Shown};
 pub use records::Records;

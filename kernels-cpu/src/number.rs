@@ -7,7 +7,7 @@ use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 use eyerays_shader::stage;
 
-use crate::follow::{Job, follow};
+use crate::follow::{Query, follow};
 use crate::isa::Isa;
 use crate::records::Records;
 use crate::way::Way;
@@ -41,7 +41,7 @@ pub trait Number: Scalar<Record: Send + Sync> {
     fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]);
 
     /// Follows the rays of some slots, with the instructions of an [`Isa`].
-    fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, Self>);
+    fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>);
 
     /// Shades a wave.
     fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>);
@@ -72,8 +72,8 @@ macro_rules! number {
                 }
             }
 
-            fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], job: Job<'_, Self>) {
-                follow(isa, way, geometry, slots, job);
+            fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>) {
+                follow(isa, way, geometry, slots, query);
             }
 
             fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>) {

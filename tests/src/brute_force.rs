@@ -1,6 +1,7 @@
 //! A test of every primitive, with no hierarchy and no box but the primitives' own.
 
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::{Hit, Ray};
@@ -16,7 +17,7 @@ const LANES: usize = 8;
 pub type Found = [u32; 4];
 
 /// The closest hits of a stream.
-pub fn brute_force(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
+pub fn brute_force(packed: &Job, stream: &Stream) -> Vec<Found> {
     let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let starts: Vec<usize> = (0..stream.len()).step_by(LANES).collect();
@@ -39,7 +40,7 @@ pub fn brute_force(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
 }
 
 /// The same in any arithmetic, a ray at a time.
-pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<Found> {
+pub fn brute_force_of<R: Scalar>(packed: &Job, stream: &Stream) -> Vec<Found> {
     let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     let found = (0..stream.len()).into_par_iter().map(|i| {
@@ -56,7 +57,7 @@ pub fn brute_force_of<R: Scalar>(packed: &DeviceScene, stream: &Stream) -> Vec<F
 }
 
 /// A hit as a traversal returns it: a split triangle may be met at any of its places.
-pub fn found(packed: &DeviceScene, hit: UVec4) -> Found {
+pub fn found(packed: &Job, hit: UVec4) -> Found {
     let primitive = packed.primitives().get(hit.w as usize).map_or(hit.w, |primitive| primitive.number());
     [hit.x, hit.y, hit.z, primitive]
 }

@@ -4,8 +4,8 @@
 use std::ffi::{CStr, CString};
 
 use ash::{Device, Entry, Instance, khr, vk};
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{Recipe, Target};
+use eyerays::job::Job;
 use eyerays::method::{Processor, Traversal};
 use eyerays::plan::Plan;
 use eyerays_passes::Kernel;
@@ -15,7 +15,7 @@ use eyerays_shader::resources::{Access, RESOURCES};
 ///
 /// # Panics
 /// If a committed module is damaged.
-pub fn kernels(packed: &DeviceScene) -> Vec<(String, Kernel)> {
+pub fn kernels(packed: &Job) -> Vec<(String, Kernel)> {
     let traversal = Traversal::default();
     let plan = Plan::new(packed, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence)));
     let recipe = |step: &_| Recipe::new(*step, Target { exact: true, subgroups: true });

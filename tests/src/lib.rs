@@ -15,8 +15,8 @@ use std::path::PathBuf;
 
 use eyerays::compare::compare;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterRequest, Gpu};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::picture::Picture;
 use eyerays::rays::Rays;
@@ -64,7 +64,7 @@ pub fn pack(scene: &Scene, camera: &Camera, settings: Settings) -> Posed {
 /// # Panics
 /// As [`pack`].
 pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Quality) -> Posed {
-    let packed = DeviceScene::with_wide_nodes(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
+    let packed = Job::with_wide_nodes(scene, settings, quality).unwrap_or_else(|e| panic!("{e}"));
     let view = View::new(&packed, camera).unwrap_or_else(|e| panic!("{e}"));
     Posed { packed, view }
 }
@@ -72,15 +72,15 @@ pub fn pack_in(scene: &Scene, camera: &Camera, settings: Settings, quality: Qual
 /// A scene before a camera.
 pub struct Posed {
     /// The scene.
-    pub packed: DeviceScene,
+    pub packed: Job,
     /// The camera's view.
     pub view: View,
 }
 
 impl std::ops::Deref for Posed {
-    type Target = DeviceScene;
+    type Target = Job;
 
-    fn deref(&self) -> &DeviceScene {
+    fn deref(&self) -> &Job {
         &self.packed
     }
 }

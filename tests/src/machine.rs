@@ -4,8 +4,8 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterRequest, Caster, Gpu, Renderer};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
 use eyerays::picture::Picture;
 use eyerays::rays::Rays;
@@ -67,7 +67,7 @@ impl Machine {
     ///
     /// # Panics
     /// If the GPU can't hold it.
-    pub fn tracer<'a>(self, packed: &'a DeviceScene) -> Tracer<'a> {
+    pub fn tracer<'a>(self, packed: &'a Job) -> Tracer<'a> {
         let caster = |gpu| Caster::new(gpu, packed, Layout::Gathered).unwrap_or_else(|e| panic!("{self}: {e}"));
         Tracer { machine: self, packed, caster: self.gpu.map(caster) }
     }
@@ -91,7 +91,7 @@ impl Machine {
 /// A scene on a machine.
 pub struct Tracer<'a> {
     machine: Machine,
-    packed: &'a DeviceScene,
+    packed: &'a Job,
     caster: Option<Caster<'a>>,
 }
 

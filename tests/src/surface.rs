@@ -2,7 +2,7 @@
 
 use std::f64::consts::{PI, TAU};
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::Scene;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Primitive;
@@ -91,9 +91,9 @@ impl Surface {
     ///
     /// # Panics
     /// If no device could hold it.
-    pub fn pack(&self) -> DeviceScene {
+    pub fn pack(&self) -> Job {
         let scene = self.scene();
-        DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        Job::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 
     /// The scene packed, with a place in world units that it reaches to: a triangle without extent, the last, which no ray
@@ -101,15 +101,15 @@ impl Surface {
     ///
     /// # Panics
     /// If no device could hold it.
-    pub fn pack_up_to(&self, end: Vec3) -> DeviceScene {
+    pub fn pack_up_to(&self, end: Vec3) -> Job {
         let mut scene = self.scene();
         add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
-        DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
+        Job::with_wide_nodes(&scene, scene.settings, Quality::Medium).unwrap_or_else(|e| panic!("{e}"))
     }
 }
 
 /// The triangles of a packed scene, each once and in the scene's order, which no hierarchy changes.
-pub fn triangles(packed: &DeviceScene) -> Vec<Primitive> {
+pub fn triangles(packed: &Job) -> Vec<Primitive> {
     let mut triangles = packed.primitives().to_vec();
     triangles.sort_by_key(Primitive::number);
     triangles.dedup_by_key(|triangle| triangle.number());

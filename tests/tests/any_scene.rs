@@ -173,7 +173,7 @@ fn any_scene_that_is_accepted_is_drawn() {
         }
         let mut posed = pack(&scene, &scene.cameras[0], scene.settings);
         for feature in [None, Some(one(&mut random, &[Feature::Albedo, Feature::Normal, Feature::Place]))] {
-            posed.packed.show(feature);
+            posed.packed = posed.packed.showing(feature);
             let (picture, rays) = on_cpu(&posed);
             assert_eq!(rays.non_finite, 0, "seed {seed}, {feature:?}");
             drawn += picture.pixels.iter().filter(|pixel| pixel.iter().any(|&channel| channel != 0.0)).count();

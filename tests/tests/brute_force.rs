@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
@@ -26,8 +26,8 @@ fn generated(kind: Kind, folder: &Path) -> scene::Scene {
     scene::load(&mesh.with_extension("toml")).unwrap().0
 }
 
-fn pack(scene: &scene::Scene, quality: Quality) -> DeviceScene {
-    DeviceScene::with_wide_nodes(scene, scene.settings, quality).unwrap()
+fn pack(scene: &scene::Scene, quality: Quality) -> Job {
+    Job::with_wide_nodes(scene, scene.settings, quality).unwrap()
 }
 
 /// A number in [0, 1) that depends on its place alone.
@@ -38,7 +38,7 @@ fn random(place: u32) -> f32 {
 }
 
 /// From anywhere in the scene: to anywhere, along an axis, or at a vertex.
-fn rays(packed: &DeviceScene) -> Stream {
+fn rays(packed: &Job) -> Stream {
     let count = std::env::var("EYERAYS_RAYS").map_or(RAYS, |n| n.parse().expect("a number of rays"));
     // In the scene's order, which no hierarchy changes.
     let mut triangles = packed.primitives().to_vec();

@@ -1,7 +1,8 @@
 //! The same answers whatever instructions the processor has, and however rays share its vectors.
 
 use eyerays::cpu::{self, Isa};
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays::view::Region;
@@ -37,7 +38,7 @@ fn stream() -> Stream {
 }
 
 /// What must not change: a split triangle may be met at any of its slots.
-fn settled(packed: &DeviceScene, answers: Answers) -> Vec<[u32; 4]> {
+fn settled(packed: &Job, answers: Answers) -> Vec<[u32; 4]> {
     match answers {
         Answers::Closest(hits) => {
             let primitive = |slot: u32| packed.primitives().get(slot as usize).map_or(slot, |t| t.number());

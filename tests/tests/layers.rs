@@ -2,7 +2,7 @@
 
 use eyerays::batch::{Batch, Ray};
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::layers::{self, Layer, Values};
 use eyerays::method::Method;
 use eyerays::picture::Picture;
@@ -20,11 +20,12 @@ const SIZE: (u32, u32) = (48, 36);
 /// The picture of a scene on the CPU, and all its layers in their order.
 fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
     let settings = Settings { size: SIZE, spp, sampler: Sampler::Sobol, ..scene.settings };
-    let mut packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(scene, settings, Bvh::Fast.quality()).unwrap();
     let choice = Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() };
     let backend = Backend::new(&choice).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
-    let picture = backend.render(&packed, &view, 1, &|_| ()).unwrap();
+    let mut session = backend.open(&packed).unwrap();
+    let picture = session.render(&view, 1, &|_| ()).unwrap();
     let all = [
         Layer::Colour,
         Layer::Albedo,
@@ -35,9 +36,9 @@ fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
         Layer::Direct,
         Layer::Indirect,
     ];
-    let layers = layers::render(&backend, &mut packed, (scene, &scene.cameras[0]), &picture, &all).unwrap();
-    let again = backend.render(&packed, &view, 1, &|_| ()).unwrap();
-    assert!(again.picture.bits_equal(&picture.picture), "layers change the scene that they are of");
+    let layers = layers::render(&mut session, (scene, &scene.cameras[0]), &picture, &all).unwrap();
+    let again = session.render(&view, 1, &|_| ()).unwrap();
+    assert!(again.picture.bits_equal(&picture.picture), "layers change the session that they are of");
     (picture.picture, layers)
 }
 
@@ -103,7 +104,7 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
     scene.parts.push(Part { name: "disk".into(), primitives: Primitives::Disks(0..1), bounds });
     assert!(!scene.spheres.is_empty() && !scene.mesh.triangles.is_empty());
     let (_, layers) = layered(&scene, 1);
-    let packed = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
     let (rays, forward): (Vec<_>, Vec<_>) = rays(&scene).into_iter().unzip();
     let batch = Batch::new(&packed, &rays);
     let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
@@ -179,10 +180,9 @@ fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
 fn a_preview_has_the_colours_at_the_middle_of_each_pixel() {
     let scene = shipped("bleeding");
     let settings = Settings { size: SIZE, spp: 3, sampler: Sampler::Sobol, ..scene.settings };
-    let mut packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let window = Region { x: 0, y: 0, width: SIZE.0, height: SIZE.1 };
-    let preview = layers::preview(&mut packed, &scene.cameras[0], window, 2).unwrap();
-    assert_eq!(*packed.settings(), settings, "the settings are left as they were");
+    let preview = layers::preview(&packed, &scene.cameras[0], window, 2).unwrap();
     let (_, layers) = layered(&scene, 1);
     for (i, (&seen, &number)) in preview.pixels.iter().zip(numbers(&layers, Layer::Material)).enumerate() {
         let colour = if number == 0 { Vec3::ZERO } else { scene.materials[number as usize - 1].diffuse };

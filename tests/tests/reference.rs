@@ -3,7 +3,7 @@
 use std::sync::Mutex;
 
 use eyerays::cpu::{self, Observer, Records};
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::picture::Picture;
 use eyerays_shader::camera;
@@ -35,7 +35,7 @@ struct Story {
 
 /// Writes the stories of a picture.
 struct Log<'a> {
-    packed: &'a DeviceScene,
+    packed: &'a Job,
     stories: Mutex<Vec<Story>>,
 }
 

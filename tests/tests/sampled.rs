@@ -147,7 +147,7 @@ fn what_the_camera_sees_first() {
         [(Feature::Albedo, 3, Method::Auto), (Feature::Normal, 3, Method::Wide), (Feature::Place, 1, Method::Packet)]
     {
         let mut packed = pack(&scene, &scene.cameras[0], settings(&scene, (45, 37), spp));
-        packed.packed.show(Some(feature));
+        packed.packed = packed.packed.showing(Some(feature));
         assert_same(&gpu, &packed, method.into(), &format!("{feature:?}"));
     }
 }

@@ -1,8 +1,8 @@
 //! Every kind of ray by every method gets the same answers from GPU and CPU.
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterRequest, Caster, Gpu};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::stream::{Answers, Question, Stream};
 use eyerays_command::bench::Kind;
@@ -13,7 +13,7 @@ use eyerays_tests::{Posed, SHIPPED, gpu, pack, settings, shipped, traversals};
 /// Rays through the middle of this many pixels.
 const SIZE: (u32, u32) = (40, 30);
 
-fn on_cpu(packed: &DeviceScene, traversal: Traversal, stream: &Stream, question: Question) -> Answers {
+fn on_cpu(packed: &Job, traversal: Traversal, stream: &Stream, question: Question) -> Answers {
     cpu::cast(packed, traversal, 0, stream, question).unwrap().0
 }
 

@@ -4,7 +4,7 @@ mod program;
 
 use std::fs;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene;
 use eyerays_bvh::Quality;
 use program::{Place, SCENE, TRIANGLE, has_gpu, shipped};
@@ -41,7 +41,7 @@ fn info_tells_the_hierarchies_of_a_scene() {
     for (row, (name, quality)) in
         [("fast", Quality::Fast), ("medium", Quality::Medium), ("high", Quality::High)].into_iter().enumerate()
     {
-        let want = DeviceScene::new(&scene, scene.settings, quality).unwrap();
+        let want = Job::new(&scene, scene.settings, quality).unwrap();
         let want = want.statistics();
         let counts = [want.primitives, want.nodes, want.leaves, want.depth as usize].map(|n| n.to_string());
         assert_eq!(rows[row][0], name);

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use eyerays_kernels_cpu::{Isa, Job, Number};
+use eyerays_kernels_cpu::{Isa, Number, Query};
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::TraceContext;
@@ -11,8 +11,9 @@ use glam::UVec4;
 use rayon::prelude::*;
 
 use super::pool::pool;
-use crate::device_scene::{DeviceScene, SceneView};
+use crate::device_scene::SceneView;
 use crate::error::Result;
+use crate::job::Job;
 use crate::method::{Method, Traversal};
 use crate::stream::{Answers, Question, Stream};
 
@@ -25,7 +26,7 @@ const TASK: usize = 1024;
 /// # Errors
 /// If the threads can't be had.
 pub fn cast(
-    packed: &DeviceScene,
+    packed: &Job,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,
@@ -40,7 +41,7 @@ pub fn cast(
 /// As [`cast`].
 pub fn cast_by(
     isa: Isa,
-    packed: &DeviceScene,
+    packed: &Job,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,
@@ -59,7 +60,7 @@ pub fn cast_by(
         match &mut answers {
             Answers::Closest(hits) => trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), hits),
             Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
-                f32::follow(isa, traversal.method.way(), &geometry, slots, Job::Shadow(asking, 0, shadows));
+                f32::follow(isa, traversal.method.way(), &geometry, slots, Query::Shadow(asking, 0, shadows));
             }),
         }
         start.elapsed()
@@ -72,7 +73,7 @@ pub fn cast_by(
 ///
 /// # Errors
 /// As [`cast`].
-pub fn closest<R>(packed: &DeviceScene, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
+pub fn closest<R>(packed: &Job, traversal: Traversal, threads: usize, stream: &Stream) -> Result<Vec<R::Record>>
 where
     R: Number,
 {
@@ -95,7 +96,7 @@ fn trace<R>(
 ) where
     R: Number,
 {
-    tasks(slots, hits, |slots, hits| R::follow(isa, method.way(), geometry, slots, Job::Trace(rays, hits)));
+    tasks(slots, hits, |slots, hits| R::follow(isa, method.way(), geometry, slots, Query::Trace(rays, hits)));
 }
 
 /// Neighbours a task, so that no thread waits long for the last.

@@ -16,41 +16,41 @@ const PIECE: u32 = 8;
 const CHUNK: u32 = 64;
 
 /// Samples of a piece of a cell.
-struct Job {
+struct Chunk {
     /// The cell's place among those that are rendered.
     cell: usize,
     piece: Region,
     samples: Range<u32>,
 }
 
-impl Renderer<'_> {
+impl Renderer {
     /// The sums of whole blocks of samples of some cells.
     pub(crate) fn cells<R: Number>(&self, view: &View, cells: &[Region], samples: Range<u32>) -> CellSums {
         let words = self.planned.film_words();
-        let done: Vec<(Job, Vec<u32>, u64)> = self.install(|| {
-            let run = |job: Job| {
-                let (sums, secondary) = self.planned.blocks::<R>(view, job.piece, job.samples.clone());
-                (job, sums, secondary)
+        let done: Vec<(Chunk, Vec<u32>, u64)> = self.install(|| {
+            let run = |chunk: Chunk| {
+                let (sums, secondary) = self.planned.blocks::<R>(view, chunk.piece, chunk.samples.clone());
+                (chunk, sums, secondary)
             };
-            jobs(cells, samples).into_par_iter().with_max_len(1).map(run).collect()
+            chunks(cells, samples).into_par_iter().with_max_len(1).map(run).collect()
         });
         let mut all = CellSums { sums: cells.iter().map(|&cell| self.planned.film(cell)).collect(), secondary: 0 };
-        for (job, sums, secondary) in done {
-            Layout { region: cells[job.cell], words }.add(&mut all.sums[job.cell], job.piece, &sums);
+        for (chunk, sums, secondary) in done {
+            Layout { region: cells[chunk.cell], words }.add(&mut all.sums[chunk.cell], chunk.piece, &sums);
             all.secondary += secondary;
         }
         all
     }
 }
 
-fn jobs(cells: &[Region], samples: Range<u32>) -> Vec<Job> {
-    let mut jobs = Vec::new();
+fn chunks(cells: &[Region], samples: Range<u32>) -> Vec<Chunk> {
+    let mut chunks = Vec::new();
     for (cell, region) in cells.iter().enumerate() {
         for piece in region.pieces(PIECE, PIECE) {
             let starts = samples.clone().step_by(CHUNK as usize);
-            let chunks = starts.map(|start| start..samples.end.min(start + CHUNK));
-            jobs.extend(chunks.map(|samples| Job { cell, piece, samples }));
+            let ranges = starts.map(|start| start..samples.end.min(start + CHUNK));
+            chunks.extend(ranges.map(|samples| Chunk { cell, piece, samples }));
         }
     }
-    jobs
+    chunks
 }

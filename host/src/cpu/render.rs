@@ -1,6 +1,6 @@
 //! Whole pictures.
 
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use eyerays_kernels_cpu::{Isa, Number};
 use eyerays_shader::resources::binding;
@@ -8,9 +8,10 @@ use rayon::prelude::*;
 
 use super::pool::pool;
 use super::tile::{Observer, Planned};
-use crate::device_scene::{DeviceScene, SceneView};
+use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::film::{Film, Part};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -27,10 +28,10 @@ const TILE: u32 = 32;
 /// Samples can be added to a film bit by bit, with the bits of all at once:
 ///
 /// ```
-/// # use eyerays::{cpu::Renderer, device_scene::DeviceScene, method::Traversal, quality::Bvh, scene, view::View};
+/// # use eyerays::{cpu::Renderer, job::Job, method::Traversal, quality::Bvh, scene, view::View};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
-/// let device_scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let device_scene = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let view = View::of(&device_scene, &scene.cameras[0], (16, 16), 2)?;
 /// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
 /// let mut film = renderer.start(&view)?;
@@ -41,28 +42,35 @@ const TILE: u32 = 32;
 /// # Ok(())
 /// # }
 /// ```
-pub struct Renderer<'a> {
-    pub(super) planned: Planned<'a>,
-    threads: rayon::ThreadPool,
+pub struct Renderer {
+    pub(super) planned: Planned,
+    threads: Arc<rayon::ThreadPool>,
 }
 
-impl<'a> Renderer<'a> {
+impl Renderer {
     /// Starts `threads` threads (0: one a core) and makes what the traversal needs beside the packed scene, such as
     /// wide nodes.
     ///
     /// # Errors
     /// If the threads can't be started.
-    pub fn new(packed: &'a DeviceScene, traversal: impl Into<Traversal>, threads: usize) -> Result<Self> {
-        let threads = pool(threads)?;
-        let traversal = traversal.into();
-        let laid = threads.install(|| SceneView::new(packed, traversal));
-        Ok(Renderer { planned: Planned::new(laid, Isa::best()), threads })
+    pub fn new(packed: &Job, traversal: impl Into<Traversal>, threads: usize) -> Result<Self> {
+        Ok(Renderer::on(Arc::new(pool(threads)?), packed, traversal.into()))
+    }
+
+    fn on(threads: Arc<rayon::ThreadPool>, job: &Job, traversal: Traversal) -> Self {
+        let laid = threads.install(|| SceneView::new(job, traversal));
+        Renderer { planned: Planned::new(laid, Isa::best()), threads }
+    }
+
+    /// One for another job, with the same threads.
+    pub(crate) fn turned(&self, job: &Job) -> Self {
+        Renderer::on(self.threads.clone(), job, self.planned.laid.traversal)
     }
 
     /// Goes on with other lights: as many as the scene's, of the same kinds.
     ///
     /// # Errors
-    /// As [`DeviceScene::relit`].
+    /// As [`DeviceScene::relit`](crate::device_scene::DeviceScene::relit).
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
         self.planned.laid.set_lights(lights)
     }
@@ -157,7 +165,7 @@ impl<'a> Renderer<'a> {
 /// # Errors
 /// If the film or the threads can't be had.
 pub fn render<R>(
-    packed: &DeviceScene,
+    packed: &Job,
     view: &View,
     traversal: impl Into<Traversal>,
     threads: usize,
@@ -182,8 +190,8 @@ mod tests {
         scene::load(path.as_ref()).unwrap().0
     }
 
-    fn packed(scene: &Scene, settings: Settings) -> DeviceScene {
-        DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap()
+    fn packed(scene: &Scene, settings: Settings) -> Job {
+        Job::new(scene, settings, Bvh::Fast.quality()).unwrap()
     }
 
     /// Three threads, a picture of whole and broken tiles, and reflected rays.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use eyerays_kernels_cpu::{Isa, Job, Number, Queues, Records, Shown};
+use eyerays_kernels_cpu::{Isa, Number, Query, Queues, Records, Shown};
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
@@ -41,20 +41,20 @@ fn records<R: Number>(plan: &Plan, slots: u32) -> Records<R> {
 }
 
 /// A scene with the plan of its pictures.
-pub struct Planned<'a> {
+pub struct Planned {
     /// The scene.
-    pub laid: SceneView<'a>,
+    pub laid: SceneView,
     pub(super) plan: Plan,
     /// For whole blocks of samples.
     blocks: Option<Plan>,
     pub(super) isa: Isa,
 }
 
-impl<'a> Planned<'a> {
+impl Planned {
     /// Plans pictures of a scene, with the instructions of an Isa.
-    pub fn new(laid: SceneView<'a>, isa: Isa) -> Self {
+    pub fn new(laid: SceneView, isa: Isa) -> Self {
         let traversal = laid.traversal;
-        let plan = Plan::new(laid.packed, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
+        let plan = Plan::new(&laid.job, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
         let plan = plan.expect("a CPU has every method");
         let blocks = plan.in_blocks(0);
         Planned { laid, plan, blocks, isa }
@@ -84,7 +84,7 @@ impl<'a> Planned<'a> {
         observer: &dyn Observer<R>,
     ) -> u64 {
         let order = self.laid.specialisation().order;
-        let frame = |sample| view.launch(self.laid.packed, region, sample, 1, order);
+        let frame = |sample| view.launch(&self.laid.job, region, sample, 1, order);
         let frames = (samples.start..samples.end.min(view.range().end)).map(frame);
         self.run(&self.plan, frames, film, observer)
     }
@@ -96,7 +96,7 @@ impl<'a> Planned<'a> {
     pub(super) fn blocks<R: Number>(&self, view: &View, region: Region, samples: Range<u32>) -> (Vec<u32>, u64) {
         let plan = self.blocks.as_ref().expect("noise is of integrators that sample");
         let order = self.laid.specialisation().order;
-        let frame = |first| view.launch(self.laid.packed, region, first, BLOCK, order);
+        let frame = |first| view.launch(&self.laid.job, region, first, BLOCK, order);
         let mut film = self.film(region);
         let secondary = self.run::<R>(plan, samples.step_by(BLOCK as usize).map(frame), &mut film, &());
         (film, secondary)
@@ -127,8 +127,8 @@ impl<'a> Planned<'a> {
 }
 
 /// One sample of a region.
-struct Launch<'l, 'a, R: Number> {
-    planned: &'l Planned<'a>,
+struct Launch<'l, R: Number> {
+    planned: &'l Planned,
     frame: &'l Frame,
     /// Slots of the wave.
     queue: Vec<u32>,
@@ -140,7 +140,7 @@ struct Launch<'l, 'a, R: Number> {
     secondary: u64,
 }
 
-impl<R: Number> Executor for Launch<'_, '_, R> {
+impl<R: Number> Executor for Launch<'_, R> {
     fn step(&mut self, _: usize, step: &Step) -> Result<()> {
         let scene = self.planned.laid.context(self.frame, step.spec);
         let method = step.traversal.map(|traversal| traversal.method).unwrap_or_default();
@@ -166,11 +166,11 @@ impl<R: Number> Executor for Launch<'_, '_, R> {
     }
 }
 
-impl<R: Number> Launch<'_, '_, R> {
+impl<R: Number> Launch<'_, R> {
     fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
         let mut hits = vec![R::store(V3::zero(), 0); self.queue.len()];
-        let job = Job::Trace(&self.records.paths, &mut hits);
-        R::follow(self.planned.isa, method.way(), scene, &self.queue, job);
+        let query = Query::Trace(&self.records.paths, &mut hits);
+        R::follow(self.planned.isa, method.way(), scene, &self.queue, query);
         for (&slot, hit) in self.queue.iter().zip(hits) {
             self.records.hits[slot as usize] = hit;
         }
@@ -182,8 +182,8 @@ impl<R: Number> Launch<'_, '_, R> {
         let mut answers = vec![0; self.queue.len()];
         for light in 0..self.frame.shadow_rays {
             let asking = ShadowInputs { lights: self.planned.laid.lights(), paths, hits };
-            let job = Job::Shadow(asking, light, &mut answers);
-            R::follow(self.planned.isa, method.way(), scene, &self.queue, job);
+            let query = Query::Shadow(asking, light, &mut answers);
+            R::follow(self.planned.isa, method.way(), scene, &self.queue, query);
             for (&slot, &answer) in self.queue.iter().zip(&answers) {
                 shadows[(light * self.frame.slots + slot) as usize] = answer;
             }
@@ -194,7 +194,7 @@ impl<R: Number> Launch<'_, '_, R> {
     fn shade(&mut self, scene: &TraceContext<'_>) {
         self.observer.wave(scene, &self.queue, &self.records);
         let laid = &self.planned.laid;
-        let (lights, environment) = (laid.lights(), laid.packed.environment());
+        let (lights, environment) = (laid.lights(), laid.job.environment());
         let shown = Shown { launch: scene.base, shading: laid.shading(), lights, environment };
         R::shade(&shown, Queues { now: &self.queue, next: &mut self.next }, &mut self.records);
     }

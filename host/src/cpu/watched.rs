@@ -9,6 +9,7 @@ use eyerays_kernels_cpu::Number;
 use super::render::Renderer;
 use crate::error::Result;
 use crate::film::{Film, Part};
+use crate::job::Job;
 use crate::noise::CellSums;
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -16,8 +17,8 @@ use crate::view::{Region, View};
 use crate::watch::Grows;
 
 /// A CPU that films grow on, in the arithmetic `R`.
-pub(crate) struct OnCpu<'a, R> {
-    renderer: Arc<Renderer<'a>>,
+pub(crate) struct OnCpu<R> {
+    renderer: Arc<Renderer>,
     growing: Option<Growing>,
     number: PhantomData<R>,
 }
@@ -27,14 +28,20 @@ struct Growing {
     film: Film,
 }
 
-impl<'a, R: Number> OnCpu<'a, R> {
+impl<R: Number> OnCpu<R> {
     /// Without a film.
-    pub fn new(renderer: Arc<Renderer<'a>>) -> Self {
+    pub fn new(renderer: Arc<Renderer>) -> Self {
         OnCpu { renderer, growing: None, number: PhantomData }
     }
 }
 
-impl<R: Number> Grows for OnCpu<'_, R> {
+impl<R: Number> Grows for OnCpu<R> {
+    fn turn(&mut self, job: &Job) -> Result<()> {
+        self.growing = None;
+        self.renderer = Arc::new(self.renderer.turned(job));
+        Ok(())
+    }
+
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         // There may be no memory for two.
         self.growing = None;

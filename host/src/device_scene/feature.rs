@@ -27,7 +27,7 @@ impl Feature {
     }
 
     /// Bits of the constant of kernels, see [`Launch`].
-    pub(super) fn bits(self) -> u32 {
+    pub(crate) fn bits(self) -> u32 {
         match self {
             Feature::Albedo => Launch::ALBEDO,
             Feature::Normal => Launch::NORMAL,

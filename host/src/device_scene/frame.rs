@@ -1,11 +1,10 @@
-//! The records of launches, but for what a view says.
+//! What launches are told of a scene.
 
-use eyerays_shader::data::{Frame, pack};
-use glam::Vec3;
+use eyerays_shader::data::Frame;
+use glam::{UVec4, Vec3};
 
-use super::normalisation::flushed;
 use super::{DeviceScene, records};
-use crate::scene::{Background, Transport};
+use crate::scene::Background;
 
 /// A corner beyond every scene.
 const EVERYWHERE: Vec3 = Vec3::splat((1u64 << 40) as f32);
@@ -26,34 +25,12 @@ impl DeviceScene {
         Frame { slots: count as u32, vertices: self.primitives.len() as u32, ..Frame::default() }
     }
 
-    /// Every launch's record but for what a view says.
-    pub(crate) fn frame(&self) -> Frame {
+    /// Light of the background at the horizon and below, and straight up: linear RGB.
+    pub(crate) fn background(&self) -> [UVec4; 2] {
         let (horizon, zenith) = match self.background {
             Background::Colour(colour) => (colour, colour),
             Background::Gradient { horizon, zenith } => (horizon, zenith),
         };
-        let lights = self.lights.len() as u32;
-        let Transport { seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
-        let [least, greatest] = self.found_light().unwrap_or([Vec3::ONE, Vec3::NEG_ONE]);
-        let reach = (f64::from(ao_distance) * self.normalisation.scale).min(f32::MAX.into()) as f32;
-        Frame {
-            lamps: pack(flushed((least + greatest) * 0.5), 0),
-            lamps_half: pack(flushed((greatest - least) * 0.5), 0),
-            horizon: records::colour(horizon, 0),
-            zenith: records::colour(zenith, 0),
-            bounces: self.settings.bounces,
-            min_contribution: self.settings.min_contribution,
-            lights,
-            shadow_rays: if self.is_sampled() { 1 } else { lights },
-            seed,
-            emitters: self.lighting.emitters.len() as u32,
-            roulette,
-            clamp,
-            reach,
-            environment: self.lighting.environment,
-            far: self.lighting.far,
-            vertices: self.primitives.len() as u32,
-            ..Frame::default()
-        }
+        [horizon, zenith].map(|light| records::colour(light, 0))
     }
 }

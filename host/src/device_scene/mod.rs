@@ -5,13 +5,11 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, CwbvhNode, Effects, Launch, Layout, Light as LightRecord, Material as MaterialRecord, Normals,
-    Physical as PhysicalRecord, Primitive, Specialisation,
+    Bounds, CentredPair, CwbvhNode, Effects, Light as LightRecord, Material as MaterialRecord, Normals,
+    Physical as PhysicalRecord, Primitive,
 };
-use eyerays_shader::material::ALBEDOS;
 
 mod alias;
-pub(crate) mod check;
 mod environment;
 mod feature;
 mod frame;
@@ -35,14 +33,20 @@ pub use textures::Textures;
 pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
-use glam::Vec3;
 use hierarchy::{centred, gathered, kept_or_built, refused};
 use lighting::Lamps;
 
 use crate::error::{Error, Result};
 use crate::memory::Room;
-use crate::method::{Method, Traversal};
-use crate::scene::{Background, Integrator, Light, Scene, Settings, Transport};
+use crate::method::Method;
+use crate::scene::{Background, Light, Scene, Settings};
+
+/// Hierarchies beside that of pairs of nodes.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct Hierarchies {
+    /// Nodes of eight children, for a GPU.
+    pub wide: bool,
+}
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
@@ -64,8 +68,6 @@ pub struct DeviceScene {
     /// Those of any settings.
     effects: Effects,
     background: Background,
-    settings: Settings,
-    feature: Option<Feature>,
     has_orthographic_cameras: bool,
     normalisation: Normalisation,
     statistics: Statistics,
@@ -78,10 +80,11 @@ impl DeviceScene {
     /// it but [`Method::Wide`] on a GPU.
     ///
     /// # Errors
-    /// A mesh that names vertices or materials which are not there, or settings out of range. What no device could hold
-    /// or no ray meet: too many triangles, a light too far away for the scene's numbers.
-    pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
-        Self::pack(scene, settings, quality, false)
+    /// A mesh that names vertices or materials which are not there. What no device could hold or no ray meet: too many triangles,
+    /// a light too far away for the scene's numbers.
+    pub fn new(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
+        scene.check()?;
+        Self::of_checked(scene, quality, Hierarchies::default())
     }
 
     /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
@@ -89,20 +92,22 @@ impl DeviceScene {
     ///
     /// # Errors
     /// As there.
-    pub fn with_wide_nodes(scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
-        Self::pack(scene, settings, quality, true)
+    pub fn with_wide_nodes(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
+        scene.check()?;
+        Self::of_checked(scene, quality, Hierarchies { wide: true })
     }
 
-    fn pack(scene: &Scene, settings: Settings, quality: Quality, is_wide: bool) -> Result<DeviceScene> {
-        scene.check()?;
-        check::settings(&settings)?;
-        let emissive = scene.materials.iter().find(|m| m.emission != Vec3::ZERO).map(|m| m.name.clone());
-        check::emission(emissive.as_deref(), settings.transport.integrator)?;
+    /// Of a scene that was checked.
+    ///
+    /// # Errors
+    /// As [`DeviceScene::new`].
+    pub(crate) fn of_checked(scene: &Scene, quality: Quality, hierarchies: Hierarchies) -> Result<DeviceScene> {
+        let emissive = scene.emissive().map(str::to_owned);
         let effects = records::effects(scene);
         let (normalisation, primitives) = normalised(scene);
         let start = Instant::now();
         let mut bvh = kept_or_built(scene, &primitives, quality)?;
-        if is_wide {
+        if hierarchies.wide {
             bvh.widen().map_err(refused)?;
         }
         let is_split = bvh.order.len() > primitives.len();
@@ -141,8 +146,6 @@ impl DeviceScene {
             lamps,
             effects: Effects(effects.0 & !dark | many),
             background: scene.background,
-            settings,
-            feature: None,
             has_orthographic_cameras: scene.cameras.iter().any(|camera| camera.projection.is_orthographic()),
             normalisation,
             build_time,
@@ -167,7 +170,7 @@ impl DeviceScene {
     pub(crate) fn check_walks(&self, method: Method) -> Result<()> {
         if method == Method::Wide && self.wide.is_empty() {
             return Err(Error::new(
-                "wide walks nodes that the scene was packed without: pack it by DeviceScene::with_wide_nodes",
+                "wide walks nodes that the scene was packed without: pack it by Job::with_wide_nodes",
             ));
         }
         Ok(())
@@ -203,15 +206,6 @@ impl DeviceScene {
         &self.physicals
     }
 
-    /// Words of the albedos of facets, see [`eyerays_shader::material::Albedos`]; empty where nothing is given back.
-    pub fn albedos(&self) -> &'static [u32] {
-        static WORDS: OnceLock<Vec<u32>> = OnceLock::new();
-        if !self.effects().has(Effects::COMPENSATED) {
-            return &[];
-        }
-        WORDS.get_or_init(|| bytemuck::pod_collect_to_vec(ALBEDOS))
-    }
-
     /// What covers surfaces.
     pub fn textures(&self) -> &Textures {
         &self.textures
@@ -232,30 +226,19 @@ impl DeviceScene {
         &self.lighting
     }
 
-    /// The effects that the scene asks for.
-    pub fn effects(&self) -> Effects {
-        let effects = records::asked(self.effects, &self.settings);
-        self.feature.map_or(effects, |feature| feature.asked(self.effects).with(effects.0 & Effects::CULLING))
+    /// The effects that it has which some settings ask for.
+    pub(crate) fn asked(&self, settings: &Settings) -> Effects {
+        records::asked(self.effects, settings)
     }
 
-    /// What its pictures show instead of light, if they do.
-    pub fn feature(&self) -> Option<Feature> {
-        self.feature
+    /// Those that matter to a feature.
+    pub(crate) fn shown(&self, feature: Feature) -> Effects {
+        feature.asked(self.effects)
     }
 
-    /// Lets pictures show something else instead of light, or light again.
-    pub fn show(&mut self, feature: Option<Feature>) {
-        self.feature = feature;
-    }
-
-    /// Is a picture made of samples, each of which asks for at most one shadow ray?
-    fn is_sampled(&self) -> bool {
-        self.feature.is_some() || self.settings.transport.integrator.samples()
-    }
-
-    /// How much of it is rendered.
-    pub fn settings(&self) -> &Settings {
-        &self.settings
+    /// A material that emits, by its name.
+    pub(crate) fn emissive(&self) -> Option<&str> {
+        self.emissive.as_deref()
     }
 
     /// How the scene became what kernels take.
@@ -287,54 +270,9 @@ impl DeviceScene {
         self.build_time
     }
 
-    /// Can a primary ray's light come from further rays?
-    pub fn has_secondary_rays(&self) -> bool {
-        self.effects().has(Effects::REFLECTION | Effects::REFRACTION | Effects::PHYSICAL)
-    }
-
     /// May it be seen by an orthographic camera?
     pub fn has_orthographic_cameras(&self) -> bool {
         self.has_orthographic_cameras
-    }
-
-    /// What kernels are compiled for that follow the camera's rays by a traversal.
-    pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
-        let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
-        let parallel = if self.has_orthographic_cameras { Launch::PARALLEL } else { 0 };
-        let split = if self.bounds.is_empty() { 0 } else { Layout::SPLIT };
-        Specialisation {
-            effects: self.effects(),
-            launch: Launch(
-                traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter | parallel,
-            ),
-            layout: Layout(traversal.layout.bits() | split),
-            order: traversal.order.bits(),
-            tuning: traversal.tuning,
-        }
-    }
-
-    fn transport_bits(&self) -> u32 {
-        let Transport { integrator, direct, .. } = self.settings.transport;
-        if let Some(feature) = self.feature {
-            return feature.bits();
-        }
-        match integrator {
-            Integrator::Whitted => 0,
-            Integrator::Ao => Launch::OCCLUSION,
-            Integrator::Distributed => Launch::TREE,
-            Integrator::Path => direct.bits(),
-        }
-    }
-
-    /// Takes other settings and keeps the hierarchy, which does not depend on them.
-    ///
-    /// # Errors
-    /// Settings out of range.
-    pub fn set(&mut self, settings: Settings) -> Result<()> {
-        check::settings(&settings)?;
-        check::emission(self.emissive.as_deref(), settings.transport.integrator)?;
-        self.settings = settings;
-        Ok(())
     }
 
     /// The records of other lights for the same kernels: as many, of the same kinds.

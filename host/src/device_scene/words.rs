@@ -1,6 +1,5 @@
 //! Primitives and nodes as kernels load them.
 
-use std::borrow::Cow;
 use std::collections::HashMap;
 
 use eyerays_shader::data::{CompactPair, Primitive};
@@ -10,32 +9,43 @@ use rayon::prelude::*;
 use super::DeviceScene;
 use crate::method::Layout;
 
-/// The words of all primitives in one of their layouts, see [`eyerays_shader::scene::LaunchContext::primitive`].
-pub struct PrimitiveWords<'a>(pub Cow<'a, [UVec4]>);
+/// The words of all primitives in one of their layouts, see [`eyerays_shader::scene::LaunchContext::primitive`]: none beside the scene's
+/// own where these will do.
+pub struct PrimitiveWords(Option<Vec<UVec4>>);
 
-impl<'a> PrimitiveWords<'a> {
-    /// The primitives of a scene.
-    pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
+impl PrimitiveWords {
+    /// For a layout of a scene's primitives.
+    pub fn of(packed: &DeviceScene, layout: Layout) -> Self {
         PrimitiveWords(match layout {
-            Layout::Gathered | Layout::Compact => Cow::Borrowed(bytemuck::cast_slice(&packed.primitives)),
-            Layout::Indexed => Cow::Owned(indexed(&packed.primitives)),
+            Layout::Gathered | Layout::Compact => None,
+            Layout::Indexed => Some(indexed(&packed.primitives)),
         })
+    }
+
+    /// The words, of the scene that they were made for.
+    pub fn words<'a>(&'a self, packed: &'a DeviceScene) -> &'a [UVec4] {
+        self.0.as_deref().unwrap_or(bytemuck::cast_slice(&packed.primitives))
     }
 }
 
-/// The words of all pairs of nodes, see [`eyerays_shader::scene::TraceContext::pair`].
-pub struct NodeWords<'a>(pub Cow<'a, [UVec4]>);
+/// The words of all pairs of nodes, see [`eyerays_shader::scene::TraceContext::pair`], likewise.
+pub struct NodeWords(Option<Vec<UVec4>>);
 
-impl<'a> NodeWords<'a> {
-    /// The hierarchy of a scene.
-    pub fn of(packed: &'a DeviceScene, layout: Layout) -> Self {
+impl NodeWords {
+    /// For a layout of a scene's hierarchy.
+    pub fn of(packed: &DeviceScene, layout: Layout) -> Self {
         NodeWords(match layout {
             Layout::Compact => {
                 let pairs: Vec<CompactPair> = packed.nodes.par_iter().map(CompactPair::from).collect();
-                Cow::Owned(bytemuck::cast_slice(&pairs).to_vec())
+                Some(bytemuck::cast_slice(&pairs).to_vec())
             }
-            Layout::Gathered | Layout::Indexed => Cow::Borrowed(bytemuck::cast_slice(&packed.nodes)),
+            Layout::Gathered | Layout::Indexed => None,
         })
+    }
+
+    /// The words, of the scene that they were made for.
+    pub fn words<'a>(&'a self, packed: &'a DeviceScene) -> &'a [UVec4] {
+        self.0.as_deref().unwrap_or(bytemuck::cast_slice(&packed.nodes))
     }
 }
 

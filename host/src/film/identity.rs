@@ -8,8 +8,8 @@ use serde_json::Value;
 use sha2::{Digest, Sha256};
 
 use crate::choice::Named;
-use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::noise::Target;
 use crate::picture::hexadecimal;
@@ -29,7 +29,7 @@ impl Identity {
     ///
     /// # Errors
     /// None that settings could make.
-    pub fn of(scene: [u8; 32], packed: &DeviceScene, view: &View, precision: Precision) -> Result<Identity> {
+    pub fn of(scene: [u8; 32], packed: &Job, view: &View, precision: Precision) -> Result<Identity> {
         let settings = packed.settings();
         let (width, height) = view.size();
         let mut all = BTreeMap::from([

@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 use super::*;
 use crate::cpu::Renderer;
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::quality::Bvh;
 use crate::render::Precision;
@@ -19,15 +19,15 @@ fn cornell() -> Scene {
 }
 
 /// A scene by an integrator, and how it is seen.
-fn posed(scene: &Scene, integrator: Integrator) -> (DeviceScene, View) {
+fn posed(scene: &Scene, integrator: Integrator) -> (Job, View) {
     let transport = Transport { integrator, ..scene.settings.transport };
     let settings = Settings { size: SIZE, spp: SPP, bounces: 2, transport, ..scene.settings };
-    let packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
 }
 
-fn rendered(renderer: &Renderer<'_>, view: &View) -> Film {
+fn rendered(renderer: &Renderer, view: &View) -> Film {
     let mut film = renderer.start(view).unwrap();
     renderer.add::<f32>(view, &mut film, view.whole(), &|_| (), &()).unwrap();
     film
@@ -149,7 +149,7 @@ fn films_of_other_pictures_are_refused_by_name() {
     let identity = |scene: &Scene, change: &dyn Fn(&mut Settings), precision| {
         let mut settings = scene.settings;
         change(&mut settings);
-        let packed = DeviceScene::new(scene, settings, Bvh::Fast.quality()).unwrap();
+        let packed = Job::new(scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         Identity::of(scene::fingerprint(scene).unwrap(), &packed, &view, precision).unwrap()
     };

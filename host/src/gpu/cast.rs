@@ -11,15 +11,15 @@ use eyerays_shader::resources::binding;
 use glam::UVec4;
 
 use super::device::Gpu;
-use super::kernel::{Kernel, compile};
+use super::kernel::{Kernel, Known};
 use super::memory::LaunchBuffers;
 use super::readback;
 use super::recipe::Recipe;
 use super::scene::{Hierarchies, SceneBuffers};
 use super::timer::Timer;
 use super::warm::warm;
-use crate::device_scene::DeviceScene;
 use crate::error::{Content, Error, Result};
+use crate::job::Job;
 use crate::method::{Coherence, Layout, Traversal};
 use crate::plan::{Stage, Step};
 use crate::stream::{Answers, Question, Stream};
@@ -37,7 +37,7 @@ const LEAST_WARMING: Duration = Duration::from_millis(100);
 /// A scene on a GPU, ready for streams of rays. Kernels are compiled once for all streams.
 pub struct Caster<'a> {
     gpu: &'a Gpu,
-    packed: &'a DeviceScene,
+    packed: &'a Job,
     layout: Layout,
     scene: SceneBuffers,
     kernels: RefCell<HashMap<Key, Rc<Kernel>>>,
@@ -55,7 +55,7 @@ impl<'a> Caster<'a> {
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, layout: Layout) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a Job, layout: Layout) -> Result<Self> {
         let scene =
             SceneBuffers::new(gpu, packed, layout, Hierarchies { binary: true, wide: !packed.wide().is_empty() })?;
         Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
@@ -170,7 +170,8 @@ impl<'a> Caster<'a> {
         self.packed.check_walks(traversal.method)?;
         let spec = self.packed.specialisation(&traversal).with_launch(Launch::STREAM);
         let step = Step { stage, traversal: Some(traversal), spec };
-        let kernel = compile(self.gpu, &[Recipe::new(step, self.gpu.target(exact))]).pop().map(Rc::new);
+        let recipe = Recipe::new(step, self.gpu.target(exact));
+        let kernel = Known::default().compile(self.gpu, vec![recipe]).pop().map(Rc::new);
         self.gpu.check()?;
         let kernel = kernel.expect("a kernel for a recipe");
         self.kernels.borrow_mut().insert(key, kernel.clone());

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::recipe::{Recipe, Target};
 use super::scene::SceneRecords;
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 use crate::method::{Processor, Traversal};
 use crate::plan::{Plan, Step};
 
@@ -38,7 +38,7 @@ pub struct KernelCost {
 
 impl Cost {
     /// Of a scene in the exact or the fast precision, on a GPU with subgroups.
-    pub fn of(packed: &DeviceScene, exact: bool, traversal: Traversal) -> Cost {
+    pub fn of(packed: &Job, exact: bool, traversal: Traversal) -> Cost {
         let resolve = |coherence| Ok(traversal.resolved(Processor::Gpu, coherence));
         let plan = Plan::new(packed, &traversal, resolve).expect("such a GPU has every method");
         let name = |binding: u32| RESOURCES[binding as usize].name;
@@ -75,7 +75,7 @@ mod tests {
     }
 
     fn cost(scene: &Scene) -> Cost {
-        let packed = DeviceScene::new(scene, scene.settings, Quality::Fast).unwrap();
+        let packed = Job::new(scene, scene.settings, Quality::Fast).unwrap();
         Cost::of(&packed, true, Traversal::default())
     }
 

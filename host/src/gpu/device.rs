@@ -36,7 +36,8 @@ pub struct AdapterRequest {
     pub around: Option<Around>,
 }
 
-/// An opened GPU.
+/// An opened GPU. Cheap to clone: all clones are the same device.
+#[derive(Clone)]
 pub struct Gpu {
     /// What it offers.
     pub report: AdapterReport,
@@ -65,22 +66,51 @@ impl Gpu {
         if want.exact && (route == Route::Naga || !report.exact) {
             return Err(Error::Inexact { device: report.name, by_naga: want.naga });
         }
-        let mut features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
-        if route == Route::Passthrough {
-            features |= wgpu::Features::PASSTHROUGH_SHADERS;
-        }
-        let request = adapter.request_device(&wgpu::DeviceDescriptor {
-            label: Some("eyerays"),
-            required_features: features,
-            required_limits: adapter.limits(),
-            // SAFETY: passthrough is the one experimental feature in use; `module` says why it is sound.
-            experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
-            // Of the larger blocks that `Performance` begins with, the first that the host reads takes 25 ms (an H200).
-            memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..256 << 20 },
-            trace: wgpu::Trace::Off,
-        });
+        let request = adapter.request_device(&descriptor(&adapter, route));
         let (device, queue) = pollster::block_on(request)
             .map_err(|e| Error::NotOpened { device: report.name.clone(), message: e.to_string() })?;
+        Ok(Gpu::on(report, route, device, queue, want.around))
+    }
+
+    /// What to open a device with that is to be [shared](Gpu::from_wgpu): all that the adapter has of what kernels want. Others may
+    /// add to its features.
+    pub fn descriptor(adapter: &wgpu::Adapter) -> wgpu::DeviceDescriptor<'static> {
+        let passthrough = adapter.features().contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        descriptor(adapter, if passthrough { Route::Passthrough } else { Route::Naga })
+    }
+
+    /// A device that somebody else has opened, such as that of a window, so that pictures need not leave it. It hears of the device's
+    /// faults instead of handlers that were set before.
+    ///
+    /// # Errors
+    /// The device was opened with smaller limits than kernels take: open it by [`Gpu::descriptor`].
+    pub fn from_wgpu(adapter: &wgpu::Adapter, device: wgpu::Device, queue: wgpu::Queue) -> Result<Gpu> {
+        let (features, limits, most) = (device.features(), device.limits(), adapter.limits());
+        let of_adapter = AdapterReport::of(0, adapter);
+        if limits.max_storage_buffers_per_shader_stage < most.max_storage_buffers_per_shader_stage {
+            let message = "it was opened with few buffers a kernel: open it by Gpu::descriptor".to_owned();
+            return Err(Error::NotOpened { device: of_adapter.name, message });
+        }
+        let passthrough = features.contains(wgpu::Features::PASSTHROUGH_SHADERS);
+        let report = AdapterReport {
+            passthrough,
+            exact: passthrough && of_adapter.exact,
+            max_buffer: limits.max_buffer_size,
+            max_binding: limits.max_storage_buffer_binding_size,
+            timestamps: features.contains(wgpu::Features::TIMESTAMP_QUERY),
+            ..of_adapter
+        };
+        let route = if passthrough { Route::Passthrough } else { Route::Naga };
+        Ok(Gpu::on(report, route, device, queue, None))
+    }
+
+    fn on(
+        report: AdapterReport,
+        route: Route,
+        device: wgpu::Device,
+        queue: wgpu::Queue,
+        around: Option<Around>,
+    ) -> Gpu {
         let fault = Arc::new(Mutex::new(None));
         let (first, lost) = (fault.clone(), fault.clone());
         device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&first, e.to_string())));
@@ -89,7 +119,7 @@ impl Gpu {
                 note(&lost, format!("the device was lost: {message}"));
             }
         });
-        Ok(Gpu { report, route, device, queue, around: want.around, fault })
+        Gpu { report, route, device, queue, around, fault }
     }
 
     /// The method and scheduling for rays of some coherence.
@@ -150,6 +180,24 @@ impl Gpu {
         let polled = self.device.poll(what);
         self.check()?;
         polled.map(|_| ()).map_err(|e| Error::DeviceFailed { device: self.report.name.clone(), message: e.to_string() })
+    }
+}
+
+/// What a device is opened with.
+fn descriptor(adapter: &wgpu::Adapter, route: Route) -> wgpu::DeviceDescriptor<'static> {
+    let mut features = adapter.features() & (wgpu::Features::TIMESTAMP_QUERY | wgpu::Features::SUBGROUP);
+    if route == Route::Passthrough {
+        features |= wgpu::Features::PASSTHROUGH_SHADERS;
+    }
+    wgpu::DeviceDescriptor {
+        label: Some("eyerays"),
+        required_features: features,
+        required_limits: adapter.limits(),
+        // SAFETY: passthrough is the one experimental feature in use; `module` says why it is sound.
+        experimental_features: unsafe { wgpu::ExperimentalFeatures::enabled() },
+        // Of the larger blocks that `Performance` begins with, the first that the host reads takes 25 ms (an H200).
+        memory_hints: wgpu::MemoryHints::Manual { suballocated_device_memory_block_size: 4 << 20..256 << 20 },
+        trace: wgpu::Trace::Off,
     }
 }
 

@@ -83,15 +83,30 @@ impl Kernel {
     }
 }
 
-/// Compiles kernels, all at once and each once: drivers take most of the time to a first picture.
-pub(super) fn compile(gpu: &Gpu, recipes: &[Recipe]) -> Vec<Kernel> {
-    let _around = gpu.around.map(|begin| begin());
-    let first = |recipe: &Recipe| recipes.iter().position(|other| other.is_like(recipe)).expect("it is one of them");
-    let places: Vec<usize> = recipes.iter().map(first).collect();
-    let unlike: Vec<usize> = (0..recipes.len()).filter(|&i| places[i] == i).collect();
-    let compiled = on_deep_stacks(&unlike, |&i| one(gpu, &recipes[i]));
-    let at = |place| unlike.binary_search(&place).expect("it was compiled");
-    places.into_iter().map(|place| compiled[at(place)].clone()).collect()
+/// Kernels that were compiled, with what they were made of.
+#[derive(Default)]
+pub(super) struct Known(Vec<(Recipe, Kernel)>);
+
+impl Known {
+    /// The kernels of recipes. Those that are not known yet are compiled all at once and each once: drivers take most of the time to
+    /// a first picture.
+    pub fn compile(&mut self, gpu: &Gpu, recipes: Vec<Recipe>) -> Vec<Kernel> {
+        let mut new: Vec<Recipe> = Vec::new();
+        for recipe in &recipes {
+            if self.find(recipe).is_none() && !new.iter().any(|other| other.is_like(recipe)) {
+                new.push(recipe.clone());
+            }
+        }
+        let _around = gpu.around.filter(|_| !new.is_empty()).map(|begin| begin());
+        let compiled = on_deep_stacks(&new, |recipe| one(gpu, recipe));
+        self.0.extend(new.into_iter().zip(compiled));
+        let known = |recipe| self.find(recipe).expect("it was compiled");
+        recipes.iter().map(|recipe| known(recipe).clone()).collect()
+    }
+
+    fn find(&self, recipe: &Recipe) -> Option<&Kernel> {
+        self.0.iter().find(|(own, _)| own.is_like(recipe)).map(|(_, kernel)| kernel)
+    }
 }
 
 fn one(gpu: &Gpu, recipe: &Recipe) -> Kernel {

@@ -32,8 +32,8 @@ const PASSES: u32 = 256;
 const MOST_PASSES: u32 = 4;
 
 /// What was submitted, and what of it is known to be done.
-pub(super) struct Queue<'a> {
-    gpu: &'a Gpu,
+pub(super) struct Queue {
+    gpu: Gpu,
     timer: Option<Timer>,
     readback: Option<Readback>,
     /// For the counters alone.
@@ -52,10 +52,10 @@ pub(super) struct Queue<'a> {
     waves: u32,
 }
 
-impl<'a> Queue<'a> {
-    pub fn new(gpu: &'a Gpu) -> Self {
+impl Queue {
+    pub fn new(gpu: &Gpu) -> Self {
         Queue {
-            gpu,
+            gpu: gpu.clone(),
             timer: Timer::new(gpu, PASSES),
             readback: None,
             counters: Readback::new(gpu, COUNTERS),
@@ -118,7 +118,7 @@ impl<'a> Queue<'a> {
         let size = all.iter().map(|(_, size)| size).sum();
         let readback = match self.readback.take() {
             Some(readback) if readback.size() >= size => readback,
-            _ => Readback::new(self.gpu, size),
+            _ => Readback::new(&self.gpu, size),
         };
         let mut offset = 0;
         for &(buffer, size) in &all {
@@ -126,7 +126,7 @@ impl<'a> Queue<'a> {
             offset += size;
         }
         self.gpu.queue.submit([encoder.finish()]);
-        let words: Vec<u32> = readback.read(self.gpu, size, |bytes| {
+        let words: Vec<u32> = readback.read(&self.gpu, size, |bytes| {
             let (counters, mut rest) = bytes.split_at(COUNTERS as usize);
             if let (Some(timer), Some((_, size))) = (&self.timer, timed) {
                 let (times, films) = rest.split_at(size as usize);
@@ -172,13 +172,13 @@ impl<'a> Queue<'a> {
 }
 
 /// A launch that is being recorded: samples of a band of the image.
-pub(super) struct Launch<'l, 'a> {
+pub(super) struct Launch<'l> {
     kernels: &'l [Kernel],
     memory: &'l Memory,
     /// For the steps that bind the film.
     film: &'l wgpu::BindGroup,
     frame: &'l Frame,
-    queue: &'l mut Queue<'a>,
+    queue: &'l mut Queue,
     plan: &'l Plan,
     // Before the encoder, since it must be dropped first.
     pass: Option<wgpu::ComputePass<'static>>,
@@ -193,16 +193,15 @@ pub(super) struct Launch<'l, 'a> {
     recorded: u32,
 }
 
-impl<'l, 'a> Launch<'l, 'a> {
+impl<'l> Launch<'l> {
     pub fn new(
         plan: &'l Plan,
         kernels: &'l [Kernel],
         memory: &'l Memory,
         film: &'l wgpu::BindGroup,
         frame: &'l Frame,
-        queue: &'l mut Queue<'a>,
+        queue: &'l mut Queue,
     ) -> Result<Self> {
-        let gpu = queue.gpu;
         let rays = match plan.waves {
             Waves::AtMost(count) => u64::from(count) * u64::from(frame.slots),
             // Counted whenever the waves are looked at.
@@ -212,8 +211,8 @@ impl<'l, 'a> Launch<'l, 'a> {
             queue.read(memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         queue.uncounted += rays;
-        gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
+        queue.gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
+        let mut encoder = queue.gpu.device.create_command_encoder(&Default::default());
         encoder.clear_buffer(memory.buffers.of(binding::COUNTERS), 0, Some(4 * u64::from(counter::LAUNCH)));
         let unseen = match plan.waves {
             Waves::AtMost(count) if count <= UNSEEN => count,
@@ -256,7 +255,7 @@ impl<'l, 'a> Launch<'l, 'a> {
         self.queue.counters.copy(&mut self.encoder, self.memory.buffers.of(binding::COUNTERS), 0, COUNTERS);
         self.flush();
         let look = |bytes: &[u8]| readback::words(bytes).collect::<Vec<u32>>();
-        let counters = self.queue.counters.read(self.queue.gpu, COUNTERS, look)?;
+        let counters = self.queue.counters.read(&self.queue.gpu, COUNTERS, look)?;
         if counters[counter::RAYS as usize] > u32::MAX / 2 {
             self.queue.count(self.memory.buffers.of(binding::COUNTERS), counters[counter::RAYS as usize]);
         }
@@ -269,7 +268,7 @@ impl<'l, 'a> Launch<'l, 'a> {
     }
 }
 
-impl Executor for Launch<'_, '_> {
+impl Executor for Launch<'_> {
     fn step(&mut self, index: usize, step: &Step) -> Result<()> {
         if step.stage == Stage::Advance {
             self.is_second = !self.is_second;

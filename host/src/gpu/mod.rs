@@ -18,6 +18,9 @@ mod scene;
 mod timer;
 mod warm;
 
+/// Of the version that devices are of.
+pub use wgpu;
+
 pub use adapter::{AdapterReport, adapters};
 pub use cast::{Cast, Caster};
 pub use cost::{Cost, KernelCost};

@@ -5,22 +5,23 @@ use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::adapter::AdapterReport;
 use super::device::Gpu;
-use crate::device_scene::{DeviceScene, NodeWords, PrimitiveWords};
+use crate::device_scene::{NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
+use crate::job::Job;
 use crate::method::{Layout, Method};
 use crate::plan::Plan;
 
 /// The records of a scene as kernels read them, before they are uploaded.
 pub(super) struct SceneRecords<'a> {
-    packed: &'a DeviceScene,
-    nodes: Option<NodeWords<'a>>,
-    primitives: PrimitiveWords<'a>,
+    packed: &'a Job,
+    nodes: Option<NodeWords>,
+    primitives: PrimitiveWords,
     wide: bool,
 }
 
 impl<'a> SceneRecords<'a> {
     /// A scene in one of its layouts. A hierarchy that no method walks is left out.
-    pub fn new(packed: &'a DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Self {
+    pub fn new(packed: &'a Job, layout: Layout, hierarchies: Hierarchies) -> Self {
         let nodes = hierarchies.binary.then(|| NodeWords::of(packed, layout));
         SceneRecords { packed, nodes, primitives: PrimitiveWords::of(packed, layout), wide: hierarchies.wide }
     }
@@ -34,9 +35,9 @@ impl<'a> SceneRecords<'a> {
         let physicals = if packed.effects().has(Effects::PHYSICAL) { packed.physicals() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
-            (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(&nodes.0))),
+            (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(nodes.words(packed)))),
             (binding::WIDE, bytemuck::cast_slice(wide)),
-            (binding::PRIMITIVES, bytemuck::cast_slice(&self.primitives.0)),
+            (binding::PRIMITIVES, bytemuck::cast_slice(self.primitives.words(packed))),
             (binding::BOUNDS, bytemuck::cast_slice(packed.bounds())),
             (binding::NORMALS, bytemuck::cast_slice(normals)),
             (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),
@@ -59,26 +60,38 @@ impl<'a> SceneRecords<'a> {
 }
 
 /// What kernels read of a scene, and nothing else.
+#[derive(Default)]
 pub(super) struct SceneBuffers(Vec<(u32, wgpu::Buffer)>);
 
 impl SceneBuffers {
-    /// Uploads a scene in one of its layouts. A hierarchy that no method walks may be left
-    /// out.
+    /// Uploads what a job asks of its scene, in one of the scene's layouts. A hierarchy that no method walks may be left out.
     ///
     /// # Errors
     /// If a part is larger than a buffer or all of it than the GPU's memory, before anything is uploaded; or what the GPU
     /// reports.
-    pub fn new(gpu: &Gpu, packed: &DeviceScene, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
+    pub fn new(gpu: &Gpu, job: &Job, layout: Layout, hierarchies: Hierarchies) -> Result<SceneBuffers> {
+        let mut buffers = SceneBuffers::default();
+        buffers.complete(gpu, job, layout, hierarchies)?;
+        Ok(buffers)
+    }
+
+    /// Uploads what another job of the scene asks for and is not there.
+    ///
+    /// # Errors
+    /// As [`SceneBuffers::new`].
+    pub fn complete(&mut self, gpu: &Gpu, job: &Job, layout: Layout, hierarchies: Hierarchies) -> Result<()> {
         if hierarchies.wide {
-            packed.check_walks(Method::Wide)?;
+            job.check_walks(Method::Wide)?;
         }
-        let records = SceneRecords::new(packed, layout, hierarchies);
+        let records = SceneRecords::new(job, layout, hierarchies);
         let used: Vec<_> = records.bytes().into_iter().filter(|(_, bytes)| !bytes.is_empty()).collect();
         check(&gpu.report, &used)?;
-        used.into_iter()
-            .map(|(binding, bytes)| Ok((binding, upload(gpu, binding, bytes)?)))
-            .collect::<Result<_>>()
-            .map(SceneBuffers)
+        for (binding, bytes) in used {
+            if self.find(binding).is_none() {
+                self.0.push((binding, upload(gpu, binding, bytes)?));
+            }
+        }
+        Ok(())
     }
 
     /// The buffer of a resource.

@@ -4,11 +4,11 @@
 mod sampled;
 mod whitted;
 
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 use crate::scene::Integrator;
 
 /// What the integrator of a scene's settings asks for.
-pub fn needs(packed: &DeviceScene) -> Needs {
+pub fn needs(packed: &Job) -> Needs {
     if packed.feature().is_some() {
         return sampled::first_hits();
     }

@@ -1,7 +1,7 @@
 //! Integrators that sample: one light at each vertex, and one direction in which to go on.
 
 use super::{Needs, Waves, whitted};
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 
 /// Of the camera's rays alone.
 pub fn first_hits() -> Needs {
@@ -9,13 +9,13 @@ pub fn first_hits() -> Needs {
 }
 
 /// The waves of Whitted's tree.
-pub fn distributed(packed: &DeviceScene) -> Needs {
+pub fn distributed(packed: &Job) -> Needs {
     let Needs { paths, waves, .. } = whitted::whitted(packed);
     Needs { paths: paths.max(1), waves, ..once(0) }
 }
 
 /// The last ray finds only what emits.
-pub fn path(packed: &DeviceScene) -> Needs {
+pub fn path(packed: &Job) -> Needs {
     once(packed.settings().bounces + u32::from(packed.found_light().is_some()))
 }
 

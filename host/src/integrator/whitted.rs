@@ -3,10 +3,10 @@
 use eyerays_shader::data::Effects;
 
 use super::{Needs, Waves};
-use crate::device_scene::DeviceScene;
+use crate::job::Job;
 
 /// What a scene asks for.
-pub fn whitted(packed: &DeviceScene) -> Needs {
+pub fn whitted(packed: &Job) -> Needs {
     let waves = if !packed.has_secondary_rays() {
         Waves::AtMost(0)
     } else if packed.effects().has(Effects::REFRACTION | Effects::THIN) {
@@ -19,7 +19,7 @@ pub fn whitted(packed: &DeviceScene) -> Needs {
 
 /// A refracted ray waits at most once a bounce. Waiting rays and the one in hand share their pixel's light, a unit a colour
 /// channel, and each has at least the least contribution of it.
-fn paths(packed: &DeviceScene, waves: Waves) -> u32 {
+fn paths(packed: &Job, waves: Waves) -> u32 {
     match waves {
         Waves::AtMost(0) => 0,
         Waves::AtMost(_) => 1,

@@ -11,8 +11,8 @@ use glam::Vec3;
 
 use super::*;
 use crate::cpu::{OnCpu, Renderer};
-use crate::device_scene::DeviceScene;
 use crate::film::{Film, Part};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::quality::Bvh;
 use crate::scene::{self, Settings};
@@ -53,6 +53,10 @@ impl Noisy {
 }
 
 impl Grows for Noisy {
+    fn turn(&mut self, _: &Job) -> Result<()> {
+        Ok(())
+    }
+
     fn start(&mut self, _: &View, _: &[Region]) -> Result<()> {
         Ok(())
     }
@@ -82,11 +86,11 @@ impl Grows for Noisy {
     }
 }
 
-fn posed(size: (u32, u32), spp: u32) -> (DeviceScene, View) {
+fn posed(size: (u32, u32), spp: u32) -> (Job, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
     let (scene, _) = scene::load(path.as_ref()).unwrap();
     let settings = Settings { size, spp, bounces: 2, ..scene.settings };
-    let packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
 }

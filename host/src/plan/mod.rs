@@ -8,9 +8,9 @@ use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS, RECORDS, SHADOW_RECORD
 
 pub use run::{Executor, run};
 
-use crate::device_scene::DeviceScene;
 use crate::error::Result;
 use crate::integrator::{Needs, Waves, needs};
+use crate::job::Job;
 use crate::method::{Coherence, Method, Traversal};
 
 /// What a step does.
@@ -88,11 +88,7 @@ impl Plan {
     ///
     /// # Errors
     /// Those of `resolve`.
-    pub fn new(
-        packed: &DeviceScene,
-        traversal: &Traversal,
-        resolve: impl Fn(Coherence) -> Result<Traversal>,
-    ) -> Result<Plan> {
+    pub fn new(packed: &Job, traversal: &Traversal, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
         Plan::of(&needs(packed), packed.specialisation(traversal), resolve)
     }
 

@@ -4,9 +4,9 @@ use eyerays_bvh::Quality;
 
 use crate::choice::choices;
 use crate::cpu;
-use crate::device_scene::DeviceScene;
 use crate::error::Result;
 use crate::gpu::Around;
+use crate::job::Job;
 use crate::method::{Method, Traversal};
 use crate::scene::{Scene, Settings};
 
@@ -81,10 +81,10 @@ impl Choice {
     /// Packs a scene for what is traced, by as many threads.
     ///
     /// # Errors
-    /// As [`DeviceScene::new`].
-    pub fn pack(&self, scene: &Scene, settings: Settings, quality: Quality) -> Result<DeviceScene> {
+    /// As [`Job::new`].
+    pub fn pack(&self, scene: &Scene, settings: Settings, quality: Quality) -> Result<Job> {
         let is_wide = self.traversal.method == Method::Wide && self.device != DeviceWish::Cpu;
-        let pack = if is_wide { DeviceScene::with_wide_nodes } else { DeviceScene::new };
+        let pack = if is_wide { Job::with_wide_nodes } else { Job::new };
         cpu::pool(self.threads)?.install(|| pack(scene, settings, quality))
     }
 }

@@ -7,9 +7,9 @@ mod several;
 
 use std::time::{Duration, Instant};
 
-use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::gpu::{AdapterRequest, Gpu};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::view::View;
 
@@ -20,16 +20,18 @@ use self::several::Devices;
 pub use crate::team::Lost;
 pub use crate::why::Why;
 
-/// The device of a rendering.
-enum Device {
+/// The device of a rendering, opened.
+#[derive(Clone)]
+enum Opened {
     Cpu,
     Gpu(Box<Gpu>),
     Several(Box<Devices>),
 }
 
-/// A device, and why it was taken.
+/// A device, and why it was taken. Cheap to clone: all clones are the same device.
+#[derive(Clone)]
 pub struct Backend {
-    device: Device,
+    device: Opened,
     choice: Choice,
     why: Why,
     open_time: Duration,
@@ -44,9 +46,9 @@ impl Backend {
         let start = Instant::now();
         let chosen = |device, why| Backend { device, choice: choice.clone(), why, open_time: start.elapsed() };
         if let Some(several) = &choice.several {
-            return Ok(chosen(Device::Several(Box::new(Devices::open(several, choice)?)), Why::Asked));
+            return Ok(chosen(Opened::Several(Box::new(Devices::open(several, choice)?)), Why::Asked));
         }
-        let cpu = |why| chosen(Device::Cpu, why);
+        let cpu = |why| chosen(Opened::Cpu, why);
         if choice.device == DeviceWish::Cpu {
             return Ok(cpu(Why::Asked));
         }
@@ -67,7 +69,7 @@ impl Backend {
         match Gpu::open(&want) {
             Ok(gpu) => {
                 let why = if asked { Why::Asked } else { Why::Works };
-                Ok(chosen(Device::Gpu(Box::new(gpu)), why))
+                Ok(chosen(Opened::Gpu(Box::new(gpu)), why))
             }
             Err(error) if asked || choice.adapter.is_some() => Err(error),
             Err(error) => Ok(cpu(Why::Instead(error))),
@@ -77,17 +79,17 @@ impl Backend {
     /// The GPU, if it is one and no other device.
     pub fn gpu(&self) -> Option<&Gpu> {
         match &self.device {
-            Device::Gpu(gpu) => Some(gpu),
-            Device::Cpu | Device::Several(_) => None,
+            Opened::Gpu(gpu) => Some(gpu),
+            Opened::Cpu | Opened::Several(_) => None,
         }
     }
 
     /// The device and its driver.
     pub fn description(&self) -> String {
         match &self.device {
-            Device::Cpu => "CPU".to_owned(),
-            Device::Several(devices) => devices.names(),
-            Device::Gpu(gpu) => {
+            Opened::Cpu => "CPU".to_owned(),
+            Opened::Several(devices) => devices.names(),
+            Opened::Gpu(gpu) => {
                 let report = &gpu.report;
                 format!("{} ({}, {})", report.name, report.backend, report.driver)
             }
@@ -109,22 +111,16 @@ impl Backend {
     ///
     /// # Errors
     /// What the device reports. Under `auto`, a scene that the GPU can't hold goes to the CPU.
-    pub fn open<'a>(&'a self, packed: &'a DeviceScene) -> Result<Session<'a>> {
-        Session::new(self, packed)
+    pub fn open(&self, job: &Job) -> Result<Session> {
+        Session::new(self, job)
     }
 
     /// Renders one picture `repeat` times, at least once. `done` is called with finished shares of the pixels.
     ///
     /// # Errors
     /// As [`Backend::open`] and [`Session::render`].
-    pub fn render(
-        &self,
-        packed: &DeviceScene,
-        view: &View,
-        repeat: u32,
-        done: &(dyn Fn(u64) + Sync),
-    ) -> Result<Rendering> {
-        let mut session = self.open(packed)?;
+    pub fn render(&self, job: &Job, view: &View, repeat: u32, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        let mut session = self.open(job)?;
         session.reserve(view)?;
         session.render(view, repeat, done)
     }
@@ -133,8 +129,8 @@ impl Backend {
     ///
     /// # Errors
     /// As [`Backend::render`].
-    pub fn measure(&self, packed: &DeviceScene, view: &View, repeat: u32) -> Result<Rendering> {
-        let mut session = self.open(packed)?;
+    pub fn measure(&self, job: &Job, view: &View, repeat: u32) -> Result<Rendering> {
+        let mut session = self.open(job)?;
         session.reserve(view)?;
         session.measure(view, repeat)
     }

@@ -5,13 +5,13 @@ use std::time::{Duration, Instant};
 
 use super::rendering::{Rendering, Taken, repeated};
 use super::several::{Devices, cpu_name};
-use super::{Backend, Device, DeviceWish, Precision, Why};
+use super::{Backend, DeviceWish, Opened, Precision, Why};
 use crate::cpu::{self, OnCpu};
-use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::gpu::{Gpu, Renderer, warm};
 use crate::integrator::needs;
+use crate::job::Job;
 use crate::method::Processor;
 use crate::noise::{self, Target};
 use crate::picture::Picture;
@@ -24,10 +24,10 @@ const LEAST_WARMING: Duration = Duration::from_millis(500);
 
 /// A scene whose kernels are compiled and whose data are where the device wants them. Cameras, sizes, parts and samples may change
 /// from picture to picture.
-pub struct Session<'a> {
-    backend: &'a Backend,
-    packed: &'a DeviceScene,
-    device: Box<dyn Grows + 'a>,
+pub struct Session {
+    backend: Backend,
+    job: Job,
+    device: Device,
     name: String,
     processor: Processor,
     why: Why,
@@ -36,12 +36,12 @@ pub struct Session<'a> {
     prepare_time: Duration,
 }
 
-impl<'a> Session<'a> {
-    pub(super) fn new(backend: &'a Backend, packed: &'a DeviceScene) -> Result<Self> {
+impl Session {
+    pub(super) fn new(backend: &Backend, job: &Job) -> Result<Self> {
         let since = Instant::now();
         let session = |device, name, processor| Session {
-            backend,
-            packed,
+            backend: backend.clone(),
+            job: job.clone(),
             device,
             name,
             processor,
@@ -50,23 +50,38 @@ impl<'a> Session<'a> {
             prepare_time: Duration::ZERO,
         };
         match &backend.device {
-            Device::Cpu => {
-                let (device, name) = on_cpu(backend, packed)?;
+            Opened::Cpu => {
+                let (device, name) = on_cpu(backend, job)?;
                 Ok(session(device, name, Processor::Cpu))
             }
-            Device::Gpu(gpu) => match on_gpu(backend, gpu, packed) {
+            Opened::Gpu(gpu) => match on_gpu(backend, gpu, job) {
                 Ok((device, name)) => Ok(session(device, name, Processor::Gpu)),
                 Err(error) if backend.choice.device == DeviceWish::Auto => {
-                    let (device, name) = on_cpu(backend, packed)?;
+                    let (device, name) = on_cpu(backend, job)?;
                     Ok(Session { why: Why::Instead(error), ..session(device, name, Processor::Cpu) })
                 }
                 Err(error) => Err(error),
             },
-            Device::Several(devices) => {
-                let device = on_several(backend, devices, packed)?;
+            Opened::Several(devices) => {
+                let device = on_several(backend, devices, job)?;
                 Ok(session(device, devices.names(), Processor::Gpu))
             }
         }
+    }
+
+    /// What is rendered.
+    pub fn job(&self) -> &Job {
+        &self.job
+    }
+
+    /// Goes on with another job. What devices hold of its scene stays there, and so do kernels that were compiled.
+    ///
+    /// # Errors
+    /// As [`Backend::open`].
+    pub fn turn(&mut self, job: &Job) -> Result<()> {
+        self.on_device(|device| device.turn(job))?;
+        self.job = job.clone();
+        Ok(())
     }
 
     /// Takes the memory that pictures of a view need. What that and all before took is told with the next picture.
@@ -112,8 +127,8 @@ impl<'a> Session<'a> {
         from: Option<&Film>,
         watch: &Watch<'_>,
     ) -> Result<Rendering> {
-        if !needs(self.packed).is_sampled {
-            return Err(Error::NoNoise { integrator: self.packed.settings().transport.integrator });
+        if !needs(&self.job).is_sampled {
+            return Err(Error::NoNoise { integrator: self.job.settings().transport.integrator });
         }
         self.prepare_time = std::mem::take(&mut self.opening);
         self.rendered(view, 1, |device| {
@@ -155,7 +170,7 @@ impl<'a> Session<'a> {
     fn on_device<T>(&mut self, mut work: impl FnMut(&mut dyn Grows) -> Result<T>) -> Result<T> {
         match work(self.device.as_mut()) {
             Err(error) if self.processor == Processor::Gpu && self.is_left_to_us() => {
-                (self.device, self.name) = on_cpu(self.backend, self.packed)?;
+                (self.device, self.name) = on_cpu(&self.backend, &self.job)?;
                 (self.processor, self.why) = (Processor::Cpu, Why::Instead(error));
                 work(self.device.as_mut())
             }
@@ -164,7 +179,7 @@ impl<'a> Session<'a> {
     }
 
     fn is_left_to_us(&self) -> bool {
-        matches!(self.backend.device, Device::Gpu(_)) && self.backend.choice.device == DeviceWish::Auto
+        matches!(self.backend.device, Opened::Gpu(_)) && self.backend.choice.device == DeviceWish::Auto
     }
 
     fn rendered(
@@ -204,20 +219,23 @@ impl<'a> Session<'a> {
 /// A picture with what was counted, and its film where that is kept.
 pub(super) type Made = ((Picture, Rays), Option<Film>);
 
-/// A device with its name.
-type Named<'a> = (Box<dyn Grows + 'a>, String);
+/// A device that films grow on.
+type Device = Box<dyn Grows + Send>;
 
-fn on_gpu<'a>(backend: &'a Backend, gpu: &'a Gpu, packed: &'a DeviceScene) -> Result<Named<'a>> {
+/// It with its name.
+type Named = (Device, String);
+
+fn on_gpu(backend: &Backend, gpu: &Gpu, job: &Job) -> Result<Named> {
     let choice = &backend.choice;
-    let renderer = Renderer::new(gpu, packed, choice.precision == Precision::Exact, choice.traversal)?;
+    let renderer = Renderer::new(gpu, job, choice.precision == Precision::Exact, choice.traversal)?;
     let route = if choice.no_passthrough { ", through naga" } else { "" };
     Ok((Box::new(renderer), format!("{} ({}{route})", gpu.report.name, gpu.report.backend)))
 }
 
-fn on_cpu<'a>(backend: &'a Backend, packed: &'a DeviceScene) -> Result<Named<'a>> {
+fn on_cpu(backend: &Backend, job: &Job) -> Result<Named> {
     let choice = &backend.choice;
-    let renderer = Arc::new(cpu::Renderer::new(packed, choice.traversal, choice.threads)?);
-    let device: Box<dyn Grows + 'a> = match choice.precision {
+    let renderer = Arc::new(cpu::Renderer::new(job, choice.traversal, choice.threads)?);
+    let device: Device = match choice.precision {
         Precision::Exact | Precision::Fast => Box::new(OnCpu::<f32>::new(renderer)),
         Precision::Reference => Box::new(OnCpu::<f64>::new(renderer)),
     };
@@ -228,6 +246,6 @@ fn on_cpu<'a>(backend: &'a Backend, packed: &'a DeviceScene) -> Result<Named<'a>
     Ok((device, cpu_name(threads)))
 }
 
-fn on_several<'a>(backend: &'a Backend, devices: &'a Devices, packed: &'a DeviceScene) -> Result<Box<dyn Grows + 'a>> {
-    Ok(Box::new(devices.team(backend.choice.traversal, packed)?))
+fn on_several(backend: &Backend, devices: &Devices, job: &Job) -> Result<Device> {
+    Ok(Box::new(devices.team(backend.choice.traversal, job)?))
 }

@@ -5,13 +5,14 @@ use std::thread;
 
 use super::{Choice, DeviceName, Precision, Several};
 use crate::cpu;
-use crate::device_scene::DeviceScene;
 use crate::error::{Error, Result};
 use crate::gpu::{AdapterRequest, Gpu, Renderer, adapters};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::team::{Member, Team};
 
 /// Devices that are open.
+#[derive(Clone)]
 pub(super) struct Devices {
     gpus: Vec<Gpu>,
     /// How many threads the CPU gives, if it takes part.
@@ -62,8 +63,8 @@ impl Devices {
     ///
     /// # Errors
     /// A GPU that can't hold the scene.
-    pub fn team<'a>(&'a self, traversal: Traversal, packed: &'a DeviceScene) -> Result<Team<'a>> {
-        let renderers: Vec<Result<Renderer<'a>>> = thread::scope(|scope| {
+    pub fn team(&self, traversal: Traversal, packed: &Job) -> Result<Team> {
+        let renderers: Vec<Result<Renderer>> = thread::scope(|scope| {
             let ready = self.gpus.iter().map(|gpu| scope.spawn(move || Renderer::new(gpu, packed, true, traversal)));
             let ready: Vec<_> = ready.collect();
             ready.into_iter().map(|thread| thread.join().expect("a driver's fault is an error")).collect()

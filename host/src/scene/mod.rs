@@ -125,6 +125,11 @@ impl Scene {
         self.mesh.triangles.len() + self.spheres.len() + self.disks.len()
     }
 
+    /// The first material that emits, by its name.
+    pub(crate) fn emissive(&self) -> Option<&str> {
+        self.materials.iter().find(|material| material.emission != Vec3::ZERO).map(|material| material.name.as_str())
+    }
+
     /// Bytes of its geometry.
     pub fn bytes(&self) -> usize {
         let Mesh { positions, normals, triangles, materials, coordinates, tangents, colours } = &self.mesh;

@@ -53,7 +53,7 @@ impl Work {
     }
 }
 
-impl Team<'_> {
+impl Team {
     /// Lets every member work until all is done. Fails if all are lost.
     pub(super) fn share_cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
         let work = Work {
@@ -83,7 +83,7 @@ impl Team<'_> {
     }
 }
 
-impl Member<'_> {
+impl Member {
     /// Works until there is nothing left for it, or it fails: then others do what it was about.
     fn run_cells(&mut self, number: usize, asked: &Asked<'_>) {
         loop {

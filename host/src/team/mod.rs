@@ -15,6 +15,7 @@ use std::time::{Duration, Instant};
 use self::work::{Pace, Work};
 use crate::error::{Error, Result};
 use crate::film::{Coverage, Film, Part};
+use crate::job::Job;
 use crate::noise::CellSums;
 use crate::view::{Region, View};
 use crate::watch::Grows;
@@ -28,9 +29,9 @@ const ROWS: u32 = 8;
 pub type Lost = (String, Error);
 
 /// A device of several.
-pub(crate) struct Member<'a> {
+pub(crate) struct Member {
     name: String,
-    device: Box<dyn Grows + Send + 'a>,
+    device: Box<dyn Grows + Send>,
     has: Coverage,
     is_lost: bool,
     /// Samples of a pixel a second, once that is known.
@@ -39,25 +40,25 @@ pub(crate) struct Member<'a> {
     cell_rate: Option<f64>,
 }
 
-impl<'a> Member<'a> {
+impl Member {
     /// A device that is ready, by its name.
-    pub fn new(name: String, device: impl Grows + Send + 'a) -> Self {
+    pub fn new(name: String, device: impl Grows + Send + 'static) -> Self {
         Member { name, device: Box::new(device), has: Coverage::default(), is_lost: false, rate: None, cell_rate: None }
     }
 }
 
 /// Devices that share their work.
-pub(crate) struct Team<'a> {
-    members: Vec<Member<'a>>,
+pub(crate) struct Team {
+    members: Vec<Member>,
     view: Option<View>,
     coverage: Coverage,
     /// Of all renderings.
     lost: Vec<Lost>,
 }
 
-impl<'a> Team<'a> {
+impl Team {
     /// Of devices that are ready.
-    pub fn new(members: Vec<Member<'a>>) -> Self {
+    pub fn new(members: Vec<Member>) -> Self {
         Team { members, view: None, coverage: Coverage::default(), lost: Vec::new() }
     }
 
@@ -72,7 +73,7 @@ impl<'a> Team<'a> {
 
     /// Lets every member work until all is done. Fails if all are lost.
     fn share(&mut self, todo: Vec<Part>) -> Result<()> {
-        let pace = |member: &Member<'_>| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate };
+        let pace = |member: &Member| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate };
         let members = self.members.iter().map(pace).collect();
         let work = Mutex::new(Work { todo, members, faults: Vec::new() });
         while !locked(&work).todo.is_empty() {
@@ -94,7 +95,20 @@ impl<'a> Team<'a> {
     }
 }
 
-impl Grows for Team<'_> {
+impl Grows for Team {
+    fn turn(&mut self, job: &Job) -> Result<()> {
+        // The film goes with all that any of them had.
+        (self.view, self.coverage) = (None, Coverage::default());
+        for member in self.members.iter_mut().filter(|member| !member.is_lost) {
+            member.has = Coverage::default();
+            if let Err(error) = member.device.turn(job) {
+                member.is_lost = true;
+                self.lost.push((member.name.clone(), error));
+            }
+        }
+        self.check()
+    }
+
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         let strips = strips(view.region(), STRIPS * self.members.len() as u32);
         for member in self.members.iter_mut().filter(|member| !member.is_lost) {
@@ -166,7 +180,7 @@ impl Grows for Team<'_> {
     }
 }
 
-impl Member<'_> {
+impl Member {
     /// Works until there is nothing left for it, or it fails: then all that it had is to be done again.
     fn run(&mut self, number: usize, work: &Mutex<Work>) {
         loop {

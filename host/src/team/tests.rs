@@ -6,23 +6,23 @@ use std::sync::atomic::AtomicBool;
 use super::work::Pace;
 use super::*;
 use crate::cpu::{OnCpu, Renderer};
-use crate::device_scene::DeviceScene;
 use crate::image::ToneMap;
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::noise::{self, Target};
 use crate::quality::Bvh;
 use crate::scene::{self, Settings};
 use crate::watch::Watch;
 
-fn posed() -> (DeviceScene, View) {
+fn posed() -> (Job, View) {
     posed_with(40)
 }
 
-fn posed_with(spp: u32) -> (DeviceScene, View) {
+fn posed_with(spp: u32) -> (Job, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
     let (scene, _) = scene::load(path.as_ref()).unwrap();
     let settings = Settings { size: (24, 70), spp, bounces: 1, ..scene.settings };
-    let packed = DeviceScene::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
 }
@@ -35,6 +35,10 @@ struct Odd<G> {
 }
 
 impl<G: Grows> Grows for Odd<G> {
+    fn turn(&mut self, job: &Job) -> Result<()> {
+        self.device.turn(job)
+    }
+
     fn start(&mut self, view: &View, regions: &[Region]) -> Result<()> {
         self.device.start(view, regions)
     }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 use std::sync::OnceLock;
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::error::{Error, Result};
 use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
@@ -38,7 +38,7 @@ pub fn read(name: &str, bytes: &[u8]) {
 fn draw(scene: &Scene) -> Result<()> {
     let transport = Transport { integrator: Integrator::Path, ..scene.settings.transport };
     let settings = Settings { size: (4, 4), samples: 1, spp: 1, bounces: 2, transport, ..scene.settings };
-    let packed = DeviceScene::new(scene, settings, Bvh::Fast.quality())?;
+    let packed = Job::new(scene, settings, Bvh::Fast.quality())?;
     let view = View::new(&packed, &scene.cameras[0])?;
     cpu::render::<f32>(&packed, &view, Traversal::default(), 1, &|_| ()).map(drop)
 }

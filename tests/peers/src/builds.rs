@@ -5,7 +5,7 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::Instant;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene;
 
 use crate::embree::Embree;
@@ -28,8 +28,8 @@ pub fn builds(options: &Options, path: &Path) -> Result<(), Box<dyn Error>> {
         // The first warms caches.
         for repeat in 0..=options.repeat {
             let start = Instant::now();
-            let packed = pool.install(|| -> eyerays::error::Result<DeviceScene> {
-                let packed = DeviceScene::new(&scene, scene.settings, own)?;
+            let packed = pool.install(|| -> eyerays::error::Result<Job> {
+                let packed = Job::new(&scene, scene.settings, own)?;
                 black_box(packed.bvh8());
                 Ok(packed)
             })?;

@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::stream::{Question, Stream};
 use eyerays_bvh::Quality;
 use glam::Vec3A;
@@ -15,7 +15,7 @@ use obvhs::triangle::Triangle;
 use crate::contest::{Answers, RayTracer, tasks};
 use crate::primitives;
 
-fn triangles(packed: &DeviceScene) -> Vec<Triangle> {
+fn triangles(packed: &Job) -> Vec<Triangle> {
     let all = primitives(packed);
     all.iter().map(|t| t.vertices().map(Vec3A::from)).map(|[v0, v1, v2]| Triangle { v0, v1, v2 }).collect()
 }
@@ -42,7 +42,7 @@ pub struct Compressed {
 }
 
 impl Binary {
-    pub fn new(packed: &DeviceScene, quality: Quality) -> Self {
+    pub fn new(packed: &Job, quality: Quality) -> Self {
         let all = triangles(packed);
         let bvh = build_bvh2_from_tris(&all, parameters(quality), &mut Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| all[i as usize]).collect();
@@ -51,7 +51,7 @@ impl Binary {
 }
 
 impl Compressed {
-    pub fn new(packed: &DeviceScene, quality: Quality) -> Self {
+    pub fn new(packed: &Job, quality: Quality) -> Self {
         let all = triangles(packed);
         let bvh = build_cwbvh_from_tris(&all, parameters(quality), &mut Duration::default());
         let triangles = bvh.primitive_indices.iter().map(|&i| all[i as usize]).collect();

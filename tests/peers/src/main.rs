@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use clap::Parser;
 use contest::{RayTracer, differing, hits};
 use embree3::BuildQuality;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Method, Order, Traversal};
 use eyerays::scene::{self, Settings};
 use eyerays::view::View;
@@ -94,7 +94,7 @@ struct Score {
 }
 
 /// The primitives of a scene in the order of their numbers, each once though it may be split.
-fn primitives(packed: &DeviceScene) -> Vec<Primitive> {
+fn primitives(packed: &Job) -> Vec<Primitive> {
     let mut all = packed.primitives().to_vec();
     all.sort_unstable_by_key(Primitive::number);
     all.dedup_by_key(|p| p.number());
@@ -106,7 +106,7 @@ fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Erro
     let settings = Settings { size: (options.size, options.size), samples: 1, ..scene.settings };
     let found = QUALITIES.iter().find(|(name, ..)| *name == options.quality);
     let &(_, quality, embree_quality) = found.ok_or("--quality is fast, medium or high")?;
-    let packed = DeviceScene::new(&scene, settings, quality)?;
+    let packed = Job::new(&scene, settings, quality)?;
     let ao_length =
         options.ao_length.map_or(AO_SHARE * diagonal(&packed), |length| length * packed.normalisation().scale) as f32;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;

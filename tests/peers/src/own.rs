@@ -1,7 +1,7 @@
 //! Eyerays itself.
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::stage::SHADOWED;
@@ -12,7 +12,7 @@ use crate::contest::{self, RayTracer};
 /// One of its methods.
 pub struct Own<'a> {
     pub name: &'static str,
-    pub packed: &'a DeviceScene,
+    pub packed: &'a Job,
     pub traversal: Traversal,
     pub packet: bool,
 }

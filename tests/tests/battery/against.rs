@@ -1,6 +1,6 @@
 //! Hits against those of brute force.
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::data::{BOX_PADDING, Primitive};
 use eyerays_shader::real::Fast;
@@ -18,7 +18,7 @@ pub fn ray(origin: Vec3, direction: Vec3) -> StreamRay {
 
 /// Rays from anywhere around the triangles of a packed scene, and from vertices: into triangles, at vertices, along
 /// axes and anywhere.
-pub fn rays(packed: &DeviceScene, count: usize) -> Stream {
+pub fn rays(packed: &Job, count: usize) -> Stream {
     let triangles: Vec<[DVec3; 3]> = triangles(packed).iter().map(|t| t.vertices().map(|v| v.as_dvec3())).collect();
     let corners = triangles.as_flattened();
     let least = corners.iter().copied().fold(DVec3::ONE, DVec3::min);
@@ -46,7 +46,7 @@ pub fn rays(packed: &DeviceScene, count: usize) -> Stream {
 
 /// Is the mesh so small beside its distance from zero that the padding of boxes makes them one? A ray then meets most
 /// triangles, and software, which ends loops after 65,535 rounds, can't follow it.
-pub fn is_crowded(packed: &DeviceScene) -> bool {
+pub fn is_crowded(packed: &Job) -> bool {
     is_crowd(packed.primitives().iter().flat_map(Primitive::vertices))
 }
 
@@ -73,7 +73,7 @@ fn is_near(hit: Found, want: Found) -> bool {
 /// precision; in fast precision nothing but numbers, and how many differ is counted.
 ///
 /// `rounds` are what a ray's traversal may take at most, for software that ends loops after 65,535 of them.
-pub fn assert_like_brute_force(what: &str, packed: &DeviceScene, stream: &Stream, rounds: usize) {
+pub fn assert_like_brute_force(what: &str, packed: &Job, stream: &Stream, rounds: usize) {
     let (exact, fast) = (brute_force(packed, stream), brute_force_of::<Fast>(packed, stream));
     for machine in Machine::all() {
         if machine.is_software() && rounds > 30_000 {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::{self, Projection, Scene, Settings};
 use eyerays::view::View;
 use eyerays_bvh::Quality;
@@ -65,7 +65,7 @@ struct Drawn {
 fn draw(machine: Machine, scenes: impl Iterator<Item = Scene>) -> Drawn {
     let mut drawn = Drawn::default();
     for scene in scenes {
-        match DeviceScene::with_wide_nodes(&scene, scene.settings, Quality::Medium) {
+        match Job::with_wide_nodes(&scene, scene.settings, Quality::Medium) {
             Ok(packed) => {
                 let Ok(view) = View::new(&packed, &scene.cameras[0]) else { continue };
                 let (picture, rays) = machine.render(&Posed { packed, view });

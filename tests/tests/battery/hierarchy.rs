@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_bvh::{MAX_DEPTH, Quality};
 use eyerays_tests::count;
@@ -25,7 +25,7 @@ fn chain(levels: u32, ratio: f32) -> Surface {
 }
 
 /// A ray from just before each triangle, which no other is nearer to.
-fn at_each(packed: &DeviceScene) -> Vec<StreamRay> {
+fn at_each(packed: &Job) -> Vec<StreamRay> {
     let at = |vertices: [Vec3; 3]| {
         let centre = (vertices[0] + vertices[1] + vertices[2]) / 3.0;
         ray(centre * 1.001, -centre)
@@ -38,7 +38,7 @@ fn depth(levels: u32, ratio: f32) -> u32 {
     let scene = chain(levels, ratio).scene();
     let what = format!("hierarchy, chain of {levels} by {ratio}");
     let built = [Quality::Fast, Quality::Medium, Quality::High].map(|quality| {
-        let packed = DeviceScene::with_wide_nodes(&scene, scene.settings, quality).unwrap();
+        let packed = Job::with_wide_nodes(&scene, scene.settings, quality).unwrap();
         assert!(packed.build_time() < PATIENCE, "{what}, {quality:?}: {:?}", packed.build_time());
         packed
     });

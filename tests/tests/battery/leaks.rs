@@ -1,6 +1,6 @@
 //! Rays from inside closed surfaces, aimed at faces, edges and vertices, never get out.
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_tests::count;
 use eyerays_tests::machine::Machine;
@@ -18,7 +18,7 @@ const PART: usize = 1 << 20;
 /// A surface with no way out from where its rays start.
 struct Closed<'a> {
     name: &'a str,
-    packed: DeviceScene,
+    packed: Job,
     /// Triangles that rays are aimed at, in the normalised scene.
     targets: Vec<[Vec3; 3]>,
     /// Rays to cast, and how many there are when all are asked for.

@@ -4,7 +4,7 @@
 //! as much, times how thin the triangle is; both move the hit along the plane, and the ray by as much over its cosine.
 
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Method, Order};
 use eyerays::picture::Picture;
 use eyerays::scene::{Light, Projection, Scene};
@@ -65,7 +65,7 @@ struct Apart {
     rays: usize,
 }
 
-fn compare(machine: Machine, packed: &DeviceScene, stream: &Stream) -> Apart {
+fn compare(machine: Machine, packed: &Job, stream: &Stream) -> Apart {
     let truth = cpu::closest::<f64>(packed, Method::IfIf.into(), 0, stream).expect("threads");
     let got = machine.tracer(packed).closest(Method::Packet.into(), stream);
     let mut apart = Apart { others: 0, error: 0.0, rays: stream.len() };

@@ -1,6 +1,7 @@
 //! Rays that leave a surface do not meet it again (PBRT's reintersection test), and light does not leak.
 
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
+use eyerays::job::Job;
 use eyerays::scene::{Projection, Scene, Settings};
 use eyerays::stream::StreamRay;
 use eyerays_shader::data::Primitive;
@@ -19,7 +20,7 @@ use glam::{DMat3, DVec3, Vec3};
 const POWERS: (f64, f64) = (-8.0, 8.0);
 
 /// A triangle alone in a scene that reaches as far as `end`: to a triangle without extent, which no ray meets.
-fn alone(vertices: [Vec3; 3], end: Vec3) -> DeviceScene {
+fn alone(vertices: [Vec3; 3], end: Vec3) -> Job {
     let mut scene = empty();
     add(&mut scene, matt(Vec3::ONE), &vertices, &[[0, 1, 2]]);
     add(&mut scene, matt(Vec3::ONE), &[end], &[[0, 0, 0]]);
@@ -48,7 +49,7 @@ fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// Does a ray meet the only triangle of a scene?
-fn meets<R: Scalar>(packed: &DeviceScene, ray: Ray<R>) -> bool {
+fn meets<R: Scalar>(packed: &Job, ray: Ray<R>) -> bool {
     let (laid, frame) = (SceneView::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
     Primitives::intersect::<Closest, R>(&laid.stream(&frame), 0, &ray, &mut hit);

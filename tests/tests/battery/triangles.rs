@@ -1,8 +1,8 @@
 //! Triangles that are hardly any, or too many in one place: hits are those of brute force, and what is no number is
 //! refused by the number of its triangle.
 
-use eyerays::device_scene::DeviceScene;
 use eyerays::error::Error;
+use eyerays::job::Job;
 use eyerays::scene::Scene;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_bvh::Quality;
@@ -157,7 +157,7 @@ fn rays_beside_triangles_in_their_planes() {
 
 /// What a scene without vouched-for numbers is refused with.
 fn refusal(scene: &Scene) -> Option<Error> {
-    DeviceScene::new(scene, scene.settings, Quality::Medium).err()
+    Job::new(scene, scene.settings, Quality::Medium).err()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The scenes of triangles and the rays that all oracles are asked about, with fixed seeds.
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
@@ -117,7 +117,7 @@ fn primary(posed: &Posed) -> Vec<StreamRay> {
 }
 
 /// At vertices, at edges, into triangles, along axes, along a triangle's plane, and anywhere.
-fn aimed(packed: &DeviceScene, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
+fn aimed(packed: &Job, count: usize, rng: &mut Rng) -> Vec<StreamRay> {
     let triangles: Vec<[Vec3; 3]> = packed.primitives().iter().map(|t| t.vertices()).collect();
     let ray = |i: usize| {
         let [a, b, c] = triangles[rng.usize(0..triangles.len())];

@@ -1,7 +1,8 @@
 //! What the test of Moeller and Trumbore lets through, beside the watertight one.
 
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
 use eyerays::gpu::{AdapterRequest, Caster};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Traversal, TriangleTest};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_shader::ray::Hit;
@@ -15,7 +16,7 @@ use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
 /// A closed ball around the origin, in rings of `steps` and twice as many around.
-fn ball(steps: u32) -> DeviceScene {
+fn ball(steps: u32) -> Job {
     let around = 2 * steps;
     let mut corners = vec![Vec3::Y, Vec3::NEG_Y];
     for ring in 1..steps {
@@ -43,7 +44,7 @@ fn ball(steps: u32) -> DeviceScene {
 }
 
 /// From inside to edges and vertices.
-fn rays(packed: &DeviceScene, count: usize) -> Stream {
+fn rays(packed: &Job, count: usize) -> Stream {
     let mut rng = Rng::with_seed(17);
     let ray = |i: usize| {
         let [a, b, _] = packed.primitives()[rng.usize(0..packed.primitives().len())].vertices();
@@ -56,7 +57,7 @@ fn rays(packed: &DeviceScene, count: usize) -> Stream {
 }
 
 fn leaks<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(
-    packed: &DeviceScene,
+    packed: &Job,
     stream: &Stream,
     triangle: TriangleTest,
 ) -> usize {

@@ -1,8 +1,9 @@
 //! Scenes of triangles, spheres and disks: every way through every hierarchy finds what a test of all primitives finds.
 
 use eyerays::cpu::{self, Isa};
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
 use eyerays::gpu::{AdapterRequest, Caster};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Scheduling, Traversal};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
@@ -23,7 +24,7 @@ struct Truth {
 }
 
 impl Truth {
-    fn of(packed: &DeviceScene, stream: &Stream) -> Self {
+    fn of(packed: &Job, stream: &Stream) -> Self {
         let (laid, frame) = (SceneView::new(packed, Traversal::default()), packed.stream_frame(stream.len()));
         let geometry = laid.stream(&frame);
         let dark = |i: u32| {
@@ -38,7 +39,7 @@ impl Truth {
     }
 
     /// Asserts that answers are these.
-    fn assert(&self, packed: &DeviceScene, answers: Answers, what: &str) {
+    fn assert(&self, packed: &Job, answers: Answers, what: &str) {
         let (differing, of) = match answers {
             Answers::Closest(hits) => {
                 let pairs = || hits.iter().map(|&hit| found(packed, hit)).zip(&self.closest);
@@ -90,7 +91,7 @@ fn every_isa_and_layout_finds_what_brute_force_finds() {
 }
 
 /// A packet's hits, each with its ray's number.
-fn assert_packets<const N: usize>(packed: &DeviceScene, stream: &Stream, truth: &Truth, what: &str) {
+fn assert_packets<const N: usize>(packed: &Job, stream: &Stream, truth: &Truth, what: &str) {
     let (laid, frame) = (SceneView::new(packed, Method::Packet.into()), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
     for first in (0..stream.len() / N * N).step_by(N) {

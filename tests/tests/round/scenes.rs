@@ -1,6 +1,6 @@
 //! Scenes of triangles, spheres and disks that overlap, touch, nest and tie, and rays in them.
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::{Disk, Scene, Sphere};
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_bvh::Quality;
@@ -81,14 +81,14 @@ impl Kind {
     }
 
     /// The same packed.
-    pub fn pack(self, quality: Quality) -> DeviceScene {
+    pub fn pack(self, quality: Quality) -> Job {
         let scene = self.scene();
-        DeviceScene::with_wide_nodes(&scene, scene.settings, quality).unwrap_or_else(|e| panic!("{self:?}: {e}"))
+        Job::with_wide_nodes(&scene, scene.settings, quality).unwrap_or_else(|e| panic!("{self:?}: {e}"))
     }
 }
 
 /// A scene's primitives, each once and by its number, which no hierarchy changes.
-fn primitives(packed: &DeviceScene) -> Vec<Primitive> {
+fn primitives(packed: &Job) -> Vec<Primitive> {
     let mut all = packed.primitives().to_vec();
     all.sort_by_key(Primitive::number);
     all.dedup_by_key(|primitive| primitive.number());
@@ -97,7 +97,7 @@ fn primitives(packed: &DeviceScene) -> Vec<Primitive> {
 
 /// Rays from anywhere, from inside of spheres and along their limbs, at disks' rims; and rays that leave what they start on.
 /// Some end soon.
-pub fn rays(packed: &DeviceScene, count: usize) -> Stream {
+pub fn rays(packed: &Job, count: usize) -> Stream {
     let (all, mut rng) = (primitives(packed), Rng::with_seed(3));
     Stream::new((0..count).map(|i| {
         let primitive = &all[rng.usize(0..all.len())];
@@ -132,7 +132,7 @@ fn middle(primitive: &Primitive) -> (DVec3, f64) {
 }
 
 /// A ray from a place on a primitive, as a picture's rays leave it.
-fn leaving(packed: &DeviceScene, primitive: &Primitive, rng: &mut Rng) -> StreamRay {
+fn leaving(packed: &Job, primitive: &Primitive, rng: &mut Rng) -> StreamRay {
     let (u, v) = (rng.f32(), rng.f32());
     let (u, v) = match () {
         () if primitive.is_sphere() => (2.0 * u - 1.0, 2.0 * v - 1.0),

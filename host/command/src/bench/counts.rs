@@ -18,7 +18,8 @@ use rayon::prelude::*;
 
 use crate::error::Result;
 use eyerays::cpu;
-use eyerays::device_scene::{DeviceScene, SceneView};
+use eyerays::device_scene::SceneView;
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::stream::{Question, Stream, StreamRay};
 
@@ -143,7 +144,7 @@ fn follower(method: Method) -> Follow {
 /// # Errors
 /// If the threads can't be had.
 pub fn counts(
-    packed: &DeviceScene,
+    packed: &Job,
     traversal: Traversal,
     threads: usize,
     stream: &Stream,

@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 use super::{Plan, Timing};
 use crate::error::{Error, Result};
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{Cast, Caster, Gpu};
+use eyerays::job::Job;
 use eyerays::method::{Layout, Traversal};
 use eyerays::stream::{Answers, Question, Stream};
 
@@ -29,7 +29,7 @@ pub(crate) struct OnGpu<'a> {
 pub(crate) struct Uploaded(Vec<(Layout, Vec<Cast>)>);
 
 impl<'a> OnGpu<'a> {
-    pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, layouts: &[Layout]) -> Result<Self> {
+    pub fn new(gpu: &'a Gpu, packed: &'a Job, layouts: &[Layout]) -> Result<Self> {
         let casters = layouts.iter().map(|&layout| Ok((layout, Caster::new(gpu, packed, layout)?)));
         Ok(OnGpu { gpu, casters: casters.collect::<Result<_>>()? })
     }
@@ -116,7 +116,7 @@ fn joined(parts: Vec<Answers>) -> Answers {
 }
 
 /// Traces a stream on the CPU once to warm up and then as often as planned.
-pub(super) fn on_cpu(plan: &Plan, packed: &DeviceScene, stream: &Stream, how: Traversal, ask: Question) -> Result<Run> {
+pub(super) fn on_cpu(plan: &Plan, packed: &Job, stream: &Stream, how: Traversal, ask: Question) -> Result<Run> {
     let cast = || cpu::cast(packed, how, plan.threads, stream, ask);
     let (mut answers, _) = cast()?;
     let mut times = Vec::new();

@@ -7,8 +7,8 @@ use eyerays_shader::data::Tuning;
 
 use super::Kind;
 use crate::error::Error;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::Gpu;
+use eyerays::job::Job;
 use eyerays::method::{Coherence, Layout, Method, Order, Processor, Scheduling, Traversal, TriangleTest};
 use eyerays::scene::{Camera, Scene};
 
@@ -72,13 +72,7 @@ pub(super) struct Trial {
 
 impl Plan {
     /// Every way to trace rays of a kind, each once; calls `note` for those that are left out.
-    pub(super) fn trials(
-        &self,
-        packed: &DeviceScene,
-        kind: Kind,
-        order: Order,
-        note: &mut dyn FnMut(String),
-    ) -> Vec<Trial> {
+    pub(super) fn trials(&self, packed: &Job, kind: Kind, order: Order, note: &mut dyn FnMut(String)) -> Vec<Trial> {
         let mut trials: Vec<Trial> = Vec::new();
         for (processor, exact) in self.processors() {
             for wanted in self.wishes(exact, order) {
@@ -119,7 +113,7 @@ impl Plan {
     /// What a request resolves to, and whether `auto` is the same; or why it can't be measured.
     fn resolved(
         &self,
-        packed: &DeviceScene,
+        packed: &Job,
         processor: Processor,
         wanted: Traversal,
         coherence: Coherence,

@@ -16,7 +16,7 @@ use rayon::prelude::*;
 use super::{Kind, sample};
 use crate::error::Result;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays::view::View;
@@ -42,7 +42,7 @@ pub struct CameraRays {
 
 impl CameraRays {
     /// Those of a view with one sample a pixel.
-    pub fn of(scene: &DeviceScene, view: &View, order: Order) -> CameraRays {
+    pub fn of(scene: &Job, view: &View, order: Order) -> CameraRays {
         CameraRays { frame: view.launch(scene, view.region(), 0, 1, order.bits()), order: order.bits() }
     }
 
@@ -54,7 +54,7 @@ impl CameraRays {
 }
 
 /// The diagonal of the box around a scene's primitives, in the normalised scene.
-pub fn diagonal(packed: &DeviceScene) -> f64 {
+pub fn diagonal(packed: &Job) -> f64 {
     let extent = |p: &Primitive| match p.is_triangle() {
         true => p.vertices().into_iter().fold((Vec3::INFINITY, Vec3::NEG_INFINITY), |(l, g), v| (l.min(v), g.max(v))),
         false => (p.bounds().0 + Vec3::splat(BOX_PADDING), p.bounds().1 - Vec3::splat(BOX_PADDING)),
@@ -67,7 +67,7 @@ pub fn diagonal(packed: &DeviceScene) -> f64 {
 
 /// What a view sees: its primary rays and their hits, where rays of every other kind start.
 pub struct PrimaryHits<'a> {
-    packed: &'a DeviceScene,
+    packed: &'a Job,
     primary: Stream,
     /// By primary ray: where its pixel lies in the image.
     pixels: Vec<u32>,
@@ -121,7 +121,7 @@ impl<'a> PrimaryHits<'a> {
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &'a DeviceScene, view: &CameraRays, threads: usize) -> Result<Self> {
+    pub fn new(packed: &'a Job, view: &CameraRays, threads: usize) -> Result<Self> {
         let pixels: Vec<Pixel> = view.pixels().collect();
         let rays: Vec<StreamRay> = pixels
             .par_iter()

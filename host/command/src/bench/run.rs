@@ -12,7 +12,7 @@ use super::{Kind, Plan, Record, Report, SceneRow, Subject, ViewRow};
 use crate::error::Result;
 use crate::preset::name;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Coherence, Layout, Method, Order, Processor, Traversal};
 use eyerays::scene::{Camera, Settings};
 use eyerays::stream::{Answers, Question, Stream};
@@ -37,7 +37,7 @@ pub fn run(plan: &Plan, subjects: &[Subject], begins: &dyn Fn(&str)) -> Result<R
 
 fn scene(plan: &Plan, subject: &Subject, report: &mut Report, begins: &dyn Fn(&str)) -> Result<()> {
     let settings = Settings { size: plan.size, samples: 1, culling: false, ..subject.scene.settings };
-    let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, plan.quality)?;
+    let packed = Job::with_wide_nodes(&subject.scene, settings, plan.quality)?;
     let mut views = Vec::new();
     for &order in &plan.orders {
         for camera in &subject.cameras {
@@ -58,7 +58,7 @@ pub fn streams(plan: &Plan, subjects: &[Subject]) -> usize {
 struct Bench<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
-    packed: &'a DeviceScene,
+    packed: &'a Job,
     gpu: Option<OnGpu<'a>>,
     /// In the normalised scene.
     ao_length: f32,
@@ -75,7 +75,7 @@ struct Asked<'s> {
 }
 
 impl<'a> Bench<'a> {
-    fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a DeviceScene, report: &mut Report) -> Result<Self> {
+    fn new(plan: &'a Plan, subject: &'a Subject, packed: &'a Job, report: &mut Report) -> Result<Self> {
         let ao_length = plan.ao_length.unwrap_or(AO_SHARE * diagonal(packed) / packed.normalisation().scale);
         let statistics = &packed.statistics();
         report.scenes.push(SceneRow {
@@ -265,7 +265,7 @@ mod tests {
     #[test]
     fn another_answer_in_exact_precision_is_a_fault_that_names_the_ray() {
         let (plan, subject, mut report) = (plan(), subject(), Report::default());
-        let packed = DeviceScene::with_wide_nodes(&subject.scene, subject.scene.settings, plan.quality).unwrap();
+        let packed = Job::with_wide_nodes(&subject.scene, subject.scene.settings, plan.quality).unwrap();
         let bench = Bench::new(&plan, &subject, &packed, &mut report).unwrap();
         let view = View::new(&packed, &subject.cameras[0]).unwrap();
         let sight = PrimaryHits::new(&packed, &CameraRays::of(&packed, &view, Order::Tiled), 0).unwrap();

@@ -11,7 +11,7 @@ use glam::Vec3;
 use super::answers::Hash;
 use super::rays::{AO_RAYS, CameraRays, PrimaryHits, diagonal};
 use super::*;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use eyerays::scene::{self, Scene, Settings};
 use eyerays::stream::{Stream, StreamRay};
@@ -23,10 +23,10 @@ fn scene() -> Scene {
 }
 
 /// The Cornell box as its first camera sees it.
-pub(super) fn cornell(size: (u32, u32)) -> (DeviceScene, View) {
+pub(super) fn cornell(size: (u32, u32)) -> (Job, View) {
     let scene = scene();
     let settings = Settings { size, samples: 1, ..scene.settings };
-    let packed = DeviceScene::with_wide_nodes(&scene, settings, Quality::Medium).unwrap();
+    let packed = Job::with_wide_nodes(&scene, settings, Quality::Medium).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     (packed, view)
 }

@@ -10,7 +10,7 @@ use super::outline::Outline;
 use super::reading::{Read, Reading};
 use super::{console, plural, progress};
 use crate::error::{Error, Result};
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::Scene;
 use eyerays::view::View;
 
@@ -30,7 +30,7 @@ impl Check {
         let Read { path, scene, warnings, .. } = Read::scene(&self.scene, &[], self.reading.loading(None), quiet)?;
         let named = |e: eyerays::error::Error| e.of(path);
         let quality = scene.hierarchy.as_ref().map_or(Quality::Fast, |kept| kept.quality().quality());
-        let pack = || DeviceScene::new(&scene, scene.settings, quality);
+        let pack = || Job::new(&scene, scene.settings, quality);
         let packed = progress::stage("building", quiet, pack).map_err(named)?;
         for camera in &scene.cameras {
             View::new(&packed, camera).map_err(named)?;

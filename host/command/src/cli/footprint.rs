@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt;
 
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::memory;
 use eyerays::scene::Scene;
 use eyerays_bvh::Reference;
@@ -18,7 +18,7 @@ pub(super) struct Footprint {
 
 impl Footprint {
     /// That of a scene and what was made of it.
-    pub fn of(scene: &Scene, packed: &DeviceScene) -> Self {
+    pub fn of(scene: &Scene, packed: &Job) -> Self {
         let references = packed.statistics().references * size_of::<Reference>();
         let mut stages = vec![("the scene as read", scene.bytes()), ("references while building", references)];
         stages.extend(packed.bytes());

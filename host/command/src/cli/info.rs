@@ -18,8 +18,8 @@ use super::reading::{Read, Reading};
 use super::{console, progress};
 use crate::error::Result;
 use eyerays::choice::Named;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{AdapterReport, Cost, adapters};
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
 
@@ -69,7 +69,7 @@ impl Info {
         let (mut rows, mut cost) = (Vec::new(), None);
         let qualities = self.bvh.as_ref().map_or(Bvh::VARIANTS, std::slice::from_ref);
         for bvh in qualities {
-            let pack = || DeviceScene::new(&scene, scene.settings, bvh.quality());
+            let pack = || Job::new(&scene, scene.settings, bvh.quality());
             let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
             let row = Row { bvh: bvh.to_string(), statistics: *packed.statistics(), build_time: packed.build_time() };
             if !self.json && rows.is_empty() {

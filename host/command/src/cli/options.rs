@@ -14,7 +14,7 @@ use super::transport::Transport;
 use crate::error::{Error, Result, within};
 use crate::preset::Preset;
 use eyerays::choice::Named;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::Choice;
@@ -124,7 +124,7 @@ impl Effort {
 
 /// A scene, packed, and what that took.
 pub(super) struct Loaded {
-    pub packed: DeviceScene,
+    pub packed: Job,
     pub view: eyerays::view::View,
     pub read_time: Duration,
     /// Of the hierarchy and of all else that is packed.

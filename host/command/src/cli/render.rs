@@ -105,7 +105,7 @@ pub(super) struct Render {
 }
 
 /// What all scenes of a command have in common.
-struct Job<'a> {
+struct Task<'a> {
     of: &'a Render,
     effort: Effort,
     choice: Choice,
@@ -120,15 +120,15 @@ struct Job<'a> {
 impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let scenes = sequence::scenes(&self.scenes)?;
-        let job = self.job(quiet)?;
+        let task = self.task(quiet)?;
         if let [scene] = &scenes[..] {
-            return job.pictures(scene);
+            return task.pictures(scene);
         }
         self.check_many()?;
-        job.check_names(&scenes)?;
+        task.check_names(&scenes)?;
         let mut failed = false;
         for scene in &scenes {
-            match job.pictures(scene) {
+            match task.pictures(scene) {
                 Ok(code) if watching::ended_by().is_some() => return Ok(code),
                 Ok(_) => {}
                 Err(error) => {
@@ -143,17 +143,17 @@ impl Render {
     /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is
     /// rendered.
     pub fn checked(&self, quiet: bool) -> Result<Settings> {
-        let job = self.job(quiet)?;
+        let task = self.task(quiet)?;
         let [scene] = &self.scenes[..] else {
             return Err(Error::new("a job renders one scene: name one, and its options after --"));
         };
-        let read = Read::scene(scene, &[], self.reading.loading(job.effort.integrator()), quiet)?;
+        let read = Read::scene(scene, &[], self.reading.loading(task.effort.integrator()), quiet)?;
         self.view.camera(&read.scene).map_err(|error| error.of(read.path))?;
-        self.view.settings(&read.scene, &job.effort)
+        self.view.settings(&read.scene, &task.effort)
     }
 
     /// Checks what can be checked without a scene.
-    fn job(&self, quiet: bool) -> Result<Job<'_>> {
+    fn task(&self, quiet: bool) -> Result<Task<'_>> {
         let preset = self.settings.as_deref().map(Preset::read).transpose()?.unwrap_or_default();
         let (device, several) = match &self.device {
             Some(Devices::Several(several)) => (DeviceWish::Auto, Some(several.clone())),
@@ -163,7 +163,7 @@ impl Render {
         self.noise.target(&self.look)?;
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
         let (backend, places) = Default::default();
-        Ok(Job { of: self, effort: self.effort.over(&preset), choice, quiet, backend, places })
+        Ok(Task { of: self, effort: self.effort.over(&preset), choice, quiet, backend, places })
     }
 
     /// Refuses what is for one picture.
@@ -211,7 +211,7 @@ impl Render {
     }
 }
 
-impl Job<'_> {
+impl Task<'_> {
     /// Do pictures have names that only a scene or a frame tells?
     fn names_cameras(&self) -> bool {
         self.of.sequence.names_cameras(self.of.output.as_deref())
@@ -242,17 +242,17 @@ impl Job<'_> {
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
-        let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
+        let (loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
         let shots = self.of.sequence.shots(&scene, camera)?;
         let places = self.places(path, &loaded, &scene, shots)?;
         if self.of.preview {
-            self.preview(&mut loaded, &places)?;
+            self.preview(&loaded, &places)?;
         }
         let hash = self.opened(&scene, path)?;
         let backend = self.backend.get().expect("it was opened");
         let studio =
             Studio { of: self.of, path, scene: &scene, hash, choice: &self.choice, backend, quiet: self.quiet };
-        studio.pictures(&mut loaded, &places)
+        studio.pictures(&loaded, &places)
     }
 
     /// Opens the device, unless that was done for another scene, and hashes the scene meanwhile: a driver takes longer for it.
@@ -295,10 +295,10 @@ impl Job<'_> {
     }
 
     /// What can be seen before kernels are there.
-    fn preview(&self, loaded: &mut Loaded, places: &[Place]) -> Result<()> {
+    fn preview(&self, loaded: &Loaded, places: &[Place]) -> Result<()> {
         for Place { camera, view, destination, .. } in places {
             progress::stage("drawing a preview", self.quiet || self.of.json, || {
-                let picture = layers::preview(&mut loaded.packed, camera, view.region(), self.choice.threads)?;
+                let picture = layers::preview(&loaded.packed, camera, view.region(), self.choice.threads)?;
                 output::write_picture(&picture, destination, &self.of.look.as_it_is()?)
             })?;
         }

@@ -45,27 +45,14 @@ type Layers = (Vec<(Layer, Values)>, Option<std::time::Duration>);
 
 impl Studio<'_> {
     /// Renders all of them, until a signal ends one.
-    pub fn pictures(&self, loaded: &mut Loaded, places: &[Place]) -> Result<ExitCode> {
-        let asked = self.of.layers();
-        if asked.is_empty() {
-            let mut session = self.open(loaded)?;
-            return each(places, |place| {
-                let identity = self.identity(loaded, place)?;
-                let rendering = self.rendered(&mut session, place, &identity)?;
-                self.finish(loaded, place, identity, rendering, (Vec::new(), None))
-            });
-        }
-        // Layers need the scene for themselves, so that each picture has its own session.
+    pub fn pictures(&self, loaded: &Loaded, places: &[Place]) -> Result<ExitCode> {
+        let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
         each(places, |place| {
             let identity = self.identity(loaded, place)?;
-            let rendering = self.rendered(&mut self.open(loaded)?, place, &identity)?;
-            let layers = self.layers(loaded, place, &rendering, &asked)?;
+            let rendering = self.rendered(&mut session, place, &identity)?;
+            let layers = self.layers(&mut session, place, &rendering)?;
             self.finish(loaded, place, identity, rendering, layers)
         })
-    }
-
-    fn open<'a>(&'a self, loaded: &'a Loaded) -> Result<Session<'a>> {
-        Ok(self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?)
     }
 
     /// What a picture is of.
@@ -82,7 +69,7 @@ impl Studio<'_> {
         })
     }
 
-    fn rendered(&self, session: &mut Session<'_>, place: &Place, identity: &Identity) -> Result<Rendering> {
+    fn rendered(&self, session: &mut Session, place: &Place, identity: &Identity) -> Result<Rendering> {
         let (Place { view, destination, checkpoint, .. }, repeat) = (place, self.of.repeat);
         let from = match checkpoint {
             Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
@@ -146,10 +133,14 @@ impl Studio<'_> {
             || [Layer::Error, Layer::Samples].iter().any(|layer| layers.contains(layer))
     }
 
-    fn layers(&self, loaded: &mut Loaded, place: &Place, rendering: &Rendering, asked: &[Layer]) -> Result<Layers> {
+    fn layers(&self, session: &mut Session, place: &Place, rendering: &Rendering) -> Result<Layers> {
+        let asked = self.of.layers();
+        if asked.is_empty() {
+            return Ok((Vec::new(), None));
+        }
         let start = Instant::now();
         let layers = progress::stage("rendering layers", self.quiet || self.of.json, || {
-            layers::render(self.backend, &mut loaded.packed, (self.scene, &place.camera), rendering, asked)
+            layers::render(session, (self.scene, &place.camera), rendering, &asked)
         });
         Ok((layers.map_err(|error| error.of(self.path))?, Some(start.elapsed())))
     }

@@ -8,7 +8,7 @@ use glam::Vec3;
 use proptest::prelude::*;
 
 use super::{Files, Kind, Pair, Recipe, Spheres, obj};
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::scene::{self, Background, Scene};
 use eyerays::view::View;
 use eyerays::{cpu, picture::Picture};
@@ -157,7 +157,7 @@ fn load(kind: Kind, triangles: u64, seed: u64) -> Scene {
 fn picture(scene: &Scene, camera: usize, around: Vec3) -> Picture {
     let scene = Scene { background: Background::Colour(around), ..scene.clone() };
     let settings = scene::Settings { size: (72, 72), ..scene.settings };
-    let packed = DeviceScene::new(&scene, settings, Quality::Fast).unwrap();
+    let packed = Job::new(&scene, settings, Quality::Fast).unwrap();
     let view = View::new(&packed, &scene.cameras[camera]).unwrap();
     cpu::render::<f32>(&packed, &view, eyerays::method::Method::IfIf, 0, &|_| ()).unwrap().0
 }

@@ -8,8 +8,8 @@ use crate::bench::rays::{CameraRays, PrimaryHits};
 use crate::bench::{Kind, OnGpu};
 use crate::error::Result;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::Gpu;
+use eyerays::job::Job;
 use eyerays::method::{Coherence, Order, Processor, Traversal};
 use eyerays::render::{Choice, Precision};
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
@@ -61,7 +61,7 @@ impl Primary {
     ///
     /// # Errors
     /// If the threads can't be had.
-    pub fn new(packed: &DeviceScene, view: &View, threads: usize) -> Result<Primary> {
+    pub fn new(packed: &Job, view: &View, threads: usize) -> Result<Primary> {
         let sight = PrimaryHits::new(packed, &CameraRays::of(packed, view, Order::Tiled), threads)?;
         let stream = sight.rays(Kind::Primary, 0.0)?.into_owned();
         let traversal = Traversal::default().resolved(Processor::Cpu, Coherence::Scattered);
@@ -78,7 +78,7 @@ impl Primary {
     ///
     /// # Errors
     /// What the device reports.
-    pub fn errors(&self, packed: &DeviceScene, gpu: Option<&Gpu>, choice: &Choice) -> Result<HitErrors> {
+    pub fn errors(&self, packed: &Job, gpu: Option<&Gpu>, choice: &Choice) -> Result<HitErrors> {
         let on_cpu = choice.traversal.resolved(Processor::Cpu, Coherence::Primary);
         let hits = match gpu {
             Some(gpu) => self.on_gpu(gpu, packed, choice.precision == Precision::Exact, choice.traversal)?,
@@ -89,7 +89,7 @@ impl Primary {
         Ok(HitErrors::of(&found, &self.truth))
     }
 
-    fn on_gpu(&self, gpu: &Gpu, packed: &DeviceScene, exact: bool, wanted: Traversal) -> Result<Vec<UVec4>> {
+    fn on_gpu(&self, gpu: &Gpu, packed: &Job, exact: bool, wanted: Traversal) -> Result<Vec<UVec4>> {
         let how = gpu.resolved(wanted, Coherence::Primary)?;
         let held = OnGpu::new(gpu, packed, &[how.layout])?;
         match held.once(&held.upload(&self.stream)?, exact, how, Question::Closest)? {

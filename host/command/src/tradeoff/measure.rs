@@ -10,7 +10,7 @@ use crate::bench::{Timing, cpu_model};
 use crate::error::{Error, Result};
 use crate::remedy;
 use eyerays::compare::compare;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Processor, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Precision};
@@ -100,7 +100,7 @@ struct Judge<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
     device: Backend,
-    packed: DeviceScene,
+    packed: Job,
     bvh: Bvh,
     primary: Primary,
     references: References,
@@ -116,9 +116,9 @@ impl<'a> Judge<'a> {
         let best = plan.axes.reference(subject.settings);
         let (bvh, threads) = (Bvh::default(), device.choice().threads);
         let once = Settings { samples: 1, spp: 0, ..best };
-        let mut packed = DeviceScene::with_wide_nodes(&subject.scene, once, bvh.quality())?;
+        let packed = Job::with_wide_nodes(&subject.scene, once, bvh.quality())?;
         let primary = Primary::new(&packed, &View::new(&packed, &subject.camera)?, threads)?;
-        let references = References::new(plan, subject, (&mut packed, &device), begins)?;
+        let references = References::new(plan, subject, (&packed, &device), begins)?;
         let (hits, notes) = (Vec::new(), Vec::new());
         Ok(Judge { plan, subject, device, packed, bvh, primary, references, hits, place: None, notes })
     }
@@ -177,10 +177,11 @@ impl<'a> Judge<'a> {
         let Subject { scene, .. } = self.subject;
         let settings = setting.settings(self.subject.settings);
         if self.bvh != setting.bvh {
-            self.packed = DeviceScene::with_wide_nodes(scene, settings, setting.bvh.quality())?;
+            self.packed = Job::with_wide_nodes(scene, settings, setting.bvh.quality())?;
             self.bvh = setting.bvh;
         }
-        Ok(self.packed.set(settings)?)
+        self.packed = self.packed.with(settings)?;
+        Ok(())
     }
 
     /// What a setting's primary rays meet does not depend on what follows.

@@ -6,7 +6,7 @@ use crate::error::Result;
 use eyerays::choice::Named;
 use eyerays::compare::compare;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::picture::Picture;
 use eyerays::render::{Backend, Precision};
@@ -27,7 +27,7 @@ pub struct References {
 struct Studio<'a> {
     plan: &'a Plan,
     subject: &'a Subject,
-    packed: &'a mut DeviceScene,
+    packed: Job,
     device: &'a Backend,
     begins: &'a dyn Fn(&str),
 }
@@ -36,14 +36,14 @@ impl Studio<'_> {
     /// The scene by these settings, as it is seen; `step` is what begins.
     fn seen(&mut self, settings: Settings, step: &str) -> Result<View> {
         (self.begins)(step);
-        self.packed.set(settings)?;
-        Ok(View::new(self.packed, &self.subject.camera)?)
+        self.packed = self.packed.with(settings)?;
+        Ok(View::new(&self.packed, &self.subject.camera)?)
     }
 
     /// On the CPU.
     fn on_cpu<R: cpu::Number>(&self, view: &View) -> Result<Picture> {
         let threads = self.device.choice().threads;
-        Ok(cpu::render::<R>(self.packed, view, Traversal::default(), threads, &|_| ())?.0)
+        Ok(cpu::render::<R>(&self.packed, view, Traversal::default(), threads, &|_| ())?.0)
     }
 }
 
@@ -60,10 +60,10 @@ impl References {
     pub fn new(
         plan: &Plan,
         subject: &Subject,
-        (packed, device): (&mut DeviceScene, &Backend),
+        (packed, device): (&Job, &Backend),
         begins: &dyn Fn(&str),
     ) -> Result<Self> {
-        let studio = Studio { plan, subject, packed, device, begins };
+        let studio = Studio { plan, subject, packed: packed.clone(), device, begins };
         if is_sampled(&plan.axes) { Self::sampled(studio) } else { Self::without_noise(studio) }
     }
 
@@ -101,7 +101,7 @@ impl References {
             let settings = Settings { samples: 1, spp, sampler: Sampler::Sobol, transport, ..best };
             let view = studio.seen(settings, &format!("reference, {spp} samples, {place} of 2"))?;
             if studio.device.choice().precision == Precision::Exact {
-                return Ok(studio.device.render(studio.packed, &view, 1, &|_| ())?.picture);
+                return Ok(studio.device.render(&studio.packed, &view, 1, &|_| ())?.picture);
             }
             // A device that was opened for fast precision may have no other.
             studio.on_cpu::<f32>(&view)

@@ -11,7 +11,7 @@ use wgpu::BufferUsages as Use;
 
 use super::{Memory, Renderer};
 use crate::error::{Error, Result};
-use crate::gpu::kernel::{Kernel, compile};
+use crate::gpu::kernel::Kernel;
 use crate::gpu::launch::Launch;
 use crate::gpu::memory::buffer;
 use crate::gpu::recipe::Recipe;
@@ -82,7 +82,7 @@ impl Grid {
     }
 }
 
-impl Renderer<'_> {
+impl Renderer {
     /// The sums of whole blocks of samples of some cells.
     pub(super) fn render_cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
         let least = Grid::of(1, self.order);
@@ -119,9 +119,9 @@ impl Renderer<'_> {
             return Ok(Lot { grid, ..lot });
         }
         let cells = self.cells.as_ref().expect("they were compiled");
-        let table = buffer(self.gpu, binding::CELLS, 4 * u64::from(grid.cells()), Use::STORAGE | Use::COPY_DST);
+        let table = buffer(&self.gpu, binding::CELLS, 4 * u64::from(grid.cells()), Use::STORAGE | Use::COPY_DST);
         let film_bytes = cells.plan.film_bytes() * grid.region().pixels();
-        let film = buffer(self.gpu, binding::FILM, film_bytes, Use::STORAGE | Use::COPY_SRC);
+        let film = buffer(&self.gpu, binding::FILM, film_bytes, Use::STORAGE | Use::COPY_SRC);
         let buffers = self.buffers().clone();
         let groups = self.groups(&cells.kernels, &buffers, Some(&table));
         let group = self.film_group(&cells.kernels, &film);
@@ -130,18 +130,10 @@ impl Renderer<'_> {
     }
 
     /// The kernels that start paths and keep the film are others; all else is the same.
-    fn compile_cells(&self) -> Result<Cells> {
+    fn compile_cells(&mut self) -> Result<Cells> {
         let plan = self.plan.in_blocks(Bits::CELLS).ok_or_else(|| Error::new("the integrator does not sample"))?;
-        let steps: Vec<_> = plan.steps().zip(self.plan.steps()).zip(&self.kernels).collect();
-        let others = steps.iter().filter(|((own, common), _)| own != common).map(|((own, _), _)| **own);
         let target = self.gpu.target(self.exact);
-        let recipes: Vec<Recipe> = others.map(|step| Recipe::new(step, target)).collect();
-        let mut compiled = compile(self.gpu, &recipes).into_iter();
-        let kernels = steps.iter().map(|((own, common), kernel)| match own == common {
-            true => (*kernel).clone(),
-            false => compiled.next().expect("it was compiled"),
-        });
-        let kernels = kernels.collect();
+        let kernels = self.known.compile(&self.gpu, plan.steps().map(|&step| Recipe::new(step, target)).collect());
         self.gpu.check()?;
         Ok(Cells { plan, kernels, lot: None })
     }
@@ -163,7 +155,7 @@ impl Renderer<'_> {
         let batch = lot.memory.buffers.slots / region.pixels() as u32 / BLOCK * BLOCK;
         for first in samples.clone().step_by(batch as usize) {
             let count = batch.min(samples.end - first);
-            let launch = view.launch(self.packed, region, first, count, self.order);
+            let launch = view.launch(&self.job, region, first, count, self.order);
             let frame = Frame { anew: (first == samples.start).into(), ..launch };
             let mut launch = Launch::new(plan, kernels, &lot.memory, &lot.group, &frame, &mut self.queue)?;
             plan::run(plan, &mut launch)?;

@@ -4,6 +4,9 @@ mod cells;
 mod read;
 
 use std::ops::Range;
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::thread;
 use std::time::Duration;
 
 use eyerays_shader::camera;
@@ -15,14 +18,14 @@ use wgpu::BufferUsages as Use;
 use self::cells::Cells;
 use super::bands::bands;
 use super::device::Gpu;
-use super::kernel::{Kernel, compile};
+use super::kernel::{Kernel, Known};
 use super::launch::{Launch, Queue};
 use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::scene::SceneBuffers;
-use crate::device_scene::DeviceScene;
 use crate::error::Result;
 use crate::film::{Coverage, Film, Part};
+use crate::job::Job;
 use crate::method::Traversal;
 use crate::noise::CellSums;
 use crate::picture::Picture;
@@ -42,20 +45,25 @@ pub struct GpuRendering {
 
 /// A scene on a GPU, ready for any number of films: cameras, sizes and samples may change from one to the next, and
 /// neither geometry nor kernels move for that.
-pub struct Renderer<'a> {
-    gpu: &'a Gpu,
-    packed: &'a DeviceScene,
+pub struct Renderer {
+    gpu: Gpu,
+    job: Job,
     exact: bool,
+    traversal: Traversal,
     order: Order,
     plan: Plan,
     /// By the plan's steps.
     kernels: Vec<Kernel>,
+    /// All that were compiled.
+    known: Known,
     scene: SceneBuffers,
+    /// Other lights than the scene's.
+    relit: Option<Vec<Light>>,
     most_slots: u32,
     memory: Option<Memory>,
     growing: Option<Growing>,
     cells: Option<Cells>,
-    queue: Queue<'a>,
+    queue: Queue,
 }
 
 /// What launches exchange, bound to the kernels: for a wave, and for the next, whose queues are exchanged.
@@ -85,7 +93,11 @@ struct Band {
     group: wgpu::BindGroup,
 }
 
-impl Grows for Renderer<'_> {
+impl Grows for Renderer {
+    fn turn(&mut self, job: &Job) -> Result<()> {
+        Renderer::turn(self, job)
+    }
+
     fn start(&mut self, view: &View, regions: &[Region]) -> Result<()> {
         self.start_in(view, regions)
     }
@@ -119,47 +131,62 @@ impl Grows for Renderer<'_> {
     }
 }
 
-impl<'a> Renderer<'a> {
+impl Renderer {
     /// Compiles the kernels and uploads the scene.
     ///
     /// # Errors
     /// What does not fit the GPU, or what its driver reports.
-    pub fn new(gpu: &'a Gpu, packed: &'a DeviceScene, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
+    pub fn new(gpu: &Gpu, job: &Job, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
-        let plan = Plan::new(packed, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
-        let most_slots = most_slots(gpu, &plan, traversal.order.bits())?;
-        let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
-        // The scene goes to the device while the driver's compiler works.
-        let (kernels, scene) = std::thread::scope(|scope| {
-            let kernels = scope.spawn(|| compile(gpu, &recipes));
-            let scene = SceneBuffers::new(gpu, packed, traversal.layout, (&plan).into());
-            (kernels.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), scene)
-        });
-        gpu.check()?;
-        let scene = scene?;
-        let (order, queue) = (traversal.order.bits(), Queue::new(gpu));
+        let (mut known, mut scene) = (Known::default(), SceneBuffers::default());
+        let Ready { plan, most_slots, kernels } = ready(gpu, job, (exact, traversal), &mut known, &mut scene)?;
         Ok(Renderer {
-            gpu,
-            packed,
+            gpu: gpu.clone(),
+            job: job.clone(),
             exact,
-            order,
+            traversal,
+            order: traversal.order.bits(),
             plan,
             kernels,
+            known,
             scene,
+            relit: None,
             most_slots,
             memory: None,
             growing: None,
             cells: None,
-            queue,
+            queue: Queue::new(gpu),
         })
+    }
+
+    /// Goes on with another job. What the device holds of its scene stays there, and so do kernels that were compiled. The film is then
+    /// to be started again.
+    ///
+    /// # Errors
+    /// As [`Renderer::new`].
+    pub fn turn(&mut self, job: &Job) -> Result<()> {
+        // Its groups bind the buffers of the plan before.
+        (self.memory, self.growing, self.cells) = (None, None, None);
+        let is_other = !Arc::ptr_eq(self.job.scene(), job.scene());
+        if is_other {
+            (self.scene, self.relit) = (SceneBuffers::default(), None);
+        }
+        let how = (self.exact, self.traversal);
+        let ready = ready(&self.gpu, job, how, &mut self.known, &mut self.scene)?;
+        (self.plan, self.most_slots, self.kernels) = (ready.plan, ready.most_slots, ready.kernels);
+        self.job = job.clone();
+        match self.relit.take() {
+            Some(lights) => self.set_lights(&lights),
+            None => Ok(()),
+        }
     }
 
     /// Goes on with other lights: as many as the scene's, of the same kinds.
     ///
     /// # Errors
-    /// As [`DeviceScene::relit`].
+    /// As [`DeviceScene::relit`](crate::device_scene::DeviceScene::relit).
     pub fn set_lights(&mut self, lights: &[Light]) -> Result<()> {
-        let (records, lighting) = self.packed.relit(lights)?;
+        let (records, lighting) = self.job.relit(lights)?;
         let write = |binding, bytes| {
             if let Some(buffer) = self.scene.find(binding) {
                 self.gpu.queue.write_buffer(buffer, 0, bytes);
@@ -169,6 +196,7 @@ impl<'a> Renderer<'a> {
         write(binding::EMITTERS, bytemuck::cast_slice(&lighting.emitters));
         write(binding::LIGHT_NODES, bytemuck::cast_slice(&lighting.nodes));
         write(binding::EMISSIONS, bytemuck::cast_slice(&lighting.emissions));
+        self.relit = Some(lights.to_vec());
         Ok(())
     }
 
@@ -247,7 +275,7 @@ impl<'a> Renderer<'a> {
         let mut first = samples.start;
         while first < samples.end {
             let count = batch.min(samples.end - first);
-            let launch = view.launch(self.packed, band.region, first, count, self.order);
+            let launch = view.launch(&self.job, band.region, first, count, self.order);
             let frame = Frame { anew: band.is_empty.into(), ..launch };
             let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());
             let memory = self.memory.as_ref().expect("it was reserved");
@@ -282,7 +310,7 @@ impl<'a> Renderer<'a> {
         let (columns, rows) = camera::blocks(self.order);
         let mut refusal = None;
         let buffers = loop {
-            match LaunchBuffers::new(self.gpu, &self.plan.slot_bytes, slots) {
+            match LaunchBuffers::new(&self.gpu, &self.plan.slot_bytes, slots) {
                 Ok(buffers) => break buffers,
                 Err(error) if slots > LEAST_SLOTS => {
                     refusal.get_or_insert(error);
@@ -307,7 +335,7 @@ impl<'a> Renderer<'a> {
     /// What kernels bind that do not bind the film; those over cells bind their table, too.
     fn groups(&self, kernels: &[Kernel], buffers: &LaunchBuffers, table: Option<&wgpu::Buffer>) -> Vec<Groups> {
         let group = |kernel: &Kernel, is_second| {
-            kernel.group(self.gpu, |binding| match kernel.source(binding, &self.plan) {
+            kernel.group(&self.gpu, |binding| match kernel.source(binding, &self.plan) {
                 binding::CELLS => table,
                 binding => self.scene.find(binding).or_else(|| buffers.find(binding, is_second)),
             })
@@ -319,7 +347,7 @@ impl<'a> Renderer<'a> {
     /// What the kernel that keeps the film binds.
     fn film_group(&self, kernels: &[Kernel], film: &wgpu::Buffer) -> wgpu::BindGroup {
         let kernel = kernels.iter().find(|kernel| kernel.binds(binding::FILM)).expect("a step keeps the film");
-        kernel.group(self.gpu, |binding| match binding {
+        kernel.group(&self.gpu, |binding| match binding {
             binding::FILM => Some(film),
             other => self.buffers().find(other, false),
         })
@@ -327,11 +355,39 @@ impl<'a> Renderer<'a> {
 
     fn band(&self, region: Region) -> Result<Band> {
         let size = self.plan.film_bytes() * region.pixels();
-        let film = buffer(self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
+        let film = buffer(&self.gpu, binding::FILM, size, Use::STORAGE | Use::COPY_SRC);
         let group = self.film_group(&self.kernels, &film);
         self.gpu.check()?;
         Ok(Band { region, is_empty: true, film, group })
     }
+}
+
+/// What pictures of a job take.
+struct Ready {
+    plan: Plan,
+    most_slots: u32,
+    kernels: Vec<Kernel>,
+}
+
+/// Compiles the kernels of a job that are not known yet, and uploads what is not there of its scene meanwhile.
+fn ready(
+    gpu: &Gpu,
+    job: &Job,
+    (exact, traversal): (bool, Traversal),
+    known: &mut Known,
+    scene: &mut SceneBuffers,
+) -> Result<Ready> {
+    let plan = Plan::new(job, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
+    let most_slots = most_slots(gpu, &plan, traversal.order.bits())?;
+    let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
+    let (kernels, uploaded) = thread::scope(|scope| {
+        let kernels = scope.spawn(|| known.compile(gpu, recipes));
+        let uploaded = scene.complete(gpu, job, traversal.layout, (&plan).into());
+        (kernels.join().unwrap_or_else(|panic| resume_unwind(panic)), uploaded)
+    });
+    gpu.check()?;
+    uploaded?;
+    Ok(Ready { plan, most_slots, kernels })
 }
 
 /// Launches of fewer slots are not worth a try.

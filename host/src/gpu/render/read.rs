@@ -14,7 +14,7 @@ use crate::view::Region;
 /// Bytes of films that are read back at once.
 const READ: u64 = 1 << 28;
 
-impl Renderer<'_> {
+impl Renderer {
     /// Waits for the samples so far, and reads their film.
     ///
     /// # Errors

@@ -8,7 +8,6 @@ use rayon::prelude::*;
 use super::description::Description;
 use super::header::{AGAIN, Header};
 use super::hierarchy::Hierarchy;
-use crate::device_scene::check;
 use crate::error::{Error, Result};
 use crate::scene::{Mesh, Scene, Unplaced, budget::Budget, file};
 
@@ -61,7 +60,7 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     if scene.cameras.is_empty() {
         return Err(again("it has no camera".into()));
     }
-    let checked = scene.check().and_then(|()| check::settings(&scene.settings));
+    let checked = scene.check().and_then(|()| scene.settings.check());
     checked.map_err(|error| format!("{}; {MENDED}", error.message()))?;
     Ok(scene)
 }

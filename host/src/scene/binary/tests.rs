@@ -8,8 +8,9 @@ use proptest::prelude::*;
 use super::header::Header;
 use super::read::parse;
 use super::write;
-use crate::device_scene::{DeviceScene, hierarchy};
+use crate::device_scene::hierarchy;
 use crate::error::Result;
+use crate::job::Job;
 use crate::memory::Room;
 use crate::quality::Bvh;
 use crate::scene::{
@@ -94,8 +95,8 @@ pub(super) static EXAMPLE: LazyLock<Vec<u8>> = LazyLock::new(|| {
     bytes
 });
 
-pub(super) fn packed(scene: &Scene) -> Result<DeviceScene> {
-    DeviceScene::new(scene, scene.settings, Bvh::Fast.quality())
+pub(super) fn packed(scene: &Scene) -> Result<Job> {
+    Job::new(scene, scene.settings, Bvh::Fast.quality())
 }
 
 #[test]

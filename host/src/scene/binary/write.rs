@@ -7,7 +7,6 @@ use eyerays_bvh::Bvh;
 use super::description::Description;
 use super::header::{ALIGNMENT, Counts, Header, SECTIONS, hash};
 use super::textures::{Pictures, bytes};
-use crate::device_scene::check;
 use crate::error::{Error, Result};
 use crate::quality;
 use crate::scene::Scene;
@@ -20,7 +19,7 @@ use crate::scene::Scene;
 /// What [`Scene::check`] refuses, settings out of range, and what keeps `out` from being written.
 pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
-    check::settings(&scene.settings)?;
+    scene.settings.check()?;
     let (pictures, textures) = Pictures::of(scene);
     let texels = textures.iter().map(|texture| bytes(texture)).collect::<Vec<_>>().concat();
     let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));

@@ -1,6 +1,7 @@
 //! Whether a scene holds together and is in range, whoever made it.
 
 mod covering;
+mod settings;
 
 use glam::Vec3;
 use rayon::prelude::*;

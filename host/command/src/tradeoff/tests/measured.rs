@@ -5,7 +5,7 @@ use std::path::Path;
 use super::*;
 use eyerays::compare::compare;
 use eyerays::cpu;
-use eyerays::device_scene::DeviceScene;
+use eyerays::job::Job;
 use eyerays::method::Processor;
 use eyerays::picture::Picture;
 use eyerays::render::{Backend, Choice, DeviceWish};
@@ -46,7 +46,7 @@ fn on_cpu() -> Backend {
 /// The picture of a setting, straight from the executor.
 fn picture(subject: &Subject, setting: &Setting) -> Picture {
     let settings = setting.settings(subject.settings);
-    let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, setting.bvh.quality()).unwrap();
+    let packed = Job::with_wide_nodes(&subject.scene, settings, setting.bvh.quality()).unwrap();
     let choice = Choice {
         device: DeviceWish::Cpu,
         precision: setting.precision,
@@ -59,7 +59,7 @@ fn picture(subject: &Subject, setting: &Setting) -> Picture {
 
 fn reference(subject: &Subject, samples: u32) -> Picture {
     let settings = Settings { samples, ..subject.settings };
-    let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, Bvh::High.quality()).unwrap();
+    let packed = Job::with_wide_nodes(&subject.scene, settings, Bvh::High.quality()).unwrap();
     let view = View::new(&packed, &subject.camera).unwrap();
     cpu::render::<f64>(&packed, &view, Method::IfIf, 0, &|_| ()).unwrap().0
 }
@@ -116,7 +116,7 @@ fn what_is_free_changes_no_error_and_what_trades_does() {
 fn exact_hits_are_right_but_for_edges() {
     let subject = subject();
     let settings = Settings { samples: 1, ..subject.settings };
-    let packed = DeviceScene::with_wide_nodes(&subject.scene, settings, Bvh::Medium.quality()).unwrap();
+    let packed = Job::with_wide_nodes(&subject.scene, settings, Bvh::Medium.quality()).unwrap();
     let view = View::new(&packed, &subject.camera).unwrap();
     let primary = super::super::hits::Primary::new(&packed, &view, 2).unwrap();
     let errors = primary.errors(&packed, None, &Choice::default()).unwrap();

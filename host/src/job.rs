@@ -1,0 +1,238 @@
+//! What is rendered of a scene: all that kernels are compiled for.
+
+use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
+
+use eyerays_bvh::Quality;
+use eyerays_shader::data::{Effects, Frame, Launch, Layout, Specialisation, pack};
+use eyerays_shader::material::ALBEDOS;
+use glam::Vec3;
+
+use crate::device_scene::{DeviceScene, Feature, Hierarchies, flushed};
+use crate::error::{Error, Result};
+use crate::method::Traversal;
+use crate::scene::{Integrator, Scene, Settings, Transport};
+
+/// A scene as devices hold it, with settings and what its pictures show. Cheap to clone: jobs of one scene share it.
+#[derive(Clone)]
+pub struct Job {
+    scene: Arc<DeviceScene>,
+    settings: Settings,
+    feature: Option<Feature>,
+}
+
+impl Job {
+    /// Packs a scene. All methods follow rays through it but [`Method::Wide`](crate::method::Method::Wide) on a GPU.
+    ///
+    /// # Errors
+    /// As [`DeviceScene::new`] and [`Job::of`].
+    pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<Job> {
+        Job::packed(scene, settings, quality, Hierarchies::default())
+    }
+
+    /// As [`Job::new`], with the nodes of eight children beside that a GPU walks by
+    /// [`Method::Wide`](crate::method::Method::Wide).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn with_wide_nodes(scene: &Scene, settings: Settings, quality: Quality) -> Result<Job> {
+        Job::packed(scene, settings, quality, Hierarchies { wide: true })
+    }
+
+    fn packed(scene: &Scene, settings: Settings, quality: Quality, hierarchies: Hierarchies) -> Result<Job> {
+        // Before the hierarchy is built, which may take long.
+        scene.check()?;
+        settings.check()?;
+        check_emission(scene.emissive(), settings.transport.integrator)?;
+        Job::of(Arc::new(DeviceScene::of_checked(scene, quality, hierarchies)?), settings)
+    }
+
+    /// Of a scene that is packed.
+    ///
+    /// # Errors
+    /// Settings out of range, or an integrator that would leave out light.
+    pub fn of(scene: Arc<DeviceScene>, settings: Settings) -> Result<Job> {
+        settings.check()?;
+        check_emission(scene.emissive(), settings.transport.integrator)?;
+        Ok(Job { scene, settings, feature: None })
+    }
+
+    /// The same scene by other settings, with light.
+    ///
+    /// # Errors
+    /// As [`Job::of`].
+    pub fn with(&self, settings: Settings) -> Result<Job> {
+        Job::of(self.scene.clone(), settings)
+    }
+
+    /// The same scene and settings, with pictures that show something else instead of light, or light again.
+    #[must_use]
+    pub fn showing(&self, feature: Option<Feature>) -> Job {
+        Job { feature, ..self.clone() }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> &Arc<DeviceScene> {
+        &self.scene
+    }
+
+    /// How much of it is rendered.
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What its pictures show instead of light, if they do.
+    pub fn feature(&self) -> Option<Feature> {
+        self.feature
+    }
+
+    /// The effects of the scene that are asked for.
+    pub fn effects(&self) -> Effects {
+        let effects = self.scene.asked(&self.settings);
+        self.feature.map_or(effects, |feature| self.scene.shown(feature).with(effects.0 & Effects::CULLING))
+    }
+
+    /// Can a primary ray's light come from further rays?
+    pub fn has_secondary_rays(&self) -> bool {
+        self.effects().has(Effects::REFLECTION | Effects::REFRACTION | Effects::PHYSICAL)
+    }
+
+    /// Words of the albedos of facets, see [`eyerays_shader::material::Albedos`]; empty where nothing is given back.
+    pub fn albedos(&self) -> &'static [u32] {
+        static WORDS: OnceLock<Vec<u32>> = OnceLock::new();
+        if !self.effects().has(Effects::COMPENSATED) {
+            return &[];
+        }
+        WORDS.get_or_init(|| bytemuck::pod_collect_to_vec(ALBEDOS))
+    }
+
+    /// What kernels are compiled for that follow the camera's rays by a traversal.
+    pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
+        let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
+        let parallel = if self.has_orthographic_cameras() { Launch::PARALLEL } else { 0 };
+        let split = if self.bounds().is_empty() { 0 } else { Layout::SPLIT };
+        Specialisation {
+            effects: self.effects(),
+            launch: Launch(
+                traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter | parallel,
+            ),
+            layout: Layout(traversal.layout.bits() | split),
+            order: traversal.order.bits(),
+            tuning: traversal.tuning,
+        }
+    }
+
+    fn transport_bits(&self) -> u32 {
+        let Transport { integrator, direct, .. } = self.settings.transport;
+        if let Some(feature) = self.feature {
+            return feature.bits();
+        }
+        match integrator {
+            Integrator::Whitted => 0,
+            Integrator::Ao => Launch::OCCLUSION,
+            Integrator::Distributed => Launch::TREE,
+            Integrator::Path => direct.bits(),
+        }
+    }
+
+    /// Is a picture made of samples, each of which asks for at most one shadow ray?
+    fn is_sampled(&self) -> bool {
+        self.feature.is_some() || self.settings.transport.integrator.samples()
+    }
+
+    /// Every launch's record but for what a view says.
+    pub(crate) fn frame(&self) -> Frame {
+        let lights = self.lights().len() as u32;
+        let Transport { seed, roulette, clamp, ao_distance, .. } = self.settings.transport;
+        let [least, greatest] = self.found_light().unwrap_or([Vec3::ONE, Vec3::NEG_ONE]);
+        let reach = (f64::from(ao_distance) * self.normalisation().scale).min(f32::MAX.into()) as f32;
+        let [horizon, zenith] = self.background();
+        Frame {
+            lamps: pack(flushed((least + greatest) * 0.5), 0),
+            lamps_half: pack(flushed((greatest - least) * 0.5), 0),
+            horizon,
+            zenith,
+            bounces: self.settings.bounces,
+            min_contribution: self.settings.min_contribution,
+            lights,
+            shadow_rays: if self.is_sampled() { 1 } else { lights },
+            seed,
+            emitters: self.lighting().emitters.len() as u32,
+            roulette,
+            clamp,
+            reach,
+            environment: self.lighting().environment,
+            far: self.lighting().far,
+            vertices: self.primitives().len() as u32,
+            ..Frame::default()
+        }
+    }
+}
+
+/// All that a scene says is asked of a job, too.
+impl Deref for Job {
+    type Target = DeviceScene;
+
+    fn deref(&self) -> &DeviceScene {
+        &self.scene
+    }
+}
+
+/// Refuses to leave out light.
+///
+/// # Errors
+/// The integrator draws no light that materials emit.
+fn check_emission(emissive: Option<&str>, integrator: Integrator) -> Result<()> {
+    match (emissive, integrator) {
+        (Some(name), Integrator::Whitted) => Err(Error::new(format!(
+            "the material {name:?} emits light, which the integrator whitted does not draw: choose path or distributed (--integrator path)"
+        ))),
+        _ => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use eyerays_bvh::Quality;
+
+    use super::*;
+    use crate::job::Job;
+    use crate::method::Method;
+    use crate::scene::Scene;
+
+    fn whitted() -> Scene {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
+        crate::scene::load(path.as_ref()).unwrap().0
+    }
+
+    fn refusal(scene: &Scene, settings: Settings) -> Option<String> {
+        let packed = Job::new(scene, settings, Quality::Fast);
+        packed.err().map(|error| error.message())
+    }
+
+    #[test]
+    fn a_method_is_refused_whose_nodes_were_not_packed() {
+        let scene = whitted();
+        let packed = Job::new(&scene, scene.settings, Quality::Fast).unwrap();
+        let refused = packed.check_walks(Method::Wide).expect_err("accepted").message();
+        assert!(refused.ends_with("pack it by Job::with_wide_nodes"), "{refused}");
+        assert!(packed.check_walks(Method::IfIf).is_ok());
+        let packed = Job::with_wide_nodes(&scene, scene.settings, Quality::Fast).unwrap();
+        assert!(packed.check_walks(Method::Wide).is_ok());
+    }
+
+    #[test]
+    fn settings_beyond_their_limits_are_refused_when_they_are_taken_too() {
+        let scene = whitted();
+        let packed = Job::new(&scene, scene.settings, Quality::Fast).unwrap();
+        for beyond in [
+            Settings { size: (0, 4), ..scene.settings },
+            Settings { samples: 0, ..scene.settings },
+            Settings { bounces: u32::MAX, ..scene.settings },
+            Settings { min_contribution: f32::NAN, ..scene.settings },
+        ] {
+            assert!(refusal(&scene, beyond).is_some(), "{beyond:?}");
+            assert!(packed.with(beyond).is_err(), "{beyond:?}");
+        }
+    }
+}

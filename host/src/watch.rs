@@ -24,6 +24,18 @@ pub struct Watch<'a> {
     pub grown: &'a dyn Fn(Growth<'_>),
 }
 
+/// What hears of samples as a watch does, and tells `kept` of each film that is looked at: another device can go on from there.
+pub(crate) fn keeping<'a>(watch: &'a Watch<'_>, kept: &'a dyn Fn(&Film)) -> impl Fn(Growth<'_>) + 'a {
+    move |Growth { samples, of, cells, film }| {
+        let mut film = || {
+            let film = film()?;
+            kept(&film);
+            Ok(film)
+        };
+        (watch.grown)(Growth { samples, of, cells, film: &mut film });
+    }
+}
+
 /// A film that has got some samples.
 pub struct Growth<'a> {
     /// Samples of each pixel, in the mean of all.
@@ -340,6 +352,24 @@ mod tests {
         let again =
             go_on(&mut slow(Duration::ZERO), &view, Some(film), &Watch { limit: None, stop: &stop, grown: &|_| () });
         assert!(again.unwrap().develop().unwrap().bits_equal(&whole.develop().unwrap()));
+    }
+
+    #[test]
+    fn a_film_that_is_looked_at_is_kept() {
+        let (packed, view) = cornell(9);
+        let (stop, kept) = (AtomicBool::new(false), RefCell::new(Vec::new()));
+        // Whoever looks on looks once.
+        let grown = |growth: Growth<'_>| {
+            if growth.samples == 5 {
+                growth.film().unwrap();
+            }
+        };
+        let watch = Watch { limit: None, stop: &stop, grown: &grown };
+        let keep = |film: &Film| kept.borrow_mut().push(film.coverage().volume() / view.region().pixels());
+        let grown = keeping(&watch, &keep);
+        let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
+        go_on(&mut OnCpu::<f32>::new(renderer), &view, None, &Watch { grown: &grown, ..watch }).unwrap();
+        assert_eq!(*kept.borrow(), [5]);
     }
 
     #[test]

@@ -1,5 +1,6 @@
 //! A scene on a device, ready for any number of pictures.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -109,8 +110,11 @@ impl Session {
     /// # Errors
     /// As [`Session::render`]; or a film of another picture.
     pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
+        let last = Last::new(self.is_left_to_us());
+        let keep = |film: &Film| last.keep(film);
+        let grown = watch::keeping(watch, &keep);
         self.rendered(view, 1, |device| {
-            let film = watch::go_on(device, view, from.cloned(), watch)?;
+            let film = watch::go_on(device, view, last.or(from), &Watch { grown: &grown, ..*watch })?;
             Ok((device.develop(&film)?, Some(film)))
         })
     }
@@ -131,8 +135,11 @@ impl Session {
             return Err(Error::NoNoise { integrator: self.job.settings().transport.integrator });
         }
         self.prepare_time = std::mem::take(&mut self.opening);
+        let last = Last::new(self.is_left_to_us());
+        let keep = |film: &Film| last.keep(film);
+        let grown = watch::keeping(watch, &keep);
         self.rendered(view, 1, |device| {
-            let film = noise::go_on(device, view, target, from.cloned(), watch)?;
+            let film = noise::go_on(device, view, target, last.or(from), &Watch { grown: &grown, ..*watch })?;
             Ok((device.develop(&film)?, Some(film)))
         })
     }
@@ -218,6 +225,29 @@ impl Session {
 
 /// A picture with what was counted, and its film where that is kept.
 pub(super) type Made = ((Picture, Rays), Option<Film>);
+
+/// The film that somebody looked at last, from where a CPU goes on if a GPU fails that is left to us.
+struct Last {
+    keeps: bool,
+    film: RefCell<Option<Film>>,
+}
+
+impl Last {
+    fn new(keeps: bool) -> Last {
+        Last { keeps, film: RefCell::new(None) }
+    }
+
+    fn keep(&self, film: &Film) {
+        if self.keeps {
+            *self.film.borrow_mut() = Some(film.clone());
+        }
+    }
+
+    /// It, or the film that the rendering began with.
+    fn or(&self, from: Option<&Film>) -> Option<Film> {
+        self.film.borrow().clone().or_else(|| from.cloned())
+    }
+}
 
 /// A device that films grow on.
 type Device = Box<dyn Grows + Send>;

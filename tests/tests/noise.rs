@@ -75,7 +75,7 @@ fn mean(scene: &Scene, render: impl Fn(&Posed) -> Rendering) -> (Vec<f64>, Vec<u
 /// of 64 pictures err by chance by less than a fiftieth of the noise.
 #[test]
 fn stopping_by_noise_changes_no_mean_by_more_than_a_tenth_of_it() {
-    const NOISE: f64 = 0.1;
+    const NOISE: f64 = 0.05;
     let target = Target::new(NOISE, 0.0, ToneMap::None).unwrap();
     let scene = shipped("cornell_path");
     let until = |posed: &Posed| rendered(posed, &target, DeviceWish::Cpu, Traversal::default());

@@ -29,7 +29,8 @@ fn gpu_and_cpu_decide_alike() {
     if quick_gpu().is_none() {
         return;
     }
-    let target = Target::new(0.08, 1.0, ToneMap::None).unwrap();
+    let target = Target::new(0.06, 0.0, ToneMap::None).unwrap();
+    let mut differ = 0;
     let linear = Traversal { order: Order::Linear, ..Method::IfIf.into() };
     let morton = Traversal { order: Order::Morton, ..Method::IfIf.into() };
     for (name, integrator, traversal) in [
@@ -47,8 +48,9 @@ fn gpu_and_cpu_decide_alike() {
         assert_eq!((own.errors(), own.cells_left()), (want.errors(), 0), "{name}");
         assert_same_bits(&gpu.picture, &cpu.picture, name);
         let counts = own.samples();
-        assert!(counts.iter().max() > counts.iter().min(), "{name} has all of one number: {}", counts[0]);
+        differ += usize::from(counts.iter().max() > counts.iter().min());
     }
+    assert!(differ > 0, "cells that all have one number of samples show little");
 }
 
 /// The mean of pictures of 64 seeds.

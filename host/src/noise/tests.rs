@@ -124,7 +124,9 @@ fn a_cell_gets_as_many_samples_as_its_noise_asks_for() {
     for (number, (mean, _)) in cells.into_iter().enumerate().take(5) {
         let error = |x: usize, y: usize| f64::from(picture.pixels[y * 96 + 16 * number + x][0]) / mean - 1.0;
         let squares: f64 = (0..256).map(|i| error(i % 16, i / 16).powi(2)).sum();
-        assert!((squares / 256.0).sqrt() < 0.021, "cell {number}");
+        let error = (squares / 256.0).sqrt();
+        // Of 256 pixels it errs itself by 1 / sqrt(2 * 256), three times which is 13 %.
+        assert!(error < 0.02 * 1.13, "cell {number}: {error}");
     }
 }
 

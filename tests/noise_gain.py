@@ -1,13 +1,15 @@
 #!/usr/bin/env python3
-"""What `eyerays render --noise` saves: samples to the same error, with and without it, in five scenes.
+"""What `eyerays render --noise` saves: samples and time to the same error, with and without it, in five scenes.
 
-    python3 tests/noise_gain.py target/release/eyerays [SCENE=NOISE ...]
+    python3 tests/noise_gain.py target/release/eyerays [--device gpu] [--size 320x240] [SCENE=NOISE ...]
 
-Each scene is rendered by the CPU with --noise; then without, with more and more samples, until the error is as small. Errors are root mean
-squares of what is seen, as --noise has it: of the mean of the channels after the exposure, as a share of the reference's or of a 20th of
-white. The reference has other numbers (--seed). Needs Python 3.9 and no package.
+Each scene is rendered with --noise; then without, with more and more samples, until the error is as small. Errors are root mean squares
+of what is seen, as --noise has it: of the mean of the channels after the exposure, as a share of the reference's or of a 20th of white.
+The reference has other numbers (--seed) and twice the most samples. Time is that of rendering alone, the least of three. Needs Python 3.9
+and no package.
 """
 
+import argparse
 import json
 import math
 import subprocess
@@ -18,16 +20,27 @@ from pathlib import Path
 
 # With the noise that is asked for: about what so many samples at most have everywhere.
 SCENES = ["cornell_path=0.05", "soft_shadows=0.025", "room=0.05", "metal=0.02", "dusk=0.01"]
-SIZE, MOST, REFERENCE = "96x64", 1024, 2048
 FLOOR = 0.05
 ROOT = Path(__file__).resolve().parent.parent
 
 
-def render(program, scene, output, *more):
-    """The summary of a picture as a PNG of 16 bits."""
-    command = [program, "render", str(ROOT / "scenes" / f"{scene}.toml"), "--device", "cpu", "--size", SIZE, "--sampler", "sobol"]
-    command += ["--integrator", "path", "--bits", "16", "-o", str(output), "--json", "-q", *more]
-    return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+class Renderer:
+    """The program, and what all its pictures have in common."""
+
+    def __init__(self, asked):
+        self.asked = asked
+
+    def render(self, scene, output, *more):
+        """The summary of a picture as a PNG of 16 bits."""
+        asked = self.asked
+        command = [asked.program, "render", str(ROOT / "scenes" / f"{scene}.toml"), "--device", asked.device, "--size", asked.size]
+        command += ["--sampler", "sobol", "--integrator", "path", "--bits", "16", "-o", str(output), "--json", "-q", *more]
+        return json.loads(subprocess.run(command, check=True, capture_output=True).stdout)
+
+    def timed(self, scene, output, *more):
+        """The same, and the milliseconds that it took to render."""
+        runs = [self.render(scene, output, *more) for _ in range(3 if self.asked.times else 1)]
+        return runs[0], min(run["render_ms"] for run in runs)
 
 
 def seen(path):
@@ -65,34 +78,45 @@ def error(found, wanted):
     return math.sqrt(sum(squares) / len(squares))
 
 
-def gain(program, scene, noise, folder):
-    """Samples with --noise, those of the same error without, and the error."""
-    picture = folder / "a.png"
-    render(program, scene, picture, "--spp", str(REFERENCE), "--seed", "1")
+def gain(renderer, scene, noise, folder):
+    """Samples and milliseconds with --noise, those of the same error without, and the error."""
+    picture, most = folder / "a.png", renderer.asked.most
+    renderer.render(scene, picture, "--spp", str(2 * most), "--seed", "1")
     wanted = seen(picture)
-    summary = render(program, scene, picture, "--noise", noise, "--spp", str(MOST))
+    summary, time = renderer.timed(scene, picture, "--noise", noise, "--exposure", "0", "--spp", str(most))
     pixels = summary["width"] * summary["height"]
-    own, found = summary["rays"]["primary"] / pixels, error(seen(picture), wanted)
-    last = None
-    for spp in [64, 96, 128, 192, 256, 384, 512, 768, 1024]:
-        render(program, scene, picture, "--spp", str(spp), "--checkpoint", str(folder / f"{scene}.film"), "--resume")
-        now = (math.log(spp), math.log(error(seen(picture), wanted)))
-        if now[1] <= math.log(found):
+    own, found = (summary["rays"]["primary"] / pixels, time), error(seen(picture), wanted)
+    before, spp = None, 64
+    while spp <= 2 * most:
+        _, time = renderer.timed(scene, picture, "--spp", str(spp))
+        now = [math.log(x) for x in (spp, time, error(seen(picture), wanted))]
+        if now[2] <= math.log(found):
             # Between two numbers of samples the error falls as a power.
-            share = 0 if last is None else (math.log(found) - last[1]) / (now[1] - last[1])
-            return own, math.exp(now[0] if last is None else last[0] + share * (now[0] - last[0])), found
-        last = now
-    return own, float("inf"), found
+            share = 1 if before is None else (math.log(found) - before[2]) / (now[2] - before[2])
+            start = before or now
+            return own, [math.exp(a + share * (b - a)) for a, b in zip(start[:2], now[:2])], found
+        before, spp = now, spp * 3 // 2 // 16 * 16
+    return own, (math.inf, math.inf), found
 
 
 def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("program")
+    parser.add_argument("scenes", nargs="*", default=SCENES, metavar="SCENE=NOISE")
+    parser.add_argument("--device", default="cpu")
+    parser.add_argument("--size", default="96x64")
+    parser.add_argument("--most", type=int, default=1024)
+    parser.add_argument("--times", action="store_true", help="measure times, too: of each picture the least of three")
+    renderer = Renderer(parser.parse_intermixed_args())
     gains = []
-    for scene, noise in (named.split("=") for named in sys.argv[2:] or SCENES):
+    for scene, noise in (named.split("=") for named in renderer.asked.scenes):
         with tempfile.TemporaryDirectory() as folder:
-            own, fixed, found = gain(sys.argv[1], scene, noise, Path(folder))
-        gains.append(fixed / own)
-        print(f"{scene}, --noise {noise}: error {100 * found:.2f} % by {own:.0f} samples a pixel, {fixed:.0f} without: {gains[-1]:.2f} times", flush=True)
-    print(f"median {sorted(gains)[len(gains) // 2]:.2f} times")
+            own, fixed, found = gain(renderer, scene, noise, Path(folder))
+        gains.append([b / a for a, b in zip(own, fixed)])
+        of = lambda pair: f"{pair[0]:.0f} samples a pixel in {pair[1]:.1f} ms"
+        ratios = f"{gains[-1][0]:.2f} times as many, {gains[-1][1]:.2f} times as long"
+        print(f"{scene}, --noise {noise}: error {100 * found:.2f} % by {of(own)}, without by {of(fixed)}: {ratios}", flush=True)
+    print("medians " + ", ".join(f"{sorted(column)[len(gains) // 2]:.2f}" for column in zip(*gains)))
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ use eyerays_shader::stage::{BLOCK, NOISY_FILM_WORDS, PixelSums, Row};
 use rayon::prelude::*;
 
 use super::develop::{Mean, mean_light};
-use super::{Coverage, Film};
+use super::{Coverage, Film, Layout};
 use crate::error::{Error, Result};
 use crate::noise::{CellSums, Target, decides_at, next, whole_blocks};
 use crate::view::{Region, View};
@@ -79,14 +79,26 @@ impl Film {
 
     /// Adds samples of some cells, which are those after the ones that they have.
     pub(crate) fn add_cells(&mut self, of: &[Region], samples: Range<u32>, added: &CellSums) -> Result<()> {
-        for (cell, sums) in of.iter().zip(&added.sums) {
-            let number = self.cell_number(*cell);
+        for &cell in of {
+            let number = self.cell_number(cell);
             let cells = self.cells.as_mut().ok_or_else(other_kind)?;
             assert_eq!(cells.counts[number], samples.start, "samples are added in their order");
             cells.counts[number] = samples.end;
-            self.add_sums(*cell, sums)?;
         }
         self.add_rays(added.secondary);
+        self.make_room()?;
+        let (window, words) = (self.window, self.words);
+        let band = |cell: &Region| (cell.y - window.y) / Target::CELL;
+        let mut bands = vec![Vec::new(); window.height.div_ceil(Target::CELL) as usize];
+        of.iter().zip(&added.sums).for_each(|(cell, sums)| bands[band(cell) as usize].push((*cell, sums)));
+        // Rows of cells on all threads: a device waits meanwhile.
+        let rows = self.sums.par_chunks_mut((Target::CELL * window.width * words) as usize);
+        rows.zip(bands).for_each(|(own, cells)| {
+            for (cell, sums) in cells {
+                let region = Region { y: cell.y, height: cell.height, ..window };
+                Layout { region, words }.add(own, cell, sums);
+            }
+        });
         Ok(())
     }
 

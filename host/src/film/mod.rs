@@ -150,19 +150,31 @@ impl Film {
         if sums.is_empty() {
             return Ok(());
         }
-        if self.sums.is_empty() {
-            let all = self.window.pixels() as usize * self.words as usize;
-            let (width, height) = self.size;
-            self.sums.try_reserve_exact(all).map_err(|_| Error::Memory { width, height })?;
-            // On all threads: a system takes long to hand so much memory to one.
-            if region == self.window {
-                self.sums.par_extend(sums.par_iter().copied());
-                return Ok(());
-            }
-            self.sums.par_extend(rayon::iter::repeat_n(0, all));
+        if self.sums.is_empty() && region == self.window {
+            self.reserve()?;
+            self.sums.par_extend(sums.par_iter().copied());
+            return Ok(());
         }
+        self.make_room()?;
         Layout { region: self.window, words: self.words }.add(&mut self.sums, region, sums);
         Ok(())
+    }
+
+    /// Sums of nothing, where there are none yet. On all threads: a system takes long to hand so much memory to one.
+    fn make_room(&mut self) -> Result<()> {
+        if self.sums.is_empty() {
+            let all = self.reserve()?;
+            self.sums.par_extend(rayon::iter::repeat_n(0, all));
+        }
+        Ok(())
+    }
+
+    /// Takes the memory of all sums, of so many words.
+    fn reserve(&mut self) -> Result<usize> {
+        let all = self.window.pixels() as usize * self.words as usize;
+        let (width, height) = self.size;
+        self.sums.try_reserve_exact(all).map_err(|_| Error::Memory { width, height })?;
+        Ok(all)
     }
 }
 

@@ -3,8 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use eyerays::device_scene::DeviceScene;
 use eyerays::gpu::{Recipe, Target};
+use eyerays::job::Job;
 use eyerays::method::{Processor, Traversal};
 use eyerays::plan::{Plan, Stage};
 use eyerays::quality::Bvh;
@@ -133,7 +133,7 @@ fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
 fn recipes(name: &str) -> Vec<(String, Specialisation, Stage)> {
     let path = source::shader().join("../scenes").join(name).with_extension("toml");
     let (scene, _) = scene::load(&path).unwrap();
-    let scene = DeviceScene::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
+    let scene = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
     let traversal = Traversal::default();
     let plan = Plan::new(&scene, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence))).unwrap();
     let target = Target { exact: true, subgroups: true };

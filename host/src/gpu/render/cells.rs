@@ -7,6 +7,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits, Order};
 use eyerays_shader::resources::binding;
 use eyerays_shader::stage::BLOCK;
+use rayon::prelude::*;
 use wgpu::BufferUsages as Use;
 
 use super::{Memory, Renderer};
@@ -169,7 +170,7 @@ impl Renderer {
             self.queue.read(lot.memory.buffers.of(binding::COUNTERS), &[(&lot.film, bytes)], |_, bytes| {
                 let film: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
                 let cut = |(place, &cell)| lot.grid.cut(&film, place, cell, words);
-                sums = cells.iter().enumerate().map(cut).collect();
+                sums = cells.par_iter().enumerate().map(cut).collect();
             })?;
         Ok((sums, secondary))
     }

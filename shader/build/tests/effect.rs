@@ -31,8 +31,8 @@ const SHORTER: [Edit; 1] = [(
 const DUMMY: [Edit; 6] = [
     (
         "src/resources.rs",
-        "            30 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n",
-        "            30 light_nodes LIGHT_NODES: Read LightNode, \"hierarchy of lights\";\n            31 dummy DUMMY: Read UVec4, \"dummy\";\n",
+        "            31 cells CELLS: Read u32, \"table of cells\";\n",
+        "            31 cells CELLS: Read u32, \"table of cells\";\n            32 dummy DUMMY: Read UVec4, \"dummy\";\n",
     ),
     (
         "src/data/specialisation.rs",

@@ -44,6 +44,27 @@ fn a_scene_that_fails_does_not_stop_the_others() {
     place.refuse(&["render", "empty"], &["empty: ", "no scene"]);
 }
 
+/// The second is to go on with the film of another picture.
+#[test]
+fn a_picture_that_fails_does_not_stop_the_others_of_its_scene() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    place.succeed(&["render", "scene.toml", "-o", "1.film", "--device", "cpu", "--size", "9x9"]);
+    let turn = ["render", "scene.toml", "--turntable", "3", "-o", "{frame}.film", "--resume"];
+    let outcome = place.run(&[&turn, &SMALL[..]].concat());
+    assert_eq!(outcome.code, Some(2), "{}", outcome.stderr);
+    assert!(outcome.stderr.contains("error: 1.film"), "{}", outcome.stderr);
+    assert_eq!(place.names(), ["0.film", "1.film", "2.film", "scene.toml"]);
+}
+
+#[test]
+fn scenes_of_one_name_are_told_apart_by_their_endings() {
+    let triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let place = Place::new(&[("cup.toml", SCENE), ("cup.obj", triangle)]);
+    place.refuse(&[&["render", "."], &SMALL[..]].concat(), &["cup.png", "{file}"]);
+    place.succeed(&[&["render", ".", "-o", "{file}.png"], &SMALL[..]].concat());
+    assert_eq!(place.names(), ["cup.obj", "cup.obj.png", "cup.toml", "cup.toml.png"]);
+}
+
 /// The names of a schema's properties, and those that it asks for.
 fn names(schema: &Value) -> (BTreeSet<&str>, BTreeSet<&str>) {
     let all = schema["properties"].as_object().unwrap().keys().map(String::as_str).collect();

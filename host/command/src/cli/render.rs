@@ -53,7 +53,7 @@ pub(super) struct Render {
     #[arg(required = true, value_name = "SCENE")]
     scenes: Vec<PathBuf>,
     /// The picture, .png, .exr or .hdr, or a .film to merge or to go on with; - writes PNG to standard output. Of several pictures
-    /// {name}, {camera} and {frame:04} tell them apart [default: {name}.png here]
+    /// {name} (or {file}, with its ending), {camera} and {frame:04} tell them apart [default: {name}.png here]
     #[arg(short, long, value_name = "FILE")]
     output: Option<std::ffi::OsString>,
     /// Settings that `eyerays tradeoff --save` kept; other options override them, and they the scene's
@@ -126,18 +126,19 @@ impl Render {
         }
         self.check_many()?;
         task.check_names(&scenes)?;
-        let mut failed = false;
+        let mut code = ExitCode::SUCCESS;
         for scene in &scenes {
             match task.pictures(scene) {
-                Ok(code) if watching::ended_by().is_some() => return Ok(code),
-                Ok(_) => {}
+                Ok(ended) if watching::ended_by().is_some() => return Ok(ended),
+                Ok(ended) if ended == ExitCode::SUCCESS => {}
+                Ok(failed) => code = failed,
                 Err(error) => {
                     console::say(format_args!("error: {error}"));
-                    failed = true;
+                    code = ExitCode::from(super::BAD_INPUT);
                 }
             }
         }
-        Ok(if failed { ExitCode::from(super::BAD_INPUT) } else { ExitCode::SUCCESS })
+        Ok(code)
     }
 
     /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is

@@ -84,9 +84,8 @@ impl SequenceArgs {
     pub fn destinations(&self, output: Option<&OsStr>, scene: &Path, shots: &[Shot]) -> Result<Vec<Destination>> {
         let own = OsString::from(self.default_name());
         let template = output.unwrap_or(&own);
-        let name = reading::stem(scene);
         let places = shots.iter().map(|shot| match template.to_str() {
-            Some(text) => Destination::from(OsString::from(filled(text, &name, shot))),
+            Some(text) => Destination::from(OsString::from(filled(text, scene, shot))),
             // What is not Unicode has no places to fill.
             None => Destination::from(template.to_owned()),
         });
@@ -102,7 +101,7 @@ pub(super) fn check_distinct(places: &[Destination]) -> Result<()> {
     names.sort_unstable();
     match names.windows(2).find(|pair| pair[0] == pair[1]) {
         Some(pair) => Err(Error::new(format!(
-            "two pictures would be written to {}: put {{name}}, {{camera}} or {{frame:04}} into --output",
+            "two pictures would be written to {}: put {{name}}, {{file}}, {{camera}} or {{frame:04}} into --output",
             pair[0]
         ))),
         None => Ok(()),
@@ -120,12 +119,12 @@ fn turned(camera: Camera, frames: Option<Range<u32>>, count: f64) -> Vec<Shot> {
 }
 
 /// A name with what stands in braces filled in; other braces stay.
-fn filled(template: &str, name: &str, shot: &Shot) -> String {
+fn filled(template: &str, scene: &Path, shot: &Shot) -> String {
     let mut text = String::new();
     let mut rest = template;
     while let Some((before, after)) = rest.split_once('{') {
         text.push_str(before);
-        let place = after.split_once('}').and_then(|(place, after)| Some((value(place, name, shot)?, after)));
+        let place = after.split_once('}').and_then(|(place, after)| Some((value(place, scene, shot)?, after)));
         match place {
             Some((value, after)) => {
                 text.push_str(&value);
@@ -140,10 +139,15 @@ fn filled(template: &str, name: &str, shot: &Shot) -> String {
     text + rest
 }
 
-fn value(place: &str, name: &str, shot: &Shot) -> Option<String> {
+fn value(place: &str, scene: &Path, shot: &Shot) -> Option<String> {
     let frame = shot.frame.unwrap_or(0);
     match place {
-        "name" => Some(name.to_owned()),
+        "name" => Some(reading::stem(scene).into_owned()),
+        // With its ending, which tells apart cup.obj and cup.glb.
+        "file" => match scene.file_name() {
+            Some(name) if reading::stem(scene) != "eyerays" => Some(name.to_string_lossy().into_owned()),
+            _ => Some(reading::stem(scene).into_owned()),
+        },
         // A camera may have any name, and a picture's has no folders of its own.
         "camera" => Some(shot.camera.name.replace(['/', '\\', '\0'], "_")),
         "frame" => Some(frame.to_string()),
@@ -211,8 +215,9 @@ mod tests {
             ("x{frame}.exr", Some(12), "x12.exr"),
             ("{what}{frame:4}{.png", Some(1), "{what}{frame:4}{.png"),
             ("{{name}}", None, "{room}"),
+            ("{file}.png", None, "room.obj.png"),
         ] {
-            assert_eq!(filled(template, "room", &shot(frame)), want, "{template}");
+            assert_eq!(filled(template, "models/room.obj".as_ref(), &shot(frame)), want, "{template}");
         }
     }
 

@@ -205,13 +205,21 @@ impl Studio<'_> {
     }
 }
 
-/// Renders pictures one after the other, until a signal ends one.
+/// Renders pictures one after the other, until a signal ends one. One of several that fails does not stop the others.
 fn each(places: &[Place], mut render: impl FnMut(&Place) -> Result<ExitCode>) -> Result<ExitCode> {
+    if let [place] = places {
+        return render(place);
+    }
+    let mut code = ExitCode::SUCCESS;
     for place in places {
-        let code = render(place)?;
-        if watching::ended_by().is_some() {
-            return Ok(code);
+        match render(place) {
+            Ok(ended) if watching::ended_by().is_some() => return Ok(ended),
+            Ok(_) => {}
+            Err(error) => {
+                console::say(format_args!("error: {error}"));
+                code = ExitCode::from(super::BAD_INPUT);
+            }
         }
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(code)
 }

@@ -62,8 +62,8 @@ impl Target {
     pub(crate) fn entries(&self) -> [(&'static str, String); 3] {
         [
             ("noise", self.noise.to_string()),
-            ("exposure", self.exposure_ev.to_string()),
-            ("tone", self.tone.name().to_owned()),
+            ("noise exposure", self.exposure_ev.to_string()),
+            ("noise tone", self.tone.name().to_owned()),
         ]
     }
 

@@ -35,6 +35,7 @@ fn specialisations() -> Vec<Specialisation> {
         path.with_launch(Launch::SUBGROUPS),
         effects(Effects::DISK).with_launch(Launch::OCCLUSION | Launch::RANDOM),
         order,
+        path.with_launch(Launch::CELLS | Launch::BLOCKS),
     ]
 }
 

@@ -160,7 +160,7 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             if stage == Stage::Shade {
                 let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 31), ..spec };
                 let dummy = cut(&after, &name, asked);
-                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&31), "{scene}: {name}");
+                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&32), "{scene}: {name}");
             }
         }
     }

@@ -37,11 +37,11 @@ pub struct Hit {
 /// use eyerays::batch::{Batch, Ray};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
-/// let device_scene = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let job = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let down = Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into());
-/// let batch = Batch::new(&device_scene, &[down]);
-/// let (answers, _time) = cpu::cast(&device_scene, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
-/// assert!(batch.hits(&device_scene, &answers)[0].is_some_and(|hit| hit.distance <= 1.0));
+/// let batch = Batch::new(&job, &[down]);
+/// let (answers, _time) = cpu::cast(&job, Method::Wide.into(), 0, batch.stream(), Question::Closest)?;
+/// assert!(batch.hits(&job, &answers)[0].is_some_and(|hit| hit.distance <= 1.0));
 /// # Ok(())
 /// # }
 /// ```

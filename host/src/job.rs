@@ -8,7 +8,7 @@ use eyerays_shader::data::{Effects, Frame, Launch, Layout, Specialisation, pack}
 use eyerays_shader::material::ALBEDOS;
 use glam::Vec3;
 
-use crate::device_scene::{DeviceScene, Feature, Hierarchies, flushed};
+use crate::device_scene::{DeviceScene, Feature, flushed};
 use crate::error::{Error, Result};
 use crate::method::Traversal;
 use crate::scene::{Integrator, Scene, Settings, Transport};
@@ -27,7 +27,7 @@ impl Job {
     /// # Errors
     /// As [`DeviceScene::new`] and [`Job::of`].
     pub fn new(scene: &Scene, settings: Settings, quality: Quality) -> Result<Job> {
-        Job::packed(scene, settings, quality, Hierarchies::default())
+        Job::packed(scene, settings, quality, false)
     }
 
     /// As [`Job::new`], with the nodes of eight children beside that a GPU walks by
@@ -36,15 +36,15 @@ impl Job {
     /// # Errors
     /// As there.
     pub fn with_wide_nodes(scene: &Scene, settings: Settings, quality: Quality) -> Result<Job> {
-        Job::packed(scene, settings, quality, Hierarchies { wide: true })
+        Job::packed(scene, settings, quality, true)
     }
 
-    fn packed(scene: &Scene, settings: Settings, quality: Quality, hierarchies: Hierarchies) -> Result<Job> {
+    fn packed(scene: &Scene, settings: Settings, quality: Quality, is_wide: bool) -> Result<Job> {
         // Before the hierarchy is built, which may take long.
         scene.check()?;
         settings.check()?;
         check_emission(scene.emissive(), settings.transport.integrator)?;
-        Job::of(Arc::new(DeviceScene::of_checked(scene, quality, hierarchies)?), settings)
+        Job::of(Arc::new(DeviceScene::of_checked(scene, quality, is_wide)?), settings)
     }
 
     /// Of a scene that is packed.

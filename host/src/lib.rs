@@ -14,10 +14,10 @@
 //! # fn main() -> eyerays::error::Result<()> {
 //! let (scene, _warnings) = scene::load("../scenes/cornell.toml".as_ref())?;
 //! let settings = Settings { size: (32, 32), samples: 1, ..scene.settings };
-//! let device_scene = Job::new(&scene, settings, Bvh::Medium.quality())?;
-//! let view = View::new(&device_scene, &scene.cameras[0])?;
+//! let job = Job::new(&scene, settings, Bvh::Medium.quality())?;
+//! let view = View::new(&job, &scene.cameras[0])?;
 //! let backend = Backend::new(&Choice { device: DeviceWish::Cpu, ..Choice::default() })?;
-//! let rendering = backend.render(&device_scene, &view, 1, &|_pixels| ())?;
+//! let rendering = backend.render(&job, &view, 1, &|_pixels| ())?;
 //! assert_eq!(rendering.picture.pixels.len(), 32 * 32);
 //! # Ok(())
 //! # }

@@ -12,10 +12,10 @@ use eyerays::scene::{Light, Settings};
 use eyerays::view::View;
 use eyerays_tests::shipped;
 
-fn job(name: &str, settings: impl FnOnce(Settings) -> Settings) -> (Job, View) {
+fn job(name: &str) -> (Job, View) {
     let scene = shipped(name);
-    let own = Settings { size: (40, 30), samples: 2, spp: 0, ..scene.settings };
-    let job = Job::new(&scene, settings(own), Bvh::Fast.quality()).unwrap();
+    let settings = Settings { size: (40, 30), samples: 2, spp: 0, ..scene.settings };
+    let job = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&job, &scene.cameras[0]).unwrap();
     (job, view)
 }
@@ -28,7 +28,7 @@ fn backends() -> Vec<Backend> {
 
 #[test]
 fn a_session_that_turns_has_the_pictures_of_new_ones() {
-    let (first, view) = job("whitted", |settings| settings);
+    let (first, view) = job("whitted");
     let fewer = Settings { bounces: 0, ..*first.settings() };
     let jobs = [
         first.clone(),
@@ -50,7 +50,7 @@ fn a_session_that_turns_has_the_pictures_of_new_ones() {
 
 #[test]
 fn a_session_turns_to_another_scene() {
-    let ((first, _), (second, view)) = (job("glass", |settings| settings), job("lights", |settings| settings));
+    let ((first, _), (second, view)) = (job("glass"), job("lights"));
     for backend in backends() {
         let mut session = backend.open(&first).unwrap();
         session.turn(&second).unwrap();
@@ -63,7 +63,7 @@ fn a_session_turns_to_another_scene() {
 #[test]
 fn a_session_owns_all_that_it_takes_and_works_on_any_thread() {
     for backend in backends() {
-        let (job, view) = job("cornell", |settings| settings);
+        let (job, view) = job("cornell");
         let want = backend.render(&job, &view, 1, &|_| ()).unwrap().picture;
         let mut session = backend.open(&job).unwrap();
         drop((backend, job));
@@ -82,7 +82,7 @@ fn a_device_that_a_window_has_opened_renders_the_same() {
     let (device, queue) = open(Gpu::descriptor(adapter));
     let shared = Gpu::from_wgpu(adapter, device, queue).unwrap();
     assert_eq!((shared.report.exact, shared.report.timestamps), (own.report.exact, own.report.timestamps));
-    let (job, view) = job("cornell", |settings| settings);
+    let (job, view) = job("cornell");
     let [one, other] = [&own, &shared].map(|gpu| {
         let mut renderer = Renderer::new(gpu, &job, true, Traversal::default()).unwrap();
         renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap()
@@ -96,7 +96,7 @@ fn a_device_that_a_window_has_opened_renders_the_same() {
 #[test]
 fn lights_that_were_changed_stay_so_where_a_renderer_turns() {
     let Some(gpu) = eyerays_tests::gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
-    let (job, view) = job("lights", |settings| settings);
+    let (job, view) = job("lights");
     let mut lights = shipped("lights").lights;
     for light in &mut lights {
         if let Light::Point { colour, .. } | Light::Spot { colour, .. } = light {

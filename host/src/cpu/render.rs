@@ -31,9 +31,9 @@ const TILE: u32 = 32;
 /// # use eyerays::{cpu::Renderer, job::Job, method::Traversal, quality::Bvh, scene, view::View};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
-/// let device_scene = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
-/// let view = View::of(&device_scene, &scene.cameras[0], (16, 16), 2)?;
-/// let renderer = Renderer::new(&device_scene, Traversal::default(), 0)?;
+/// let job = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
+/// let view = View::of(&job, &scene.cameras[0], (16, 16), 2)?;
+/// let renderer = Renderer::new(&job, Traversal::default(), 0)?;
 /// let mut film = renderer.start(&view)?;
 /// for sample in view.range() {
 ///     renderer.add::<f32>(&view, &mut film, view.samples_of(sample..sample + 1), &|_| (), &())?;

@@ -41,13 +41,6 @@ use crate::memory::Room;
 use crate::method::Method;
 use crate::scene::{Background, Light, Scene, Settings};
 
-/// Hierarchies beside that of pairs of nodes.
-#[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Hierarchies {
-    /// Nodes of eight children, for a GPU.
-    pub wide: bool,
-}
-
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
 pub struct DeviceScene {
@@ -84,7 +77,7 @@ impl DeviceScene {
     /// a light too far away for the scene's numbers.
     pub fn new(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
         scene.check()?;
-        Self::of_checked(scene, quality, Hierarchies::default())
+        Self::of_checked(scene, quality, false)
     }
 
     /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
@@ -94,20 +87,20 @@ impl DeviceScene {
     /// As there.
     pub fn with_wide_nodes(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
         scene.check()?;
-        Self::of_checked(scene, quality, Hierarchies { wide: true })
+        Self::of_checked(scene, quality, true)
     }
 
-    /// Of a scene that was checked.
+    /// Of a scene that was checked; `is_wide` with nodes of eight children, too.
     ///
     /// # Errors
     /// As [`DeviceScene::new`].
-    pub(crate) fn of_checked(scene: &Scene, quality: Quality, hierarchies: Hierarchies) -> Result<DeviceScene> {
+    pub(crate) fn of_checked(scene: &Scene, quality: Quality, is_wide: bool) -> Result<DeviceScene> {
         let emissive = scene.emissive().map(str::to_owned);
         let effects = records::effects(scene);
         let (normalisation, primitives) = normalised(scene);
         let start = Instant::now();
         let mut bvh = kept_or_built(scene, &primitives, quality)?;
-        if hierarchies.wide {
+        if is_wide {
             bvh.widen().map_err(refused)?;
         }
         let is_split = bvh.order.len() > primitives.len();

@@ -95,6 +95,10 @@ fn posed(size: (u32, u32), spp: u32) -> (Job, View) {
     (packed, view)
 }
 
+fn on_cpu(job: &Job, threads: usize) -> OnCpu<f32> {
+    OnCpu::new(Arc::new(Renderer::new(job, Traversal::default(), threads).unwrap()))
+}
+
 fn undisturbed(device: &mut dyn Grows, view: &View, target: &Target) -> Film {
     let stop = AtomicBool::new(false);
     go_on(device, view, target, None, &Watch { limit: None, stop: &stop, grown: &|_| () }).unwrap()
@@ -148,8 +152,7 @@ fn what_is_beyond_white_has_no_noise_and_what_is_dark_may_have_more() {
 fn a_picture_that_is_stopped_and_gone_on_with_has_the_bits_of_one_that_never_was() {
     let (packed, view) = posed((40, 36), 200);
     let target = Target::new(0.1, 0.0, ToneMap::None).unwrap();
-    let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 2).unwrap());
-    let mut device = OnCpu::<f32>::new(renderer.clone());
+    let mut device = on_cpu(&packed, 2);
     let whole = undisturbed(&mut device, &view, &target);
     let counts = whole.samples();
     assert!(counts.contains(&64) && counts.iter().any(|&count| count > 64), "{counts:?}");
@@ -187,8 +190,7 @@ fn assert_same(film: &Film, want: &Film) {
 fn tiles_that_are_merged_are_the_picture_and_none_is_given_twice() {
     let (packed, view) = posed((40, 36), 100);
     let target = Target::new(0.1, 0.0, ToneMap::None).unwrap();
-    let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
-    let mut device = OnCpu::<f32>::new(renderer.clone());
+    let mut device = on_cpu(&packed, 1);
     let whole = undisturbed(&mut device, &view, &target);
     let tiles = [(16, 16, 24, 20), (0, 0, 16, 36), (16, 0, 24, 16)].map(|(x, y, width, height)| {
         let tile = Region { x, y, width, height };

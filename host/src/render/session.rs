@@ -110,13 +110,7 @@ impl Session {
     /// # Errors
     /// As [`Session::render`]; or a film of another picture.
     pub fn render_watched(&mut self, view: &View, from: Option<&Film>, watch: &Watch<'_>) -> Result<Rendering> {
-        let last = Last::new(self.is_left_to_us());
-        let keep = |film: &Film| last.keep(film);
-        let grown = watch::keeping(watch, &keep);
-        self.rendered(view, 1, |device| {
-            let film = watch::go_on(device, view, last.or(from), &Watch { grown: &grown, ..*watch })?;
-            Ok((device.develop(&film)?, Some(film)))
-        })
+        self.watched(view, from, watch, |device, from, watch| watch::go_on(device, view, from, watch))
     }
 
     /// Renders until the noise of what is seen is low enough, or cells have all samples of the view, while somebody looks on: each cell
@@ -135,11 +129,22 @@ impl Session {
             return Err(Error::NoNoise { integrator: self.job.settings().transport.integrator });
         }
         self.prepare_time = std::mem::take(&mut self.opening);
+        self.watched(view, from, watch, |device, from, watch| noise::go_on(device, view, target, from, watch))
+    }
+
+    /// Lets a film go on that somebody looks at; if a GPU fails that is left to us, a CPU goes on with what was looked at last.
+    fn watched(
+        &mut self,
+        view: &View,
+        from: Option<&Film>,
+        watch: &Watch<'_>,
+        go_on: impl Fn(&mut dyn Grows, Option<Film>, &Watch<'_>) -> Result<Film>,
+    ) -> Result<Rendering> {
         let last = Last::new(self.is_left_to_us());
         let keep = |film: &Film| last.keep(film);
         let grown = watch::keeping(watch, &keep);
         self.rendered(view, 1, |device| {
-            let film = noise::go_on(device, view, target, last.or(from), &Watch { grown: &grown, ..*watch })?;
+            let film = go_on(device, last.or(from), &Watch { grown: &grown, ..*watch })?;
             Ok((device.develop(&film)?, Some(film)))
         })
     }

@@ -71,6 +71,18 @@ impl Team {
         Err(fault.unwrap_or_else(|| Error::new("every device has failed: render on another")))
     }
 
+    /// Lets every member begin something, with no sample yet. Fails if all are lost.
+    fn begin(&mut self, mut begin: impl FnMut(&mut dyn Grows) -> Result<()>) -> Result<()> {
+        for member in self.members.iter_mut().filter(|member| !member.is_lost) {
+            member.has = Coverage::default();
+            if let Err(error) = begin(member.device.as_mut()) {
+                member.is_lost = true;
+                self.lost.push((member.name.clone(), error));
+            }
+        }
+        self.check()
+    }
+
     /// Lets every member work until all is done. Fails if all are lost.
     fn share(&mut self, todo: Vec<Part>) -> Result<()> {
         let pace = |member: &Member| Pace { is_lost: member.is_lost, is_done: false, rate: member.rate };
@@ -99,26 +111,12 @@ impl Grows for Team {
     fn turn(&mut self, job: &Job) -> Result<()> {
         // The film goes with all that any of them had.
         (self.view, self.coverage) = (None, Coverage::default());
-        for member in self.members.iter_mut().filter(|member| !member.is_lost) {
-            member.has = Coverage::default();
-            if let Err(error) = member.device.turn(job) {
-                member.is_lost = true;
-                self.lost.push((member.name.clone(), error));
-            }
-        }
-        self.check()
+        self.begin(|device| device.turn(job))
     }
 
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         let strips = strips(view.region(), STRIPS * self.members.len() as u32);
-        for member in self.members.iter_mut().filter(|member| !member.is_lost) {
-            member.has = Coverage::default();
-            if let Err(error) = member.device.start(view, &strips) {
-                member.is_lost = true;
-                self.lost.push((member.name.clone(), error));
-            }
-        }
-        self.check()?;
+        self.begin(|device| device.start(view, &strips))?;
         (self.view, self.coverage) = (Some(*view), Coverage::default());
         Ok(())
     }

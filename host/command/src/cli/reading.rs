@@ -1,6 +1,7 @@
 //! Reading a scene for a command.
 
 use std::borrow::Cow;
+use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -46,7 +47,16 @@ pub(super) fn called(path: &Path) -> &Path {
 
 /// What pictures of a scene of this name are called, or of one that standard input gives.
 pub(super) fn stem(path: &Path) -> Cow<'_, str> {
-    let named = path.file_stem().filter(|_| !is_standard_input(path) && path != Path::new(STANDARD_INPUT));
+    or_own(path, Path::file_stem)
+}
+
+/// The same with its ending.
+pub(super) fn file_name(path: &Path) -> Cow<'_, str> {
+    or_own(path, Path::file_name)
+}
+
+fn or_own<'p>(path: &'p Path, name: impl Fn(&'p Path) -> Option<&'p OsStr>) -> Cow<'p, str> {
+    let named = name(path).filter(|_| !is_standard_input(path) && path != Path::new(STANDARD_INPUT));
     named.unwrap_or("eyerays".as_ref()).to_string_lossy()
 }
 

@@ -11,7 +11,6 @@ use clap::Args;
 
 use super::checkpoint::CheckpointArgs;
 use super::choice::choice;
-use super::console;
 use super::device::DeviceArgs;
 use super::devices::Devices;
 use super::look::Look;
@@ -22,8 +21,7 @@ use super::progress;
 use super::reading::{self, Read, Reading};
 use super::seconds;
 use super::sequence::{self, SequenceArgs, Shot};
-use super::shot::{Place, Studio};
-use super::watching;
+use super::shot::{Place, Studio, each};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
@@ -121,24 +119,11 @@ impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let scenes = sequence::scenes(&self.scenes)?;
         let task = self.task(quiet)?;
-        if let [scene] = &scenes[..] {
-            return task.pictures(scene);
+        if scenes.len() > 1 {
+            self.check_many()?;
+            task.check_names(&scenes)?;
         }
-        self.check_many()?;
-        task.check_names(&scenes)?;
-        let mut code = ExitCode::SUCCESS;
-        for scene in &scenes {
-            match task.pictures(scene) {
-                Ok(ended) if watching::ended_by().is_some() => return Ok(ended),
-                Ok(ended) if ended == ExitCode::SUCCESS => {}
-                Ok(failed) => code = failed,
-                Err(error) => {
-                    console::say(format_args!("error: {error}"));
-                    code = ExitCode::from(super::BAD_INPUT);
-                }
-            }
-        }
-        Ok(code)
+        each(&scenes, |scene| task.pictures(scene))
     }
 
     /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is

@@ -144,10 +144,7 @@ fn value(place: &str, scene: &Path, shot: &Shot) -> Option<String> {
     match place {
         "name" => Some(reading::stem(scene).into_owned()),
         // With its ending, which tells apart cup.obj and cup.glb.
-        "file" => match scene.file_name() {
-            Some(name) if reading::stem(scene) != "eyerays" => Some(name.to_string_lossy().into_owned()),
-            _ => Some(reading::stem(scene).into_owned()),
-        },
+        "file" => Some(reading::file_name(scene).into_owned()),
         // A camera may have any name, and a picture's has no folders of its own.
         "camera" => Some(shot.camera.name.replace(['/', '\\', '\0'], "_")),
         "frame" => Some(frame.to_string()),
@@ -219,6 +216,9 @@ mod tests {
         ] {
             assert_eq!(filled(template, "models/room.obj".as_ref(), &shot(frame)), want, "{template}");
         }
+        // As one of standard input is called, too.
+        assert_eq!(filled("{file}, {name}", "eyerays.obj".as_ref(), &shot(None)), "eyerays.obj, eyerays");
+        assert_eq!(filled("{file}, {name}", "-".as_ref(), &shot(None)), "eyerays, eyerays");
     }
 
     #[test]

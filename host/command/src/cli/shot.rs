@@ -205,16 +205,17 @@ impl Studio<'_> {
     }
 }
 
-/// Renders pictures one after the other, until a signal ends one. One of several that fails does not stop the others.
-fn each(places: &[Place], mut render: impl FnMut(&Place) -> Result<ExitCode>) -> Result<ExitCode> {
-    if let [place] = places {
-        return render(place);
+/// Renders scenes or pictures one after the other, until a signal ends one. One of several that fails does not stop the others.
+pub(super) fn each<T>(items: &[T], mut render: impl FnMut(&T) -> Result<ExitCode>) -> Result<ExitCode> {
+    if let [item] = items {
+        return render(item);
     }
     let mut code = ExitCode::SUCCESS;
-    for place in places {
-        match render(place) {
+    for item in items {
+        match render(item) {
             Ok(ended) if watching::ended_by().is_some() => return Ok(ended),
-            Ok(_) => {}
+            Ok(ended) if ended == ExitCode::SUCCESS => {}
+            Ok(failed) => code = failed,
             Err(error) => {
                 console::say(format_args!("error: {error}"));
                 code = ExitCode::from(super::BAD_INPUT);

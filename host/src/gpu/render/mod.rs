@@ -139,7 +139,7 @@ impl Renderer {
     pub fn new(gpu: &Gpu, job: &Job, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
         let (mut known, mut scene) = (Known::default(), SceneBuffers::default());
-        let Ready { plan, most_slots, kernels } = ready(gpu, job, (exact, traversal), &mut known, &mut scene)?;
+        let Ready { plan, most_slots, kernels } = ready(gpu, job, exact, traversal, &mut known, &mut scene)?;
         Ok(Renderer {
             gpu: gpu.clone(),
             job: job.clone(),
@@ -167,12 +167,11 @@ impl Renderer {
     pub fn turn(&mut self, job: &Job) -> Result<()> {
         // Its groups bind the buffers of the plan before.
         (self.memory, self.growing, self.cells) = (None, None, None);
-        let is_other = !Arc::ptr_eq(self.job.scene(), job.scene());
-        if is_other {
+        if !Arc::ptr_eq(self.job.scene(), job.scene()) {
             (self.scene, self.relit) = (SceneBuffers::default(), None);
         }
-        let how = (self.exact, self.traversal);
-        let ready = ready(&self.gpu, job, how, &mut self.known, &mut self.scene)?;
+        let (known, scene) = (&mut self.known, &mut self.scene);
+        let ready = ready(&self.gpu, job, self.exact, self.traversal, known, scene)?;
         (self.plan, self.most_slots, self.kernels) = (ready.plan, ready.most_slots, ready.kernels);
         self.job = job.clone();
         match self.relit.take() {
@@ -373,7 +372,8 @@ struct Ready {
 fn ready(
     gpu: &Gpu,
     job: &Job,
-    (exact, traversal): (bool, Traversal),
+    exact: bool,
+    traversal: Traversal,
     known: &mut Known,
     scene: &mut SceneBuffers,
 ) -> Result<Ready> {

@@ -66,7 +66,7 @@ impl Growth<'_> {
 }
 
 /// A device that films grow on.
-pub(crate) trait Grows {
+pub(crate) trait Grows: Send {
     /// Goes on with another job. The film is then to be started again.
     fn turn(&mut self, job: &Job) -> Result<()>;
 

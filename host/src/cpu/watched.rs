@@ -20,7 +20,7 @@ use crate::watch::Grows;
 pub(crate) struct OnCpu<R> {
     renderer: Arc<Renderer>,
     growing: Option<Growing>,
-    number: PhantomData<R>,
+    number: PhantomData<fn() -> R>,
 }
 
 struct Growing {

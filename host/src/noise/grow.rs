@@ -1,10 +1,13 @@
 //! Renders cells until each has enough samples.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::sync::atomic::Ordering;
+use std::sync::mpsc;
+use std::thread;
 use std::time::{Duration, Instant};
 
-use super::Target;
+use super::{CellSums, Target};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::view::{Region, View};
@@ -12,6 +15,8 @@ use crate::watch::{Grows, Growth, Watch};
 
 /// Cells that are rendered at first, before it is known how long they take.
 const FIRST: usize = 16;
+/// Lots that a device has at most: it renders one while the cells of another decide.
+const LOTS: usize = 2;
 
 /// Renders what a film has not yet of a view until its noise is low enough, the time is up or somebody stops it.
 ///
@@ -29,20 +34,59 @@ pub(crate) fn go_on(
         None => Film::of_cells(view, target)?,
     };
     let mut open = Open::of(&film);
-    let mut pace = Pace { start: Instant::now(), rate: None, last: 0 };
-    while let Some((count, cells)) = open.take(|cells_of| pace.cells(&film.next_samples(cells_of), device, watch)) {
-        let (samples, before) = (film.next_samples(count), Instant::now());
-        let sums = device.cells(view, &cells, samples.clone())?;
-        film.add_cells(&cells, samples.clone(), &sums)?;
-        open.sort(&film, &cells);
-        pace.took(cells.len() * samples.len(), cells.len(), before.elapsed());
-        tell(&film, &open, watch);
-        let is_late = watch.limit.is_some_and(|limit| pace.start.elapsed() >= limit);
-        if is_late || watch.stop.load(Ordering::Relaxed) {
-            break;
+    let mut pace = Pace { start: Instant::now(), step: device.step(), rate: None, last: 0 };
+    thread::scope(|scope| {
+        let (ask, asked) = mpsc::channel();
+        let (answer, answered) = mpsc::channel();
+        // Ends when nobody asks any more.
+        scope.spawn(move || render(device, view, &asked, &answer));
+        let (mut under_way, mut ends) = (0, false);
+        loop {
+            while under_way < LOTS && !ends {
+                let wanted = |count| pace.cells(&film.next_samples(count), watch);
+                let Some(lot) = open.take(LOTS - under_way, wanted, |count| film.next_samples(count)) else { break };
+                under_way += 1;
+                // A device that failed takes no more, and what it failed with is answered.
+                let _ = ask.send(lot);
+            }
+            if under_way == 0 {
+                return Ok(film);
+            }
+            let Done { lot: Lot { cells, samples }, sums, time } = answered.recv().expect("the device answers");
+            under_way -= 1;
+            film.add_cells(&cells, samples.clone(), &sums?)?;
+            open.sort(&film, &cells);
+            pace.took(cells.len() * samples.len(), cells.len(), time);
+            tell(&film, &open, watch);
+            let is_late = watch.limit.is_some_and(|limit| pace.start.elapsed() >= limit);
+            ends |= is_late || watch.stop.load(Ordering::Relaxed);
+        }
+    })
+}
+
+/// Cells that get these samples next.
+struct Lot {
+    cells: Vec<Region>,
+    samples: Range<u32>,
+}
+
+/// What came of them, and how long it took.
+struct Done {
+    lot: Lot,
+    sums: Result<CellSums>,
+    time: Duration,
+}
+
+/// Renders lots as they are asked for, until none is any more.
+fn render(device: &mut dyn Grows, view: &View, asked: &mpsc::Receiver<Lot>, answer: &mpsc::Sender<Done>) {
+    for lot in asked {
+        let before = Instant::now();
+        let sums = device.cells(view, &lot.cells, lot.samples.clone());
+        let has_failed = sums.is_err();
+        if answer.send(Done { lot, sums, time: before.elapsed() }).is_err() || has_failed {
+            return;
         }
     }
-    Ok(film)
 }
 
 /// A film as large as a view that goes on with it.
@@ -61,44 +105,58 @@ fn prepared(mut film: Film, view: &View, target: &Target) -> Result<Film> {
 /// Cells that need more samples, by how many they have.
 struct Open {
     by_count: BTreeMap<u32, Vec<Region>>,
+    /// How many of them nobody renders now.
+    waiting: usize,
+    /// How many there are.
     cells: usize,
+    /// With those that are done.
     of: usize,
 }
 
 impl Open {
     fn of(film: &Film) -> Open {
         let all: Vec<Region> = Target::cells(film.window()).collect();
-        let mut open = Open { by_count: BTreeMap::new(), cells: 0, of: all.len() };
+        let mut open = Open { by_count: BTreeMap::new(), waiting: 0, cells: all.len(), of: all.len() };
         open.sort(film, &all);
         open
     }
 
-    /// Keeps those of some cells that are not done.
+    /// Keeps those of some cells that are not done, which nobody renders any more.
     fn sort(&mut self, film: &Film, cells: &[Region]) {
         let left = film.not_done(cells);
-        self.cells += left.len();
+        self.waiting += left.len();
+        self.cells -= cells.len() - left.len();
         for cell in left {
             self.by_count.entry(film.samples_of_cell(cell)).or_default().push(cell);
         }
     }
 
-    /// Some of those that have the fewest samples, and how many these are; `count` tells how many cells of so many samples are wanted.
-    fn take(&mut self, count: impl FnOnce(u32) -> usize) -> Option<(u32, Vec<Region>)> {
+    /// Some of those that have the fewest samples, so that as many `lots` are left to take; `wanted` tells how many cells of so many samples
+    /// are wanted, and `next` which samples they get.
+    fn take(
+        &mut self,
+        lots: usize,
+        wanted: impl FnOnce(u32) -> usize,
+        next: impl FnOnce(u32) -> Range<u32>,
+    ) -> Option<Lot> {
+        let most = self.waiting.div_ceil(lots);
         let mut first = self.by_count.first_entry()?;
         let samples = *first.key();
         let cells = first.get_mut();
-        let taken: Vec<Region> = cells.drain(..count(samples).clamp(1, cells.len())).collect();
+        let taken: Vec<Region> = cells.drain(..wanted(samples).min(most).clamp(1, cells.len())).collect();
         if cells.is_empty() {
             first.remove();
         }
-        self.cells -= taken.len();
-        Some((samples, taken))
+        self.waiting -= taken.len();
+        Some(Lot { cells: taken, samples: next(samples) })
     }
 }
 
 /// How fast a device is, so that it is given as much at once as takes a step.
 struct Pace {
     start: Instant,
+    /// How long a lot should take.
+    step: Duration,
     /// Samples of cells a second.
     rate: Option<f64>,
     /// Cells that it was given last.
@@ -107,10 +165,10 @@ struct Pace {
 
 impl Pace {
     /// How many cells it is given next.
-    fn cells(&self, samples: &std::ops::Range<u32>, device: &dyn Grows, watch: &Watch<'_>) -> usize {
+    fn cells(&self, samples: &Range<u32>, watch: &Watch<'_>) -> usize {
         let Some(rate) = self.rate else { return FIRST };
         let left = watch.limit.map(|limit| limit.saturating_sub(self.start.elapsed()) / 2);
-        let span = left.unwrap_or(Duration::MAX).min(device.step());
+        let span = left.unwrap_or(Duration::MAX).min(self.step);
         ((rate * span.as_secs_f64() / samples.len().max(1) as f64) as usize).min(4 * self.last)
     }
 

@@ -255,7 +255,7 @@ impl Last {
 }
 
 /// A device that films grow on.
-type Device = Box<dyn Grows + Send>;
+type Device = Box<dyn Grows>;
 
 /// It with its name.
 type Named = (Device, String);

@@ -31,7 +31,7 @@ pub type Lost = (String, Error);
 /// A device of several.
 pub(crate) struct Member {
     name: String,
-    device: Box<dyn Grows + Send>,
+    device: Box<dyn Grows>,
     has: Coverage,
     is_lost: bool,
     /// Samples of a pixel a second, once that is known.
@@ -42,7 +42,7 @@ pub(crate) struct Member {
 
 impl Member {
     /// A device that is ready, by its name.
-    pub fn new(name: String, device: impl Grows + Send + 'static) -> Self {
+    pub fn new(name: String, device: impl Grows + 'static) -> Self {
         Member { name, device: Box::new(device), has: Coverage::default(), is_lost: false, rate: None, cell_rate: None }
     }
 }

@@ -10,6 +10,7 @@ use eyerays_shader::stage::BLOCK;
 use rayon::prelude::*;
 use wgpu::BufferUsages as Use;
 
+use super::read::whole_words;
 use super::{Memory, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::kernel::Kernel;
@@ -168,7 +169,7 @@ impl Renderer {
         let mut sums = Vec::new();
         let secondary =
             self.queue.read(lot.memory.buffers.of(binding::COUNTERS), &[(&lot.film, bytes)], |_, bytes| {
-                let film: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
+                let film = whole_words(bytes);
                 let cut = |(place, &cell)| lot.grid.cut(&film, place, cell, words);
                 sums = cells.par_iter().enumerate().map(cut).collect();
             })?;

@@ -14,6 +14,12 @@ use crate::view::Region;
 /// Bytes of films that are read back at once.
 const READ: u64 = 1 << 28;
 
+/// Words as they lie there, unless they lie crooked.
+pub(super) fn whole_words(bytes: &[u8]) -> Cow<'_, [u32]> {
+    let words = bytemuck::try_cast_slice::<u8, u32>(bytes);
+    words.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed)
+}
+
 impl Renderer {
     /// Waits for the samples so far, and reads their film.
     ///
@@ -66,8 +72,7 @@ impl Renderer {
             let (now, later) = rest.split_at(rest.iter().take_while(fits).count().max(1));
             let films: Vec<_> = now.iter().map(|band| (&band.film, size(band))).collect();
             secondary = self.queue.read(&counters, &films, |i, bytes| {
-                let sums = bytemuck::try_cast_slice::<u8, u32>(bytes);
-                let sums = sums.map_or_else(|_| bytemuck::pod_collect_to_vec(bytes).into(), Cow::Borrowed);
+                let sums = whole_words(bytes);
                 if looked.is_ok() {
                     looked = look(now[i].region, &sums);
                 }

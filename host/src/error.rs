@@ -82,6 +82,11 @@ pub enum Error {
         /// The format.
         format: Format,
     },
+    /// A picture that tells how opaque it is, in a format that has no place for that.
+    NoAlpha {
+        /// The format.
+        format: Format,
+    },
     /// A tone map, in a format that keeps light as it is.
     NoTone {
         /// The format.
@@ -268,6 +273,7 @@ impl Error {
                 format!("the integrator {integrator} does not sample, so that its pictures have no noise to end by")
             }
             Error::NoHalf { format } => format!("floats of 16 bits are for .exr files, not for {format}"),
+            Error::NoAlpha { format } => format!("transparency is for .png and .exr files, not for {format}"),
             Error::NoTone { format } => format!("tone maps are for .png files, not for {format}"),
             Error::NoLayers { format } => format!("layers are for .exr files, not for {format}"),
             Error::Threads { threads, message } => format!("can't start {threads} threads ({message})"),

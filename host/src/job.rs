@@ -11,7 +11,7 @@ use glam::Vec3;
 use crate::device_scene::{DeviceScene, Feature, flushed};
 use crate::error::{Error, Result};
 use crate::method::Traversal;
-use crate::scene::{Integrator, Scene, Settings, Transport};
+use crate::scene::{Integrator, PixelFilter, Scene, Settings, Transport};
 
 /// A scene as devices hold it, with settings and what its pictures show. Cheap to clone: jobs of one scene share it.
 #[derive(Clone)]
@@ -19,6 +19,7 @@ pub struct Job {
     scene: Arc<DeviceScene>,
     settings: Settings,
     feature: Option<Feature>,
+    optic_tables: Arc<OnceLock<Vec<u32>>>,
 }
 
 impl Job {
@@ -54,7 +55,7 @@ impl Job {
     pub fn of(scene: Arc<DeviceScene>, settings: Settings) -> Result<Job> {
         settings.check()?;
         check_emission(scene.emissive(), settings.transport.integrator)?;
-        Ok(Job { scene, settings, feature: None })
+        Ok(Job { scene, settings, feature: None, optic_tables: Arc::default() })
     }
 
     /// The same scene by other settings, with light.
@@ -109,17 +110,34 @@ impl Job {
     /// What kernels are compiled for that follow the camera's rays by a traversal.
     pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
         let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
-        let parallel = if self.has_orthographic_cameras() { Launch::PARALLEL } else { 0 };
         let split = if self.bounds().is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
             launch: Launch(
-                traversal.triangle.bits() | self.settings.sampler.bits() | self.transport_bits() | filter | parallel,
+                traversal.triangle.bits()
+                    | self.settings.sampler.bits()
+                    | self.transport_bits()
+                    | filter
+                    | self.camera_bits(),
             ),
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,
         }
+    }
+
+    /// What cameras and the film need.
+    fn camera_bits(&self) -> u32 {
+        let is_filtered = self.settings.pixel_filter() != PixelFilter::Box;
+        let optics = self.optics().bits() | if is_filtered { Launch::FILTERED } else { 0 };
+        let is_kept = !self.is_sampled() && optics & (Launch::LENS | Launch::ROUND | Launch::FILTERED) != 0;
+        let is_clear = self.settings.transparent && self.feature.is_none();
+        optics | if is_kept { Launch::KEPT } else { 0 } | if is_clear { Launch::CLEAR } else { 0 }
+    }
+
+    /// Tables of cameras as kernels read them, see [`eyerays_shader::camera::ray`]; empty where they read none.
+    pub fn optic_tables(&self) -> &[u32] {
+        self.optic_tables.get_or_init(|| self.optics().words(self.settings.pixel_filter()))
     }
 
     fn transport_bits(&self) -> u32 {

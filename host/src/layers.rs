@@ -33,6 +33,8 @@ choices! {
         Error = "error",
         /// How many samples the pixel has
         Samples = "samples",
+        /// The picture as it was before it was denoised
+        Noisy = "noisy",
     }
 }
 
@@ -88,10 +90,28 @@ pub fn render(
 /// # Errors
 /// As [`Backend::open`] and [`Session::render`].
 pub fn preview(job: &Job, camera: &Camera, window: Region, threads: usize) -> Result<Picture> {
+    at_middles(job, camera, Feature::Albedo, window, threads)
+}
+
+/// How far in front of a camera's plane what the middle of a pixel shows is, in the scene's units; or from the camera, if it goes all
+/// around.
+///
+/// # Errors
+/// There is no such pixel, or as [`preview`].
+pub fn depth(job: &Job, camera: &Camera, (x, y): (u32, u32)) -> Result<Option<f32>> {
+    let pixel = Region { x, y, width: 1, height: 1 };
+    let [depth, low, high] = at_middles(job, camera, Feature::Place, pixel, 1)?.pixels[0];
+    let scale = job.normalisation().scale;
+    Ok((low + high > 0.0).then_some((f64::from(depth) / scale) as f32))
+}
+
+/// A feature at the middle of each pixel of a part of the image, by this many threads of the CPU.
+fn at_middles(job: &Job, camera: &Camera, feature: Feature, window: Region, threads: usize) -> Result<Picture> {
     let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
     let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*job.settings() };
-    let job = job.with(middle)?.showing(Some(Feature::Albedo));
-    Ok(backend.open(&job)?.render(&seen(&job, camera, window)?, 1, &|_| ())?.picture)
+    let job = job.with(middle)?.showing(Some(feature));
+    let pinhole = Camera { lens: None, ..camera.clone() };
+    Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?, 1, &|_| ())?.picture)
 }
 
 /// A part of the image that a camera has of a job.
@@ -127,7 +147,7 @@ impl Studio<'_> {
         let no_film = || Error::new(format!("the layer {layer} is told by the film: render with one (expose)"));
         let film = rendering.film.as_ref().ok_or_else(no_film);
         Ok(match layer {
-            Layer::Colour => Values::Light(picture.clone()),
+            Layer::Colour | Layer::Noisy => Values::Light(picture.clone()),
             Layer::Albedo => Values::Colours(self.picture(Some(Feature::Albedo), self.settings)?),
             Layer::Normal => Values::Vectors(self.picture(Some(Feature::Normal), self.settings)?),
             Layer::Direct => Values::Light(self.direct()?.clone()),
@@ -164,15 +184,21 @@ impl Studio<'_> {
                 let depth = if primitive.is_some() { (f64::from(depth) / scale) as f32 } else { f32::INFINITY };
                 Place { depth, primitive }
             };
-            self.places = Some(self.picture(Some(Feature::Place), middle)?.pixels.into_iter().map(place).collect());
+            let pinhole = Camera { lens: None, ..self.camera.clone() };
+            let seen = self.picture_by(&pinhole, Some(Feature::Place), middle)?;
+            self.places = Some(seen.pixels.into_iter().map(place).collect());
         }
         Ok(self.places.as_deref().expect("they were just made"))
     }
 
     fn picture(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
+        self.picture_by(self.camera, feature, settings)
+    }
+
+    fn picture_by(&mut self, camera: &Camera, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
         let job = self.session.job().with(settings)?.showing(feature);
         self.session.turn(&job)?;
-        Ok(self.session.render(&seen(&job, self.camera, self.window)?, 1, &|_| ())?.picture)
+        Ok(self.session.render(&seen(&job, camera, self.window)?, 1, &|_| ())?.picture)
     }
 }
 

@@ -15,6 +15,9 @@ pub struct Picture {
     pub height: u32,
     /// `width * height` pixels, row-major from the top left.
     pub pixels: Vec<[f32; 3]>,
+    /// How much of each pixel is opaque, from 0 to 1, where the surroundings were left out: the pixels are of light that this share of them
+    /// sends, as films and compositors have it (associated).
+    pub alpha: Option<Vec<f32>>,
     pub(crate) noise: Option<f64>,
     /// What a file says of it.
     pub about: About,
@@ -37,7 +40,7 @@ impl Picture {
         pixels.try_reserve_exact(count).map_err(|_| Error::Memory { width, height })?;
         // On all threads: a system takes 5 ms to hand the memory of 1920x1080 pixels to one.
         pixels.par_extend(rayon::iter::repeat_n([0.0; 3], count));
-        Ok(Picture { width, height, pixels, noise: None, about: About::default() })
+        Ok(Picture { width, height, pixels, alpha: None, noise: None, about: About::default() })
     }
 
     /// A picture of given pixels, row-major from the top left.
@@ -45,7 +48,7 @@ impl Picture {
     /// # Errors
     /// As [`Picture::validate`].
     pub fn from_pixels(width: u32, height: u32, pixels: Vec<[f32; 3]>) -> Result<Self> {
-        let picture = Picture { width, height, pixels, noise: None, about: About::default() };
+        let picture = Picture { width, height, pixels, alpha: None, noise: None, about: About::default() };
         picture.validate()?;
         Ok(picture)
     }
@@ -68,15 +71,14 @@ impl Picture {
     /// A size that [`Picture::check_size`] refuses, or another number of pixels than it asks for.
     pub fn validate(&self) -> Result<()> {
         let count = Self::check_size(self.width, self.height)?;
-        if self.pixels.len() != count {
-            return Err(Error::new(format!(
-                "a picture of {}x{} pixels has {} of them",
-                self.width,
-                self.height,
-                self.pixels.len()
-            )));
+        let lengths = [Some(self.pixels.len()), self.alpha.as_ref().map(Vec::len)];
+        match lengths.into_iter().flatten().find(|&length| length != count) {
+            Some(length) => {
+                let (width, height) = (self.width, self.height);
+                Err(Error::new(format!("a picture of {width}x{height} pixels has {length} of them")))
+            }
+            None => Ok(()),
         }
-        Ok(())
     }
 
     /// The noise of a picture whose integrator samples: the standard error of a pixel (root mean square) over the mean of all,
@@ -96,7 +98,7 @@ impl Picture {
     }
 
     /// SHA-256 of the size and of every bit, as 64 hexadecimal digits: of width and height as `u32`, then of the
-    /// pixels' channels in order as `f32`, all little-endian. Equal pictures have equal hashes on every machine.
+    /// pixels' channels in order as `f32`, all little-endian; then of how opaque they are, if the picture tells it. Equal pictures have equal hashes on every machine.
     pub fn hash(&self) -> String {
         let mut digest = Sha256::new();
         digest.update(self.width.to_le_bytes());
@@ -104,6 +106,9 @@ impl Picture {
         for run in self.pixels.chunks(1 << 12) {
             let bytes: Vec<[u8; 4]> = run.as_flattened().iter().map(|v| v.to_le_bytes()).collect();
             digest.update(bytes.as_flattened());
+        }
+        for share in self.alpha.iter().flatten() {
+            digest.update(share.to_le_bytes());
         }
         hexadecimal(&digest.finalize())
     }
@@ -114,7 +119,12 @@ impl Picture {
             && self.height == other.height
             && self.pixels.len() == other.pixels.len()
             && self.pixels.iter().zip(&other.pixels).all(|(&a, &b)| !bits_differ(a, b))
+            && alpha_bits(self).eq(alpha_bits(other))
     }
+}
+
+fn alpha_bits(picture: &Picture) -> impl Iterator<Item = u32> {
+    picture.alpha.iter().flatten().map(|share| share.to_bits())
 }
 
 /// Bytes of a hash as people write them.

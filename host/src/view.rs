@@ -2,18 +2,17 @@
 
 use std::ops::Range;
 
-use eyerays_shader::camera;
-use eyerays_shader::data::{Frame, Lens, Order, numbers};
-use glam::DVec3;
+use eyerays_shader::camera::{self, FILTER_STEPS};
+use eyerays_shader::data::{self, Frame, Launch, Order};
+use eyerays_shader::stage::film_words;
 use serde::{Deserialize, Serialize};
 
-use crate::device_scene::flushed;
 use crate::error::{Error, Result};
 use crate::film::Part;
 use crate::job::Job;
-use crate::math;
+use crate::optics::CameraRecord;
 use crate::picture::Picture;
-use crate::scene::{Camera, Projection, Settings};
+use crate::scene::{Camera, Settings};
 
 /// A rectangle of the image in pixels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,8 +59,7 @@ impl Region {
 /// A camera, the size of its image, what of the image is rendered, and which samples of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
-    /// In the normalised scene.
-    lens: Lens,
+    record: CameraRecord,
     width: u32,
     height: u32,
     /// Edge of the grid that a pixel's samples lie in, 1 without a grid.
@@ -71,13 +69,16 @@ pub struct View {
     first: u32,
     /// The one after the last.
     end: u32,
+    /// Does a film count clear samples?
+    is_clear: bool,
 }
 
 impl View {
     /// A camera in a scene, with an image of the size and samples of the scene's settings.
     ///
     /// # Errors
-    /// There is no way to look so, or the camera is too far away for the scene's numbers.
+    /// There is no way to look so, the camera is too far away for the scene's numbers, or no camera of the scene has such a lens or
+    /// projection.
     pub fn new(packed: &Job, camera: &Camera) -> Result<View> {
         View::seen(packed, camera, packed.settings())
     }
@@ -95,31 +96,18 @@ impl View {
         let (width, height) = settings.size;
         Picture::check_size(width, height)?;
         let grid = settings.grid()?;
-        let forward = (camera.target.as_dvec3() - camera.eye.as_dvec3()).normalize_or_zero();
-        let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
-        if right == DVec3::ZERO {
-            let message = format!("camera \"{}\" looks along its up vector or at itself", camera.name);
-            return Err(Error::new(format!("{message}: move its target or turn its up")));
-        }
-        let normalisation = packed.normalisation();
-        let eye = normalisation.place_anywhere(camera.eye).ok_or_else(|| {
-            Error::new(format!("camera \"{}\" is too far away: move it nearer to the scene", camera.name))
-        })?;
-        let half_height = match camera.projection {
-            Projection::Perspective { fov } => math::tan(f64::from(fov).to_radians() / 2.0),
-            Projection::Orthographic { .. } if !packed.has_orthographic_cameras() => {
-                let message = format!("camera \"{}\" is orthographic, and no camera of the scene was", camera.name);
-                return Err(Error::new(format!("{message}: add it to the scene's cameras before it is packed")));
-            }
-            Projection::Orthographic { height } => f64::from(height) / 2.0 * normalisation.scale,
-        };
-        // A step is half a sample, so that a pixel's samples lie at odd steps from the centre.
-        let step = half_height / f64::from(height * grid);
-        let vector = |v: DVec3| flushed(v.as_vec3());
-        let lens = if camera.projection.is_orthographic() { Lens::parallel } else { Lens::new };
-        let lens = lens(eye, vector(right * step), vector(right.cross(forward) * step), vector(forward));
+        let record = CameraRecord::new(packed, camera, (width, height), grid)?;
         let window = Region { x: 0, y: 0, width, height };
-        Ok(View { lens, width, height, grid, window, first: 0, end: settings.samples_a_pixel() })
+        Ok(View {
+            record,
+            width,
+            height,
+            grid,
+            window,
+            first: 0,
+            end: settings.samples_a_pixel(),
+            is_clear: settings.transparent,
+        })
     }
 
     /// The image's width and height in pixels.
@@ -146,8 +134,8 @@ impl View {
         Ok(View { window: region, first: start, end, ..*self })
     }
 
-    pub(crate) fn lens(&self) -> &Lens {
-        &self.lens
+    pub(crate) fn camera(&self) -> &data::Camera {
+        &self.record.camera
     }
 
     /// What is rendered: the whole image, unless it is a part.
@@ -165,6 +153,11 @@ impl View {
         Part { region: self.window, samples: self.range() }
     }
 
+    /// Words of a pixel of its film where noise is told.
+    pub(crate) fn noisy_film_words(&self) -> u32 {
+        film_words(Launch(if self.is_clear { Launch::CLEAR } else { 0 }), true)
+    }
+
     /// How many samples of a pixel are rendered, in both directions together.
     pub fn samples(&self) -> u32 {
         self.end - self.first
@@ -178,10 +171,13 @@ impl View {
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
     pub fn launch(&self, scene: &Job, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
+        let CameraRecord { camera, spread, angle, aperture } = self.record;
         Frame {
-            lens: self.lens,
-            // Half a sample's height is a step of the lens at distance 1.
-            spread: 2.0 * numbers(self.lens.up).length(),
+            camera,
+            spread,
+            angle,
+            aperture,
+            filter_steps: FILTER_STEPS as f32 / (2 * self.grid) as f32,
             width: self.width,
             height: self.height,
             samples: self.grid,

@@ -1,7 +1,7 @@
 //! The numbers that pictures are rendered with, and the stages over them.
 
 use eyerays_shader::camera;
-use eyerays_shader::data::{Frame, Launch, Light, Order, Specialisation};
+use eyerays_shader::data::{Frame, Launch, Light, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
@@ -37,8 +37,8 @@ pub struct Shown<'a> {
 ///
 /// Queues are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
 pub trait Number: Scalar<Record: Send + Sync> {
-    /// Starts the paths of some slots.
-    fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]);
+    /// Starts the paths of some slots, by the tables of cameras.
+    fn generate(frame: &Frame, spec: Specialisation, optics: &[u32], slots: &[u32], paths: &mut [Self::Record]);
 
     /// Follows the rays of some slots, with the instructions of an [`Isa`].
     fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>);
@@ -56,7 +56,7 @@ pub trait Number: Scalar<Record: Send + Sync> {
     );
 
     /// Adds what slots have summed to the film.
-    fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]);
+    fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
 
     /// The same, with the light that their last vertices waited for.
     fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
@@ -66,9 +66,15 @@ pub trait Number: Scalar<Record: Send + Sync> {
 macro_rules! number {
     ($($number:ty)*) => {
         $(impl Number for $number {
-            fn generate(frame: &Frame, spec: Specialisation, slots: &[u32], paths: &mut [Self::Record]) {
+            fn generate(
+                frame: &Frame,
+                spec: Specialisation,
+                optics: &[u32],
+                slots: &[u32],
+                paths: &mut [Self::Record],
+            ) {
                 for &slot in slots {
-                    stage::generate::<Self>(frame, spec, &[], slot, paths);
+                    stage::generate::<Self>(frame, spec, (&[], optics), slot, paths);
                 }
             }
 
@@ -95,23 +101,24 @@ macro_rules! number {
                 isa.run(Scatter { launch, context, queues, records });
             }
 
-            fn gather(frame: &Frame, order: Order, records: &Records<Self>, film: &mut [u32]) {
+            fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
                 let sample = |slot: u32| Self::load(records.sums[slot as usize]);
                 for slot in 0..frame.pixel_slots {
-                    let pixel = camera::pixel(frame, order, slot);
-                    stage::expose::<Self>(frame, (pixel, slot), stage::FILM_WORDS, sample, film);
+                    let pixel = camera::pixel(frame, spec.order, slot);
+                    stage::expose::<Self>(frame, (pixel, slot), stage::film_words(spec.launch, false), sample, film);
                 }
             }
 
             fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
                 let Records { shadows, segments, sums, .. } = records;
                 let sample = |slot| stage::sampled::<Self>(frame, slot, (sums, shadows, segments));
+                let words = stage::film_words(spec.launch, true);
                 for slot in 0..frame.pixel_slots {
                     let pixel = camera::pixel(frame, spec.order, slot);
                     if spec.launch.has(Launch::BLOCKS) {
-                        stage::expose_blocks::<Self>(frame, (pixel, slot), sample, film);
+                        stage::expose_blocks::<Self>(frame, (pixel, slot), words, sample, film);
                     } else {
-                        stage::expose::<Self>(frame, (pixel, slot), stage::NOISY_FILM_WORDS, sample, film);
+                        stage::expose::<Self>(frame, (pixel, slot), words, sample, film);
                     }
                 }
             }

@@ -61,6 +61,7 @@ macro_rules! resources {
             29 albedos ALBEDOS: Read u32, "albedos of facets";
             30 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
             31 cells CELLS: Read u32, "table of cells";
+            32 optics OPTICS: Read u32, "optics";
         }
     };
 }

@@ -6,8 +6,8 @@ use std::sync::Arc;
 
 use eyerays::picture::Picture;
 use eyerays::scene::{
-    Alpha, Direct, Environment, Integrator, Light, Map, Physical, Placement, Sampler, Scene, Settings, Texels, Texture,
-    Transport,
+    Alpha, Direct, Environment, Integrator, Light, Map, Physical, PixelFilter, Placement, Sampler, Scene, Settings,
+    Texels, Texture, Transport,
 };
 use eyerays_tests::{by, on_cpu, pack, shipped};
 use glam::{Vec2, Vec3};
@@ -61,7 +61,9 @@ fn assert_alike(what: &str, a: &[(f64, f64)], b: &[(f64, f64)]) {
 }
 
 fn settings(scene: &Scene) -> Settings {
-    Settings { size: (64, 64), spp: 32, sampler: Sampler::Random, ..scene.settings }
+    // Filters that reach further let few samples of a lamp's edge decide about a block.
+    let pixel_filter = Some(PixelFilter::Box);
+    Settings { size: (64, 64), spp: 32, sampler: Sampler::Random, pixel_filter, ..scene.settings }
 }
 
 /// Samples of lights, of surfaces, and both weighted in either way; with chance ending paths, and without.

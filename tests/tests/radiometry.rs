@@ -32,13 +32,8 @@ fn once() -> Settings {
 
 /// A camera that sees almost nothing but one point.
 fn at(eye: Vec3, target: Vec3) -> Camera {
-    Camera {
-        name: "spot".into(),
-        eye,
-        target,
-        up: Vec3::new(0.1, 0.2, 1.0),
-        projection: Projection::Perspective { fov: 0.01 },
-    }
+    let projection = Projection::Perspective { fov: 0.01 };
+    Camera { up: Vec3::new(0.1, 0.2, 1.0), ..Camera::new("spot", eye, target, projection) }
 }
 
 fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Picture {
@@ -148,13 +143,7 @@ fn between_parallel_squares() {
 
 /// A camera inside a unit sphere.
 fn inside() -> Camera {
-    Camera {
-        name: "inside".into(),
-        eye: Vec3::new(0.1, -0.2, 0.5),
-        target: Vec3::NEG_X,
-        up: Vec3::Y,
-        projection: Projection::Perspective { fov: 80.0 },
-    }
+    Camera::new("inside", Vec3::new(0.1, -0.2, 0.5), Vec3::NEG_X, Projection::Perspective { fov: 80.0 })
 }
 
 fn in_sphere(material: Material) -> Scene {

@@ -7,7 +7,10 @@ use eyerays::device_scene::Feature;
 use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
-use eyerays::scene::{Background, Direct, Falloff, Filter, Integrator, Light, Sampler, Scene, Settings, Transport};
+use eyerays::scene::{
+    Background, Direct, Falloff, Filter, Integrator, Lens, Light, Mapping, PixelFilter, Projection, Sampler, Scene,
+    Settings, Transport,
+};
 use eyerays_tests::covered::covered;
 use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, quick_gpu, shipped};
 use glam::Vec3;
@@ -249,4 +252,32 @@ fn lights_change_without_another_scene() {
     renderer.set_lights(&scene.lights).unwrap();
     let film = renderer.render(&packed.view, &|_| ()).unwrap().film;
     assert_same_bits(&film.develop().unwrap(), &picture, "GPU");
+}
+
+/// Lenses, projections, shifts, pixel filters and clear backgrounds, by each integrator.
+#[test]
+fn what_cameras_have_beside_pinholes() {
+    let Some(gpu) = quick_gpu() else { return };
+    let lens = Lens { blades: 5, roundness: 0.4, rotation: 11.0, ratio: 1.5, ..Lens::round(0.2) };
+    let (fisheye, fov) = (Mapping::Equisolid, 170.0);
+    let cases: [(&str, Option<Projection>, Option<Lens>); 6] = [
+        ("glass", None, Some(lens)),
+        ("cornell", Some(Projection::Fisheye { fov, mapping: Mapping::Equidistant }), None),
+        ("cornell_path", None, Some(lens)),
+        ("bleeding", Some(Projection::Fisheye { fov, mapping: fisheye }), None),
+        ("soft_shadows", Some(Projection::Orthographic { height: 3.0 }), Some(Lens { blades: 0, ..lens })),
+        ("occlusion", Some(Projection::Equirectangular), None),
+    ];
+    for (number, (name, projection, lens)) in cases.into_iter().enumerate() {
+        let mut scene = shipped(name);
+        let camera = &mut scene.cameras[0];
+        (camera.projection, camera.lens) = (projection.unwrap_or(camera.projection), lens);
+        camera.shift = if camera.projection.is_flat() { [0.1, -0.2] } else { [0.0; 2] };
+        let filter = [PixelFilter::Gaussian, PixelFilter::Box, PixelFilter::Tent][number % 3];
+        let (pixel_filter, transparent) = (Some(filter), number % 2 == 0);
+        let settings = Settings { size: (37, 29), samples: 2, spp: 0, pixel_filter, transparent, ..scene.settings };
+        let posed = pack(&scene, &scene.cameras[0], settings);
+        assert_same(&gpu, &posed, Traversal::default(), name);
+        assert_eq!(on_cpu(&posed).0.alpha.is_some(), transparent, "{name}");
+    }
 }

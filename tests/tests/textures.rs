@@ -23,13 +23,8 @@ fn settings(integrator: Integrator) -> Settings {
 }
 
 fn camera(eye: Vec3, fov: f32) -> Camera {
-    Camera {
-        name: "front".into(),
-        eye,
-        target: Vec3::ZERO,
-        up: Vec3::new(0.1, 1.0, 0.0),
-        projection: Projection::Perspective { fov },
-    }
+    let projection = Projection::Perspective { fov };
+    Camera { up: Vec3::new(0.1, 1.0, 0.0), ..Camera::new("front", eye, Vec3::ZERO, projection) }
 }
 
 fn picture(scene: &Scene, camera: &Camera, settings: Settings) -> Picture {

@@ -9,7 +9,7 @@ use crate::error::Result;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::{Filter, Integrator, Range, Sampler, Settings, Table, read_table};
+use eyerays::scene::{Filter, Integrator, PixelFilter, Range, Sampler, Settings, Table, read_table};
 
 /// What a settings file says; its keys are the names of options of `eyerays render`, with `_` for `-`. What it
 /// does not say is left to the command line and the scene.
@@ -42,6 +42,8 @@ pub struct Preset {
     /// What a ray sees of a texture.
     #[serde(serialize_with = "wish")]
     pub filter: Option<Filter>,
+    /// How a pixel weighs what is around its middle.
+    pub pixel_filter: Option<PixelFilter>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,
     /// Samples of a pixel instead.
@@ -77,6 +79,7 @@ impl Preset {
             integrator: table.choice("integrator")?,
             sampler: table.choice("sampler")?,
             filter: table.choice("filter")?,
+            pixel_filter: table.choice("pixel_filter")?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
             spp: table.whole("spp", 1, Settings::MOST_SPP)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,

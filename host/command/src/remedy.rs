@@ -13,6 +13,9 @@ pub fn worded(error: &Error) -> String {
         Error::NoTone { format } => {
             return format!("--tone is for .png files, not for {format}; leave it out or write .png");
         }
+        Error::NoAlpha { format } => {
+            return format!("--transparent is for .png and .exr files, not for {format}; leave it out or write .exr");
+        }
         Error::NoLayers { format } => {
             return format!("--layers is for .exr files, not for {format}; leave it out or write .exr");
         }

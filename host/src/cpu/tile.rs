@@ -153,9 +153,12 @@ impl<R: Number> Executor for Launch<'_, R> {
             Stage::Trace => self.trace(&scene, method),
             Stage::Shadow => self.shadow(&scene, method),
             Stage::Shade => self.shade(&scene),
-            Stage::Generate => R::generate(self.frame, step.spec, &self.queue, &mut self.records.paths),
+            Stage::Generate => {
+                let optics = self.planned.laid.job.optic_tables();
+                R::generate(self.frame, step.spec, optics, &self.queue, &mut self.records.paths);
+            }
             Stage::Scatter => self.scatter(&scene),
-            Stage::Gather => R::gather(self.frame, step.spec.order, &self.records, self.film),
+            Stage::Gather => R::gather(self.frame, step.spec, &self.records, self.film),
             Stage::Accumulate => R::accumulate(self.frame, step.spec, &self.records, self.film),
         }
         Ok(())

@@ -39,6 +39,7 @@ use lighting::Lamps;
 use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::method::Method;
+use crate::optics::Optics;
 use crate::scene::{Background, Light, Scene, Settings};
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
@@ -61,7 +62,7 @@ pub struct DeviceScene {
     /// Those of any settings.
     effects: Effects,
     background: Background,
-    has_orthographic_cameras: bool,
+    optics: Optics,
     normalisation: Normalisation,
     statistics: Statistics,
     build_time: Duration,
@@ -139,7 +140,7 @@ impl DeviceScene {
             lamps,
             effects: Effects(effects.0 & !dark | many),
             background: scene.background,
-            has_orthographic_cameras: scene.cameras.iter().any(|camera| camera.projection.is_orthographic()),
+            optics: Optics::of(&scene.cameras),
             normalisation,
             build_time,
             bvh8: OnceLock::new(),
@@ -263,9 +264,9 @@ impl DeviceScene {
         self.build_time
     }
 
-    /// May it be seen by an orthographic camera?
-    pub fn has_orthographic_cameras(&self) -> bool {
-        self.has_orthographic_cameras
+    /// What its cameras need.
+    pub(crate) fn optics(&self) -> &Optics {
+        &self.optics
     }
 
     /// The records of other lights for the same kernels: as many, of the same kinds.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use eyerays_shader::stage::{BLOCK, NOISY_FILM_WORDS, PixelSums, Row};
+use eyerays_shader::stage::{BLOCK, PixelSums, Row};
 use rayon::prelude::*;
 
 use super::develop::{Mean, mean_light};
@@ -52,7 +52,7 @@ impl Film {
         if Target::around(window, size) != window {
             return Err(Error::new("a tile that noise decides about is cut at cells: give one of whole cells"));
         }
-        let film = Film::new(view, NOISY_FILM_WORDS)?;
+        let film = Film::new(view, view.noisy_film_words())?;
         Ok(Film { cells: Some(Cells::new(size, *target, most)), ..film })
     }
 

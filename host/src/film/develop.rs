@@ -1,7 +1,7 @@
 //! From sums to a picture.
 
 use eyerays_shader::data::Quanta;
-use eyerays_shader::stage::{LIGHT_FRACTION, NOISY_FILM_WORDS, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
+use eyerays_shader::stage::{LIGHT_FRACTION, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
 use rayon::prelude::*;
 
 use super::Film;
@@ -43,6 +43,9 @@ impl Developer {
     {
         let width = self.picture.width;
         let samples_a_square = self.samples_a_square;
+        if Row::new(0, width, words).counts_clear() {
+            self.opaque(first, words, sums, &counts);
+        }
         let pixels = self.picture.pixels.par_chunks_mut(width as usize).skip(first as usize);
         let rows = pixels.zip(sums.par_chunks((words * width) as usize));
         let told = rows.enumerate().map(|(y, (pixels, sums))| {
@@ -51,7 +54,7 @@ impl Developer {
                 let sums = PixelSums::load(sums, row, x);
                 let light = mean_light(&sums, count);
                 *pixel = light.map(|channel| channel as f32);
-                if words == NOISY_FILM_WORDS {
+                if row.is_noisy() {
                     told.noise.add(&Mean::of(&sums, light, count, samples_a_square));
                 }
                 told.shadow += u64::from(sums.word & !NON_FINITE);
@@ -67,10 +70,27 @@ impl Developer {
         }
     }
 
+    /// Tells how opaque the pixels of rows are.
+    fn opaque<C>(&mut self, first: u32, words: u32, sums: &[u32], counts: &(impl Fn(u32) -> C + Sync))
+    where
+        C: AsRef<[u32]>,
+    {
+        let width = self.picture.width;
+        let alpha = self.picture.alpha.get_or_insert_with(|| vec![0.0; self.picture.pixels.len()]);
+        let rows = alpha.par_chunks_mut(width as usize).skip(first as usize);
+        rows.zip(sums.par_chunks((words * width) as usize)).enumerate().for_each(|(y, (alpha, sums))| {
+            let row = Row::new(0, width, words);
+            for ((share, x), &count) in alpha.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
+                let opaque = count - PixelSums::load(sums, row, x).clear.min(count);
+                *share = (f64::from(opaque) / f64::from(count.max(1))) as f32;
+            }
+        });
+    }
+
     /// The picture, and what was counted of its rays.
     pub fn done(mut self, words: u32) -> (Picture, Rays) {
         let pixels = self.picture.pixels.len();
-        self.picture.noise = if words == NOISY_FILM_WORDS { self.noise.share(pixels) } else { None };
+        self.picture.noise = if Row::new(0, 0, words).is_noisy() { self.noise.share(pixels) } else { None };
         (self.picture, self.rays)
     }
 }
@@ -105,11 +125,12 @@ impl Film {
         let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let counts = self.counts(y);
+            let row = Row::new(0, width, words);
             let error = move |(count, x)| {
-                if count < 2 * samples_a_square || words != NOISY_FILM_WORDS {
+                if count < 2 * samples_a_square || !row.is_noisy() {
                     return f32::INFINITY;
                 }
-                let sums = PixelSums::load(sums, Row::new(0, width, words), x);
+                let sums = PixelSums::load(sums, row, x);
                 Mean::of(&sums, mean_light(&sums, count), count, samples_a_square).variance.sqrt() as f32
             };
             counts.into_iter().zip(0..).map(error)

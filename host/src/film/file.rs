@@ -134,13 +134,13 @@ impl Header {
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
         let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
-        let is_known = [FILM_WORDS, NOISY_FILM_WORDS].contains(&words);
+        let is_known = [FILM_WORDS, FILM_WORDS + 1, NOISY_FILM_WORDS, NOISY_FILM_WORDS + 1].contains(&words);
         if !is_within(window, image) || !is_known || parts.len() > MOST_PARTS {
             return Err(damaged());
         }
         let cells = cells.map(|cells| cells.cells(size, window)).transpose()?;
         let has_some = cells.as_ref().map_or(!parts.is_empty(), |cells| cells.counts.iter().any(|&count| count > 0));
-        if has_some != has_sums || cells.is_some() && (!parts.is_empty() || words != NOISY_FILM_WORDS) {
+        if has_some != has_sums || cells.is_some() && (!parts.is_empty() || words < NOISY_FILM_WORDS) {
             return Err(damaged());
         }
         let mut coverage = Coverage::default();

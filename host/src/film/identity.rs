@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use eyerays_shader::data::Lens;
+use eyerays_shader::data::Camera;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -34,12 +34,16 @@ impl Identity {
         let (width, height) = view.size();
         let mut all = BTreeMap::from([
             ("scene".to_owned(), hexadecimal(&scene)),
-            ("camera".to_owned(), hexadecimal(&Sha256::digest(bytemuck::bytes_of::<Lens>(view.lens())))),
+            ("camera".to_owned(), hexadecimal(&Sha256::digest(bytemuck::bytes_of::<Camera>(view.camera())))),
             ("size".to_owned(), format!("{width}x{height}")),
             ("precision".to_owned(), precision.name().to_owned()),
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),
             ("kernels".to_owned(), eyerays_modules::SOURCE.to_owned()),
         ]);
+        let optics = packed.optic_tables();
+        if !optics.is_empty() {
+            all.insert("optics".to_owned(), hexadecimal(&Sha256::digest(bytemuck::cast_slice::<u32, u8>(optics))));
+        }
         if settings.sampler.has_cells() {
             all.insert("samples".to_owned(), settings.samples_a_pixel().to_string());
         }

@@ -21,7 +21,8 @@ use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::view::{Region, View};
 
-/// Sums of the samples of a picture, or of a part of it: 40 bytes a pixel, and 56 where noise is told.
+/// Sums of the samples of a picture, or of a part of it: 40 bytes a pixel, and 56 where noise is told; 4 more where what is clear is
+/// counted.
 #[derive(Debug, Clone)]
 pub struct Film {
     size: (u32, u32),

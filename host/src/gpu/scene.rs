@@ -27,7 +27,7 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 20] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 21] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
@@ -55,6 +55,7 @@ impl<'a> SceneRecords<'a> {
             (binding::OPACITIES, bytemuck::cast_slice(&textures.opacities)),
             (binding::ENVIRONMENT, bytemuck::cast_slice(packed.environment())),
             (binding::ALBEDOS, bytemuck::cast_slice(packed.albedos())),
+            (binding::OPTICS, bytemuck::cast_slice(packed.optic_tables())),
         ]
     }
 }

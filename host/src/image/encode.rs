@@ -23,10 +23,12 @@ use crate::picture::Picture;
 /// In a PNG, NaN and what is below 0 become 0 and what is above 1 becomes 1, unless a tone map finds a place for it. In an HDR, NaN and
 /// what is below 0 become 0 and infinity becomes the format's greatest value; pixels darker than
 /// the least normal `f32` become black. An EXR keeps all of them; with floats of 16 bits, finite values
-/// beyond ±65504 become that.
+/// beyond ±65504 become that. Of a picture that tells how opaque it is, a PNG has the light that its opaque share sends by itself
+/// (straight), an EXR what that share of the pixel sends (associated).
 ///
 /// # Errors
-/// An invalid picture, those of [`Encoding::check`], and those of the writer. They name no file.
+/// An invalid picture, those of [`Encoding::check`], an HDR of a picture that tells how opaque it is, and those of the writer. They name
+/// no file.
 pub fn encode(picture: &Picture, format: Format, encoding: &Encoding, mut writer: impl Write) -> Result<()> {
     picture.validate()?;
     encoding.check(format)?;
@@ -34,8 +36,13 @@ pub fn encode(picture: &Picture, format: Format, encoding: &Encoding, mut writer
     let refused = |error: &dyn fmt::Display| Error::new(format!("the image cannot be encoded as {format}: {error}"));
     let bytes = match format {
         Format::Png => png(picture, encoding, scale).map_err(|e| refused(&e))?,
+        // With how opaque it is, channels have names.
+        Format::Exr if picture.alpha.is_some() => {
+            exr::layered(picture, &[], scale, encoding.half).map_err(|e| refused(&e))?
+        }
         Format::Exr if encoding.half => exr::half(picture, scale).map_err(|e| refused(&e))?,
         Format::Exr => exr::single(picture, scale).map_err(|e| refused(&e))?,
+        Format::Hdr if picture.alpha.is_some() => return Err(Error::NoAlpha { format }),
         Format::Hdr => hdr(picture, scale).map_err(|e| refused(&e))?,
     };
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
@@ -65,24 +72,38 @@ pub fn encode_layers(
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 
-/// Every channel of every pixel, exposed, mapped to the screen and converted.
-fn samples<T: Send>(picture: &Picture, tone: ToneMap, scale: f64, convert: impl Fn(f64) -> T + Sync) -> Vec<T> {
-    let shown = |pixel: &[f32; 3]| tone.apply(pixel.map(|v| f64::from(v) * scale)).map(&convert);
-    picture.pixels.par_iter().map(shown).collect::<Vec<_>>().into_flattened()
+/// Every channel of every pixel, exposed, mapped to the screen and converted; with how opaque it is, converted by `share`, if the picture
+/// tells that.
+fn samples<T: Send>(
+    picture: &Picture,
+    (tone, scale): (ToneMap, f64),
+    convert: impl Fn(f64) -> T + Sync,
+    share: impl Fn(f64) -> T + Sync,
+) -> Vec<T> {
+    let shown = |pixel: &[f32; 3], scale: f64| tone.apply(pixel.map(|v| f64::from(v) * scale)).map(&convert);
+    let Some(alpha) = &picture.alpha else {
+        return picture.pixels.par_iter().map(|pixel| shown(pixel, scale)).collect::<Vec<_>>().into_flattened();
+    };
+    let straight = |(pixel, &alpha): (&[f32; 3], &f32)| {
+        let alpha = f64::from(alpha);
+        let [red, green, blue] = shown(pixel, if alpha > 0.0 { scale / alpha } else { 0.0 });
+        [red, green, blue, share(alpha)]
+    };
+    picture.pixels.par_iter().zip(alpha).map(straight).collect::<Vec<_>>().into_flattened()
 }
 
 fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> std::result::Result<Vec<u8>, EncodingError> {
     match encoding.bits {
         BitDepth::Eight => {
-            let values = samples(picture, encoding.tone, scale, quantise_to_byte);
+            let share = |alpha: f64| (alpha * 255.0).round() as u8;
+            let values = samples(picture, (encoding.tone, scale), quantise_to_byte, share);
             png_of(picture, &values, png::BitDepth::Eight)
         }
         BitDepth::Sixteen => {
-            let values = samples(picture, encoding.tone, scale, |v| quantise(v, 65_535.0) as u16);
-            {
-                let bytes: Vec<[u8; 2]> = values.iter().map(|value| value.to_be_bytes()).collect();
-                png_of(picture, bytes.as_flattened(), png::BitDepth::Sixteen)
-            }
+            let share = |alpha: f64| (alpha * 65_535.0).round() as u16;
+            let values = samples(picture, (encoding.tone, scale), |v| quantise(v, 65_535.0) as u16, share);
+            let bytes: Vec<[u8; 2]> = values.iter().map(|value| value.to_be_bytes()).collect();
+            png_of(picture, bytes.as_flattened(), png::BitDepth::Sixteen)
         }
     }
 }
@@ -91,7 +112,7 @@ fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> std::result::Resul
 fn png_of(picture: &Picture, samples: &[u8], depth: png::BitDepth) -> std::result::Result<Vec<u8>, EncodingError> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, picture.width, picture.height);
-    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_color(if picture.alpha.is_some() { png::ColorType::Rgba } else { png::ColorType::Rgb });
     encoder.set_depth(depth);
     encoder.set_compression(png::Compression::Fast);
     encoder.set_filter(png::Filter::Adaptive);

@@ -56,6 +56,8 @@ pub(super) fn layered(
         Values::Numbers(numbers) => vec![channel(&name, "id", FlatSamples::U32(numbers.clone()))],
     };
     let mut channels: SmallVec<[_; 4]> = three(picture, "", ["R", "G", "B"], scale, is_half).into();
+    let alpha = picture.alpha.as_ref().map(|alpha| channel("", "A", floats(alpha.par_iter().copied(), is_half)));
+    channels.extend(alpha);
     channels.extend(layers.iter().flat_map(|(layer, values)| of(format!("{}.", layer.name()), values)));
     let mut image = Image::from_encoded_channels(size(picture), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
     image.layer_data.attributes = attributes(&picture.about);
@@ -68,11 +70,12 @@ fn channel(layer: &str, name: &str, samples: FlatSamples) -> AnyChannel<FlatSamp
     AnyChannel::new(format!("{layer}{name}").as_str(), samples)
 }
 
+fn floats(values: impl IndexedParallelIterator<Item = f32>, is_half: bool) -> FlatSamples {
+    if is_half { FlatSamples::F16(values.map(nearest_half).collect()) } else { FlatSamples::F32(values.collect()) }
+}
+
 fn three(picture: &Picture, layer: &str, names: [&str; 3], scale: f64, is_half: bool) -> Vec<AnyChannel<FlatSamples>> {
-    let samples = |i: usize| {
-        let values = picture.pixels.par_iter().map(|pixel| exposed(pixel[i], scale));
-        if is_half { FlatSamples::F16(values.map(nearest_half).collect()) } else { FlatSamples::F32(values.collect()) }
-    };
+    let samples = |i: usize| floats(picture.pixels.par_iter().map(|pixel| exposed(pixel[i], scale)), is_half);
     names.into_iter().enumerate().map(|(i, name)| channel(layer, name, samples(i))).collect()
 }
 

@@ -4,7 +4,7 @@ mod run;
 
 use eyerays_shader::data::{Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS, RECORDS, SHADOW_RECORDS, STATE_RECORDS};
+use eyerays_shader::stage::{RECORDS, SHADOW_RECORDS, STATE_RECORDS, film_words};
 
 pub use run::{Executor, run};
 
@@ -114,7 +114,7 @@ impl Plan {
             Ok([Some(trace), shadow, Some(plain(Stage::Shade, spec))].into_iter().flatten().collect())
         };
         let mut first = wave(spec, Coherence::Primary, Coherence::Shadow)?;
-        if is_sampled {
+        if is_sampled || spec.launch.has(Launch::KEPT) {
             first.insert(0, plain(Stage::Generate, spec));
         }
         let mut further = Vec::new();
@@ -124,8 +124,10 @@ impl Plan {
             further.extend(wave(spec, later, later)?);
         }
         let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
-        let slot_bytes = slot_bytes(needs, !further.is_empty());
-        let film_words = if is_sampled { NOISY_FILM_WORDS } else { FILM_WORDS };
+        // Rays of the camera that lie in memory take the place of a path.
+        let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
+        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, !further.is_empty());
+        let film_words = film_words(spec.launch, is_sampled);
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
 
@@ -192,6 +194,7 @@ fn slot_bytes(needs: &Needs, has_queue: bool) -> Vec<(u32, u64)> {
 #[cfg(test)]
 mod tests {
     use eyerays_shader::data::Effects;
+    use eyerays_shader::stage::NOISY_FILM_WORDS;
 
     use super::*;
     use crate::method::Processor;

@@ -6,8 +6,8 @@ use std::fmt::{Debug, Write};
 use glam::Vec3;
 
 use super::{
-    Alpha, Background, Camera, Environment, Falloff, Integrator, Light, Material, Physical, Projection, Scene,
-    Settings, Transport, Wall,
+    Alpha, Background, Camera, Environment, Falloff, Focus, Integrator, Lens, Light, Mapping, Material, Physical,
+    Projection, Scene, Settings, Transport, Wall,
 };
 use super::{physical, studio};
 use crate::choice::Named;
@@ -136,6 +136,10 @@ fn settings(text: &mut Text, of: &Settings) {
     text.other("culling", of.culling, default.culling);
     text.other("compensation", of.compensation, default.compensation);
     text.word("filter", of.filter, default.filter);
+    if let Some(filter) = of.pixel_filter {
+        text.key("pixel_filter", quoted(filter.name()));
+    }
+    text.other("transparent", of.transparent, default.transparent);
     let Transport { integrator, seed, roulette, clamp, direct, ao_distance } = of.transport;
     let default = default.transport;
     text.word("integrator", integrator, Integrator::Whitted);
@@ -174,7 +178,31 @@ fn camera(text: &mut Text, of: &Camera) {
     match of.projection {
         Projection::Perspective { fov } => text.value("fov", fov),
         Projection::Orthographic { height } => text.value("orthographic", height),
+        Projection::Equirectangular => text.key("projection", quoted("equirectangular")),
+        Projection::Fisheye { fov, mapping } => {
+            text.key("projection", quoted("fisheye"));
+            text.value("fov", fov);
+            text.word("mapping", mapping, Mapping::default());
+        }
     }
+    text.other("shift_x", of.shift[0], 0.0);
+    text.other("shift_y", of.shift[1], 0.0);
+    if let Some(lens) = &of.lens {
+        self::lens(text, lens);
+    }
+}
+
+fn lens(text: &mut Text, of: &Lens) {
+    text.value("aperture", of.radius);
+    match of.focus {
+        Focus::Distance(distance) => text.value("focus", distance),
+        Focus::Point(point) => text.key("focus_on", triple(point)),
+        Focus::Target => {}
+    }
+    text.other("blades", of.blades, 0);
+    text.other("blade_rotation", of.rotation, 0.0);
+    text.other("blade_roundness", of.roundness, 0.0);
+    text.other("anamorphic", of.ratio, 1.0);
 }
 
 fn light(text: &mut Text, of: &Light) {

@@ -1,14 +1,12 @@
-//! The tables of a TOML scene, but for its meshes.
+//! The tables of a TOML scene, but for its meshes and cameras.
 
-use std::collections::HashSet;
-
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 
 use super::map::Images;
 use super::range::Range;
 use super::studio;
 use super::table::Table;
-use super::{Background, Camera, Environment, Light, Projection, Settings, Transport};
+use super::{Background, Environment, Light, Settings, Transport};
 use crate::error::Result;
 use crate::picture::Picture;
 
@@ -28,6 +26,8 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         compensation: table.flag("compensation")?.unwrap_or(default.compensation),
         spp: table.whole("spp", 1, Settings::MOST_SPP)?.unwrap_or(default.spp),
         filter: table.choice("filter")?.unwrap_or(default.filter),
+        pixel_filter: table.choice("pixel_filter")?,
+        transparent: table.flag("transparent")?.unwrap_or(default.transparent),
         transport: transport(&mut table)?,
     };
     settings.grid().map_err(|error| table.fault_of("spp", error.message()))?;
@@ -95,60 +95,6 @@ fn environment(table: &mut Table, images: &mut Images) -> Result<Option<Environm
     let rotation = table.number("rotation", Range::ANY)?.unwrap_or(0.0);
     let scale = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
     Ok(Some(Environment { texture, rotation, scale, visible }))
-}
-
-/// Reads every `[[camera]]`.
-///
-/// # Errors
-/// A name given twice, a view that has no direction or no upright, a number out of range, or an unknown key.
-pub fn cameras(tables: Vec<Table>) -> Result<Vec<Camera>> {
-    let mut names = HashSet::new();
-    let mut cameras = Vec::new();
-    for mut table in tables {
-        let camera = camera(&mut table)?;
-        if !names.insert(camera.name.clone()) {
-            let fault = format!("a second camera {:?}; rename one", camera.name);
-            return Err(table.fault_of("name", fault));
-        }
-        table.done()?;
-        cameras.push(camera);
-    }
-    Ok(cameras)
-}
-
-fn projection(table: &mut Table) -> Result<Projection> {
-    let fov = table.number("fov", Range::CONE)?;
-    let height = table.number("orthographic", Range::LENGTH)?;
-    match (fov, height) {
-        (Some(_), Some(_)) => Err(table.fault_of("fov", "an orthographic camera has no fov; remove one of both")),
-        (_, Some(height)) => Ok(Projection::Orthographic { height }),
-        (fov, None) => Ok(Projection::Perspective { fov: fov.unwrap_or(45.0) }),
-    }
-}
-
-fn camera(table: &mut Table) -> Result<Camera> {
-    let name = table.name("name")?;
-    let eye = table.triple("eye", Range::ANY)?;
-    let target = table.triple("target", Range::ANY)?;
-    let camera = Camera {
-        name: table.need("name", name)?,
-        eye: table.need("eye", eye)?,
-        target: table.need("target", target)?,
-        up: table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y),
-        projection: projection(table)?,
-    };
-    let named = format!("camera {:?}", camera.name);
-    let view = camera.target.as_dvec3() - camera.eye.as_dvec3();
-    if view == DVec3::ZERO {
-        let fault = format!("{named} looks at its own eye; move its target");
-        return Err(table.fault_of("target", fault));
-    }
-    if !camera.is_upright() {
-        let fault = format!("{named} has its up along its view; turn up aside");
-        let key = if table.has("up") { "up" } else { "target" };
-        return Err(table.fault_of(key, fault));
-    }
-    Ok(camera)
 }
 
 /// Reads every `[[light]]`.

@@ -21,7 +21,7 @@ pub fn default_camera(scene: &Scene, aspect: f64) -> Option<Camera> {
     let distance = MARGIN * radius / math::sin(half.min(across));
     let eye = (center + THREE_QUARTER.normalize() * distance).as_vec3();
     let projection = Projection::Perspective { fov: FOV };
-    let camera = Camera { name: "default".into(), eye, target: center.as_vec3(), up: Vec3::Y, projection };
+    let camera = Camera::new("default", eye, center.as_vec3(), projection);
     (eye.is_finite() && camera.target.is_finite()).then_some(camera)
 }
 

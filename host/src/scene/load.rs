@@ -7,7 +7,6 @@ use glam::Vec3;
 
 use super::binary;
 use super::budget::Budget;
-use super::document;
 use super::file;
 use super::files::{Files, Own, is, is_gltf, read_mesh};
 use super::frame;
@@ -24,6 +23,7 @@ use super::source::Source;
 use super::studio;
 use super::table::Table;
 use super::{Background, Integrator, LightUnit, Sampler, Scene, Settings, Transport};
+use super::{camera_table, document};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 
@@ -196,7 +196,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
     let ambient = table.triple("ambient", Range::AMOUNT)?;
-    let cameras = document::cameras(table.tables("camera")?.unwrap_or_default())?;
+    let cameras = camera_table::cameras(table.tables("camera")?.unwrap_or_default())?;
     let lights = table.tables("light")?.map(document::lights).transpose()?;
     let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();

@@ -28,15 +28,18 @@ impl Camera {
     }
 
     /// From world space to an image of this size: x and y are -1 to 1 from left to right and from bottom to top, z is the distance in
-    /// front of the camera's plane, all but that after a division by the last component. For column vectors.
-    pub fn world_to_ndc(&self, (width, height): (u32, u32)) -> DMat4 {
+    /// front of the camera's plane, all but that after a division by the last component. For column vectors. None of a camera that goes
+    /// all around, which no matrix tells.
+    pub fn world_to_ndc(&self, (width, height): (u32, u32)) -> Option<DMat4> {
         let aspect = f64::from(width) / f64::from(height);
         let (half, last) = match self.projection {
             Projection::Perspective { fov } => (math::tan(f64::from(fov).to_radians() / 2.0), DVec4::NEG_Z),
             Projection::Orthographic { height } => (f64::from(height) / 2.0, DVec4::W),
+            Projection::Equirectangular | Projection::Fisheye { .. } => return None,
         };
-        let rows = [DVec4::X / (half * aspect), DVec4::Y / half, DVec4::NEG_Z, last];
-        DMat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose() * self.world_to_camera()
+        let [aside, above] = self.shift.map(|share| last * (2.0 * f64::from(share)));
+        let rows = [DVec4::X / (half * aspect) - aside, DVec4::Y / half - above, DVec4::NEG_Z, last];
+        Some(DMat4::from_cols_array_2d(&rows.map(|row| row.to_array())).transpose() * self.world_to_camera())
     }
 }
 
@@ -51,20 +54,24 @@ mod tests {
     fn what_is_at_the_edge_of_the_view_is_at_the_edge_of_the_image() {
         let (eye, target, up) = (Vec3::new(1.0, 2.0, 3.0), Vec3::new(1.0, 2.0, -7.0), Vec3::Y);
         for projection in [Projection::Perspective { fov: 90.0 }, Projection::Orthographic { height: 10.0 }] {
-            let camera = Camera { name: String::new(), eye, target, up, projection };
+            let camera = Camera { up, ..Camera::new("", eye, target, projection) };
             // Five in front of the camera half a field of 90 degrees is five high, and twice as wide.
             let corner = DVec3::new(1.0 + 10.0, 2.0 + 5.0, 3.0 - 5.0);
             assert_eq!(camera.world_to_camera().transform_point3(corner), DVec3::new(10.0, 5.0, -5.0));
-            let at = camera.world_to_ndc((200, 100)) * corner.extend(1.0);
+            let at = camera.world_to_ndc((200, 100)).unwrap() * corner.extend(1.0);
             assert!((DVec2::new(at.x, at.y) / at.w - DVec2::ONE).length() < 1e-12, "{projection:?}: {at}");
             assert_eq!(at.z, 5.0);
+            // An image that is moved to the right by a quarter of its width has it left of there by half of half its width.
+            let shifted = Camera { shift: [0.25, -0.5], ..camera };
+            let at = shifted.world_to_ndc((200, 100)).unwrap() * corner.extend(1.0);
+            assert!((DVec2::new(at.x, at.y) / at.w - DVec2::new(0.5, 2.0)).length() < 1e-12, "{projection:?}: {at}");
         }
     }
 
     #[test]
     fn a_camera_on_its_side_has_its_own_up() {
         let projection = Projection::Perspective { fov: 40.0 };
-        let camera = Camera { name: String::new(), eye: Vec3::ZERO, target: Vec3::X, up: Vec3::Z, projection };
+        let camera = Camera { up: Vec3::Z, ..Camera::new("", Vec3::ZERO, Vec3::X, projection) };
         let seen = camera.world_to_camera().transform_vector3(DVec3::new(2.0, 3.0, 4.0));
         assert_eq!(seen, DVec3::new(-3.0, 4.0, -2.0));
     }

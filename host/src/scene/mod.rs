@@ -8,6 +8,8 @@
 
 mod binary;
 mod budget;
+mod camera;
+mod camera_table;
 mod check;
 mod describe;
 mod document;
@@ -20,6 +22,7 @@ mod filter;
 mod frame;
 mod geometry;
 mod gltf;
+mod lens;
 mod light_unit;
 mod lines;
 mod lit;
@@ -35,6 +38,7 @@ mod normal;
 mod obj;
 mod part;
 mod physical;
+mod pixel_filter;
 mod ply;
 mod polygon;
 mod primitive;
@@ -56,16 +60,19 @@ mod xyzr;
 mod tests;
 
 pub use binary::{ENDING, Hierarchy, fingerprint, write};
+pub use camera::Camera;
 pub use describe::describe;
 pub use environment::Environment;
 pub use falloff::Falloff;
 pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
+pub use lens::{Focus, Lens};
 pub use light_unit::LightUnit;
 pub use load::{Loading, load, load_as, read_as, read_table};
 pub use physical::{Absorption, Conductor, Physical, Wall};
+pub use pixel_filter::PixelFilter;
 pub use primitive::{Disk, Primitives, Sphere};
-pub use projection::Projection;
+pub use projection::{Mapping, Projection};
 pub use range::Range;
 pub use sampler::Sampler;
 pub use suggest::{nearest, suggest};
@@ -278,30 +285,6 @@ pub enum Light {
     },
 }
 
-/// A camera.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Camera {
-    /// By this name the command line picks it.
-    pub name: String,
-    /// World units.
-    pub eye: Vec3,
-    /// Where it looks; not the eye.
-    pub target: Vec3,
-    /// Not along the view.
-    pub up: Vec3,
-    /// What its image holds.
-    pub projection: Projection,
-}
-
-impl Camera {
-    /// Does its `up` tell which way is up? Not if it lies along the view, nearer than single precision tells apart.
-    fn is_upright(&self) -> bool {
-        let view = self.target.as_dvec3() - self.eye.as_dvec3();
-        let sine = view.normalize_or_zero().cross(self.up.as_dvec3().normalize_or_zero());
-        sine.length() >= 1e-6
-    }
-}
-
 /// What a ray that hits nothing returns, linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Background {
@@ -339,6 +322,12 @@ pub struct Settings {
     /// How textures are filtered.
     #[serde(default)]
     pub filter: Filter,
+    /// How a pixel weighs what is around its middle; without one as the integrator does, see [`Settings::pixel_filter`].
+    #[serde(default)]
+    pub pixel_filter: Option<PixelFilter>,
+    /// Is what the camera sees of the surroundings left out, so that the picture tells how much of it is opaque?
+    #[serde(default)]
+    pub transparent: bool,
     /// How light is carried.
     pub transport: Transport,
 }
@@ -351,6 +340,13 @@ impl Settings {
     /// Samples of a pixel.
     pub fn samples_a_pixel(&self) -> u32 {
         if self.spp > 0 { self.spp } else { self.samples * self.samples }
+    }
+
+    /// How a pixel weighs what is around its middle: unless it is said, by [`PixelFilter::BlackmanHarris`] where light is sampled, and else
+    /// all of the pixel alike.
+    pub fn pixel_filter(&self) -> PixelFilter {
+        let samples = self.transport.integrator.samples();
+        self.pixel_filter.unwrap_or(if samples { PixelFilter::BlackmanHarris } else { PixelFilter::Box })
     }
 
     /// The edge of the grid that a pixel's samples lie in, 1 without a grid.
@@ -393,6 +389,8 @@ impl Default for Settings {
             culling: false,
             compensation: true,
             filter: Filter::default(),
+            pixel_filter: None,
+            transparent: false,
             transport: Transport::default(),
         }
     }

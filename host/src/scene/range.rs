@@ -21,6 +21,11 @@ impl Range {
     /// A full angle of view or of a cone, in degrees.
     pub const CONE: Range =
         Range { holds: |x| x > 0.0 && x < 180.0, says: "between 0 and 180 degrees, both exclusive" };
+    /// How far an image is moved, as a share of its side.
+    pub const SHIFT: Range = Range { holds: |x| (-100.0..=100.0).contains(&x), says: "between -100 and 100" };
+    /// A full angle that may go all around, in degrees.
+    pub const CIRCLE: Range =
+        Range { holds: |x| x > 0.0 && x <= 360.0, says: "greater than 0 and at most 360 degrees" };
     /// An index of refraction.
     pub const IOR: Range = Range { holds: |x| (1.0..=4.0).contains(&x), says: "between 1 and 4" };
 

@@ -36,6 +36,8 @@ fn specialisations() -> Vec<Specialisation> {
         effects(Effects::DISK).with_launch(Launch::OCCLUSION | Launch::RANDOM),
         order,
         path.with_launch(Launch::CELLS | Launch::BLOCKS),
+        path.with_launch(Launch::LENS | Launch::FILTERED | Launch::ROUND | Launch::CLEAR),
+        wave.without_launch(Launch::SECONDARY).with_launch(Launch::KEPT | Launch::LENS | Launch::PARALLEL),
     ]
 }
 
@@ -204,6 +206,12 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, PRIMITIVES, HITS, BOUNDS]);
     let further = [FRAME, NODES, PRIMITIVES, PATHS, HITS, QUEUE, COUNTERS];
     assert_eq!(bindings("exact::if_if::trace", effects(0).with_launch(Launch::SECONDARY)), further);
+    for (launch, wanted) in [(0, &[FRAME, PATHS][..]), (Launch::ROUND, &[FRAME, PATHS])] {
+        assert_eq!(bindings("exact::generate", effects(0).with_launch(launch)), wanted);
+    }
+    for launch in [Launch::LENS, Launch::FILTERED, Launch::LENS | Launch::KEPT] {
+        assert_eq!(bindings("exact::generate", effects(0).with_launch(launch)), [FRAME, PATHS, OPTICS]);
+    }
     assert_eq!(bindings("exact::shade", effects(0)), [FRAME, PRIMITIVES, MATERIALS, HITS, SUMS]);
     let lit = [FRAME, PRIMITIVES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
     assert_eq!(bindings("exact::shade", effects(Effects::SMOOTH | Effects::LIT)), lit);

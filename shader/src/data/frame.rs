@@ -1,16 +1,15 @@
 //! What changes from launch to launch.
 
-use super::{Launch, numbers, pack};
-use crate::real::{Scalar, TINY, V3};
+use super::{Camera, Launch};
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec4, Vec3};
+use glam::UVec4;
 
 /// What a launch renders: samples of every pixel of a region. Its uniform buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Frame {
     /// Where rays come from and how they spread over the image.
-    pub lens: Lens,
+    pub camera: Camera,
     /// Background at the horizon and below, linear RGB.
     pub horizon: UVec4,
     /// Background straight up, linear RGB.
@@ -69,55 +68,19 @@ pub struct Frame {
     pub far: u32,
     /// Not 0 if the film starts anew with this launch.
     pub anew: u32,
-    /// Nothing, like the next two: a record is a multiple of 16 bytes.
-    pub padding: u32,
-    /// Nothing.
-    pub padding_2: u32,
-    /// Nothing.
-    pub padding_3: u32,
+    /// Steps of the table of a pixel filter ([`Launch::FILTERED`]) that are half a cell.
+    pub filter_steps: f32,
+    /// The diameter of the camera's lens in the normalised scene, 0 without one ([`Launch::LENS`]).
+    pub aperture: f32,
+    /// What half a cell is of an angle where rays go all around ([`Launch::ROUND`]): of a turn, or, for
+    /// [`Projection::EQUISOLID`](super::Projection), of the sine of half the angle from the middle.
+    pub angle: f32,
 }
 
-/// A camera for an image of some size: vectors in the normalised scene. The last integer of `forward` is 1 where rays are parallel;
-/// the others are unused.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
-#[repr(C, align(16))]
-pub struct Lens {
-    /// Where it is.
-    pub eye: UVec4,
-    /// Step to the right for half a sample's width on the image plane, at distance one or where the camera is.
-    pub right: UVec4,
-    /// Step up for half a sample's height.
-    pub up: UVec4,
-    /// A unit vector to the centre of the image plane.
-    pub forward: UVec4,
-}
-
-impl Lens {
-    /// A pinhole camera, from vectors in the normalised scene.
-    pub fn new(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
-        Lens { eye: pack(eye, 0), right: pack(right, 0), up: pack(up, 0), forward: pack(forward, 0) }
-    }
-
-    /// A camera whose rays are parallel, likewise.
-    pub fn parallel(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
-        Lens { forward: pack(forward, 1), ..Lens::new(eye, right, up, forward) }
-    }
-
-    /// Are rays parallel?
+impl Frame {
+    /// Does the camera have a lens? Others of the scene may have one.
     #[inline(always)]
-    pub fn is_parallel(&self, launch: Launch) -> bool {
-        launch.has(Launch::PARALLEL) && self.forward.w != 0
-    }
-
-    /// Origin and direction, of no certain length, of the ray through a place on the image plane: so many steps right and up.
-    #[inline(always)]
-    pub fn ray<R: Scalar>(&self, launch: Launch, right: R, up: R) -> (V3<R>, V3<R>) {
-        let (eye, forward) = (V3::splat(numbers(self.eye)), V3::splat(numbers(self.forward)));
-        let (right, up) = (V3::splat(numbers(self.right)) * right, V3::splat(numbers(self.up)) * up);
-        if self.is_parallel(launch) {
-            ((eye + right + up).map(|c| c.flush(TINY)), forward)
-        } else {
-            (eye, forward + right + up)
-        }
+    pub fn has_lens(&self, launch: Launch) -> bool {
+        launch.has(Launch::LENS) && self.aperture != 0.0
     }
 }

@@ -5,6 +5,7 @@
 //! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
 //! a power of two so that every vertex lies in [-1, 1].
 
+mod camera;
 mod compact;
 mod cwbvh;
 mod emitter;
@@ -18,10 +19,11 @@ mod shading;
 mod specialisation;
 mod texture;
 
+pub use camera::{Camera, Projection};
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
 pub use emitter::{Emission, Emitter};
-pub use frame::{Frame, Lens};
+pub use frame::Frame;
 pub use light_node::LightNode;
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use physical::Physical;

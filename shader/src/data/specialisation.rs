@@ -125,7 +125,7 @@ bits! {
         NORMAL = 15;
         /// Only where and which primitive it is.
         PLACE = 16;
-        /// Rays of the camera may be parallel ([`Lens::parallel`](super::Lens::parallel)).
+        /// Rays of the camera may be parallel ([`Projection::PARALLEL`](super::Projection)).
         PARALLEL = 17;
         /// Lanes of a subgroup vote where their slots join the next wave.
         SUBGROUPS = 18;
@@ -133,6 +133,16 @@ bits! {
         CELLS = 19;
         /// The film keeps squares of what blocks of samples are in the mean, instead of squares of samples.
         BLOCKS = 20;
+        /// They may go through a lens.
+        LENS = 21;
+        /// A pixel's samples lie as a filter weights what is around its middle.
+        FILTERED = 22;
+        /// Rays of the camera may go all around.
+        ROUND = 23;
+        /// They lie in memory where integrators do not sample, too.
+        KEPT = 24;
+        /// The film counts the samples whose camera's ray finds nothing: what is behind everything is not in the picture.
+        CLEAR = 25;
     }
 }
 

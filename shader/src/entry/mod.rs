@@ -115,9 +115,9 @@ macro_rules! shading {
 
         entry! {
             /// Starts the paths of a launch.
-            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths cells] {
+            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths cells optics] {
                 if id.x < frame.slots {
-                    stage::generate::<$R>(frame, spec, cells, id.x, paths);
+                    stage::generate::<$R>(frame, spec, (cells, optics), id.x, paths);
                 }
             }
         }
@@ -128,9 +128,9 @@ macro_rules! shading {
                 let sample = |slot| stage::sampled::<$R>(frame, slot, (sums, shadows, segments));
                 let pixel = camera::pixel(frame, spec.order, id.x);
                 if spec.launch.has(Launch::BLOCKS) {
-                    stage::expose_blocks::<$R>(frame, (pixel, id.x), sample, film);
+                    stage::expose_blocks::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, true), sample, film);
                 } else {
-                    stage::expose::<$R>(frame, (pixel, id.x), stage::NOISY_FILM_WORDS, sample, film);
+                    stage::expose::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, true), sample, film);
                 }
             }
         }
@@ -147,7 +147,7 @@ macro_rules! shading {
             gather<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame sums film] {
                 let sample = |slot| <$R>::load(read(sums, slot));
                 let pixel = camera::pixel(frame, spec.order, id.x);
-                stage::expose::<$R>(frame, (pixel, id.x), stage::FILM_WORDS, sample, film);
+                stage::expose::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, false), sample, film);
             }
         }
     };

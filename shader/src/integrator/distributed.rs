@@ -98,8 +98,8 @@ fn drawn_light<R: Scalar>(
     view: &Viewpoint<R>,
 ) -> EmitterSample<R> {
     let number = vertex.path.counts().1;
-    let (decisions, places) = (vertex.draws.set(DECISIONS + number), vertex.draws.set(number));
-    EmitterSample::new(launch, lighting, view, decisions.x, (places.z, places.w))
+    let decisions = vertex.draws.set(DECISIONS + number);
+    EmitterSample::new(launch, lighting, view, decisions.x, vertex.draws.pair(number))
 }
 
 /// The light of one light, by a closure: of one that rays find, what the base scatters alone, since facets send rays of their own.

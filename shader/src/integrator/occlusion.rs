@@ -13,8 +13,7 @@ pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_
     let covering = seen.covering(launch, shading, false);
     let interaction = lifted(launch.spec.effects, shading, &seen);
     let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
-    let draws = vertex.draws.set(0);
-    let (direction, _) = cosine_direction(surface.normal, (draws.z, draws.w));
+    let (direction, _) = cosine_direction(surface.normal, vertex.draws.pair(0));
     let mut shadow = ShadowRay::none();
     // A direction about an interpolated normal may lie below the surface, where nothing is seen.
     if interaction.receives(direction) {

@@ -57,8 +57,7 @@ fn scattered<R: Scalar>(
     let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent());
     let is_asked = is_lit(launch) && closure.is_rough();
     let lamp = if is_asked {
-        let places = vertex.draws.set(bounces);
-        EmitterSample::new(launch, lighting, &view, decisions.x, (places.z, places.w))
+        EmitterSample::new(launch, lighting, &view, decisions.x, vertex.draws.pair(bounces))
     } else {
         EmitterSample::none()
     };

@@ -9,9 +9,9 @@ use crate::light::{EmitterSample, Environment, Lighting};
 use crate::material::{Albedos, Seen, transmittance};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::sampler::{self, Key};
+use crate::sampler::{self, AFTER_LENS, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{NON_FINITE, PathState, Segment, ShadowRay};
+use crate::stage::{CLEARED, NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
 use super::path::weight;
@@ -152,6 +152,7 @@ pub(super) struct Draws {
     launch: Launch,
     key: Key,
     sample: u32,
+    has_lens: bool,
 }
 
 impl Draws {
@@ -159,6 +160,17 @@ impl Draws {
     #[inline(always)]
     pub fn set(self, set: u32) -> UVec4 {
         sampler::set(self.launch, self.key, self.sample, set)
+    }
+
+    /// The pair that belongs to the ray that finds a vertex. That of the camera's is the lens' where there is one.
+    #[inline(always)]
+    pub fn pair(self, vertex: u32) -> (u32, u32) {
+        if self.has_lens && vertex == 0 {
+            let set = self.set(AFTER_LENS);
+            return (set.x, set.y);
+        }
+        let set = self.set(vertex);
+        (set.z, set.w)
     }
 }
 
@@ -173,7 +185,7 @@ pub fn scatter<R: Scalar>(
     let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
     let slots = launch.frame.slots;
     let path = PathState::<R>::load(slots, slot, 0, paths);
-    let (sum, word) = if starts {
+    let (sum, mut word) = if starts {
         (V3::zero(), 0)
     } else {
         let (sum, word) = R::load(read(sums, slot));
@@ -182,11 +194,14 @@ pub fn scatter<R: Scalar>(
     let (hit, primitive_index) = R::load(read(hits, slot));
     // The ray of a slot outside the image hits nothing.
     let scattered = if primitive_index == Hit::<R>::NOTHING {
-        let seen = surroundings(launch, &context.lighting, &path);
-        Scattered::once(share(launch, &path, seen), ShadowRay::none(), path, false)
+        let is_clear = launch.spec.launch.has(Launch::CLEAR) && path.bounces == 0;
+        word = if is_clear { word | CLEARED } else { word };
+        let light = if is_clear { V3::zero() } else { surroundings(launch, &context.lighting, &path) };
+        Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
-        let draws = Draws { launch: launch.spec.launch, key, sample: camera::sample(launch.frame, slot) };
+        let (bits, sample) = (launch.spec.launch, camera::sample(launch.frame, slot));
+        let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
         let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), distance: hit.x, draws };
         if launch.spec.launch.has(Launch::FEATURE) {
             feature::at(launch, context, &vertex)

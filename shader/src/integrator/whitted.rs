@@ -10,7 +10,7 @@ use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
 use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{FACES_AWAY, NON_FINITE, Path, REACHED};
+use crate::stage::{CLEARED, FACES_AWAY, NON_FINITE, Path, REACHED};
 use crate::texture::Cone;
 
 /// The records that the stages of a wave exchange.
@@ -48,12 +48,18 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let path = Path::<R>::current(launch, slot, paths);
     let (hit, primitive_index) = R::load(read(hits, slot));
     if primitive_index == Hit::<R>::NOTHING {
+        if is_first && launch.spec.launch.has(Launch::CLEAR) {
+            add(launch, sums, slot, &path, V3::zero(), CLEARED);
+            return pop(launch, slot, &path, paths);
+        }
         add(launch, sums, slot, &path, background(effects, launch.frame, environment, path.direction, is_first), 0);
         return pop(launch, slot, &path, paths);
     }
     let primitive = launch.primitive(primitive_index);
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
-    let cone = Cone::none().after(launch, hit.x, camera::sample(launch.frame, slot));
+    let sample = camera::sample(launch.frame, slot);
+    let start = if is_first { Cone::confused(launch, hit.x, sample) } else { Cone::none() };
+    let cone = start.after(launch, hit.x, sample);
     let seen = Seen { index: primitive_index, primitive, interaction, direction: path.direction, cone };
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);

@@ -64,9 +64,13 @@ pub fn place(launch: Launch, edge: u32, sample: Sample) -> (f32, f32) {
 /// directions and places.
 pub const DECISIONS: u32 = 1 << 31;
 
+/// The set whose first pair is a place on a light that the first vertex sees, where the second pair of set 0 is the place on a lens. No
+/// path has so many vertices.
+pub const AFTER_LENS: u32 = 1 << 29;
+
 /// Four numbers for a sample, in steps of 2^-32. Of set `s` below [`DECISIONS`] the first pair chooses the ray that finds
 /// vertex `s` of a path (in set 0, the place in the pixel), the second a place on a light that is seen from there: pairs that
-/// belong together, so Sobol's points are of four dimensions. Samplers with cells have them in the pixel only, and draw these at
+/// belong together, so Sobol's points are of four dimensions. (Of a camera with a lens, the second pair of set 0 is a place on that.) Samplers with cells have them in the pixel only, and draw these at
 /// random.
 #[cfg_attr(target_arch = "spirv", inline(never))]
 pub fn set(launch: Launch, key: Key, number: u32, set: u32) -> UVec4 {

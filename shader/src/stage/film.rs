@@ -1,10 +1,10 @@
 //! The film: what the samples of every pixel come to, in sums that have no order. So a picture has the same bits whatever its samples
 //! were parted into: launches, tiles, devices, machines.
 
-use super::NON_FINITE;
+use super::{CLEARED, NON_FINITE};
 use crate::buffer::{read, write};
 use crate::camera::Pixel;
-use crate::data::{Frame, Quanta};
+use crate::data::{Frame, Launch, Quanta};
 use crate::real::{Scalar, V3};
 
 /// A channel of a sample is a whole number of quanta of 2^-40, rounded to single precision before.
@@ -20,6 +20,13 @@ pub const SQUARE_MOST: u32 = 62;
 pub const FILM_WORDS: u32 = 10;
 /// Words of a pixel with the squares of its samples' brightness, or of that of its blocks.
 pub const NOISY_FILM_WORDS: u32 = 14;
+
+/// Words of a pixel, with noise or without; one more where clear samples are counted.
+#[inline(always)]
+pub fn film_words(launch: Launch, is_noisy: bool) -> u32 {
+    let words = if is_noisy { NOISY_FILM_WORDS } else { FILM_WORDS };
+    if launch.has(Launch::CLEAR) { words + 1 } else { words }
+}
 
 /// Samples of a block, the first of which has a multiple of so many for its number. Sobol's are placed evenly within it, so that the
 /// means of blocks tell the noise of a picture, which single samples overstate.
@@ -45,6 +52,8 @@ pub struct PixelSums {
     pub word: u32,
     /// Squares of brightness.
     pub squares: Quanta,
+    /// Samples whose camera's ray found nothing.
+    pub clear: u32,
 }
 
 impl PixelSums {
@@ -53,7 +62,14 @@ impl PixelSums {
     pub fn of<R: Scalar>(light: V3<R>, word: u32) -> Self {
         let channel = |c: R| Quanta::of(c.to_f32(), LIGHT_FRACTION, LIGHT_MOST);
         let squares = squared(brightness(light));
-        PixelSums { red: channel(light.x), green: channel(light.y), blue: channel(light.z), word, squares }
+        PixelSums {
+            red: channel(light.x),
+            green: channel(light.y),
+            blue: channel(light.z),
+            word: word & !CLEARED,
+            squares,
+            clear: if word & CLEARED == 0 { 0 } else { 1 },
+        }
     }
 
     /// These samples and others.
@@ -65,6 +81,7 @@ impl PixelSums {
             blue: self.blue.plus(other.blue),
             word: counted(self.word, other.word),
             squares: self.squares.plus(other.squares),
+            clear: self.clear + other.clear,
         }
     }
 
@@ -73,9 +90,9 @@ impl PixelSums {
     pub fn load(film: &[u32], row: Row, x: u32) -> Self {
         let at = |word: u32| read(film, row.first + word * row.columns + x);
         let channel = |word| Quanta(at(word), at(word + 1), at(word + 2), 0);
-        let squares =
-            if row.words == NOISY_FILM_WORDS { Quanta(at(10), at(11), at(12), at(13)) } else { Quanta::default() };
-        PixelSums { red: channel(0), green: channel(3), blue: channel(6), word: at(9), squares }
+        let squares = if row.is_noisy() { Quanta(at(10), at(11), at(12), at(13)) } else { Quanta::default() };
+        let clear = if row.counts_clear() { at(row.words - 1) } else { 0 };
+        PixelSums { red: channel(0), green: channel(3), blue: channel(6), word: at(9), squares, clear }
     }
 
     /// Keeps them there.
@@ -92,11 +109,14 @@ impl PixelSums {
         keep(7, self.blue.1);
         keep(8, self.blue.2);
         keep(9, self.word);
-        if row.words == NOISY_FILM_WORDS {
+        if row.is_noisy() {
             keep(10, self.squares.0);
             keep(11, self.squares.1);
             keep(12, self.squares.2);
             keep(13, self.squares.3);
+        }
+        if row.counts_clear() {
+            keep(row.words - 1, self.clear);
         }
     }
 }
@@ -114,7 +134,7 @@ pub struct Row {
     pub first: u32,
     /// Its pixels.
     pub columns: u32,
-    /// Words of a pixel: [`FILM_WORDS`] or [`NOISY_FILM_WORDS`].
+    /// Words of a pixel, see [`film_words`].
     pub words: u32,
 }
 
@@ -123,6 +143,18 @@ impl Row {
     #[inline(always)]
     pub fn new(y: u32, columns: u32, words: u32) -> Self {
         Row { first: y * words * columns, columns, words }
+    }
+
+    /// Does a pixel have squares?
+    #[inline(always)]
+    pub fn is_noisy(self) -> bool {
+        self.words >= NOISY_FILM_WORDS
+    }
+
+    /// Does it count clear samples?
+    #[inline(always)]
+    pub fn counts_clear(self) -> bool {
+        self.words == FILM_WORDS + 1 || self.words == NOISY_FILM_WORDS + 1
     }
 }
 
@@ -158,6 +190,7 @@ pub fn expose<R: Scalar>(
 pub fn expose_blocks<R: Scalar>(
     frame: &Frame,
     (pixel, slot): (Pixel, u32),
+    words: u32,
     sample: impl Fn(u32) -> (V3<R>, u32),
     film: &mut [u32],
 ) {
@@ -165,7 +198,7 @@ pub fn expose_blocks<R: Scalar>(
         return;
     }
     const SHARE: f32 = 1.0 / BLOCK as f32;
-    let row = Row::new(pixel.y, frame.columns, NOISY_FILM_WORDS);
+    let row = Row::new(pixel.y, frame.columns, words);
     let mut sums = PixelSums::default();
     if frame.anew == 0 {
         sums = PixelSums::load(film, row, pixel.x);
@@ -290,6 +323,20 @@ mod tests {
         assert!(pixels(&film, FILM_WORDS).iter().all(|pixel| pixel.word == 12 | NON_FINITE));
     }
 
+    #[test]
+    fn clear_samples_are_counted_beside_shadow_rays() {
+        let launch = Launch(Launch::CLEAR);
+        for (is_noisy, first) in [(false, 0), (true, 0), (false, 1), (true, 2)] {
+            let (words, frame) = (film_words(launch, is_noisy), frame(3, 0, true));
+            let told = [3 | CLEARED, 4, CLEARED | NON_FINITE];
+            let mut film = vec![5; words as usize * PIXELS];
+            exposed(&frame, words, &mut film, |slot| (1.0, told[((slot / frame.pixel_slots) + first) as usize % 3]));
+            let right = |p: &PixelSums| (p.clear, p.word) == (2, 7 | NON_FINITE);
+            assert!(pixels(&film, words).iter().all(right), "{is_noisy} {first}");
+        }
+        assert_eq!([false, true].map(|is_noisy| film_words(Launch(0), is_noisy)), [FILM_WORDS, NOISY_FILM_WORDS]);
+    }
+
     /// Of three blocks, whose samples are small whole numbers: their light is that of samples one by one, and the squares are those of
     /// the blocks' means, in any launches of whole blocks.
     #[test]
@@ -309,7 +356,7 @@ mod tests {
                         let light = value(first + slot / frame.pixel_slots);
                         (V3::<f32>::splat(Vec3::new(light, -light, 2.0 * light)), 1)
                     };
-                    expose_blocks::<f32>(&frame, (pixel, slot), sample, &mut film);
+                    expose_blocks::<f32>(&frame, (pixel, slot), NOISY_FILM_WORDS, sample, &mut film);
                 }
                 first += blocks * BLOCK;
             }

@@ -1,28 +1,41 @@
-//! The camera's ray of a slot, as it lies in memory for integrators that sample.
+//! The camera's ray of a slot, as it lies in memory.
 
-use super::PathState;
-use crate::camera;
+use super::{Path, PathState};
+use crate::camera::{self, CameraRay};
 use crate::data::{Frame, Launch, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
-/// Starts a slot's path: with the camera's ray, brought near where the camera is far from the scene. The ray of a slot outside
-/// the region meets nothing. `cells` are those of a launch over cells.
+/// Starts a slot's path. The ray of a slot outside the region meets nothing. `cells` are those of a launch over cells, `optics` the
+/// tables of cameras that have any.
 #[inline(always)]
-pub fn generate<R: Scalar>(frame: &Frame, spec: Specialisation, cells: &[u32], slot: u32, paths: &mut [R::Record]) {
+pub fn generate<R: Scalar>(
+    frame: &Frame,
+    spec: Specialisation,
+    (cells, optics): (&[u32], &[u32]),
+    slot: u32,
+    paths: &mut [R::Record],
+) {
     let pixel = camera::pixel(frame, spec.order, slot);
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
-    let (origin, direction) = camera::ray(frame, spec.launch, pixel);
+    let ray = camera::ray(frame, spec.launch, optics, pixel);
+    if spec.launch.has(Launch::KEPT) {
+        Path::of_camera(ray).store(frame.slots, slot, 0, paths);
+        return;
+    }
+    let CameraRay { origin, direction, weight } = ray;
+    // Brought near where the camera is far from the scene.
     let near = Ray::from_afar(origin, direction);
     let path = PathState {
         origin: near.origin,
         direction,
         source_primitive: Hit::<R>::NOTHING,
-        weight: V3::splat(glam::Vec3::ONE),
+        weight: V3::new(weight, weight, weight),
         bounces: 0,
         density: R::splat(0.0),
         beside: (R::splat(0.0), R::splat(0.0)),
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
-    path.store(frame.slots, slot, 0, pixel.inside, paths);
+    let follows = pixel.inside && !weight.eq(R::splat(0.0));
+    path.store(frame.slots, slot, 0, follows, paths);
 }

@@ -18,7 +18,7 @@ mod trace;
 
 pub use film::{
     BLOCK, FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST,
-    brightness, expose, expose_blocks,
+    brightness, expose, expose_blocks, film_words,
 };
 pub use generate::generate;
 pub use path::{Path, RECORDS};
@@ -32,3 +32,5 @@ pub use trace::{found, ray, trace, traced};
 
 /// In the integer of a sum or a film record: some contribution was not finite (infinite or NaN) and was left out.
 pub const NON_FINITE: u32 = 1 << 31;
+/// In the integer of a sum: the camera's ray found nothing, of which a film keeps a count of its own ([`CLEAR`](crate::data::Launch::CLEAR)).
+pub const CLEARED: u32 = 1 << 30;

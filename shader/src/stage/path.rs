@@ -1,7 +1,7 @@
 //! The ray a slot follows, and those it will follow later.
 
 use crate::buffer::{read, write};
-use crate::camera;
+use crate::camera::{self, CameraRay};
 use crate::data::Launch;
 use crate::ray::Hit;
 use crate::real::{Real, Scalar, V3};
@@ -29,22 +29,22 @@ pub struct Path<R: Real> {
 }
 
 impl<R: Scalar> Path<R> {
-    /// The slot's ray: the camera's in the first wave, which keeps none in memory.
+    /// That of a ray of the camera.
+    #[inline(always)]
+    pub fn of_camera(ray: CameraRay<R>) -> Self {
+        let CameraRay { origin, direction, weight } = ray;
+        let weight = V3::new(weight, weight, weight);
+        Path { origin, direction, weight, bounces: 0, pending: 0, source_primitive: Hit::<R>::NOTHING }
+    }
+
+    /// The slot's ray: the camera's in the first wave, which keeps none in memory unless it is [`Launch::KEPT`].
     #[inline(always)]
     pub fn current(launch: &LaunchContext<'_>, slot: u32, paths: &[R::Record]) -> Self {
-        if launch.spec.launch.has(Launch::SECONDARY) {
+        if launch.spec.launch.has(Launch::SECONDARY | Launch::KEPT) {
             return Self::load(launch.frame.slots, slot, 0, paths);
         }
         let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
-        let (origin, direction) = camera::ray(launch.frame, launch.spec.launch, pixel);
-        Path {
-            origin,
-            direction,
-            weight: V3::splat(glam::Vec3::ONE),
-            bounces: 0,
-            pending: 0,
-            source_primitive: Hit::<R>::NOTHING,
-        }
+        Self::of_camera(camera::plain_ray(launch.frame, launch.spec.launch, pixel))
     }
 
     /// The path at a level of a slot. Levels lie apart, so that neighbouring slots load neighbours.

@@ -83,7 +83,13 @@ impl<R: Scalar> PathState<R> {
         if !launch.spec.launch.has(Launch::MIPMAPPED) || !self.density.eq(R::splat(0.0)) {
             return Cone::none();
         }
-        let start = if launch.spec.launch.has(Launch::TREE) { Cone::none() } else { Cone { width: self.beside.0 } };
+        let start = if self.bounces == 0 {
+            Cone::confused(launch, distance, sample)
+        } else if launch.spec.launch.has(Launch::TREE) {
+            Cone::none()
+        } else {
+            Cone { width: self.beside.0 }
+        };
         start.after(launch, distance, sample)
     }
 

@@ -1,5 +1,6 @@
 //! The closest hit of a slot's ray, primary, secondary or of a stream.
 
+use super::segment::NOWHERE;
 use super::{Path, Segment};
 use crate::data::Launch;
 use crate::ray::{Hit, Ray};
@@ -14,12 +15,11 @@ pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Reco
         return Segment::load(context, slot, paths);
     }
     let path = Path::<R>::current(&context.base, slot, paths);
-    Segment {
-        origin: path.origin,
-        direction: path.direction,
-        limit: R::splat(f32::MAX),
-        source_primitive: path.source_primitive,
-    }
+    let Path { origin, direction, weight, source_primitive, .. } = path;
+    // A camera may have no ray at a place of its image.
+    let is_none = context.base.spec.launch.has(Launch::KEPT) && weight.greatest().eq(R::splat(0.0));
+    let limit = R::splat(if is_none { NOWHERE } else { f32::MAX });
+    Segment { origin, direction, limit, source_primitive }
 }
 
 /// Does a launch follow the camera's rays, which may start far from the scene?

@@ -19,6 +19,19 @@ impl<R: Scalar> Cone<R> {
         Cone { width: R::splat(0.0) }
     }
 
+    /// That of the camera's ray where it has gone so far, by what a lens makes of a place that is not in focus: a circle of confusion,
+    /// which all samples of a pixel share. At any other vertex none.
+    #[inline(always)]
+    pub fn confused(launch: &LaunchContext<'_>, distance: R, sample: u32) -> Self {
+        if !launch.spec.launch.has(Launch::LENS) || !launch.spec.launch.has(Launch::MIPMAPPED) {
+            return Cone::none();
+        }
+        let over_focus = R::splat(f32::from_bits(launch.frame.camera.across.w));
+        let from_focus = (distance * over_focus - R::splat(1.0)).abs().flush(SMALL);
+        let width = R::splat(launch.frame.aperture) * from_focus * share_of_pixel(sample);
+        Cone { width: width.flush(SMALL) }
+    }
+
     /// Where it has gone so far, wider by its share of a pixel there, or as wide as that where rays are parallel; as it was where no
     /// texture asks for that. The pixel's sample of that number is its ray.
     #[inline(always)]
@@ -27,8 +40,8 @@ impl<R: Scalar> Cone<R> {
             return self;
         }
         let spread = R::splat(launch.frame.spread) * share_of_pixel(sample);
-        if launch.frame.lens.is_parallel(launch.spec.launch) {
-            return Cone { width: spread };
+        if launch.frame.camera.is_parallel(launch.spec.launch) {
+            return Cone { width: self.width.max(spread) };
         }
         Cone { width: (self.width + spread * distance).flush(SMALL) }
     }

@@ -62,7 +62,7 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let order = spec.order;
     let inside = |slot: &u32| camera::pixel(&frame, order, *slot).inside;
     let mut queue: Vec<u32> = (0..frame.slots).filter(inside).collect();
-    queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, &[], slot, &mut paths));
+    queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, (&[], posed.optic_tables()), slot, &mut paths));
     while !queue.is_empty() {
         let streams = scene.context(&frame, spec.with_launch(Launch::STREAM));
         for &slot in &queue {

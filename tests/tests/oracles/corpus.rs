@@ -4,7 +4,7 @@ use eyerays::job::Job;
 use eyerays::scene::{self, Scene};
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
-use eyerays_shader::camera;
+use eyerays_shader::camera::{self, CameraRay};
 use eyerays_shader::data::{Launch, Order};
 use eyerays_shader::ray::Ray;
 use eyerays_tests::model::{add, empty, matt};
@@ -104,7 +104,7 @@ fn primary(posed: &Posed) -> Vec<StreamRay> {
     let pixels =
         (0..frame.slots).map(|slot| camera::pixel(&frame, Order::default(), slot)).filter(|pixel| pixel.inside);
     let ray = |pixel| {
-        let (origin, direction) = camera::ray::<f32>(&frame, Launch::default(), pixel);
+        let CameraRay { origin, direction, .. } = camera::plain_ray::<f32>(&frame, Launch::default(), pixel);
         let vector = |v: eyerays_shader::real::V3<f32>| Vec3::new(v.x, v.y, v.z);
         StreamRay {
             origin: vector(Ray::from_afar(origin, direction).origin),

@@ -3,7 +3,7 @@
 
 use std::borrow::Cow;
 
-use eyerays_shader::camera::{self, Pixel};
+use eyerays_shader::camera::{self, CameraRay, Pixel};
 use eyerays_shader::data::{BOX_PADDING, Frame, Launch, Order as OrderBits, Primitive};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::light::ray_to_light;
@@ -126,7 +126,9 @@ impl<'a> PrimaryHits<'a> {
         let rays: Vec<StreamRay> = pixels
             .par_iter()
             .map(|&pixel| {
-                let (origin, direction) = camera::ray::<f32>(&view.frame, Launch(Launch::PARALLEL), pixel);
+                // Through the middles of pixels and lenses.
+                let launch = Launch(Launch::PARALLEL | Launch::ROUND);
+                let CameraRay { origin, direction, .. } = camera::ray::<f32>(&view.frame, launch, &[], pixel);
                 let (origin, direction) = (vector(Ray::from_afar(origin, direction).origin), vector(direction));
                 StreamRay { origin, direction, limit: f32::MAX, source_primitive: StreamRay::NOWHERE }
             })

@@ -17,6 +17,8 @@ pub(super) struct Facts<'a> {
     pub view: &'a View,
     pub identity: &'a Identity,
     pub rendering: &'a Rendering,
+    /// What took noise off the picture, if anything did.
+    pub denoised: Option<&'a str>,
     /// Without what differs from run to run and from device to device.
     pub reproducible: bool,
 }
@@ -33,7 +35,7 @@ impl Facts<'_> {
             .with("scene", self.scene.to_string_lossy())
             .with("camera", camera.name.as_str())
             .with(About::WORLD_TO_CAMERA, rows(camera.world_to_camera()))
-            .with(About::WORLD_TO_NDC, rows(camera.world_to_ndc(size)))
+            .with(About::WORLD_TO_NDC, camera.world_to_ndc(size).map(rows))
             .with("size", vec![size.0, size.1])
             .with("tile", vec![window.x, window.y, window.width, window.height])
             .with("first_sample", view.range().start)
@@ -41,6 +43,10 @@ impl Facts<'_> {
             .with("noise", rendering.picture.noise())
             .with("noise_target", rendering.film.as_ref().and_then(Film::cells).map(|cells| cells.target().noise()))
             .with("identity", settings);
+        let about = match self.denoised {
+            Some(by) => about.with("denoised", by),
+            None => about,
+        };
         if self.reproducible {
             return about;
         }

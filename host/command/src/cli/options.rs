@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::camera;
 use super::choice::choice;
+use super::lens::LensArgs;
 use super::progress;
 use super::reading::Read;
 use super::transport::Transport;
@@ -18,7 +19,9 @@ use eyerays::job::Job;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::Choice;
-use eyerays::scene::{self, Camera, Filter, Integrator, Projection, Sampler, Scene, Settings};
+use eyerays::scene::{
+    self, Camera, Filter, Focus, Integrator, Lens, PixelFilter, Projection, Sampler, Scene, Settings,
+};
 
 /// The scene and how to see it.
 #[derive(Args)]
@@ -39,12 +42,14 @@ pub(super) struct View {
     /// Look there instead; likewise
     #[arg(long, value_name = "X,Y,Z", value_parser = camera::vector, requires = "looked from", allow_hyphen_values = true)]
     target: Option<Vec3>,
-    /// Vertical field of view in degrees [default: the camera's, 60 with --eye and no --camera]
-    #[arg(long, value_name = "D")]
-    fov: Option<f32>,
+    #[command(flatten)]
+    lens: LensArgs,
     /// Skip opaque triangles seen from behind [default: the scene's]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     cull: Option<bool>,
+    /// Leave out what the camera sees of the surroundings: .png and .exr pictures tell how opaque they are [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    transparent: Option<bool>,
     /// Let facets of physical materials scatter light once: what is lost between them is not given back
     #[arg(long)]
     no_compensation: bool,
@@ -66,6 +71,9 @@ pub(super) struct Effort {
     /// What a ray sees of a texture [default: the scene's]
     #[arg(long, value_parser = choice::<Filter>())]
     filter: Option<Filter>,
+    /// How a pixel weighs what is around its middle [default: the scene's, or blackman-harris where light is sampled and else box]
+    #[arg(long, value_parser = choice::<PixelFilter>())]
+    pixel_filter: Option<PixelFilter>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
@@ -88,6 +96,7 @@ impl Effort {
             transport: self.transport.over_file(file),
             sampler: self.sampler.or(file.sampler),
             filter: self.filter.or(file.filter),
+            pixel_filter: self.pixel_filter.or(file.pixel_filter),
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),
@@ -157,10 +166,16 @@ impl View {
         }
         let ignored = settings.transport.integrator.ignored(&scene);
         super::warn(ignored.as_slice(), quiet);
-        let camera = self.camera(&scene).map_err(|e| e.of(path))?;
-        let pack = || choice.pack(&scene, settings, effort.quality());
+        let mut camera = self.aim(&mut scene).map_err(|e| e.of(path))?;
         let start = Instant::now();
+        // It may be none of the scene's.
+        scene.cameras.push(camera.clone());
+        let pack = || choice.pack(&scene, settings, effort.quality());
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
+        scene.cameras.pop();
+        if let Some(pixel) = self.lens.focus_on() {
+            focus(&packed, &mut camera, pixel).map_err(|e| e.of(path))?;
+        }
         let view = eyerays::view::View::new(&packed, &camera).map_err(|e| e.of(path))?;
         let loaded = Loaded { packed, view, read_time, build_time: start.elapsed() };
         Ok((loaded, scene, camera))
@@ -181,6 +196,8 @@ impl View {
             culling: self.cull.unwrap_or(own.culling),
             compensation: own.compensation && !self.no_compensation,
             filter: effort.filter.unwrap_or(own.filter),
+            pixel_filter: effort.pixel_filter.or(own.pixel_filter),
+            transparent: self.transparent.unwrap_or(own.transparent),
         };
         Picture::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
@@ -191,13 +208,14 @@ impl View {
         Ok(settings)
     }
 
-    /// The camera that was asked for.
-    pub fn camera(&self, scene: &Scene) -> Result<Camera> {
+    /// Gives the scene's cameras the lens and the projection that are asked for, and returns the camera that is.
+    pub fn aim(&self, scene: &mut Scene) -> Result<Camera> {
+        scene.cameras = scene.cameras.drain(..).map(|camera| self.lens.over(camera)).collect::<Result<_>>()?;
         let mut camera = match (&self.camera, self.eye, self.target) {
             (Some(wish), ..) => camera::pick(&scene.cameras, wish)?.clone(),
             (None, Some(eye), Some(target)) => {
                 let projection = Projection::Perspective { fov: 60.0 };
-                Camera { name: "--eye".to_owned(), eye, target, up: Vec3::Y, projection }
+                self.lens.over(Camera::new("--eye", eye, target, projection))?
             }
             _ => scene.cameras[0].clone(),
         };
@@ -205,17 +223,19 @@ impl View {
         if camera.eye == camera.target {
             return Err(Error::new("--eye and --target are the same point: the camera looks at itself; move one"));
         }
-        if let Some(fov) = self.fov {
-            if !(fov > 0.0 && fov < 180.0) {
-                return Err(Error::new(format!("--fov {fov} is not between 0 and 180 degrees")));
-            }
-            camera.projection = Projection::Perspective { fov };
-        }
         if self.eye.or(self.target).is_some() {
             camera.up = camera::upright(camera.up, camera.target - camera.eye);
         }
         Ok(camera)
     }
+}
+
+/// Makes a camera sharp where a pixel of its picture shows something.
+fn focus(packed: &Job, camera: &mut Camera, (x, y): (u32, u32)) -> Result<()> {
+    let nothing = || Error::new(format!("--focus-on {x},{y}: the picture shows nothing there; name another pixel"));
+    let depth = eyerays::layers::depth(packed, camera, (x, y))?.ok_or_else(nothing)?;
+    camera.lens = camera.lens.map(|lens| Lens { focus: Focus::Distance(depth), ..lens });
+    Ok(())
 }
 
 /// `WxH`.

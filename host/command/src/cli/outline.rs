@@ -60,6 +60,8 @@ impl fmt::Display for Outline<'_> {
             match camera.projection {
                 Projection::Perspective { fov } => writeln!(out, ", fov = {fov:?}")?,
                 Projection::Orthographic { height } => writeln!(out, ", orthographic = {height:?}")?,
+                // No camera that frames a scene goes all around.
+                Projection::Equirectangular | Projection::Fisheye { .. } => writeln!(out)?,
             }
         }
         let parts = &self.scene.parts;

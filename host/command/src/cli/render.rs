@@ -11,6 +11,7 @@ use clap::Args;
 
 use super::checkpoint::CheckpointArgs;
 use super::choice::choice;
+use super::denoising;
 use super::device::DeviceArgs;
 use super::devices::Devices;
 use super::look::Look;
@@ -25,6 +26,7 @@ use super::shot::{Place, Studio, each};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
+use eyerays::denoise::Denoiser;
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{self, Scene, Settings};
@@ -66,6 +68,9 @@ pub(super) struct Render {
     /// What an .exr file holds beside the light of each pixel, with commas between
     #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',', conflicts_with = "samples_from")]
     layers: Vec<Layer>,
+    /// Take noise off the finished picture, by the surfaces that it shows; an .exr file keeps the noisy one as a layer [default: own]
+    #[arg(long, value_name = "BY", value_parser = choice::<Denoiser>(), num_args = 0..=1, require_equals = true, default_missing_value = "own", conflicts_with_all = ["tile", "samples_from", "samples_to", "repeat"])]
+    pub denoise: Option<Denoiser>,
     /// Write the colours of the surfaces to the output first, by the CPU, to be seen while a GPU gets ready; the picture replaces them
     #[arg(long)]
     preview: bool,
@@ -133,8 +138,8 @@ impl Render {
         let [scene] = &self.scenes[..] else {
             return Err(Error::new("a job renders one scene: name one, and its options after --"));
         };
-        let read = Read::scene(scene, &[], self.reading.loading(task.effort.integrator()), quiet)?;
-        self.view.camera(&read.scene).map_err(|error| error.of(read.path))?;
+        let mut read = Read::scene(scene, &[], self.reading.loading(task.effort.integrator()), quiet)?;
+        self.view.aim(&mut read.scene).map_err(|error| error.of(read.path))?;
         self.view.settings(&read.scene, &task.effort)
     }
 
@@ -171,9 +176,9 @@ impl Render {
                 "--preview replaces what it wrote, which standard output can't: name a file with --output",
             ));
         }
-        if destination.is_film() && (self.preview || !self.layers.is_empty()) {
+        if destination.is_film() && (self.preview || self.denoise.is_some() || !self.layers.is_empty()) {
             return Err(Error::new(
-                "--preview and --layers are for pictures, not for films: drop them, or name an .exr file",
+                "--preview, --layers and --denoise are for pictures, not for films: drop them, or name an .exr file",
             ));
         }
         self.look.check(destination)?;
@@ -270,6 +275,12 @@ impl Task<'_> {
             // Others were checked before the scene was read.
             if self.names_cameras() {
                 self.of.check(path, &destination)?;
+            }
+            if let Some(denoiser) = self.of.denoise {
+                denoising::check(denoiser, loaded.packed.settings().transport.integrator)?;
+            }
+            if loaded.packed.settings().transparent && !destination.is_film() {
+                output::check_alpha(&destination)?;
             }
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
             let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;

@@ -18,7 +18,7 @@ use glam::Vec3;
 #[command(next_help_heading = "Pictures")]
 pub(super) struct SequenceArgs {
     /// Render from every camera of the scene
-    #[arg(long, conflicts_with_all = ["camera", "eye", "target"])]
+    #[arg(long, conflicts_with_all = ["camera", "eye", "target", "focus_on"])]
     all_cameras: bool,
     /// Turn the camera around its target, all the way in N pictures
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
@@ -38,9 +38,8 @@ pub(super) struct Shot {
 impl Shot {
     /// One before the scene is known, to check names by.
     pub fn any() -> Shot {
-        let (eye, target, up) = (Vec3::Z, Vec3::ZERO, Vec3::Y);
         let projection = Projection::Perspective { fov: 60.0 };
-        Shot { camera: Camera { name: "camera".to_owned(), eye, target, up, projection }, frame: None }
+        Shot { camera: Camera::new("camera", Vec3::Z, Vec3::ZERO, projection), frame: None }
     }
 }
 
@@ -197,7 +196,7 @@ mod tests {
 
     fn camera(name: &str) -> Camera {
         let projection = Projection::Perspective { fov: 60.0 };
-        Camera { name: name.to_owned(), eye: Vec3::new(1.0, 2.0, 5.0), target: Vec3::X, up: Vec3::Y, projection }
+        Camera::new(name, Vec3::new(1.0, 2.0, 5.0), Vec3::X, projection)
     }
 
     fn shot(frame: Option<u32>) -> Shot {

@@ -2,10 +2,11 @@
 
 use std::path::Path;
 use std::process::ExitCode;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::checkpoint::{self, Checkpoint};
 use super::console;
+use super::denoising;
 use super::facts::Facts;
 use super::options::Loaded;
 use super::progress;
@@ -40,8 +41,15 @@ pub(super) struct Studio<'a> {
     pub quiet: bool,
 }
 
-/// What a picture holds beside its light, and how long that took to render.
-type Layers = (Vec<(Layer, Values)>, Option<std::time::Duration>);
+/// What a picture holds beside its light.
+#[derive(Default)]
+struct Layers {
+    all: Vec<(Layer, Values)>,
+    /// How long that took, with taking noise off the picture, if there is any.
+    time: Option<Duration>,
+    /// What did the latter.
+    denoised: Option<String>,
+}
 
 impl Studio<'_> {
     /// Renders all of them, until a signal ends one.
@@ -49,8 +57,8 @@ impl Studio<'_> {
         let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
         each(places, |place| {
             let identity = self.identity(loaded, place)?;
-            let rendering = self.rendered(&mut session, place, &identity)?;
-            let layers = self.layers(&mut session, place, &rendering)?;
+            let mut rendering = self.rendered(&mut session, place, &identity)?;
+            let layers = self.layers(&mut session, place, &mut rendering)?;
             self.finish(loaded, place, identity, rendering, layers)
         })
     }
@@ -130,19 +138,34 @@ impl Studio<'_> {
         let layers = self.of.layers();
         place.destination.is_film()
             || place.checkpoint.as_ref().is_some_and(Checkpoint::stays)
+            || self.of.denoise.is_some()
             || [Layer::Error, Layer::Samples].iter().any(|layer| layers.contains(layer))
     }
 
-    fn layers(&self, session: &mut Session, place: &Place, rendering: &Rendering) -> Result<Layers> {
+    /// Renders the layers, and takes noise off the picture by them if that is asked for.
+    fn layers(&self, session: &mut Session, place: &Place, rendering: &mut Rendering) -> Result<Layers> {
         let asked = self.of.layers();
-        if asked.is_empty() {
-            return Ok((Vec::new(), None));
+        let mut needed = asked.clone();
+        if self.of.denoise.is_some() {
+            needed.extend(denoising::NEEDED.into_iter().filter(|layer| !asked.contains(layer)));
+        }
+        if needed.is_empty() {
+            return Ok(Layers::default());
         }
         let start = Instant::now();
         let layers = progress::stage("rendering layers", self.quiet || self.of.json, || {
-            layers::render(session, (self.scene, &place.camera), rendering, &asked)
+            layers::render(session, (self.scene, &place.camera), rendering, &needed)
         });
-        Ok((layers.map_err(|error| error.of(self.path))?, Some(start.elapsed())))
+        let (mut layers, mut denoised) = (layers.map_err(|error| error.of(self.path))?, None);
+        if let Some(denoiser) = self.of.denoise {
+            let denoise = || denoising::denoised(denoiser, &rendering.picture, &mut layers);
+            let (picture, by) = progress::stage("denoising", self.quiet || self.of.json, denoise)?;
+            (rendering.picture, denoised) = (picture, Some(by));
+            // Formats without layers have no place for the noisy picture.
+            let keeps_noisy = output::check_layers(&place.destination).is_ok();
+            layers.retain(|(layer, _)| asked.contains(layer) || *layer == Layer::Noisy && keeps_noisy);
+        }
+        Ok(Layers { all: layers, time: Some(start.elapsed()), denoised })
     }
 
     /// Writes a picture and says what it was.
@@ -152,15 +175,16 @@ impl Studio<'_> {
         place: &Place,
         identity: Identity,
         mut rendering: Rendering,
-        (layers, layers_time): Layers,
+        layers: Layers,
     ) -> Result<ExitCode> {
         let Place { camera, view, destination, .. } = place;
         let (scene, reproducible) = (self.path, self.of.reproducible);
-        let facts = Facts { scene, camera, view, identity: &identity, rendering: &rendering, reproducible };
+        let denoised = layers.denoised.as_deref();
+        let facts = Facts { scene, camera, view, identity: &identity, rendering: &rendering, denoised, reproducible };
         rendering.picture.about = facts.about();
         let start = Instant::now();
-        progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers))?;
-        let times = Times::new(loaded, &rendering, layers_time, start.elapsed());
+        progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers.all))?;
+        let times = Times::new(loaded, &rendering, layers.time, start.elapsed());
         let summary = Summary::new(destination, self.choice, loaded, &rendering, times);
         if self.of.json {
             console::print_json(&summary.json())?;

@@ -256,13 +256,16 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let scene = Read::scene(&self.scene, &self.destinations(), self.reading.loading(None), quiet)?.unbuilt();
+        let mut scene = Read::scene(&self.scene, &self.destinations(), self.reading.loading(None), quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);
         }
         let name = self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        let camera = self.view.camera(&scene)?;
+        // One filter for all integrators, whose pictures are compared.
+        settings.pixel_filter = Some(settings.pixel_filter());
+        let camera = self.view.aim(&mut scene)?;
+        scene.cameras.push(camera.clone());
         Ok(Subject { name, file: self.scene.clone(), scene, camera, settings })
     }
 

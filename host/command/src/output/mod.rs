@@ -199,6 +199,17 @@ pub fn check_layers(destination: &Destination) -> Result<()> {
     }
 }
 
+/// Whether a place may tell how opaque a picture is.
+///
+/// # Errors
+/// Its format has no place for that.
+pub fn check_alpha(destination: &Destination) -> Result<()> {
+    match destination.format()? {
+        Format::Png | Format::Exr => Ok(()),
+        format => Err(eyerays::error::Error::NoAlpha { format }.into()),
+    }
+}
+
 /// An error of a writer in words that say what to do, without the file's name.
 pub fn write_error(error: &io::Error) -> Error {
     eyerays::error::Error::writing(error).into()

@@ -113,6 +113,8 @@ impl Setting {
             integrator: Some(self.integrator),
             sampler: Some(self.sampler),
             filter: Some(self.filter),
+            // As the scene or the integrator says.
+            pixel_filter: None,
             samples: (self.spp == 0).then_some(self.samples),
             spp: (self.spp > 0).then_some(self.spp),
             bounces: Some(self.bounces),

@@ -8,7 +8,8 @@ use rayon::prelude::*;
 
 use super::range::Range;
 use super::{
-    Background, Camera, Disk, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere, Unplaced,
+    Background, Camera, Disk, Lens, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere,
+    Unplaced,
 };
 use crate::error::{Error, Result};
 
@@ -148,11 +149,36 @@ fn camera(camera: &Camera) -> Unplaced<()> {
     match camera.projection {
         Projection::Perspective { fov } => owner.number("fov", fov, Range::CONE)?,
         Projection::Orthographic { height } => owner.number("orthographic height", height, Range::LENGTH)?,
+        Projection::Equirectangular => {}
+        Projection::Fisheye { fov, .. } => owner.number("fov", fov, Range::CIRCLE)?,
+    }
+    camera.shift.iter().try_for_each(|&shift| owner.number("shift", shift, Range::SHIFT))?;
+    if let Some(of) = &camera.lens {
+        lens(&owner, camera, of)?;
     }
     if camera.eye == camera.target {
         return owner.refuse("looks at its own eye; move its target");
     }
     if !camera.is_upright() { owner.refuse("has its up along its view; turn up aside") } else { Ok(()) }
+}
+
+fn lens(owner: &Owner, camera: &Camera, lens: &Lens) -> Unplaced<()> {
+    owner.number("aperture", lens.radius, Range::AMOUNT)?;
+    owner.number("rotation of blades", lens.rotation, Range::ANY)?;
+    owner.number("roundness of blades", lens.roundness, Range::SHARE)?;
+    owner.number("anamorphic ratio", lens.ratio, Range::LENGTH)?;
+    if matches!(lens.blades, 1 | 2) || lens.blades > Lens::MOST_BLADES {
+        return owner.refuse(&format!("has {} blades; it must be 0 or from 3 to {}", lens.blades, Lens::MOST_BLADES));
+    }
+    if !camera.projection.is_flat() {
+        return owner.refuse("goes all around, which no lens does; remove its lens");
+    }
+    // NaN is no distance either.
+    if camera.focus_distance() > 0.0 {
+        Ok(())
+    } else {
+        owner.refuse("is to be sharp at or behind its eye; move its focus")
+    }
 }
 
 fn part(part: &Part, scene: &Scene) -> Unplaced<()> {

@@ -51,13 +51,7 @@ impl Cameras {
             return Ok(());
         };
         let view = View::of(placed);
-        let camera = view.map(|view| Camera {
-            name: String::new(),
-            eye: view.eye,
-            target: view.target(),
-            up: view.up,
-            projection,
-        });
+        let camera = view.map(|view| Camera { up: view.up, ..Camera::new("", view.eye, view.target(), projection) });
         let is_good = |camera: &Camera| {
             camera.eye.is_finite() && camera.target.is_finite() && camera.eye != camera.target && camera.is_upright()
         };

@@ -1,9 +1,17 @@
-//! Pixels to rays.
+//! Pixels to rays: a file for what all cameras have, and one each for what some have.
+
+mod filter;
+mod lens;
+mod ray;
+mod round;
+
+pub use filter::FILTER_STEPS;
+pub use lens::{MOST_CORNERS, OUTLINE};
+pub use ray::{CameraRay, plain_ray, ray};
 
 use crate::buffer::read;
-use crate::data::{Frame, Launch, Order};
-use crate::real::{Scalar, V3};
-use crate::sampler::{self, Key, Sample};
+use crate::data::{Frame, Order};
+use crate::sampler::Key;
 
 /// Columns and rows of the blocks that pixels are taken in: neighbours for the 32 rays of a subgroup
 /// ([`Order::LINEAR`]: beside each other), or a square for [`Order::MORTON`].
@@ -96,44 +104,18 @@ pub fn key(frame: &Frame, pixel: Pixel) -> Key {
     Key::new((frame.left + pixel.x, frame.top + pixel.y), frame.seed)
 }
 
-/// Origin and unit direction of the ray through a sample of a pixel.
-///
-/// A pixel has N x N samples: in the centres of a grid of as many cells, whose offset from the image's centre is a whole
-/// number of half cells, so that no division is needed; or where another sampler has them ([`sampler::place`]).
-#[inline(always)]
-pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> (V3<R>, V3<R>) {
-    let samples = if frame.samples == 0 { 1 } else { frame.samples };
-    let (x, y) = (frame.left + pixel.x, frame.top + pixel.y);
-    let half_cells = |at: u32, size: u32, cell: u32, half: u32| {
-        let from_edge = 2 * (at * samples + cell) + half;
-        (from_edge as i32 - (size * samples) as i32) as f32
-    };
-    let (right, down);
-    if launch.has(Launch::JITTERED | Launch::RANDOM | Launch::SOBOL) {
-        let (from_left, from_top) =
-            sampler::place(launch, samples, Sample::new(key(frame, pixel), samples, pixel.sample));
-        right = half_cells(x, frame.width, 0, 0) + from_left;
-        down = half_cells(y, frame.height, 0, 0) + from_top;
-    } else {
-        right = half_cells(x, frame.width, pixel.sample % samples, 1);
-        down = half_cells(y, frame.height, pixel.sample / samples, 1);
-    }
-    let (origin, direction) = frame.lens.ray(launch, R::splat(right), -R::splat(down));
-    (origin, direction.normalised().0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::Lens;
+    use crate::data::Camera;
     use glam::Vec3;
 
     /// `batch` samples of every pixel in a launch, from `sample` on, of `samples` along an edge.
-    fn frame(width: u32, height: u32, samples: u32, sample: u32, order: Order, batch: u32) -> Frame {
+    pub(super) fn frame(width: u32, height: u32, samples: u32, sample: u32, order: Order, batch: u32) -> Frame {
         let (right, up) = (Vec3::X / (width * samples) as f32, Vec3::Y / (height * samples) as f32);
         let pixel_slots = slots(width, height, order);
         Frame {
-            lens: Lens::new(Vec3::new(0.5, 0.0, 0.0), right, up, -Vec3::Z),
+            camera: Camera::new(Vec3::new(0.5, 0.0, 0.0), right, up, -Vec3::Z),
             width,
             height,
             samples,
@@ -168,52 +150,6 @@ mod tests {
         for edge in [2, 4, 8, 16, 32] {
             let square = (0..edge * edge).map(|s| pixel(&frame, order, s));
             assert!(square.clone().all(|p| p.x < edge && p.y < edge), "{edge}");
-        }
-    }
-
-    #[test]
-    fn the_first_pixel_is_top_left_and_samples_surround_its_centre() {
-        let one = frame(2, 2, 1, 0, Order(0), 1);
-        let regular = Launch(0);
-        let (origin, d) = ray::<f64>(&one, regular, pixel(&one, Order(0), 0));
-        assert_eq!((origin.x, origin.y, origin.z), (0.5, 0.0, 0.0));
-        assert!((d.x / d.z - 0.5).abs() < 1e-12 && (d.y / d.z + 0.5).abs() < 1e-12, "left and up: {d:?}");
-        let four = frame(2, 2, 2, 0, Order(0), 4);
-        let grid: Vec<_> = (0..4)
-            .map(|sample| ray::<f64>(&four, regular, pixel(&four, Order(0), sample * four.pixel_slots)).1)
-            .map(|d| ((d.x / -d.z * 4.0).round() as i32, (d.y / -d.z * 4.0).round() as i32))
-            .collect();
-        assert_eq!(grid, [(-3, 3), (-1, 3), (-3, 1), (-1, 1)]);
-    }
-
-    #[test]
-    fn parallel_rays_start_side_by_side() {
-        let lens = Lens::parallel(Vec3::new(0.5, 0.0, 0.0), Vec3::X * 0.25, Vec3::Y * 0.125, -Vec3::Z);
-        let two = Frame { lens, ..frame(2, 2, 1, 0, Order(0), 1) };
-        let at = |launch| ray::<f64>(&two, Launch(launch), pixel(&two, Order(0), 1));
-        let (origin, d) = at(Launch::PARALLEL);
-        assert_eq!((origin.x, origin.y, origin.z), (0.75, 0.125, 0.0));
-        assert_eq!((d.x, d.y, d.z), (0.0, 0.0, -1.0));
-        assert_eq!(at(0).0.x, 0.5, "where no camera is, none are");
-    }
-
-    /// Wherever in the image, and whichever region a launch renders.
-    #[test]
-    fn a_sample_lies_where_its_sampler_says() {
-        for launch in [Launch::JITTERED, Launch::RANDOM, Launch::SOBOL].map(Launch) {
-            let whole = frame(12, 7, 3, 0, Order(0), 9);
-            let part = Frame { left: 5, top: 2, columns: 4, rows: 4, across: 1, pixel_slots: 32, ..whole };
-            for (x, y, sample) in (0..4).flat_map(|x| (0..4).flat_map(move |y| (0..9).map(move |s| (x, y, s)))) {
-                let at = |x, y| Pixel { x, y, inside: true, index: 0, sample };
-                let (_, d) = ray::<f64>(&whole, launch, at(x + 5, y + 2));
-                let (right, down) = sampler::place(launch, 3, Sample::new(Key::new((x + 5, y + 2), 0), 3, sample));
-                let want = [
-                    (f64::from(x + 5) + f64::from(right) / 6.0) / 6.0 - 1.0,
-                    1.0 - (f64::from(y + 2) + f64::from(down) / 6.0) / 3.5,
-                ];
-                assert!((d.x / -d.z - want[0]).abs() < 1e-6 && (d.y / -d.z - want[1]).abs() < 1e-6, "{want:?}: {d:?}");
-                assert_eq!(ray::<f64>(&part, launch, at(x, y)).1, d, "in a region");
-            }
         }
     }
 

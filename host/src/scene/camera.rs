@@ -1,0 +1,55 @@
+//! Cameras.
+
+use glam::{DVec3, Vec3};
+use serde::{Deserialize, Serialize};
+
+use super::{Focus, Lens, Projection};
+
+/// A camera.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Camera {
+    /// By this name the command line picks it.
+    pub name: String,
+    /// World units.
+    pub eye: Vec3,
+    /// Where it looks; not the eye.
+    pub target: Vec3,
+    /// Not along the view.
+    pub up: Vec3,
+    /// What its image holds.
+    pub projection: Projection,
+    /// How far the image is moved to the right and up, as shares of its width and height: what architects straighten houses with.
+    #[serde(default)]
+    pub shift: [f32; 2],
+    /// What makes it sharp at one distance alone; a pinhole without.
+    #[serde(default)]
+    pub lens: Option<Lens>,
+}
+
+impl Camera {
+    /// A pinhole camera that is upright in a scene whose y axis points up.
+    pub fn new(name: impl Into<String>, eye: Vec3, target: Vec3, projection: Projection) -> Camera {
+        Camera { name: name.into(), eye, target, up: Vec3::Y, projection, shift: [0.0; 2], lens: None }
+    }
+
+    /// Does its `up` tell which way is up? Not if it lies along the view, nearer than single precision tells apart.
+    pub(super) fn is_upright(&self) -> bool {
+        let sine = self.forward().cross(self.up.as_dvec3().normalize_or_zero());
+        sine.length() >= 1e-6
+    }
+
+    /// The way that it looks, of unit length.
+    pub(crate) fn forward(&self) -> DVec3 {
+        (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero()
+    }
+
+    /// How far away its plane of focus is, in world units; infinite where it has no lens or none is told.
+    pub fn focus_distance(&self) -> f64 {
+        match self.lens.map(|lens| lens.focus) {
+            None => f64::INFINITY,
+            Some(Focus::Distance(distance)) => distance.into(),
+            Some(Focus::Target) => (self.target.as_dvec3() - self.eye.as_dvec3()).length(),
+            Some(Focus::Point(point)) => (point.as_dvec3() - self.eye.as_dvec3()).dot(self.forward()),
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::guides::Pixels;
+use super::surface::weight;
 use crate::picture::Picture;
 
 /// How far neighbours are looked for, along each axis.
@@ -11,14 +12,6 @@ const RADIUS: isize = 7;
 const PATCH: isize = 1;
 /// How many standard errors of a difference count as one.
 const TOLERANCE: f32 = 0.6;
-/// Albedos that differ by this much, as a length, are as unlike as light of that many.
-const ALBEDO: f32 = 0.05;
-/// Normals, likewise.
-const NORMAL: f32 = 0.1;
-/// Depths, likewise, as a share for each pixel between them.
-const DEPTH: f32 = 0.04;
-/// Squares of differences from which on neighbours do not count.
-const UNLIKE: f32 = 4.0;
 
 /// Rows that are denoised together.
 pub(super) struct Band<'p> {
@@ -48,7 +41,7 @@ impl<'p> Band<'p> {
         for (i, (pixel, sums)) in rows.iter_mut().zip(&self.sums).enumerate() {
             let (at, colour) = (first + i, self.pixels.colour[first + i]);
             *pixel = picture.pixels[at];
-            if self.pixels.is_noisy[at] {
+            if self.pixels.variance[at] > 0.0 {
                 *pixel = [0, 1, 2].map(|channel| sums[channel] / sums[3] * colour[channel]);
             }
         }
@@ -95,7 +88,8 @@ impl<'p> Band<'p> {
             for x in inside {
                 let (p, q) = (y * width + x, other as usize * width + (x as isize + dx) as usize);
                 let patch: f32 = (0..=2 * PATCH as usize).map(|d| self.across[(row + d) * width + x]).sum();
-                let unlike = (patch * SHARE).max(self.unlike_surfaces(p, q, dx, dy)).max(0.0);
+                let surfaces = &self.pixels.surface;
+                let unlike = (patch * SHARE).max(surfaces[p].unlike(&surfaces[q], dx, dy)).max(0.0);
                 // A pixel is like itself, whatever its noise.
                 let weight = if p == q { 1.0 } else { weight(unlike) };
                 let (sums, light) = (&mut self.sums[row * width + x], self.pixels.light[q]);
@@ -104,28 +98,4 @@ impl<'p> Band<'p> {
             }
         }
     }
-
-    /// How unlike two surfaces are.
-    fn unlike_surfaces(&self, p: usize, q: usize, dx: isize, dy: isize) -> f32 {
-        let (a, b) = (&self.pixels.surface[p], &self.pixels.surface[q]);
-        let square = |of: Range<usize>| of.map(|i| (a[i] - b[i]) * (a[i] - b[i])).sum::<f32>();
-        let by_colour = square(0..3) / (ALBEDO * ALBEDO);
-        let by_normal = square(3..6) / (NORMAL * NORMAL);
-        let by_depth = match (a[6].is_finite(), b[6].is_finite()) {
-            (true, true) => {
-                let allowed = DEPTH * a[6].max(b[6]) * ((dx * dx + dy * dy) as f32).sqrt() + f32::MIN_POSITIVE;
-                let apart = (a[6] - b[6]) / allowed;
-                apart * apart
-            }
-            (false, false) => 0.0,
-            _ => f32::INFINITY,
-        };
-        by_colour.max(by_normal).max(by_depth)
-    }
-}
-
-/// 1 for what is alike, and nothing from [`UNLIKE`] on.
-fn weight(unlike: f32) -> f32 {
-    let left = (1.0 - unlike / UNLIKE).max(0.0);
-    (left * left) * (left * left)
 }

@@ -1,5 +1,7 @@
 //! What tells neighbours apart.
 
+use super::surface::Surface;
+use super::variance::Field;
 use crate::error::{Error, Result};
 use crate::picture::Picture;
 
@@ -45,12 +47,9 @@ pub(super) struct Pixels {
     pub colour: Vec<[f32; 3]>,
     /// The mean of its channels.
     pub brightness: Vec<f32>,
-    /// The square of that mean's standard error, of a pixel and those around it in the mean.
+    /// The square of that mean's standard error, see [`Field::variances`].
     pub variance: Vec<f32>,
-    /// Albedo, normal and depth.
-    pub surface: Vec<[f32; 7]>,
-    /// Has it any noise of its own?
-    pub is_noisy: Vec<bool>,
+    pub surface: Vec<Surface>,
 }
 
 impl Pixels {
@@ -68,27 +67,15 @@ impl Pixels {
         });
         let own: Vec<f32> = own.collect();
         let surfaces = guides.albedo.pixels.iter().zip(&guides.normal.pixels).zip(guides.depth);
-        let surface = surfaces.map(|((a, n), &depth)| [a[0], a[1], a[2], n[0], n[1], n[2], depth]).collect();
+        let surface = surfaces.map(|((&albedo, &normal), &depth)| Surface { albedo, normal, depth });
+        let surface: Vec<Surface> = surface.collect();
         let (width, height) = (picture.width as usize, picture.height as usize);
-        let variance = smooth(&own, width, height);
-        let is_noisy = guides.error.iter().map(|&error| error > 0.0).collect();
-        Pixels { width, height, light, colour: colours, brightness, variance, surface, is_noisy }
+        let field = Field { width, height, brightness: &brightness, surfaces: &surface };
+        let variance = field.variances(&own);
+        Pixels { width, height, light, colour: colours, brightness, variance, surface }
     }
 }
 
 fn mean(pixel: &[f32; 3]) -> f32 {
     (pixel[0] + pixel[1] + pixel[2]) / 3.0
-}
-
-/// The mean of each number and the eight around it: a variance of few samples is itself noisy.
-fn smooth(numbers: &[f32], width: usize, height: usize) -> Vec<f32> {
-    let at = |x: isize, y: isize| {
-        let (x, y) = (x.clamp(0, width as isize - 1) as usize, y.clamp(0, height as isize - 1) as usize);
-        numbers[y * width + x]
-    };
-    let around = |x: isize, y: isize| {
-        let offsets = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy)));
-        offsets.map(|(dx, dy)| at(x + dx, y + dy)).sum::<f32>() / 9.0
-    };
-    (0..height as isize).flat_map(|y| (0..width as isize).map(move |x| (x, y))).map(|(x, y)| around(x, y)).collect()
 }

@@ -5,8 +5,10 @@
 mod band;
 mod guides;
 mod oidn;
+mod surface;
 #[cfg(test)]
 mod tests;
+mod variance;
 
 use rayon::prelude::*;
 
@@ -52,7 +54,8 @@ impl Denoiser {
     }
 }
 
-/// The picture with less noise. Pixels without noise keep their bits; the same pixels are the same bits on every machine.
+/// The picture with less noise. Pixels that have none keep their bits, unless others beside them on the same surface have some; the same
+/// pixels are the same bits on every machine.
 ///
 /// # Errors
 /// Guides of another size, a picture of single samples, whose noise nobody knows, or too little memory.

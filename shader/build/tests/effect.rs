@@ -11,6 +11,7 @@ use eyerays::quality::Bvh;
 use eyerays::scene;
 use eyerays_passes::{Kernel, Kernels};
 use eyerays_shader::data::{Effects, Specialisation};
+use eyerays_shader::resources::RESOURCES;
 use eyerays_spirv::compiler::Compiler;
 use eyerays_spirv::table::{MODULES, Module, Policy};
 use eyerays_spirv::{compile, pass, source};
@@ -27,13 +28,17 @@ const SHORTER: [Edit; 1] = [(
     "        methods! { @$only alone $R, if_if, IfIf, }\n        methods! { @$only alone $R, while_while, WhileWhile<Alone>, }\n",
 )];
 
-/// A resource, an effect that asks for it, and what it does: the dummy's light for a surface's.
-const DUMMY: [Edit; 6] = [
-    (
-        "src/resources.rs",
-        "            31 cells CELLS: Read u32, \"table of cells\";\n",
-        "            31 cells CELLS: Read u32, \"table of cells\";\n            32 dummy DUMMY: Read UVec4, \"dummy\";\n",
-    ),
+/// Where the table of resources ends.
+const TABLE_END: &str = "        }\n    };\n}\n#[cfg(target_arch = \"spirv\")]\npub(crate) use resources;\n";
+
+/// One resource more, with the next number.
+fn resource() -> Edit {
+    let line = format!("            {} dummy DUMMY: Read UVec4, \"dummy\";\n{TABLE_END}", RESOURCES.len());
+    ("src/resources.rs", TABLE_END, line.leak())
+}
+
+/// An effect that asks for it, and what it does: the dummy's light for a surface's.
+const DUMMY: [Edit; 5] = [
     (
         "src/data/specialisation.rs",
         "        EMISSIVE = 13;\n",
@@ -149,7 +154,7 @@ fn cut(kernels: &Kernels, name: &str, spec: Specialisation) -> Kernel {
 fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
     let Some(compiler) = compiler() else { return };
     let before = kernels(&compiler, &SHORTER);
-    let edits: Vec<Edit> = SHORTER.into_iter().chain(DUMMY).chain([FIELD]).collect();
+    let edits: Vec<Edit> = SHORTER.into_iter().chain([resource()]).chain(DUMMY).chain([FIELD]).collect();
     let after = kernels(&compiler, &edits);
     for scene in SHIPPED {
         for (name, spec, stage) in recipes(scene) {
@@ -160,7 +165,8 @@ fn an_effect_that_no_scene_has_costs_none_of_them_anything() {
             if stage == Stage::Shade {
                 let asked = Specialisation { effects: Effects(spec.effects.0 | 1 << 31), ..spec };
                 let dummy = cut(&after, &name, asked);
-                assert!(dummy.instructions() > new.instructions() && dummy.bindings().contains(&32), "{scene}: {name}");
+                let binds = dummy.bindings().contains(&(RESOURCES.len() as u32));
+                assert!(dummy.instructions() > new.instructions() && binds, "{scene}: {name}");
             }
         }
     }

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `eyerays render --denoise` saves: FLIP and root mean square errors beside pictures of many samples, before and after, in ten scenes.
 
-    python3 tests/denoise_gain.py target/release/eyerays [--device gpu] [--size 320x240] [--reference 4096] [SCENE=STOPS ...]
+    python3 tests/denoise_gain.py target/release/eyerays [--device gpu] [--size 320x240] [--reference 4096] [--by oidn] [SCENE=STOPS ...]
 
 The reference has other numbers (--seed). Both errors are what `eyerays diff --flip` tells of the pictures as a screen shows them. Needs
 Python 3.9 and no package.
@@ -49,7 +49,7 @@ def gains(asked, scene, folder):
     render(asked, scene, reference, "--spp", asked.reference, "--seed", 1, *shown)
     for samples in SAMPLES:
         render(asked, scene, noisy, "--spp", samples, *shown)
-        render(asked, scene, denoised, "--spp", samples, *shown, "--denoise")
+        render(asked, scene, denoised, "--spp", samples, *shown, f"--denoise={asked.by}")
         yield samples, *(errors(asked, picture, reference) for picture in (noisy, denoised))
 
 
@@ -60,6 +60,7 @@ def main():
     parser.add_argument("--device", default="cpu")
     parser.add_argument("--size", default="320x240")
     parser.add_argument("--reference", type=int, default=4096)
+    parser.add_argument("--by", default="own")
     asked = parser.parse_args()
     ratios = {samples: ([], []) for samples in SAMPLES}
     print("| scene | samples | FLIP | denoised | RMSE | denoised |\n|---|---|---|---|---|---|")

@@ -63,7 +63,10 @@ impl Job {
     /// # Errors
     /// As [`Job::of`].
     pub fn with(&self, settings: Settings) -> Result<Job> {
-        Job::of(self.scene.clone(), settings)
+        let job = Job::of(self.scene.clone(), settings)?;
+        // Layers of a picture have its filter, whose table takes 2 ms to make.
+        let is_same = settings.pixel_filter() == self.settings.pixel_filter();
+        Ok(if is_same { Job { optic_tables: self.optic_tables.clone(), ..job } } else { job })
     }
 
     /// The same scene and settings, with pictures that show something else instead of light, or light again.

@@ -43,6 +43,7 @@ pub struct Preset {
     #[serde(serialize_with = "wish")]
     pub filter: Option<Filter>,
     /// How a pixel weighs what is around its middle.
+    #[serde(serialize_with = "wish")]
     pub pixel_filter: Option<PixelFilter>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,

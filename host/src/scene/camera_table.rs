@@ -170,7 +170,7 @@ fn focus(table: &mut Table) -> Result<Focus> {
 
 fn blades(table: &mut Table) -> Result<u32> {
     let blades = table.whole("blades", 0, Lens::MOST_BLADES)?.unwrap_or(0);
-    if matches!(blades, 1 | 2) {
+    if !Lens::can_have(blades) {
         return Err(table.fault_of("blades", "a lens has at least 3 blades, or 0 for a circle"));
     }
     Ok(blades)

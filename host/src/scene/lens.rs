@@ -40,6 +40,11 @@ impl Lens {
     /// The height of a full-frame sensor in millimetres.
     pub const SENSOR: f32 = 24.0;
 
+    /// Can one have so many blades?
+    pub fn can_have(blades: u32) -> bool {
+        blades == 0 || (3..=Self::MOST_BLADES).contains(&blades)
+    }
+
     /// A round one that is sharp where the camera looks.
     pub fn round(radius: f32) -> Lens {
         Lens { radius, focus: Focus::Target, blades: 0, rotation: 0.0, roundness: 0.0, ratio: 1.0 }

@@ -137,8 +137,9 @@ impl LensArgs {
             }
             distance => distance.map_or(lens.focus, Focus::Distance),
         };
-        let (blades, most) = (self.blades.unwrap_or(lens.blades), Lens::MOST_BLADES);
-        if matches!(blades, 1 | 2) || blades > most {
+        let blades = self.blades.unwrap_or(lens.blades);
+        if !Lens::can_have(blades) {
+            let most = Lens::MOST_BLADES;
             return Err(Error::new(format!("--blades {blades}: a lens has 3 to {most}, or 0 for a round one")));
         }
         Ok(Some(Lens { focus, blades, ..lens }))

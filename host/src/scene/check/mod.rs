@@ -167,7 +167,7 @@ fn lens(owner: &Owner, camera: &Camera, lens: &Lens) -> Unplaced<()> {
     owner.number("rotation of blades", lens.rotation, Range::ANY)?;
     owner.number("roundness of blades", lens.roundness, Range::SHARE)?;
     owner.number("anamorphic ratio", lens.ratio, Range::LENGTH)?;
-    if matches!(lens.blades, 1 | 2) || lens.blades > Lens::MOST_BLADES {
+    if !Lens::can_have(lens.blades) {
         return owner.refuse(&format!("has {} blades; it must be 0 or from 3 to {}", lens.blades, Lens::MOST_BLADES));
     }
     if !camera.projection.is_flat() {

@@ -61,7 +61,7 @@ fn scene() -> Scene {
         },
         spheres: Vec::new(),
         disks: Vec::new(),
-        parts: Vec::new(),
+        objects: Vec::new(),
         files: Vec::new(),
         materials: vec![plain, mirror],
         lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE }],

@@ -55,6 +55,11 @@ impl Job {
     pub fn of(scene: Arc<DeviceScene>, settings: Settings) -> Result<Job> {
         settings.check()?;
         check_emission(scene.emissive(), settings.transport.integrator)?;
+        if scene.has_catchers() && settings.transport.integrator != Integrator::Path {
+            return Err(Error::new(
+                "the scene has a shadow catcher, which paths alone show: set the integrator to \"path\"",
+            ));
+        }
         Ok(Job { scene, settings, feature: None, optic_tables: Arc::default() })
     }
 
@@ -133,9 +138,23 @@ impl Job {
     fn camera_bits(&self) -> u32 {
         let is_filtered = self.settings.pixel_filter() != PixelFilter::Box;
         let optics = self.optics().bits() | if is_filtered { Launch::FILTERED } else { 0 };
-        let is_kept = !self.is_sampled() && optics & (Launch::LENS | Launch::ROUND | Launch::FILTERED) != 0;
-        let is_clear = self.settings.transparent && self.feature.is_none();
-        optics | if is_kept { Launch::KEPT } else { 0 } | if is_clear { Launch::CLEAR } else { 0 }
+        let is_kept = !self.is_sampled()
+            && optics & (Launch::LENS | Launch::ROUND | Launch::FILTERED | Launch::CLIPPED | Launch::STEREO) != 0;
+        optics | if is_kept { Launch::KEPT } else { 0 } | self.film_bits()
+    }
+
+    /// What a film keeps beside light: how much of a pixel is clear, and what shadow catchers get.
+    pub(crate) fn film_bits(&self) -> u32 {
+        if self.feature.is_some() {
+            return 0;
+        }
+        let catcher = if self.scene.has_catchers() { Launch::CATCHER } else { 0 };
+        catcher | if self.is_transparent() { Launch::CLEAR } else { 0 }
+    }
+
+    /// Does a picture tell how much of it is opaque? It does if its settings ask for that, and where holes or shadow catchers do.
+    pub fn is_transparent(&self) -> bool {
+        self.settings.transparent || self.scene.has_mattes()
     }
 
     /// Tables of cameras as kernels read them, see [`eyerays_shader::camera::ray`]; empty where they read none.

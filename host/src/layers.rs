@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::job::Job;
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
-use crate::scene::{Camera, Primitives, Sampler, Scene, Settings};
+use crate::scene::{Camera, ObjectNumbers, Sampler, Scene, Settings};
 use crate::view::{Region, View};
 
 choices! {
@@ -156,8 +156,8 @@ impl Studio<'_> {
             Layer::Samples => Values::Numbers(film?.samples()),
             Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
             Layer::Object => {
-                let objects = Objects::new(scene);
-                self.numbers(|primitive| objects.of(primitive))?
+                let objects = ObjectNumbers::of(scene);
+                self.numbers(|primitive| objects.find(primitive).map_or(0, |number| number + 1))?
             }
             Layer::Material => self.numbers(|primitive| material(scene, primitive) + 1)?,
         })
@@ -207,29 +207,6 @@ fn less(picture: &Picture, other: &Picture) -> Result<Picture> {
     let less = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|channel| (a[channel] - b[channel]).max(0.0));
     let pixels = picture.pixels.iter().zip(&other.pixels).map(less).collect();
     Picture::from_pixels(picture.width, picture.height, pixels)
-}
-
-/// The numbers of the scene's parts by where their primitives end.
-struct Objects(Vec<(usize, u32)>);
-
-impl Objects {
-    fn new(scene: &Scene) -> Self {
-        let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
-        let end = |primitives: &Primitives| match primitives {
-            Primitives::Triangles(range) => range.end,
-            Primitives::Spheres(range) => triangles + range.end,
-            Primitives::Disks(range) => triangles + spheres + range.end,
-        };
-        let mut ends: Vec<_> =
-            scene.parts.iter().zip(1..).map(|(part, number)| (end(&part.primitives), number)).collect();
-        ends.sort_unstable();
-        Objects(ends)
-    }
-
-    fn of(&self, primitive: usize) -> u32 {
-        let after = self.0.partition_point(|&(end, _)| end <= primitive);
-        self.0.get(after).map_or(0, |&(_, number)| number)
-    }
 }
 
 /// The number of a primitive's material, from 0.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use eyerays_shader::camera::{self, FILTER_STEPS};
-use eyerays_shader::data::{self, Frame, Launch, Order};
+use eyerays_shader::data::{Frame, Launch, Order};
 use eyerays_shader::stage::film_words;
 use serde::{Deserialize, Serialize};
 
@@ -69,8 +69,8 @@ pub struct View {
     first: u32,
     /// The one after the last.
     end: u32,
-    /// Does a film count clear samples?
-    is_clear: bool,
+    /// What its films keep beside light, see [`Launch`].
+    film: u32,
 }
 
 impl View {
@@ -106,7 +106,7 @@ impl View {
             window,
             first: 0,
             end: settings.samples_a_pixel(),
-            is_clear: settings.transparent,
+            film: packed.film_bits(),
         })
     }
 
@@ -134,8 +134,11 @@ impl View {
         Ok(View { window: region, first: start, end, ..*self })
     }
 
-    pub(crate) fn camera(&self) -> &data::Camera {
-        &self.record.camera
+    /// All that its rays of the camera depend on beside the image and tables.
+    pub(crate) fn camera_bytes(&self) -> Vec<u8> {
+        let CameraRecord { camera, spread, angle, aperture, clip, eyes } = &self.record;
+        [bytemuck::bytes_of(camera), bytemuck::cast_slice(&[[*spread, *angle], [*aperture, 0.0], *clip, *eyes])]
+            .concat()
     }
 
     /// What is rendered: the whole image, unless it is a part.
@@ -155,7 +158,7 @@ impl View {
 
     /// Words of a pixel of its film where noise is told.
     pub(crate) fn noisy_film_words(&self) -> u32 {
-        film_words(Launch(if self.is_clear { Launch::CLEAR } else { 0 }), true)
+        film_words(Launch(self.film), true)
     }
 
     /// How many samples of a pixel are rendered, in both directions together.
@@ -171,12 +174,17 @@ impl View {
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
     pub fn launch(&self, scene: &Job, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
-        let CameraRecord { camera, spread, angle, aperture } = self.record;
+        let CameraRecord { camera, spread, angle, aperture, clip: [near, farthest], eyes: [eyes, converging] } =
+            self.record;
         Frame {
             camera,
             spread,
             angle,
             aperture,
+            near,
+            farthest,
+            eyes,
+            converging,
             filter_steps: FILTER_STEPS as f32 / (2 * self.grid) as f32,
             width: self.width,
             height: self.height,
@@ -216,7 +224,7 @@ mod tests {
             materials: vec![0; 2],
             ..scene::Mesh::default()
         };
-        scene.parts.clear();
+        scene.objects.clear();
         scene.spheres.clear();
         scene.disks.clear();
         let camera = &mut scene.cameras[0];

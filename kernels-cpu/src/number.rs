@@ -102,7 +102,7 @@ macro_rules! number {
             }
 
             fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
-                let sample = |slot: u32| Self::load(records.sums[slot as usize]);
+                let sample = |slot: u32| stage::Sample::of(Self::load(records.sums[slot as usize]));
                 for slot in 0..frame.pixel_slots {
                     let pixel = camera::pixel(frame, spec.order, slot);
                     stage::expose::<Self>(frame, (pixel, slot), stage::film_words(spec.launch, false), sample, film);
@@ -111,7 +111,7 @@ macro_rules! number {
 
             fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
                 let Records { shadows, segments, sums, .. } = records;
-                let sample = |slot| stage::sampled::<Self>(frame, slot, (sums, shadows, segments));
+                let sample = |slot| stage::sampled::<Self>(frame, spec.launch, slot, (sums, shadows, segments));
                 let words = stage::film_words(spec.launch, true);
                 for slot in 0..frame.pixel_slots {
                     let pixel = camera::pixel(frame, spec.order, slot);

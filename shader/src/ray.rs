@@ -40,6 +40,10 @@ impl<R: Real> Ray<R> {
     /// The bit of [`Ray::source_primitive`] for a ray that starts on a sphere and goes through its inside, which it leaves
     /// on the far side.
     pub const INSIDE: u32 = 1 << 31;
+    /// In place of a primitive, for a shadow ray that starts on a shadow catcher: it meets none of them.
+    pub const OF_CATCHER: u32 = Self::INSIDE - 1;
+    /// In place of a primitive, for a ray that starts above a surface, and may meet it.
+    pub const OF_SURFACE: u32 = Self::INSIDE - 2;
 
     /// A ray that starts on no primitive; `direction` needs no unit length (t counts in its lengths), but must not be
     /// zero.

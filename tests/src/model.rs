@@ -9,7 +9,7 @@ pub fn empty() -> Scene {
         mesh: Mesh::default(),
         spheres: Vec::new(),
         disks: Vec::new(),
-        parts: Vec::new(),
+        objects: Vec::new(),
         files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),

@@ -8,7 +8,7 @@ use eyerays::method::Method;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Disk, Part, Primitives, Sampler, Scene, Settings};
+use eyerays::scene::{Disk, Object, Primitives, Sampler, Scene, Settings, Visibility};
 use eyerays::stream::Question;
 use eyerays::view::{Region, View};
 use eyerays_tests::covered::covered;
@@ -90,7 +90,7 @@ fn part(scene: &Scene, primitive: usize) -> u32 {
         Primitives::Spheres(range) => primitive.checked_sub(triangles).is_some_and(|own| range.contains(&own)),
         Primitives::Disks(range) => primitive.checked_sub(triangles + spheres).is_some_and(|own| range.contains(&own)),
     };
-    1 + scene.parts.iter().position(|part| holds(&part.primitives)).expect("all primitives are of parts") as u32
+    1 + scene.objects.iter().position(|part| holds(&part.primitives)).expect("all primitives are of parts") as u32
 }
 
 #[test]
@@ -101,7 +101,12 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
     let normal = (camera.eye - center).normalize();
     scene.disks.push(Disk { center, normal, radius: 0.1, material: 1 });
     let bounds = [center - 0.1, center + 0.1];
-    scene.parts.push(Part { name: "disk".into(), primitives: Primitives::Disks(0..1), bounds });
+    scene.objects.push(Object {
+        name: "disk".into(),
+        primitives: Primitives::Disks(0..1),
+        bounds,
+        visibility: Visibility::default(),
+    });
     assert!(!scene.spheres.is_empty() && !scene.mesh.triangles.is_empty());
     let (_, layers) = layered(&scene, 1);
     let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
@@ -126,7 +131,7 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
         let triangle = scene.mesh.materials.get(hit.primitive as usize);
         assert!(triangle.is_none_or(|material| materials[i] == material + 1), "pixel {i}");
     }
-    let disk = scene.parts.len() as u32;
+    let disk = scene.objects.len() as u32;
     assert!(others <= 4 && seen.len() > 5 && seen.contains(&disk), "{others} other pixels, {seen:?}");
 }
 

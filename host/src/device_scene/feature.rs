@@ -17,7 +17,9 @@ pub enum Feature {
 impl Feature {
     /// What of a scene's effects matters to it.
     pub(super) fn asked(self, effects: Effects) -> Effects {
-        const SHAPE: u32 = Effects::SPHERE | Effects::DISK | Effects::CUTOUT | Effects::TEXTURED | Effects::COLOURED;
+        const SHAPE: u32 =
+            Effects::SPHERE | Effects::DISK | Effects::CUTOUT | Effects::TEXTURED | Effects::COLOURED | SEEN;
+        const SEEN: u32 = Effects::HIDDEN | Effects::HOLDOUT;
         let matters = match self {
             Feature::Albedo => SHAPE | Effects::CHECKER | Effects::PHYSICAL,
             Feature::Normal => SHAPE | Effects::SMOOTH | Effects::TANGENTS,

@@ -40,7 +40,7 @@ use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::method::Method;
 use crate::optics::Optics;
-use crate::scene::{Background, Light, Scene, Settings};
+use crate::scene::{Background, Light, Matte, Scene, Settings};
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
@@ -58,6 +58,7 @@ pub struct DeviceScene {
     environment: Vec<u32>,
     /// A material that emits, by its name.
     emissive: Option<String>,
+    has_catchers: bool,
     lamps: Lamps,
     /// Those of any settings.
     effects: Effects,
@@ -137,6 +138,7 @@ impl DeviceScene {
             textures,
             environment,
             emissive,
+            has_catchers: records::mattes(scene).any(|matte| matte == Matte::Catcher),
             lamps,
             effects: Effects(effects.0 & !dark | many),
             background: scene.background,
@@ -233,6 +235,16 @@ impl DeviceScene {
     /// A material that emits, by its name.
     pub(crate) fn emissive(&self) -> Option<&str> {
         self.emissive.as_deref()
+    }
+
+    /// Are some objects shadow catchers?
+    pub(crate) fn has_catchers(&self) -> bool {
+        self.has_catchers
+    }
+
+    /// Are some objects no part of a picture?
+    pub(crate) fn has_mattes(&self) -> bool {
+        self.has_catchers || self.effects.has(Effects::HOLDOUT)
     }
 
     /// How the scene became what kernels take.

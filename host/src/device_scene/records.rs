@@ -13,7 +13,8 @@ use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
-    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Physical, Scene, Settings, Wall,
+    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, ObjectNumbers, Physical, Scene,
+    Settings, Visibility, Wall,
 };
 
 /// A colour and an integer.
@@ -51,7 +52,9 @@ const GEOMETRY: u32 = Effects::SMOOTH
     | Effects::TEXTURED
     | Effects::COLOURED
     | Effects::TANGENTS
-    | Effects::ENVIRONMENT;
+    | Effects::ENVIRONMENT
+    | Effects::HIDDEN
+    | Effects::HOLDOUT;
 
 /// The effects that a scene has, if rays may bounce.
 pub(super) fn effects(scene: &Scene) -> Effects {
@@ -88,7 +91,55 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::TANGENTS, used(&has_axes));
     ask(Effects::CUTOUT, used(&is_cutout));
     ask(Effects::ENVIRONMENT, scene.environment.is_some());
+    let hides = |of: Visibility| Visibility { matte: Matte::Shown, ..of } != Visibility::default();
+    ask(Effects::HIDDEN, visibilities(scene).any(hides) || mattes(scene).any(|matte| matte == Matte::Catcher));
+    ask(Effects::HOLDOUT, mattes(scene).any(|matte| matte == Matte::Holdout));
     Effects(bits)
+}
+
+/// All that its materials and objects say of who sees them.
+fn visibilities(scene: &Scene) -> impl Iterator<Item = Visibility> + '_ {
+    let of_materials = scene.materials.iter().map(|material| material.visibility);
+    of_materials.chain(scene.objects.iter().map(|object| object.visibility))
+}
+
+/// What pictures show of them.
+pub(super) fn mattes(scene: &Scene) -> impl Iterator<Item = Matte> + '_ {
+    visibilities(scene).map(|visibility| visibility.matte)
+}
+
+/// The flags of a primitive that is seen so.
+fn visibility_flags(Visibility { camera, shadow, reflection, matte }: Visibility) -> u32 {
+    let unless = |holds: bool, flag| if holds { 0 } else { flag };
+    let matte = match matte {
+        Matte::Shown => 0,
+        Matte::Catcher => Primitive::CATCHER,
+        Matte::Holdout => Primitive::HOLDOUT,
+    };
+    unless(camera, Primitive::UNSEEN)
+        | unless(shadow, Primitive::SHADOWLESS)
+        | unless(reflection, Primitive::UNREFLECTED)
+        | matte
+}
+
+/// Those of each primitive by its number and material.
+fn flags_of(scene: &Scene) -> impl Fn(usize, u32) -> u32 + Sync + use<> {
+    let of_material = |m: &Material| {
+        let flag = |flag, holds: bool| if holds { flag } else { 0 };
+        flag(Primitive::TRANSPARENT, is_transparent(m))
+            | flag(Primitive::CUTOUT, is_cutout(m))
+            | flag(Primitive::TWO_SIDED, m.two_sided)
+    };
+    let flags: Vec<u32> = scene.materials.iter().map(of_material).collect();
+    let seen: Vec<Visibility> = scene.materials.iter().map(|material| material.visibility).collect();
+    let of_objects: Vec<Visibility> = scene.objects.iter().map(|object| object.visibility).collect();
+    let is_plain = visibilities(scene).all(|visibility| visibility.is_plain());
+    let numbers = (!is_plain).then(|| ObjectNumbers::of(scene));
+    move |primitive, material| {
+        let Some(numbers) = &numbers else { return flags[material as usize] };
+        let object = numbers.find(primitive).map_or(Visibility::default(), |number| of_objects[number as usize]);
+        flags[material as usize] | visibility_flags(seen[material as usize].and(object))
+    }
 }
 
 fn is_transparent(m: &Material) -> bool {
@@ -107,32 +158,26 @@ fn absorbs(p: &Physical) -> bool {
 /// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
 pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
-    let clear: Vec<bool> = scene.materials.iter().map(is_transparent).collect();
-    let two_sided: Vec<bool> = scene.materials.iter().map(|material| material.two_sided).collect();
-    let cut: Vec<bool> = scene.materials.iter().map(is_cutout).collect();
-    let flags = |material: u32| {
-        let flag = |flag, holds: &[bool]| if holds[material as usize] { flag } else { 0 };
-        flag(Primitive::TRANSPARENT, &clear) | flag(Primitive::CUTOUT, &cut) | flag(Primitive::TWO_SIDED, &two_sided)
-    };
+    let flags = flags_of(scene);
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
     records.par_extend(mesh.triangles.par_iter().zip(&mesh.materials).enumerate().map(
         |(number, (corners, &material))| {
             let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-            Primitive::triangle(vertices, number as u32, material, flags(material))
+            Primitive::triangle(vertices, number as u32, material, flags(number, material))
         },
     ));
     let first = records.len();
     records.par_extend(scene.spheres.par_iter().enumerate().map(|(number, sphere)| {
-        let (centre, material) = (normalisation.place(sphere.center), sphere.material);
-        Primitive::sphere(centre, length(sphere.radius), (first + number) as u32, material, flags(material))
+        let (centre, material, number) = (normalisation.place(sphere.center), sphere.material, first + number);
+        Primitive::sphere(centre, length(sphere.radius), number as u32, material, flags(number, material))
     }));
     let first = records.len();
     records.par_extend(scene.disks.par_iter().enumerate().map(|(number, disk)| {
         let (centre, material) = (normalisation.place(disk.center), disk.material);
-        let (normal, number) = (unit(disk.normal), (first + number) as u32);
-        Primitive::disk(centre, normal, length(disk.radius), number, material, flags(material))
+        let (normal, number) = (unit(disk.normal), first + number);
+        Primitive::disk(centre, normal, length(disk.radius), number as u32, material, flags(number, material))
     }));
     records
 }

@@ -81,8 +81,7 @@ impl Developer {
         rows.zip(sums.par_chunks((words * width) as usize)).enumerate().for_each(|(y, (alpha, sums))| {
             let row = Row::new(0, width, words);
             for ((share, x), &count) in alpha.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
-                let opaque = count - PixelSums::load(sums, row, x).clear.min(count);
-                *share = (f64::from(opaque) / f64::from(count.max(1))) as f32;
+                *share = opacity(&PixelSums::load(sums, row, x), count) as f32;
             }
         });
     }
@@ -160,6 +159,16 @@ impl Film {
 }
 
 /// A pixel's samples in the mean.
+/// The share of a pixel that is opaque: what the camera sees of objects, and what they keep away of the light of shadow catchers.
+fn opacity(sums: &PixelSums, count: u32) -> f64 {
+    let seen = count - sums.clear.min(count);
+    let caught = f64::from(sums.caught.min(seen));
+    // Without any light there is no shadow.
+    let full = light(sums.full);
+    let kept_away = if full > 0.0 { 1.0 - (light(sums.lit) / full).clamp(0.0, 1.0) } else { 0.0 };
+    (f64::from(seen) - caught + caught * kept_away) / f64::from(count.max(1))
+}
+
 pub(super) struct Mean {
     pub brightness: f64,
     /// Of the mean brightness.

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use eyerays_shader::data::Camera;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -34,7 +33,7 @@ impl Identity {
         let (width, height) = view.size();
         let mut all = BTreeMap::from([
             ("scene".to_owned(), hexadecimal(&scene)),
-            ("camera".to_owned(), hexadecimal(&Sha256::digest(bytemuck::bytes_of::<Camera>(view.camera())))),
+            ("camera".to_owned(), hexadecimal(&Sha256::digest(view.camera_bytes()))),
             ("size".to_owned(), format!("{width}x{height}")),
             ("precision".to_owned(), precision.name().to_owned()),
             ("version".to_owned(), env!("CARGO_PKG_VERSION").to_owned()),

@@ -13,8 +13,8 @@ use crate::scene::{Camera, Lens, PixelFilter};
 /// Of all cameras of a scene.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Optics {
-    /// Of their projections, see [`Launch`].
-    projections: u32,
+    /// Of their projections, their eyes and what they do not see, see [`Launch`].
+    cameras: u32,
     /// Of their lenses, each once.
     outlines: Vec<Outline>,
 }
@@ -24,7 +24,7 @@ impl Optics {
     pub fn of<'c>(cameras: impl IntoIterator<Item = &'c Camera>) -> Optics {
         let mut optics = Optics::default();
         for camera in cameras {
-            optics.projections |= camera.projection.bits();
+            optics.cameras |= camera.bits();
             let outline = camera.lens.filter(|lens| lens.radius > 0.0).map(|lens| Outline::of(&lens));
             optics.outlines.extend(outline.filter(|outline| !optics.outlines.contains(outline)));
         }
@@ -33,7 +33,7 @@ impl Optics {
 
     /// Bits of the constant of kernels, see [`Launch`].
     pub fn bits(&self) -> u32 {
-        self.projections | if self.outlines.is_empty() { 0 } else { Launch::LENS }
+        self.cameras | if self.outlines.is_empty() { 0 } else { Launch::LENS }
     }
 
     /// The first corner of a lens' outline among all and how many it has, if some camera has such a lens.

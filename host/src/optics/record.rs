@@ -1,6 +1,6 @@
 //! A camera as kernels know it: for an image of some size, in the normalised scene.
 
-use eyerays_shader::data;
+use eyerays_shader::data::{self, numbers};
 use glam::{DVec3, Vec3};
 
 use crate::device_scene::flushed;
@@ -20,6 +20,10 @@ pub(crate) struct CameraRecord {
     pub angle: f32,
     /// See [`data::Frame::aperture`].
     pub aperture: f32,
+    /// See [`data::Frame::near`] and [`data::Frame::farthest`].
+    pub clip: [f32; 2],
+    /// See [`data::Frame::eyes`] and [`data::Frame::converging`].
+    pub eyes: [f32; 2],
 }
 
 impl CameraRecord {
@@ -35,17 +39,50 @@ impl CameraRecord {
         }
         let eye = job.normalisation().place_anywhere(camera.eye);
         let eye = eye.ok_or_else(|| refused(camera, "is too far away: move it nearer to the scene"))?;
-        let needed = camera.projection.bits();
+        let needed = camera.bits();
         if needed & !job.optics().bits() != 0 {
-            let why =
-                "maps its image as no camera of the scene does: add it to the scene's cameras before it is packed";
+            let why = "maps its image, is clipped or has two eyes as no camera of the scene: add it to those before it is packed";
             return Err(refused(camera, why));
         }
         let axes = Axes { eye, right, up: right.cross(forward), forward };
-        match camera.projection {
-            Projection::Perspective { .. } | Projection::Orthographic { .. } => axes.flat(job, camera, size, grid),
-            Projection::Equirectangular | Projection::Fisheye { .. } => Ok(axes.round(camera.projection, size, grid)),
+        let of_eye = camera.stereo.map_or(size, |stereo| stereo.halved(size));
+        if camera.stereo.is_some()
+            && 2 * u64::from(of_eye.0) * u64::from(of_eye.1) != u64::from(size.0) * u64::from(size.1)
+        {
+            return Err(refused(camera, "has two eyes, which share an odd number of pixels: make the size even"));
         }
+        let record = match camera.projection {
+            Projection::Perspective { .. } | Projection::Orthographic { .. } => axes.flat(job, camera, of_eye, grid)?,
+            Projection::Equirectangular | Projection::Fisheye { .. } => axes.round(camera.projection, of_eye, grid),
+        };
+        record.clipped(job, camera).and_then(|record| record.of_two(job, camera))
+    }
+
+    /// Between the camera's clipping planes.
+    fn clipped(self, job: &Job, camera: &Camera) -> Result<CameraRecord> {
+        let scale = job.normalisation().scale;
+        let [near, far] = camera.clip.map(|distance| f64::from(distance) * scale);
+        if near > f64::from(1u32 << 30) {
+            return Err(refused(camera, "is clipped too far away: move clip_near nearer"));
+        }
+        // What is that far away is not in the scene.
+        let far = if far < f64::from(1u32 << 30) { far } else { 0.0 };
+        let flush = |number: f64| flushed(Vec3::splat(number as f32)).x;
+        Ok(CameraRecord { clip: [flush(near), flush(far)], ..self })
+    }
+
+    /// For two eyes, if the camera has them.
+    fn of_two(self, job: &Job, camera: &Camera) -> Result<CameraRecord> {
+        let Some(stereo) = camera.stereo else { return Ok(self) };
+        let scale = job.normalisation().scale;
+        let step = f64::from(numbers(self.camera.right).length());
+        let eyes = f64::from(stereo.distance) / 2.0 * scale / step;
+        let converging = stereo.convergence.map_or(0.0, |distance| eyes / (f64::from(distance) * scale));
+        if !(eyes.max(converging) < f64::from(1u32 << 30)) {
+            return Err(refused(camera, "has eyes too far apart, or looking at a place too near: change its stereo"));
+        }
+        let eyes = [eyes, converging].map(|number| flushed(Vec3::splat(number as f32)).x);
+        Ok(CameraRecord { camera: self.camera.seen_by(stereo.kind()), eyes, ..self })
     }
 }
 
@@ -83,7 +120,8 @@ impl Axes {
             None => (record, 0.0),
         };
         // Half a cell's height is a step at distance 1.
-        Ok(CameraRecord { camera, spread: 2.0 * up.length(), angle: 0.0, aperture })
+        let spread = 2.0 * up.length();
+        Ok(CameraRecord { camera, spread, angle: 0.0, aperture, clip: [0.0; 2], eyes: [0.0; 2] })
     }
 
     /// The same through a lens, and its diameter.
@@ -130,7 +168,7 @@ impl Axes {
             }
         };
         let spread = (2.0 * turns * std::f64::consts::TAU) as f32;
-        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0 }
+        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0, clip: [0.0; 2], eyes: [0.0; 2] }
     }
 }
 

@@ -126,7 +126,7 @@ impl Plan {
         let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, !further.is_empty());
+        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, spec.launch, !further.is_empty());
         let film_words = film_words(spec.launch, is_sampled);
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
@@ -174,17 +174,19 @@ impl Plan {
 }
 
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
-fn slot_bytes(needs: &Needs, has_queue: bool) -> Vec<(u32, u64)> {
+fn slot_bytes(needs: &Needs, launch: Launch, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, is_sampled, .. } = *needs;
     let (path, shadow_ray) = if is_sampled { (STATE_RECORDS, SHADOW_RECORDS) } else { (RECORDS, 0) };
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
+    // Behind the light of all slots lies what they have of shadow catchers.
+    let sums = if launch.has(Launch::CATCHER) { 2 } else { 1 };
     let all = [
         (binding::PATHS, records(paths * path)),
         (binding::HITS, Plan::RECORD_BYTES),
         (binding::SHADOWS, 4 * u64::from(shadow_rays)),
         (binding::SEGMENTS, records(shadow_ray)),
-        (binding::SUMS, Plan::RECORD_BYTES),
+        (binding::SUMS, records(sums)),
         (binding::QUEUE, queue),
         (binding::NEXT, queue),
     ];

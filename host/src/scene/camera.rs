@@ -1,9 +1,10 @@
 //! Cameras.
 
+use eyerays_shader::data::Launch;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Focus, Lens, Projection};
+use super::{Focus, Lens, Projection, Stereo};
 
 /// A camera.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -24,12 +25,34 @@ pub struct Camera {
     /// What makes it sharp at one distance alone; a pinhole without.
     #[serde(default)]
     pub lens: Option<Lens>,
+    /// From where and up to where it sees, in world units along its view, or from the eye where it sees all around: at least 0, and the
+    /// second greater or infinite.
+    #[serde(default = "all")]
+    pub clip: [f32; 2],
+    /// Two eyes instead of one.
+    #[serde(default)]
+    pub stereo: Option<Stereo>,
+}
+
+fn all() -> [f32; 2] {
+    Camera::ALL
 }
 
 impl Camera {
     /// A pinhole camera that is upright in a scene whose y axis points up.
     pub fn new(name: impl Into<String>, eye: Vec3, target: Vec3, projection: Projection) -> Camera {
-        Camera { name: name.into(), eye, target, up: Vec3::Y, projection, shift: [0.0; 2], lens: None }
+        let (up, shift, clip) = (Vec3::Y, [0.0; 2], Camera::ALL);
+        Camera { name: name.into(), eye, target, up, projection, shift, lens: None, clip, stereo: None }
+    }
+
+    /// Planes between which everything is seen.
+    pub const ALL: [f32; 2] = [0.0, f32::INFINITY];
+
+    /// Bits of the constant of kernels for it, see [`Launch`], but for those of its lens.
+    pub(crate) fn bits(&self) -> u32 {
+        let clipped = if self.clip == Camera::ALL { 0 } else { Launch::CLIPPED };
+        let stereo = if self.stereo.is_some() { Launch::STEREO } else { 0 };
+        self.projection.bits() | clipped | stereo
     }
 
     /// Does its `up` tell which way is up? Not if it lies along the view, nearer than single precision tells apart.

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 
 use super::range::Range;
 use super::table::Table;
-use super::{Camera, Focus, Lens, Mapping, Projection};
+use super::{Camera, Focus, Lens, Mapping, Projection, Stereo};
 use crate::error::Result;
 
 /// Reads every `[[camera]]`.
@@ -39,6 +39,8 @@ fn camera(table: &mut Table) -> Result<Camera> {
         up: table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y),
         shift: shift(table, projection)?,
         lens: lens(table, projection, sensor)?,
+        clip: clip(table)?,
+        stereo: stereo(table, projection)?,
         ..Camera::new(name, eye, table.need("target", target)?, projection)
     };
     let named = format!("camera {:?}", camera.name);
@@ -115,6 +117,33 @@ fn shift(table: &mut Table, projection: Projection) -> Result<[f32; 2]> {
         return Err(table.fault_of(key, "an image of all around can't be shifted; remove it"));
     }
     Ok(shift.map(|share| share.unwrap_or(0.0)))
+}
+
+fn clip(table: &mut Table) -> Result<[f32; 2]> {
+    let near = table.number("clip_near", Range::AMOUNT)?.unwrap_or(Camera::ALL[0]);
+    let far = table.number("clip_far", Range::LENGTH)?.unwrap_or(Camera::ALL[1]);
+    if near >= far {
+        return Err(table.fault_of("clip_far", format!("it ends at {far}, before it begins at {near}; swap them")));
+    }
+    Ok([near, far])
+}
+
+fn stereo(table: &mut Table, projection: Projection) -> Result<Option<Stereo>> {
+    let layout = table.choice("stereo")?;
+    let distance = table.number("eye_distance", Range::LENGTH)?;
+    let convergence = table.number("convergence", Range::LENGTH)?;
+    let Some(layout) = layout else {
+        let idle = [("eye_distance", distance), ("convergence", convergence)].into_iter().find(|(_, of)| of.is_some());
+        let fault = |(key, _)| table.fault_of(key, format!("{key} is of two eyes; set stereo, too"));
+        return idle.map_or(Ok(None), |idle| Err(fault(idle)));
+    };
+    if projection.is_orthographic() {
+        return Err(table.fault_of("stereo", "along parallel rays two eyes see the same; remove it"));
+    }
+    if convergence.is_some() && !projection.is_flat() {
+        return Err(table.fault_of("convergence", "where an image goes all around eyes look in parallel; remove it"));
+    }
+    Ok(Some(Stereo { layout, distance: distance.unwrap_or(Stereo::HUMAN), convergence }))
 }
 
 /// Keys that only say how a lens is.

@@ -6,8 +6,8 @@ use std::fmt::{Debug, Write};
 use glam::Vec3;
 
 use super::{
-    Alpha, Background, Camera, Environment, Falloff, Focus, Integrator, Lens, Light, Mapping, Material, Physical,
-    Projection, Scene, Settings, Transport, Wall,
+    Alpha, Background, Camera, Environment, Falloff, Focus, Integrator, Lens, Light, Mapping, Material, Matte,
+    Physical, Projection, Scene, Settings, Transport, Visibility, Wall,
 };
 use super::{physical, studio};
 use crate::choice::Named;
@@ -190,6 +190,15 @@ fn camera(text: &mut Text, of: &Camera) {
     if let Some(lens) = &of.lens {
         self::lens(text, lens);
     }
+    text.other("clip_near", of.clip[0], Camera::ALL[0]);
+    text.other("clip_far", of.clip[1], Camera::ALL[1]);
+    if let Some(stereo) = &of.stereo {
+        text.key("stereo", quoted(stereo.layout.name()));
+        text.value("eye_distance", stereo.distance);
+        if let Some(convergence) = stereo.convergence {
+            text.value("convergence", convergence);
+        }
+    }
 }
 
 fn lens(text: &mut Text, of: &Lens) {
@@ -241,12 +250,24 @@ fn material(text: &mut Text, of: &Material) {
     text.other("ior", of.ior, Material::default().ior);
     text.colour("emission", of.emission, Vec3::ZERO);
     text.other("two_sided", of.two_sided, false);
+    visibility(text, of.visibility);
     match of.alpha {
         Alpha::Opaque => {}
         Alpha::Mask(least) => text.value("alpha_cutoff", least),
         Alpha::Blend => text.key("alpha", quoted("blend")),
     }
     text.other("opacity", of.opacity, 1.0);
+}
+
+fn visibility(text: &mut Text, of: Visibility) {
+    let Visibility { camera, shadow, reflection, matte } = of;
+    let rays = [("camera", camera), ("shadow", shadow), ("reflection", reflection)];
+    let hidden: Vec<_> = rays.iter().filter(|(_, sees)| !sees).map(|(ray, _)| format!("{ray} = false")).collect();
+    if !hidden.is_empty() {
+        text.key("visible", format!("{{ {} }}", hidden.join(", ")));
+    }
+    text.other("catcher", matte == Matte::Catcher, false);
+    text.other("holdout", matte == Matte::Holdout, false);
 }
 
 /// The thesis' model.

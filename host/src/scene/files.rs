@@ -12,7 +12,7 @@ use super::map::Images;
 use super::obj::{self, Obj};
 use super::ply::{self, Ply};
 use super::table::Table;
-use super::{Sphere, file, part, xyzr};
+use super::{Sphere, file, mesh_table, xyzr};
 use crate::error::Result;
 
 /// What a scene file has of which its meshes may have others.
@@ -111,17 +111,17 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
         return obj::load(path, budget, images, is_covered);
     }
     let Ply { mesh, warnings } = ply::load(path, budget)?;
-    let mut materials = part::plain();
+    let mut materials = mesh_table::plain();
     if !mesh.colours.is_empty() {
         // Vertices say what colour it is.
         materials[0].1.diffuse = Some(Vec3::ONE);
     }
-    Ok(Obj { mesh, materials, warnings, libraries: Vec::new() })
+    Ok(Obj { mesh, materials, warnings, ..Obj::default() })
 }
 
 /// The meshes of a scene, with a warning of what else it has and the scene file has not.
 fn meshes_of(path: &Path, scene: Gltf, own: Own) -> Obj {
-    let Gltf { mut obj, parts: _, lights, cameras, .. } = scene;
+    let Gltf { mut obj, lights, cameras, .. } = scene;
     let what = match (!lights.is_empty() && !own.lights, !cameras.is_empty() && !own.cameras) {
         (true, true) => "lights and cameras",
         (true, false) => "lights",

@@ -16,13 +16,13 @@ use super::lit;
 use super::map::Images;
 use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
+use super::mesh_table::{self, Placed};
 use super::obj::Obj;
-use super::part::{self, Placed};
 use super::range::Range;
 use super::source::Source;
 use super::studio;
 use super::table::Table;
-use super::{Background, Integrator, LightUnit, Sampler, Scene, Settings, Transport};
+use super::{Background, Integrator, LightUnit, Sampler, Scene, Settings, Transport, Visibility};
 use super::{camera_table, document};
 use crate::error::{Error, Result};
 use crate::memory::Room;
@@ -104,14 +104,14 @@ fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Ve
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<String>)> {
-    let Gltf { obj, parts, lights, cameras, aspect } = gltf::load(path, budget, loading)?;
+    let Gltf { obj, lights, cameras, aspect } = gltf::load(path, budget, loading)?;
     let (scene, warnings) = bare(path, obj)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
     let mut settings = of_paths();
     settings.size = aspect.map_or(settings.size, frame::size);
-    let scene = Scene { parts, lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
+    let scene = Scene { lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
     Ok((framed(path, scene)?, warnings))
 }
 
@@ -128,17 +128,18 @@ fn of_paths() -> Settings {
 
 /// A scene of one mesh without a camera, and the warnings of it.
 fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<String>)> {
-    let Obj { mesh, materials, warnings, libraries } = obj;
+    let Obj { mesh, materials, warnings, libraries, objects } = obj;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let placed = Placed { name, geometry: Geometry::Mesh(mesh), materials, material: None };
+    let (geometry, visibility) = (Geometry::Mesh(mesh), Visibility::default());
+    let placed = Placed { name, geometry, materials, material: None, objects: Vec::new(), visibility };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
-    let Merged { mesh, spheres, disks, parts, materials } = merge.finish();
+    let Merged { mesh, spheres, disks, objects: whole, materials } = merge.finish();
     let scene = Scene {
         mesh,
         spheres,
         disks,
-        parts,
+        objects: if objects.is_empty() { whole } else { objects },
         files: libraries,
         materials,
         lights: frame::lights(),
@@ -207,7 +208,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         return Err(Error::file(path, fault));
     }
     files.is_covered = overrides.values().any(Override::has_maps);
-    let Merged { mesh, spheres, disks, parts, materials } = merge(meshes, &overrides, &mut files)?.finish();
+    let Merged { mesh, spheres, disks, objects, materials } = merge(meshes, &overrides, &mut files)?.finish();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
     let names_lights = lights.is_some();
@@ -215,7 +216,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         mesh,
         spheres,
         disks,
-        parts,
+        objects,
         files: files.paths.into_iter().chain(files.images.paths()).collect(),
         materials,
         lights: lights.unwrap_or_else(frame::lights),
@@ -255,7 +256,7 @@ fn overrides(tables: Vec<Table>, images: &mut Images) -> Result<Overrides> {
 fn merge(tables: Vec<Table>, overrides: &Overrides, files: &mut Files) -> Result<Merge> {
     let mut merge = Merge::default();
     for mut table in tables {
-        let placed = part::read(&mut table, files)?;
+        let placed = mesh_table::read(&mut table, files)?;
         let key = if placed.material.is_some() { "material" } else { "file" };
         let fault = merge.add(placed, overrides).err();
         if let Some(fault) = fault {

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::map::{self, Images};
 use super::range::Range;
 use super::table::Table;
-use super::{Alpha, Checker, Maps, Material, Physical, physical};
+use super::{Alpha, Checker, Maps, Material, Physical, Visibility, physical};
 use crate::error::Result;
 
 /// What a file says of a material; the rest is left to whoever else describes it.
@@ -24,6 +24,7 @@ pub struct Fields {
     pub emission_is_coloured: Option<bool>,
     pub physical: physical::Fields,
     pub maps: Maps,
+    pub visibility: Option<Visibility>,
     pub alpha: Option<Alpha>,
     pub opacity: Option<f32>,
 }
@@ -59,6 +60,7 @@ impl Fields {
             emission_is_coloured: None,
             physical: physical::Fields::read(table)?,
             maps: map::maps(table, images)?,
+            visibility: Visibility::read(table)?,
             alpha: alpha(table)?,
             opacity: table.number("opacity", Range::SHARE)?,
         };
@@ -81,6 +83,7 @@ impl Fields {
             emission_is_coloured: self.emission_is_coloured.or(under.emission_is_coloured),
             physical: self.physical.over(under.physical),
             maps: self.maps.over(under.maps),
+            visibility: self.visibility.or(under.visibility),
             alpha: self.alpha.or(under.alpha),
             opacity: self.opacity.or(under.opacity),
         }
@@ -110,6 +113,7 @@ impl Fields {
             two_sided: self.two_sided.unwrap_or(plain.two_sided),
             emission_is_coloured: self.emission_is_coloured.unwrap_or(plain.emission_is_coloured),
             physical,
+            visibility: self.visibility.unwrap_or_default(),
             alpha: self.alpha.unwrap_or(alpha),
             opacity: self.opacity.unwrap_or(plain.opacity),
             maps: self.maps,
@@ -174,6 +178,7 @@ impl Default for Material {
             emission_is_coloured: false,
             physical: None,
             maps: Maps::default(),
+            visibility: Visibility::default(),
             alpha: Alpha::Opaque,
             opacity: 1.0,
         }

@@ -1,4 +1,4 @@
-//! One scene of many parts, and the materials in use.
+//! One scene of many objects, and the materials in use.
 
 use std::cell::Cell;
 use std::collections::{BTreeMap, HashMap, TryReserveError};
@@ -7,9 +7,9 @@ use glam::{Vec2, Vec3, Vec4};
 
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
-use super::part::Placed;
+use super::mesh_table::Placed;
 use super::suggest::suggest;
-use super::{Disk, Material, Mesh, Part, Primitives, Sphere, Unplaced};
+use super::{Disk, Material, Mesh, Object, Primitives, Sphere, Unplaced};
 
 /// A `[[material]]` table, and whether any surface has it.
 pub struct Override {
@@ -43,13 +43,13 @@ impl Override {
 /// By name.
 pub type Overrides = BTreeMap<String, Override>;
 
-/// The parts so far.
+/// The objects so far.
 #[derive(Default)]
 pub struct Merge {
     mesh: Mesh,
     spheres: Vec<Sphere>,
     disks: Vec<Disk>,
-    parts: Vec<Part>,
+    objects: Vec<Object>,
     materials: Vec<Material>,
     by_name: HashMap<String, Vec<u32>>,
 }
@@ -64,17 +64,17 @@ fn put<T: Copy>(all: &mut Vec<T>, more: Vec<T>, (before, after): (usize, usize),
     all.resize(after, none);
 }
 
-/// The fields of a scene that its parts make.
+/// The fields of a scene that its objects make.
 pub struct Merged {
     pub mesh: Mesh,
     pub spheres: Vec<Sphere>,
     pub disks: Vec<Disk>,
-    pub parts: Vec<Part>,
+    pub objects: Vec<Object>,
     pub materials: Vec<Material>,
 }
 
 impl Merge {
-    /// Adds a part, whose materials `overrides` has the last word on.
+    /// Adds what was placed, whose materials `overrides` has the last word on.
     ///
     /// # Errors
     /// Its material is unknown, or there is no memory for it.
@@ -83,7 +83,7 @@ impl Merge {
         self.reserve(&placed.geometry).map_err(full)?;
         let all = placed.material.as_deref();
         let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
-        self.parts.push(placed.part(self.next(&placed.geometry)));
+        self.objects.extend(placed.objects(self.next(&placed.geometry)));
         let Placed { mut geometry, materials, .. } = placed;
         let mut numbers = vec![all; materials.len()];
         geometry.renumber(|local| {
@@ -158,8 +158,8 @@ impl Merge {
                 *coordinates = Vec::new();
             }
         }
-        let Merge { mesh, spheres, disks, parts, materials, .. } = self;
-        Merged { mesh, spheres, disks, parts, materials }
+        let Merge { mesh, spheres, disks, objects, materials, .. } = self;
+        Merged { mesh, spheres, disks, objects, materials }
     }
 
     fn named(&mut self, name: &str, placed: &Placed, overrides: &Overrides) -> Unplaced<u32> {

@@ -31,12 +31,13 @@ mod map;
 mod material;
 mod matrices;
 mod merge;
+mod mesh_table;
 mod mtl;
 mod named;
 mod neighbours;
 mod normal;
 mod obj;
-mod part;
+mod object;
 mod physical;
 mod pixel_filter;
 mod ply;
@@ -47,6 +48,7 @@ mod range;
 mod sampler;
 mod shape;
 mod source;
+mod stereo;
 mod studio;
 mod suggest;
 mod table;
@@ -54,6 +56,7 @@ mod tally;
 mod texture;
 mod transform;
 mod transport;
+mod visibility;
 mod xyzr;
 
 #[cfg(test)]
@@ -69,16 +72,19 @@ pub use frame::{default_camera, without_spare_lamps};
 pub use lens::{Focus, Lens};
 pub use light_unit::LightUnit;
 pub use load::{Loading, load, load_as, read_as, read_table};
+pub use object::{Object, ObjectNumbers};
 pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use pixel_filter::PixelFilter;
 pub use primitive::{Disk, Primitives, Sphere};
 pub use projection::{Mapping, Projection};
 pub use range::Range;
 pub use sampler::Sampler;
+pub use stereo::{Stereo, StereoLayout};
 pub use suggest::{nearest, suggest};
 pub use table::Table;
 pub use texture::{Alpha, Map, Maps, Placement, Texels, Texture, Wrap};
 pub use transport::{Direct, Integrator, Transport};
+pub use visibility::{Matte, Visibility};
 
 use eyerays_shader::data::NodeRef;
 use glam::{Vec2, Vec3, Vec4};
@@ -104,7 +110,7 @@ pub struct Scene {
     /// Disks, which follow the spheres.
     pub disks: Vec<Disk>,
     /// Which triangles, spheres and disks came of what, in file order; together all of them.
-    pub parts: Vec<Part>,
+    pub objects: Vec<Object>,
     /// The meshes, material files and pictures that it was read from, beside the scene file itself.
     pub files: Vec<std::path::PathBuf>,
     /// What the mesh's materials index; never empty.
@@ -152,18 +158,6 @@ impl Scene {
         ];
         mesh.iter().sum::<usize>() + size_of_val(&self.spheres[..]) + size_of_val(&self.disks[..])
     }
-}
-
-/// What one `[[mesh]]` of a scene file adds to the scene, or the bare mesh file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Part {
-    /// The file as the scene names it or the shape's word, and the material where one is named: `sphere (glass)`.
-    /// Several parts may have the same name.
-    pub name: String,
-    /// What it is made of; never nothing.
-    pub primitives: Primitives,
-    /// Its least and its greatest corner in world units.
-    pub bounds: [Vec3; 2],
 }
 
 /// An indexed triangle mesh.
@@ -227,6 +221,9 @@ pub struct Material {
     /// Its textures.
     #[serde(skip)]
     pub maps: Maps,
+    /// Who sees what is made of it.
+    #[serde(default)]
+    pub visibility: Visibility,
     /// How opaque it is.
     #[serde(default)]
     pub alpha: Alpha,

@@ -1,10 +1,13 @@
 //! Pixels to rays: a file for what all cameras have, and one each for what some have.
 
+mod clip;
 mod filter;
 mod lens;
 mod ray;
 mod round;
+mod stereo;
 
+pub use clip::limit;
 pub use filter::FILTER_STEPS;
 pub use lens::{MOST_CORNERS, OUTLINE};
 pub use ray::{CameraRay, plain_ray, ray};

@@ -1,6 +1,6 @@
 //! The ray through a sample of a pixel.
 
-use super::{Pixel, filter, key, lens, round};
+use super::{Pixel, clip, filter, key, lens, round, stereo};
 use crate::data::{Camera, Frame, Launch, numbers};
 use crate::real::{Scalar, TINY, V3};
 use crate::sampler::{self, Sample};
@@ -26,23 +26,23 @@ pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, optics: &[u32], pixel: Pixe
         right = filter::moved(frame, optics, right);
         down = filter::moved(frame, optics, down);
     }
-    let place = in_image(frame, pixel, (right, down));
+    let (place, eye) = stereo::place(frame, launch, pixel, in_image(frame, pixel, (right, down)));
     if camera.is_round(launch) {
-        return round::ray(frame, place);
+        return clip::started(frame, launch, round::ray(frame, launch, place, eye));
     }
-    let (origin, direction) = plane(camera, launch, place);
+    let (origin, direction) = stereo::moved(frame, launch, eye, plane(camera, launch, place));
     if !frame.has_lens(launch) {
-        return CameraRay::of(origin, direction);
+        return clip::started(frame, launch, CameraRay::of(origin, direction));
     }
     let drawn = sampler::set(launch, key(frame, pixel), pixel.sample, 0);
     let aside = lens::place(camera, optics, (drawn.z, drawn.w));
     let over_focus = R::splat(f32::from_bits(camera.across.w));
     // Through the place that the middle of the lens sees sharp.
     let direction = direction - (aside * over_focus).map(|c| c.flush(TINY));
-    CameraRay::of((origin + aside).map(|c| c.flush(TINY)), direction)
+    clip::started(frame, launch, CameraRay::of((origin + aside).map(|c| c.flush(TINY)), direction))
 }
 
-/// The same where no camera of the scene needs tables or goes all around.
+/// The same where no camera of the scene needs tables, goes all around, is clipped or has two eyes.
 #[inline(always)]
 pub fn plain_ray<R: Scalar>(frame: &Frame, launch: Launch, pixel: Pixel) -> CameraRay<R> {
     let (origin, direction) = plane(&frame.camera, launch, in_image(frame, pixel, in_pixel(frame, launch, pixel)));

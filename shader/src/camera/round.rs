@@ -1,13 +1,13 @@
 //! Cameras whose rays go all around: no plane holds their image.
 
-use super::CameraRay;
-use crate::data::{Frame, Projection, numbers};
+use super::{CameraRay, stereo};
+use crate::data::{Frame, Launch, Projection, numbers};
 use crate::real::turns::cos_sin;
 use crate::real::{Real, SMALL, Scalar, V3};
 
-/// The ray through a place of the image, so many halves of a cell from its middle to the right and down.
+/// The ray through a place of the image, so many halves of a cell from its middle to the right and down, of an eye so far to the right.
 #[inline(always)]
-pub fn ray<R: Scalar>(frame: &Frame, (right, down): (f32, f32)) -> CameraRay<R> {
+pub fn ray<R: Scalar>(frame: &Frame, launch: Launch, (right, down): (f32, f32), eye: f32) -> CameraRay<R> {
     let camera = &frame.camera;
     let (x, y) = (right * frame.angle, -down * frame.angle);
     let ([along, aside, above], is_shown) = match camera.eye.w {
@@ -17,17 +17,22 @@ pub fn ray<R: Scalar>(frame: &Frame, (right, down): (f32, f32)) -> CameraRay<R> 
     };
     let part = |record, share: f32| V3::<R>::splat(numbers(record)) * R::splat(share.flush(SMALL));
     let direction = part(camera.forward, along) + part(camera.right, aside) + part(camera.up, above);
-    CameraRay {
-        origin: V3::splat(numbers(camera.eye)),
-        direction: direction.normalised().0,
-        weight: R::splat(if is_shown { 1.0 } else { 0.0 }),
-    }
+    let middle = V3::splat(numbers(camera.eye));
+    let origin = if launch.has(Launch::STEREO) {
+        // Where it sees all around, an eye turns with the view.
+        let (ahead, across) = if camera.eye.w == Projection::EQUIRECTANGULAR { turned(x) } else { (1.0, 0.0) };
+        stereo::beside(middle, part(camera.right, ahead * eye) + part(camera.forward, -across * eye))
+    } else {
+        middle
+    };
+    CameraRay { origin, direction: direction.normalised().0, weight: R::splat(if is_shown { 1.0 } else { 0.0 }) }
 }
 
 /// Is a place within the greatest circle around the image's middle?
 #[inline(always)]
 fn is_in_circle(frame: &Frame, right: f32, down: f32) -> bool {
-    let least = if frame.width < frame.height { frame.width } else { frame.height };
+    let (width, height) = stereo::size(frame);
+    let least = if width < height { width } else { height };
     let radius = (least * frame.samples) as f32;
     right * right + down * down <= radius * radius
 }
@@ -85,7 +90,8 @@ mod tests {
         let mut sum = V3::<f64>::zero();
         for (x, y) in (0..width).flat_map(|x| (0..height).map(move |y| (x, y))) {
             let (right, down) = (2 * x as i32 + 1 - width as i32, 2 * y as i32 + 1 - height as i32);
-            let CameraRay { origin, direction: d, weight } = ray::<f64>(&frame, (right as f32, down as f32));
+            let CameraRay { origin, direction: d, weight } =
+                ray::<f64>(&frame, Launch(0), (right as f32, down as f32), 0.0);
             assert_eq!((origin.z, weight), (1.0, 1.0));
             let (longitude, latitude) =
                 (f64::from(right) / f64::from(width) * PI, -f64::from(down) / f64::from(height) * PI / 2.0);
@@ -104,7 +110,7 @@ mod tests {
         let (quarter, sine) = (0.25 / half, (PI / 4.0).sin() / half);
         let angle_at = |projection, angle, right: f32, down: f32| {
             let CameraRay { direction: d, weight, .. } =
-                ray::<f64>(&frame(projection, (size, size), angle), (right, down));
+                ray::<f64>(&frame(projection, (size, size), angle), Launch(0), (right, down), 0.0);
             assert!((d.x * f64::from(-down) - d.y * f64::from(right)).abs() < 1e-4, "no twist: {d:?}");
             (d.x.hypot(d.y).atan2(-d.z), weight)
         };

@@ -15,7 +15,7 @@ pub struct Camera {
     pub right: UVec4,
     /// Step up for half a cell's height, or a unit vector.
     pub up: UVec4,
-    /// The way from the eye to the centre of the image plane at distance one; a unit vector where rays are parallel or go all around.
+    /// The unit vector to the centre of the image plane. The integer is how two eyes share the image, see [`Stereo`].
     pub forward: UVec4,
     /// The lens' radius to the right. The integer has the bits of one over the distance of the plane of focus; 0 for far away.
     pub across: UVec4,
@@ -39,6 +39,18 @@ impl Projection {
     pub const EQUISOLID: u32 = 4;
 }
 
+/// How the images of two eyes lie in one.
+pub struct Stereo;
+
+impl Stereo {
+    /// There is one eye.
+    pub const NONE: u32 = 0;
+    /// The left eye's is the left half.
+    pub const BESIDE: u32 = 1;
+    /// The left eye's is the upper half.
+    pub const BELOW: u32 = 2;
+}
+
 impl Camera {
     /// A pinhole camera, from vectors in the normalised scene.
     pub fn new(eye: Vec3, right: Vec3, up: Vec3, forward: Vec3) -> Self {
@@ -57,6 +69,13 @@ impl Camera {
     #[must_use]
     pub fn through(self, across: Vec3, above: Vec3, (first, corners): (u32, u32), over_focus: f32) -> Self {
         Camera { across: pack(across, over_focus.to_bits()), above: pack(above, first << 8 | corners), ..self }
+    }
+
+    /// Of two eyes ([`Stereo`]).
+    #[must_use]
+    pub fn seen_by(mut self, stereo: u32) -> Self {
+        self.forward.w = stereo;
+        self
     }
 
     /// Are rays parallel?

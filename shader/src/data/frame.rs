@@ -75,6 +75,14 @@ pub struct Frame {
     /// What half a cell is of an angle where rays go all around ([`Launch::ROUND`]): of a turn, or, for
     /// [`Projection::EQUISOLID`](super::Projection), of the sine of half the angle from the middle.
     pub angle: f32,
+    /// How far from the camera's plane, or from a camera that sees all around, its rays start, in the normalised scene ([`Launch::CLIPPED`]).
+    pub near: f32,
+    /// And end; 0 for no end.
+    pub farthest: f32,
+    /// How far each of two eyes is from the middle, in lengths of the camera's vector to the right ([`Launch::STEREO`]).
+    pub eyes: f32,
+    /// The same times the part of its distance at which both look at one place: 0 if they look in parallel.
+    pub converging: f32,
 }
 
 impl Frame {

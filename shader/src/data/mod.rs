@@ -19,7 +19,7 @@ mod shading;
 mod specialisation;
 mod texture;
 
-pub use camera::{Camera, Projection};
+pub use camera::{Camera, Projection, Stereo};
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
 pub use emitter::{Emission, Emitter};

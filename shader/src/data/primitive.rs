@@ -41,8 +41,18 @@ impl Primitive {
     pub const CUTOUT: u32 = 8;
     /// The flag of a primitive that is never skipped because it is seen from behind.
     pub const TWO_SIDED: u32 = 16;
+    /// The flag of a primitive that the camera does not see.
+    pub const UNSEEN: u32 = 32;
+    /// The flag of one that casts no shadow though it is opaque.
+    pub const SHADOWLESS: u32 = 64;
+    /// The flag of one that rays from other surfaces do not meet.
+    pub const UNREFLECTED: u32 = 128;
+    /// The flag of one that cuts a hole into the picture.
+    pub const HOLDOUT: u32 = 256;
+    /// The flag of one that shows only what others do to its light.
+    pub const CATCHER: u32 = 512;
     /// How far the flags are shifted beside the material of an indexed vertex.
-    pub const FLAGS_SHIFT: u32 = 27;
+    pub const FLAGS_SHIFT: u32 = 22;
     /// The bits of the material there.
     pub const MATERIAL: u32 = (1 << Self::FLAGS_SHIFT) - 1;
 
@@ -134,6 +144,12 @@ impl Primitive {
     #[inline(always)]
     pub fn is_cutout(&self) -> bool {
         self.c.w & Self::CUTOUT != 0
+    }
+
+    /// Has it any of these flags?
+    #[inline(always)]
+    pub fn has(&self, flags: u32) -> bool {
+        self.c.w & flags != 0
     }
 
     /// The primitive's own box (least, greatest corner): its extent and [`BOX_PADDING`] around it.

@@ -84,6 +84,10 @@ bits! {
         RAMP = 26;
         /// What some material emits is multiplied with the colours of vertices.
         GLOWING_COLOURS = 27;
+        /// Some primitives are not met by the rays of the camera, of shadows or of other surfaces.
+        HIDDEN = 28;
+        /// Some cut a hole into the picture.
+        HOLDOUT = 29;
     }
 }
 
@@ -143,6 +147,12 @@ bits! {
         KEPT = 24;
         /// The film counts the samples whose camera's ray finds nothing: what is behind everything is not in the picture.
         CLEAR = 25;
+        /// It keeps what shadow catchers get of light, and what they would get if nothing else were there.
+        CATCHER = 26;
+        /// Rays of the camera start and end at its clipping planes.
+        CLIPPED = 27;
+        /// The image may hold those of two eyes.
+        STEREO = 28;
     }
 }
 

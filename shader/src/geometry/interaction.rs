@@ -2,7 +2,7 @@
 
 use super::{tangents, unit_of};
 use crate::data::{Effects, Primitive};
-use crate::ray::{Hit, Ray};
+use crate::ray::Ray;
 use crate::real::{Real, SMALL, Scalar, TINY, V3};
 
 /// A point on a surface.
@@ -78,11 +78,11 @@ impl<R: Scalar> SurfaceInteraction<R> {
     }
 
     /// What a ray that leaves towards `direction` starts on, see [`Ray::source_primitive`]. One that leaves for what is behind its
-    /// triangle from above starts on nothing.
+    /// triangle from above starts on none.
     #[inline(always)]
     pub fn source_primitive(&self, direction: V3<R>) -> u32 {
         if self.is_lifted && !self.faces(direction) {
-            return Hit::<R>::NOTHING;
+            return Ray::<R>::OF_SURFACE;
         }
         let goes_inside = self.is_curved && self.faces(direction) != self.front;
         if goes_inside { self.number | Ray::<R>::INSIDE } else { self.number }

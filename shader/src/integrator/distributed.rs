@@ -86,6 +86,7 @@ fn branched<R: Scalar>(
         goes_on: first || second,
         other: refracted,
         waits: first && second,
+        is_caught: false,
     }
 }
 

@@ -18,7 +18,7 @@ pub(super) fn at<R: Scalar>(
 ) -> Scattered<R> {
     let seen = vertex.met(launch);
     let feature = if launch.spec.launch.has(Launch::PLACE) {
-        place(launch, &seen, vertex.distance)
+        place(launch, &seen)
     } else {
         let covering = seen.covering(launch, &context.shading, false);
         let surface = Surface::new(launch.spec.effects, &context.shading, &seen, &covering);
@@ -34,14 +34,15 @@ pub(super) fn at<R: Scalar>(
 /// How far in front of the camera's plane a place is, or from the camera where rays go all around; and one more than its primitive's
 /// number: what is left of it over 2^16, and how often that fits.
 #[inline(always)]
-fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>, distance: R) -> V3<R> {
+fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>) -> V3<R> {
     let camera = &launch.frame.camera;
     let vector = |record| V3::<R>::splat(numbers(record));
     let Seen { primitive, interaction, .. } = *seen;
     let from = (interaction.position - vector(camera.eye)).map(|c| c.flush(SMALL));
     let number = primitive.number() + 1;
     let half = |number: u32| R::splat(number as f32);
-    let depth = if camera.is_round(launch.spec.launch) { distance } else { from.dot(vector(camera.forward)) };
+    let is_round = camera.is_round(launch.spec.launch);
+    let depth = if is_round { from.direction_and_length().1 } else { from.dot(vector(camera.forward)) };
     V3::new(depth, half(number & 0xffff), half(number >> 16))
 }
 

@@ -3,10 +3,11 @@
 
 use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, numbers};
+use crate::data::{Effects, Frame, Launch, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
+use crate::ray::Ray;
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
@@ -26,6 +27,10 @@ pub(super) fn at<R: Scalar>(
     let vertex = &vertex.arrived(effects, physicals, &seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
+    if vertex.after_catcher && seen.primitive.has(Primitive::CATCHER) {
+        // What catchers send each other is in the plate.
+        return Scattered::once(V3::zero(), ShadowRay::none(), path, false);
+    }
     let covering = seen.covering(launch, shading, is_last);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
     if is_last {
@@ -63,11 +68,17 @@ fn scattered<R: Scalar>(
     };
     let (at, draws) = ((&interaction, view.origin), (decisions.y, decisions.w));
     let (arriving, sample) = closure.eval_and_sample(at, lamp.direction, draws, || vertex.draws.set(bounces + 1));
-    let shadow = if is_asked {
+    let catches = vertex.catches(launch, &seen.primitive);
+    // A catcher gets all of the light that is sampled, and none that chance finds.
+    let lamp = if catches { EmitterSample { density: EmitterSample::<R>::none().density, ..lamp } } else { lamp };
+    let mut shadow = if is_asked {
         sampled_light(launch, vertex, (&interaction, &view), &lamp, arriving)
     } else {
         ShadowRay::none()
     };
+    if catches {
+        shadow.segment.source_primitive = Ray::<R>::OF_CATCHER;
+    }
     let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
     let is_wide = launch.spec.launch.has(Launch::MIPMAPPED) && sample.density.eq(R::splat(0.0));
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
@@ -77,7 +88,8 @@ fn scattered<R: Scalar>(
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
-    Scattered::once(light, shadow, next, goes_on)
+    let light = if catches { V3::zero() } else { light };
+    Scattered { is_caught: catches, ..Scattered::once(light, shadow, next, goes_on) }
 }
 
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),
@@ -129,6 +141,9 @@ fn emitted<R: Scalar>(
     let radiance = glowing(effects, &lighting.textures, &emission, &place, radiance);
     if own.eq(R::splat(0.0)) {
         return radiance;
+    }
+    if vertex.after_catcher {
+        return V3::zero();
     }
     let view = vertex.path.view();
     let other = Density::of_hit(launch, lighting, (&primitive, &emission), &interaction, &view);

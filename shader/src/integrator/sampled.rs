@@ -3,7 +3,7 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Launch, Physical};
+use crate::data::{Effects, Launch, Physical, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
 use crate::material::{Albedos, Seen, transmittance};
@@ -11,7 +11,7 @@ use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, AFTER_LENS, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{CLEARED, NON_FINITE, PathState, Segment, ShadowRay};
+use crate::stage::{CLEARED, Caught, NON_FINITE, PathState, Segment, ShadowRay, brightness};
 use glam::UVec4;
 
 use super::path::weight;
@@ -55,6 +55,8 @@ pub(super) struct Vertex<R: Real> {
     /// How far the path came.
     pub distance: R,
     pub draws: Draws,
+    /// Did the path start on a shadow catcher, as its first vertex? Of the light of that, catchers tell no more than what is shadowed.
+    pub after_catcher: bool,
 }
 
 impl<R: Scalar> Vertex<R> {
@@ -93,6 +95,12 @@ impl<R: Scalar> Vertex<R> {
         let segment = Segment { origin, direction, limit, source_primitive: interaction.source_primitive(direction) };
         let path = PathState { bounces: self.path.bounces + 1, ..self.path };
         ShadowRay { segment, light: share(launch, &path, light) }
+    }
+
+    /// Is it on a shadow catcher that the camera sees?
+    #[inline(always)]
+    pub fn catches(&self, launch: &LaunchContext<'_>, primitive: &Primitive) -> bool {
+        launch.spec.launch.has(Launch::CATCHER) && self.path.bounces == 0 && primitive.has(Primitive::CATCHER)
     }
 
     /// The path that goes on from here: `factor` of its light counts, `density` is that of its direction.
@@ -136,13 +144,15 @@ pub(super) struct Scattered<R: Real> {
     pub other: PathState<R>,
     /// Is there one?
     pub waits: bool,
+    /// Is what the shadow ray brings the light of a shadow catcher?
+    pub is_caught: bool,
 }
 
 impl<R: Scalar> Scattered<R> {
     /// Of a path that does not branch.
     #[inline(always)]
     pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
-        Scattered { light, shadow, next, goes_on, other: next, waits: false }
+        Scattered { light, shadow, next, goes_on, other: next, waits: false, is_caught: false }
     }
 }
 
@@ -185,38 +195,59 @@ pub fn scatter<R: Scalar>(
     let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
     let slots = launch.frame.slots;
     let path = PathState::<R>::load(slots, slot, 0, paths);
-    let (sum, mut word) = if starts {
-        (V3::zero(), 0)
+    let bits = launch.spec.launch;
+    let (sum, mut word, mut caught) = if starts {
+        (V3::zero(), 0, Caught::nothing())
     } else {
         let (sum, word) = R::load(read(sums, slot));
-        (sum + ShadowRay::<R>::arrived(slots, slot, shadows, segments), word)
+        let caught = Caught::<R>::load(bits, launch.frame, slot, sums);
+        let arrived = if caught.waits() { V3::zero() } else { ShadowRay::<R>::arrived(slots, slot, shadows, segments) };
+        (sum + arrived, word, caught.answered(read(shadows, slot)))
     };
+    let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
     let (hit, primitive_index) = R::load(read(hits, slot));
     // The ray of a slot outside the image hits nothing.
     let scattered = if primitive_index == Hit::<R>::NOTHING {
-        let is_clear = launch.spec.launch.has(Launch::CLEAR) && path.bounces == 0;
+        let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
-        let light = if is_clear { V3::zero() } else { surroundings(launch, &context.lighting, &path) };
+        let is_dark = is_clear || after_catcher;
+        let light = if is_dark { V3::zero() } else { surroundings(launch, &context.lighting, &path) };
         Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
+    } else if is_hole(launch, &path, primitive_index) {
+        word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
+        Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
-        let (bits, sample) = (launch.spec.launch, camera::sample(launch.frame, slot));
+        let sample = camera::sample(launch.frame, slot);
         let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
-        let vertex = Vertex { path, primitive_index, coordinates: (hit.y, hit.z), distance: hit.x, draws };
-        if launch.spec.launch.has(Launch::FEATURE) {
+        let coordinates = (hit.y, hit.z);
+        let vertex = Vertex { path, primitive_index, coordinates, distance: hit.x, draws, after_catcher };
+        if bits.has(Launch::FEATURE) {
             feature::at(launch, context, &vertex)
-        } else if launch.spec.launch.has(Launch::OCCLUSION) {
+        } else if bits.has(Launch::OCCLUSION) {
             occlusion::at(launch, &context.shading, &vertex)
-        } else if launch.spec.launch.has(Launch::TREE) {
+        } else if bits.has(Launch::TREE) {
             distributed::at(launch, context, &vertex)
         } else {
             path::at(launch, context, &vertex)
         }
     };
+    if bits.has(Launch::CATCHER) && scattered.is_caught {
+        caught = Caught { full: brightness(scattered.shadow.light), state: Caught::<R>::WAITS };
+    }
+    caught.store(bits, launch.frame, slot, sums);
     let (sum, word) = added(sum, word, &scattered);
     write(sums, slot, R::store(sum, word));
     scattered.shadow.store(slots, slot, segments);
     follow(launch, slot, &path, scattered, paths)
+}
+
+/// Does the camera's ray meet what cuts a hole into the picture?
+#[inline(always)]
+fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive_index: u32) -> bool {
+    launch.spec.effects.has(Effects::HOLDOUT)
+        && path.bounces == 0
+        && launch.primitive(primitive_index).has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.
@@ -249,7 +280,7 @@ fn follow<R: Scalar>(
         return branch(launch.frame.slots, slot, path, scattered, paths);
     }
     if scattered.goes_on {
-        scattered.next.store(launch.frame.slots, slot, 0, true, paths);
+        scattered.next.store(launch.frame.slots, slot, 0, paths);
     }
     scattered.goes_on
 }
@@ -266,7 +297,7 @@ fn branch<R: Scalar>(
     let (mut next, (mut pending, vertex)) = (scattered.next, path.counts());
     if scattered.waits {
         pending += 1;
-        scattered.other.store(slots, slot, pending, true, paths);
+        scattered.other.store(slots, slot, pending, paths);
     }
     if !scattered.goes_on {
         if pending == 0 {
@@ -275,7 +306,7 @@ fn branch<R: Scalar>(
         next = PathState::load(slots, slot, pending, paths);
         pending -= 1;
     }
-    next.with_counts(pending, vertex + 1).store(slots, slot, 0, true, paths);
+    next.with_counts(pending, vertex + 1).store(slots, slot, 0, paths);
     true
 }
 

@@ -3,7 +3,7 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Launch, Light};
+use crate::data::{Effects, Launch, Light, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::LightSample;
 use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
@@ -56,6 +56,11 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
         return pop(launch, slot, &path, paths);
     }
     let primitive = launch.primitive(primitive_index);
+    if is_first && effects.has(Effects::HOLDOUT) && primitive.has(Primitive::HOLDOUT) {
+        let word = if launch.spec.launch.has(Launch::CLEAR) { CLEARED } else { 0 };
+        add(launch, sums, slot, &path, V3::zero(), word);
+        return pop(launch, slot, &path, paths);
+    }
     let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
     let sample = camera::sample(launch.frame, slot);
     let start = if is_first { Cone::confused(launch, hit.x, sample) } else { Cone::none() };

@@ -89,11 +89,17 @@ impl<R: Scalar> EmitterSample<R> {
         let primitive = launch.primitive(emitter.light.axis.w);
         let emission = read(lighting.emissions, primitive.material());
         let per_area = per_area(effects, &emission, &emitter, probability);
-        if effects.has(Effects::SPHERE) && primitive.is_sphere() {
+        let sample = if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             Self::of_sphere(&primitive, (&emission, per_area), origin, place)
         } else {
             Self::of_plane(launch, lighting, (&primitive, &emitter), (&emission, per_area), (origin, place))
+        };
+        if effects.has(Effects::HIDDEN) && primitive.has(Primitive::UNREFLECTED) {
+            // No path finds it by chance.
+            let density = Density { over: R::splat(0.0), ..sample.density };
+            return EmitterSample { density, ..sample };
         }
+        sample
     }
 
     /// A light without extent, by its own intensity and the inverse square of the distance.

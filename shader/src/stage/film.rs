@@ -1,11 +1,11 @@
 //! The film: what the samples of every pixel come to, in sums that have no order. So a picture has the same bits whatever its samples
 //! were parted into: launches, tiles, devices, machines.
 
-use super::{CLEARED, NON_FINITE};
+use super::{CLEARED, Caught, NON_FINITE};
 use crate::buffer::{read, write};
 use crate::camera::Pixel;
 use crate::data::{Frame, Launch, Quanta};
-use crate::real::{Scalar, V3};
+use crate::real::{Real, Scalar, V3};
 
 /// A channel of a sample is a whole number of quanta of 2^-40, rounded to single precision before.
 pub const LIGHT_FRACTION: u32 = 40;
@@ -21,11 +21,35 @@ pub const FILM_WORDS: u32 = 10;
 /// Words of a pixel with the squares of its samples' brightness, or of that of its blocks.
 pub const NOISY_FILM_WORDS: u32 = 14;
 
-/// Words of a pixel, with noise or without; one more where clear samples are counted.
+/// More words of a pixel that knows shadow catchers: three a sum, and a count.
+const CATCHER_WORDS: u32 = 7;
+
+/// Words of a pixel, with noise or without; one more where clear samples are counted, and more of one that tells noise where shadow
+/// catchers are known.
 #[inline(always)]
 pub fn film_words(launch: Launch, is_noisy: bool) -> u32 {
     let words = if is_noisy { NOISY_FILM_WORDS } else { FILM_WORDS };
+    let words = if launch.has(Launch::CATCHER) && is_noisy { words + CATCHER_WORDS } else { words };
     if launch.has(Launch::CLEAR) { words + 1 } else { words }
+}
+
+/// What a slot has of its pixel.
+#[derive(Clone, Copy)]
+pub struct Sample<R: Real> {
+    /// Linear RGB.
+    pub light: V3<R>,
+    /// Counts shadow rays and holds [`NON_FINITE`] and [`CLEARED`].
+    pub word: u32,
+    /// What it has of a shadow catcher.
+    pub caught: Caught<R>,
+}
+
+impl<R: Real> Sample<R> {
+    /// Of a scene without shadow catchers.
+    #[inline(always)]
+    pub fn of((light, word): (V3<R>, u32)) -> Self {
+        Sample { light, word, caught: Caught::nothing() }
+    }
 }
 
 /// Samples of a block, the first of which has a multiple of so many for its number. Sobol's are placed evenly within it, so that the
@@ -54,12 +78,24 @@ pub struct PixelSums {
     pub squares: Quanta,
     /// Samples whose camera's ray found nothing.
     pub clear: u32,
+    /// Samples whose camera's ray met a shadow catcher.
+    pub caught: u32,
+    /// The brightness of what a light brings to those if nothing else is there; of this and the next the last word is not kept.
+    pub full: Quanta,
+    /// Of what it does bring.
+    pub lit: Quanta,
 }
 
 impl PixelSums {
-    /// One sample's.
+    /// One sample's, in a scene without shadow catchers.
     #[inline(always)]
     pub fn of<R: Scalar>(light: V3<R>, word: u32) -> Self {
+        Self::of_sample(Sample::of((light, word)))
+    }
+
+    /// One sample's.
+    #[inline(always)]
+    pub fn of_sample<R: Scalar>(Sample { light, word, caught }: Sample<R>) -> Self {
         let channel = |c: R| Quanta::of(c.to_f32(), LIGHT_FRACTION, LIGHT_MOST);
         let squares = squared(brightness(light));
         PixelSums {
@@ -69,6 +105,9 @@ impl PixelSums {
             word: word & !CLEARED,
             squares,
             clear: if word & CLEARED == 0 { 0 } else { 1 },
+            caught: if caught.is_some() { 1 } else { 0 },
+            full: channel(caught.full),
+            lit: if caught.state == Caught::<R>::LIT { channel(caught.full) } else { Quanta::default() },
         }
     }
 
@@ -82,6 +121,9 @@ impl PixelSums {
             word: counted(self.word, other.word),
             squares: self.squares.plus(other.squares),
             clear: self.clear + other.clear,
+            caught: self.caught + other.caught,
+            full: self.full.plus(other.full),
+            lit: self.lit.plus(other.lit),
         }
     }
 
@@ -92,7 +134,19 @@ impl PixelSums {
         let channel = |word| Quanta(at(word), at(word + 1), at(word + 2), 0);
         let squares = if row.is_noisy() { Quanta(at(10), at(11), at(12), at(13)) } else { Quanta::default() };
         let clear = if row.counts_clear() { at(row.words - 1) } else { 0 };
-        PixelSums { red: channel(0), green: channel(3), blue: channel(6), word: at(9), squares, clear }
+        let mut sums = PixelSums {
+            red: channel(0),
+            green: channel(3),
+            blue: channel(6),
+            word: at(9),
+            squares,
+            clear,
+            ..PixelSums::default()
+        };
+        if row.knows_catchers() {
+            (sums.full, sums.lit, sums.caught) = (channel(14), channel(17), at(20));
+        }
+        sums
     }
 
     /// Keeps them there.
@@ -114,6 +168,15 @@ impl PixelSums {
             keep(11, self.squares.1);
             keep(12, self.squares.2);
             keep(13, self.squares.3);
+        }
+        if row.knows_catchers() {
+            keep(14, self.full.0);
+            keep(15, self.full.1);
+            keep(16, self.full.2);
+            keep(17, self.lit.0);
+            keep(18, self.lit.1);
+            keep(19, self.lit.2);
+            keep(20, self.caught);
         }
         if row.counts_clear() {
             keep(row.words - 1, self.clear);
@@ -154,7 +217,13 @@ impl Row {
     /// Does it count clear samples?
     #[inline(always)]
     pub fn counts_clear(self) -> bool {
-        self.words == FILM_WORDS + 1 || self.words == NOISY_FILM_WORDS + 1
+        self.words == FILM_WORDS + 1 || self.words == NOISY_FILM_WORDS + 1 || self.knows_catchers()
+    }
+
+    /// Does it know shadow catchers? Then it counts clear samples, too.
+    #[inline(always)]
+    pub fn knows_catchers(self) -> bool {
+        self.words == NOISY_FILM_WORDS + CATCHER_WORDS + 1
     }
 }
 
@@ -165,7 +234,7 @@ pub fn expose<R: Scalar>(
     frame: &Frame,
     (pixel, slot): (Pixel, u32),
     words: u32,
-    sample: impl Fn(u32) -> (V3<R>, u32),
+    sample: impl Fn(u32) -> Sample<R>,
     film: &mut [u32],
 ) {
     if !pixel.inside || slot >= frame.pixel_slots {
@@ -178,8 +247,7 @@ pub fn expose<R: Scalar>(
     }
     let mut at = slot;
     while at < frame.slots {
-        let (light, word) = sample(at);
-        sums = sums.plus(PixelSums::of(light, word));
+        sums = sums.plus(PixelSums::of_sample(sample(at)));
         at += frame.pixel_slots;
     }
     sums.store(film, row, pixel.x);
@@ -191,7 +259,7 @@ pub fn expose_blocks<R: Scalar>(
     frame: &Frame,
     (pixel, slot): (Pixel, u32),
     words: u32,
-    sample: impl Fn(u32) -> (V3<R>, u32),
+    sample: impl Fn(u32) -> Sample<R>,
     film: &mut [u32],
 ) {
     if !pixel.inside || slot >= frame.pixel_slots {
@@ -205,13 +273,13 @@ pub fn expose_blocks<R: Scalar>(
     }
     let (mut at, mut number, mut bright) = (slot, 0, R::splat(0.0));
     while at < frame.slots {
-        let (light, word) = sample(at);
-        bright = bright + brightness(light);
+        let sample = sample(at);
+        bright = bright + brightness(sample.light);
         number += 1;
         let ends = number % BLOCK == 0;
         let squares = if ends { squared(bright * R::splat(SHARE)) } else { Quanta::default() };
         bright = if ends { R::splat(0.0) } else { bright };
-        sums = sums.plus(PixelSums { squares, ..PixelSums::of(light, word) });
+        sums = sums.plus(PixelSums { squares, ..PixelSums::of_sample(sample) });
         at += frame.pixel_slots;
     }
     sums.store(film, row, pixel.x);
@@ -254,7 +322,7 @@ mod tests {
             let pixel = camera::pixel(frame, Order(0), slot);
             let sample = |slot| {
                 let (light, word) = sample(slot);
-                (V3::splat(Vec3::new(light, -light, 2.0 * light)), word)
+                Sample::of((V3::splat(Vec3::new(light, -light, 2.0 * light)), word))
             };
             expose::<f32>(frame, (pixel, slot), words, sample, film);
         }
@@ -354,7 +422,7 @@ mod tests {
                     let pixel = camera::pixel(&frame, Order(0), slot);
                     let sample = |slot: u32| {
                         let light = value(first + slot / frame.pixel_slots);
-                        (V3::<f32>::splat(Vec3::new(light, -light, 2.0 * light)), 1)
+                        Sample::of((V3::<f32>::splat(Vec3::new(light, -light, 2.0 * light)), 1))
                     };
                     expose_blocks::<f32>(&frame, (pixel, slot), NOISY_FILM_WORDS, sample, &mut film);
                 }

@@ -1,5 +1,6 @@
 //! The camera's ray of a slot, as it lies in memory.
 
+use super::segment::NOWHERE;
 use super::{Path, PathState};
 use crate::camera::{self, CameraRay};
 use crate::data::{Frame, Launch, Specialisation};
@@ -19,13 +20,15 @@ pub fn generate<R: Scalar>(
     let pixel = camera::pixel(frame, spec.order, slot);
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
     let ray = camera::ray(frame, spec.launch, optics, pixel);
-    if spec.launch.has(Launch::KEPT) {
-        Path::of_camera(ray).store(frame.slots, slot, 0, paths);
-        return;
-    }
     let CameraRay { origin, direction, weight } = ray;
     // Brought near where the camera is far from the scene.
     let near = Ray::from_afar(origin, direction);
+    if spec.launch.has(Launch::KEPT) {
+        // How far it goes is told from where it starts.
+        let origin = if spec.launch.has(Launch::CLIPPED) { near.origin } else { origin };
+        Path::of_camera(CameraRay { origin, ..ray }).store(frame.slots, slot, 0, paths);
+        return;
+    }
     let path = PathState {
         origin: near.origin,
         direction,
@@ -37,5 +40,6 @@ pub fn generate<R: Scalar>(
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
     let follows = pixel.inside && !weight.eq(R::splat(0.0));
-    path.store(frame.slots, slot, 0, follows, paths);
+    let limit = if follows { camera::limit(frame, spec.launch, near.origin, direction) } else { R::splat(NOWHERE) };
+    path.store_within(limit, frame.slots, slot, 0, paths);
 }

@@ -5,6 +5,7 @@
 //! The first wave of a launch traces primary rays, one for every slot. Each further wave traces, for
 //! the slots that still have one, the next secondary ray.
 
+mod caught;
 mod film;
 mod generate;
 mod path;
@@ -16,9 +17,10 @@ mod shadow;
 mod together;
 mod trace;
 
+pub use caught::Caught;
 pub use film::{
     BLOCK, FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST,
-    brightness, expose, expose_blocks, film_words,
+    Sample, brightness, expose, expose_blocks, film_words,
 };
 pub use generate::generate;
 pub use path::{Path, RECORDS};

@@ -1,7 +1,7 @@
 //! The path that a slot follows where integrators sample, and the light that its last vertex may get.
 
 use super::segment::NOWHERE;
-use super::{REACHED, Segment};
+use super::{Caught, REACHED, Sample, Segment};
 use crate::buffer::{read, write};
 use crate::data::{Frame, Launch};
 use crate::light::Viewpoint;
@@ -93,10 +93,15 @@ impl<R: Scalar> PathState<R> {
         start.after(launch, distance, sample)
     }
 
-    /// Keeps it at a level; `follows` unless it is not to be traced.
+    /// Keeps it at a level, to be traced.
     #[inline(always)]
-    pub fn store(&self, slots: u32, slot: u32, level: u32, follows: bool, paths: &mut [R::Record]) {
-        let limit = R::splat(if follows { f32::MAX } else { NOWHERE });
+    pub fn store(&self, slots: u32, slot: u32, level: u32, paths: &mut [R::Record]) {
+        self.store_within(R::splat(f32::MAX), slots, slot, level, paths);
+    }
+
+    /// The same, to be traced so far.
+    #[inline(always)]
+    pub fn store_within(&self, limit: R, slots: u32, slot: u32, level: u32, paths: &mut [R::Record]) {
         let PathState { origin, direction, source_primitive, .. } = *self;
         let at = |k| (level * STATE_RECORDS + k) * slots + slot;
         Segment { origin, direction, limit, source_primitive }.store(slots, at(0), paths);
@@ -137,15 +142,20 @@ impl<R: Scalar> ShadowRay<R> {
     }
 }
 
-/// A sample once its slot is done: what the slot has summed, with the light that its last vertex waited for; and its counts.
+/// What a slot has summed before its last vertex, with the light that this waited for.
 #[inline(always)]
 pub fn sampled<R: Scalar>(
     frame: &Frame,
+    launch: Launch,
     slot: u32,
     (sums, shadows, segments): (&[R::Record], &[u32], &[R::Record]),
-) -> (V3<R>, u32) {
+) -> Sample<R> {
     let (sum, word) = R::load(read(sums, slot));
-    (sum + ShadowRay::<R>::arrived(frame.slots, slot, shadows, segments), word)
+    let caught = Caught::<R>::load(launch, frame, slot, sums);
+    if caught.waits() {
+        return Sample { light: sum, word, caught: caught.answered(read(shadows, slot)) };
+    }
+    Sample { light: sum + ShadowRay::<R>::arrived(frame.slots, slot, shadows, segments), word, caught }
 }
 
 #[cfg(test)]

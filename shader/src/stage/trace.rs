@@ -2,6 +2,7 @@
 
 use super::segment::NOWHERE;
 use super::{Path, Segment};
+use crate::camera;
 use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
@@ -18,7 +19,14 @@ pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Reco
     let Path { origin, direction, weight, source_primitive, .. } = path;
     // A camera may have no ray at a place of its image.
     let is_none = context.base.spec.launch.has(Launch::KEPT) && weight.greatest().eq(R::splat(0.0));
-    let limit = R::splat(if is_none { NOWHERE } else { f32::MAX });
+    let launch = context.base.spec.launch;
+    let limit = if is_none {
+        R::splat(NOWHERE)
+    } else if launch.has(Launch::CLIPPED) && is_of_camera(launch) {
+        camera::limit(context.base.frame, launch, origin, direction)
+    } else {
+        R::splat(f32::MAX)
+    };
     Segment { origin, direction, limit, source_primitive }
 }
 

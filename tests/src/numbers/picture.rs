@@ -84,7 +84,7 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut picture = vec![V3::zero(); pixels];
     for slot in (0..frame.pixel_slots).filter(inside) {
         let index = camera::pixel(&frame, order, slot).index as usize;
-        picture[index] = stage::sampled::<R>(&frame, slot, (&sums, &shadows, &segments)).0;
+        picture[index] = stage::sampled::<R>(&frame, spec.launch, slot, (&sums, &shadows, &segments)).light;
     }
     picture
 }

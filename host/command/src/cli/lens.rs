@@ -1,7 +1,9 @@
 //! The lens of a camera, and how it maps what it sees, from the command line.
 
 use clap::{Args, ValueEnum};
-use eyerays::scene::{Camera, Focus, Lens, Mapping, Projection};
+use eyerays::scene::{Camera, Focus, Lens, Mapping, Projection, Stereo, StereoLayout};
+
+use super::choice::choice;
 
 use crate::error::{Error, Result};
 
@@ -44,6 +46,21 @@ pub(super) struct LensArgs {
     /// Blades of the lens' diaphragm, 3 to 32; 0 for a round one
     #[arg(long, value_name = "N")]
     blades: Option<u32>,
+    /// See nothing nearer than this, along the view, in the scene's units: to look into closed rooms [default: the camera's]
+    #[arg(long, value_name = "DISTANCE")]
+    clip_near: Option<f32>,
+    /// And nothing farther [default: the camera's]
+    #[arg(long, value_name = "DISTANCE")]
+    clip_far: Option<f32>,
+    /// Images of two eyes in one, each of half the size
+    #[arg(long, value_name = "LAYOUT", value_parser = choice::<StereoLayout>())]
+    stereo: Option<StereoLayout>,
+    /// How far the eyes are apart, in the scene's units [default: the camera's, or 0.063]
+    #[arg(long, value_name = "DISTANCE")]
+    eye_distance: Option<f32>,
+    /// How far away both eyes look at one place [default: the camera's, or parallel]
+    #[arg(long, value_name = "DISTANCE")]
+    convergence: Option<f32>,
 }
 
 impl LensArgs {
@@ -59,6 +76,8 @@ impl LensArgs {
     pub fn over(&self, mut camera: Camera) -> Result<Camera> {
         camera.projection = self.projected(camera.projection)?;
         camera.lens = self.lens(&camera)?;
+        camera.clip = self.clip(camera.clip)?;
+        camera.stereo = self.stereo(&camera)?;
         Ok(camera)
     }
 
@@ -143,6 +162,44 @@ impl LensArgs {
             return Err(Error::new(format!("--blades {blades}: a lens has 3 to {most}, or 0 for a round one")));
         }
         Ok(Some(Lens { focus, blades, ..lens }))
+    }
+
+    fn clip(&self, [near, far]: [f32; 2]) -> Result<[f32; 2]> {
+        let clip = [self.clip_near.unwrap_or(near), self.clip_far.unwrap_or(far)];
+        let is_possible = clip[0] >= 0.0 && clip[0].is_finite() && clip[0] < clip[1];
+        let refusal = || {
+            let [near, far] = clip;
+            Error::new(format!(
+                "nothing lies between {near} and {far}: give --clip-near at least 0, and --clip-far more"
+            ))
+        };
+        is_possible.then_some(clip).ok_or_else(refusal)
+    }
+
+    fn stereo(&self, camera: &Camera) -> Result<Option<Stereo>> {
+        for (option, distance) in [("--eye-distance", self.eye_distance), ("--convergence", self.convergence)] {
+            let is_possible = distance.is_none_or(|distance| distance.is_finite() && distance > 0.0);
+            if let (Some(distance), false) = (distance, is_possible) {
+                return Err(Error::new(format!("{option} {distance} is no distance: give a number greater than 0")));
+            }
+        }
+        let own = camera.stereo;
+        let Some(layout) = self.stereo.or(own.map(|own| own.layout)) else {
+            let idle = self.eye_distance.map(|_| "--eye-distance").or(self.convergence.map(|_| "--convergence"));
+            let none = "the camera has one eye; add --stereo";
+            return idle.map_or(Ok(None), |option| Err(Error::new(format!("{option}: {none}"))));
+        };
+        if camera.projection.is_orthographic() {
+            return Err(Error::new("--stereo: along parallel rays two eyes see the same; leave it out"));
+        }
+        let convergence = self.convergence.or(own.and_then(|own| own.convergence));
+        if convergence.is_some() && !camera.projection.is_flat() {
+            return Err(Error::new(
+                "--convergence: where an image goes all around eyes look in parallel; leave it out",
+            ));
+        }
+        let distance = self.eye_distance.or(own.map(|own| own.distance)).unwrap_or(Stereo::HUMAN);
+        Ok(Some(Stereo { layout, distance, convergence }))
     }
 
     /// An option that only says how a lens is, if one is given.

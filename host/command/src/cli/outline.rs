@@ -27,14 +27,14 @@ impl<'a> Outline<'a> {
 
     pub fn json(&self) -> Value {
         let bounds = |[least, greatest]: [Vec3; 2]| json!([least.to_array(), greatest.to_array()]);
-        let meshes = self.scene.parts.iter().map(|part| {
-            let count = |noun| if part.primitives.noun() == noun { part.primitives.count() } else { 0 };
+        let meshes = self.scene.objects.iter().map(|object| {
+            let count = |noun| if object.primitives.noun() == noun { object.primitives.count() } else { 0 };
             json!({
-                "name": part.name,
+                "name": object.name,
                 "triangles": count("triangle"),
                 "spheres": count("sphere"),
                 "disks": count("disk"),
-                "bounds": bounds(part.bounds),
+                "bounds": bounds(object.bounds),
             })
         });
         let camera = self.camera.as_ref().map(
@@ -64,13 +64,13 @@ impl fmt::Display for Outline<'_> {
                 Projection::Equirectangular | Projection::Fisheye { .. } => writeln!(out)?,
             }
         }
-        let parts = &self.scene.parts;
-        for (number, part) in parts.iter().enumerate().take(MOST) {
-            let primitives = plural(part.primitives.count(), part.primitives.noun());
-            let name = printable(&part.name);
-            writeln!(out, "mesh {}: {name}, {primitives}, {}", number + 1, range(part.bounds))?;
+        let objects = &self.scene.objects;
+        for (number, object) in objects.iter().enumerate().take(MOST) {
+            let primitives = plural(object.primitives.count(), object.primitives.noun());
+            let name = printable(&object.name);
+            writeln!(out, "mesh {}: {name}, {primitives}, {}", number + 1, range(object.bounds))?;
         }
-        more(out, parts.len())?;
+        more(out, objects.len())?;
         let materials = &self.scene.materials;
         for (number, material) in materials.iter().enumerate().take(MOST) {
             writeln!(out, "material {}: {}", number + 1, printable(&material.name))?;

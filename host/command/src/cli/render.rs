@@ -279,7 +279,7 @@ impl Task<'_> {
             if let Some(denoiser) = self.of.denoise {
                 denoising::check(denoiser, loaded.packed.settings().transport.integrator)?;
             }
-            if loaded.packed.settings().transparent && !destination.is_film() {
+            if loaded.packed.is_transparent() && !destination.is_film() {
                 output::check_alpha(&destination)?;
             }
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;

@@ -8,7 +8,7 @@ use super::textures::Pictures;
 use crate::quality;
 use crate::scene::budget::Budget;
 use crate::scene::source;
-use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Part, Scene, Settings, Sphere, Unplaced};
+use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Object, Scene, Settings, Sphere, Unplaced};
 
 /// The fields of a [`Scene`] but for its geometry, the texels of its textures and the files that it came from.
 #[derive(Serialize, Deserialize)]
@@ -19,7 +19,7 @@ pub struct Description {
     ambient: Vec3,
     background: Background,
     settings: Settings,
-    parts: Vec<Part>,
+    objects: Vec<Object>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
@@ -34,7 +34,7 @@ impl Description {
             ambient: scene.ambient,
             background: scene.background,
             settings: scene.settings,
-            parts: scene.parts.clone(),
+            objects: scene.objects.clone(),
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
             cameras: scene.cameras.clone(),
@@ -74,13 +74,13 @@ impl Description {
     /// # Errors
     /// Textures of other texels.
     pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>, texels: &[u8]) -> Unplaced<Scene> {
-        let Description { hierarchy: _, ambient, background, settings, parts, materials, lights, cameras, textures } =
+        let Description { hierarchy: _, ambient, background, settings, objects, materials, lights, cameras, textures } =
             self;
         let mut scene = Scene {
             mesh,
             spheres,
             disks,
-            parts,
+            objects,
             files: Vec::new(),
             hierarchy: None,
             materials,

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::range::Range;
 use super::{
-    Background, Camera, Disk, Lens, Light, Material, Mesh, Part, Physical, Primitives, Projection, Scene, Sphere,
-    Unplaced,
+    Background, Camera, Disk, Lens, Light, Material, Mesh, Object, Physical, Primitives, Projection, Scene, Sphere,
+    Stereo, Unplaced,
 };
 use crate::error::{Error, Result};
 
@@ -43,7 +43,7 @@ impl Scene {
         }
         self.lights.iter().enumerate().try_for_each(|(number, of)| light(number, of))?;
         self.cameras.iter().try_for_each(camera)?;
-        self.parts.iter().try_for_each(|of| part(of, self))
+        self.objects.iter().try_for_each(|of| object(of, self))
     }
 }
 
@@ -87,6 +87,7 @@ fn material(material: &Material) -> Unplaced<()> {
     owner.colour("emission", material.emission, Range::AMOUNT)?;
     material.physical.iter().try_for_each(|of| physical(&owner, of))?;
     covering::material(&owner, material)?;
+    material.visibility.check(&owner.0)?;
     let Some(checker) = material.checker else { return Ok(()) };
     owner.colour("checker color", checker.colour, Range::SHARE)?;
     owner.colour("checker ambient", checker.ambient, Range::SHARE)?;
@@ -156,6 +157,14 @@ fn camera(camera: &Camera) -> Unplaced<()> {
     if let Some(of) = &camera.lens {
         lens(&owner, camera, of)?;
     }
+    let [near, far] = camera.clip;
+    owner.number("clip_near", near, Range::AMOUNT)?;
+    if far.is_nan() || far <= near {
+        return owner.refuse(&format!("sees from {near} to {far}; move clip_far behind clip_near"));
+    }
+    if let Some(of) = &camera.stereo {
+        stereo(&owner, camera, of)?;
+    }
     if camera.eye == camera.target {
         return owner.refuse("looks at its own eye; move its target");
     }
@@ -181,18 +190,33 @@ fn lens(owner: &Owner, camera: &Camera, lens: &Lens) -> Unplaced<()> {
     }
 }
 
-fn part(part: &Part, scene: &Scene) -> Unplaced<()> {
-    let (range, most) = match &part.primitives {
+fn stereo(owner: &Owner, camera: &Camera, stereo: &Stereo) -> Unplaced<()> {
+    owner.number("distance of eyes", stereo.distance, Range::LENGTH)?;
+    if camera.projection.is_orthographic() {
+        return owner.refuse("has two eyes along parallel rays, which see the same; remove its stereo");
+    }
+    match stereo.convergence {
+        Some(_) if !camera.projection.is_flat() => {
+            owner.refuse("has two eyes that converge, which they do not where it sees all around; remove that")
+        }
+        Some(distance) => owner.number("convergence", distance, Range::LENGTH),
+        None => Ok(()),
+    }
+}
+
+fn object(object: &Object, scene: &Scene) -> Unplaced<()> {
+    let (range, most) = match &object.primitives {
         Primitives::Triangles(range) => (range, scene.mesh.triangles.len()),
         Primitives::Spheres(range) => (range, scene.spheres.len()),
         Primitives::Disks(range) => (range, scene.disks.len()),
     };
-    let owner = Owner(format!("the part {:?}", part.name));
-    part.bounds.iter().try_for_each(|&corner| owner.place("bounds", corner))?;
+    let owner = Owner(format!("the object {:?}", object.name));
+    object.visibility.check(&owner.0)?;
+    object.bounds.iter().try_for_each(|&corner| owner.place("bounds", corner))?;
     if range.start <= range.end && range.end <= most {
         return Ok(());
     }
-    let noun = part.primitives.noun();
+    let noun = object.primitives.noun();
     owner.refuse(&format!("is made of the {noun}s {} to {}, but there are {most}", range.start, range.end))
 }
 

@@ -54,9 +54,9 @@ fn what_is_out_of_range_is_told_with_what_has_it() {
             .starts_with("the camera \"front\" has the fov 180")
     );
     assert!(after(|s| s.cameras[0].up = s.cameras[0].target - s.cameras[0].eye).contains("has its up along its view"));
-    let range = after(|s| s.parts[0].primitives = Primitives::Triangles(0..1_000_000));
+    let range = after(|s| s.objects[0].primitives = Primitives::Triangles(0..1_000_000));
     assert!(range.contains("is made of the triangles 0 to 1000000, but there are "), "{range}");
-    assert!(after(|s| s.parts[0].bounds[1].x = f32::NAN).contains("has the bounds NaN"));
+    assert!(after(|s| s.objects[0].bounds[1].x = f32::NAN).contains("has the bounds NaN"));
 }
 
 /// What code makes is refused as what files hold is; kernels would read beyond their buffers.

@@ -20,7 +20,7 @@ pub struct Merge<'f> {
     skins: Skins<'f>,
     budget: Budget,
     mesh: Mesh,
-    parts: Vec<scene::Part>,
+    objects: Vec<scene::Object>,
     /// Of what was placed or looked at, so that what draws nothing is not free.
     triangles: usize,
     vertices: usize,
@@ -52,7 +52,7 @@ impl<'f> Merge<'f> {
             skins,
             budget,
             mesh: Mesh::default(),
-            parts: Vec::new(),
+            objects: Vec::new(),
             triangles: 0,
             vertices: 0,
         }
@@ -119,7 +119,8 @@ impl<'f> Merge<'f> {
         if !triangles.is_empty() {
             let bounds = extent::of(self.mesh.positions[vertex..].iter().copied());
             let name = name(placed, of_mesh);
-            self.parts.push(scene::Part { name, primitives: Primitives::Triangles(triangles), bounds });
+            let (primitives, visibility) = (Primitives::Triangles(triangles), scene::Visibility::default());
+            self.objects.push(scene::Object { name, primitives, bounds, visibility });
         }
         Ok(())
     }
@@ -180,8 +181,8 @@ impl<'f> Merge<'f> {
     }
 
     /// All of it, and what each node has of it.
-    pub fn finish(self) -> (Mesh, Vec<scene::Part>) {
-        (self.mesh, self.parts)
+    pub fn finish(self) -> (Mesh, Vec<scene::Object>) {
+        (self.mesh, self.objects)
     }
 }
 

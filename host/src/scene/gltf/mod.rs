@@ -43,17 +43,15 @@ use super::budget::Budget;
 use super::material::{DEFAULT, Fields};
 use super::neighbours::Neighbours;
 use super::obj::Obj;
-use super::{Camera, Light, LightUnit, Loading, Mesh, Part, Unplaced, file};
+use super::{Camera, Light, LightUnit, Loading, Mesh, Object, Unplaced, file};
 use crate::error::{Error, Result};
 
 /// A scene but for its surroundings.
 #[derive(Debug)]
 pub struct Gltf {
-    /// All meshes as one in world units, the materials that its triangles index (the first is the default), what was
-    /// ignored, and every other file that was read.
+    /// All meshes as one in world units, the materials that its triangles index (the first is the default), what each
+    /// node has of the mesh, what was ignored, and every other file that was read.
     pub obj: Obj,
-    /// What each node has of the mesh.
-    pub parts: Vec<Part>,
     /// In the order of nodes.
     pub lights: Vec<Light>,
     /// Likewise, each with a name of its own.
@@ -100,7 +98,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     }
     let nodes = node::walk(&document)?;
     let buffers = Buffers::read(&document, chunk, neighbours)?;
-    let (mesh, parts) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let (mesh, objects) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
@@ -117,8 +115,8 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     }
     let (materials, pictures) = materials(&document, &buffers, &mesh, neighbours, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
-    let obj = Obj { mesh, materials, warnings: notes.finish(), libraries };
-    Ok(Gltf { obj, parts, lights, aspect: cameras.aspect, cameras: cameras.all })
+    let obj = Obj { mesh, materials, warnings: notes.finish(), libraries, objects };
+    Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
@@ -187,7 +185,7 @@ fn merged(
     nodes: &[Placed],
     budget: Budget,
     notes: &mut Notes,
-) -> Unplaced<(Mesh, Vec<Part>)> {
+) -> Unplaced<(Mesh, Vec<Object>)> {
     // A mesh has another shape at each node that has weights of its own.
     let mut by_mesh: BTreeMap<(usize, Option<usize>), Vec<&Placed>> = BTreeMap::new();
     for placed in nodes {
@@ -201,11 +199,11 @@ fn merged(
     for ((mesh, _), nodes) in by_mesh {
         merge.add(mesh, &nodes, notes)?;
     }
-    let (mesh, parts) = merge.finish();
+    let (mesh, objects) = merge.finish();
     if mesh.triangles.is_empty() {
         return Err(nothing(document));
     }
-    Ok((mesh, parts))
+    Ok((mesh, objects))
 }
 
 /// Why nothing is drawn, and what to do.

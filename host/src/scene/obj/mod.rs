@@ -28,17 +28,19 @@ use super::load::Loading;
 use super::map::Images;
 use super::material::Fields;
 use super::polygon::Effort;
-use super::{Mesh, file};
+use super::{Mesh, Object, file};
 use crate::error::{Error, Result};
 
 /// A mesh, the materials that its triangles index (the first is the default), and what was ignored.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub struct Obj {
     pub mesh: Mesh,
     pub materials: Vec<(String, Fields)>,
     pub warnings: Vec<String>,
     /// The material files that were read.
     pub libraries: Vec<PathBuf>,
+    /// What it is made of, if the file says so.
+    pub objects: Vec<Object>,
 }
 
 /// Reads a mesh file, the material files it names and their pictures. A normal is zero where the file has none. It has texture
@@ -224,6 +226,7 @@ impl<'p> Found<'p> {
             materials: libraries.materials,
             warnings: of_libraries.warnings.into_iter().chain(warnings).collect(),
             libraries: libraries.paths,
+            objects: Vec::new(),
         })
     }
 }

@@ -22,7 +22,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         mesh,
         spheres: Vec::new(),
         disks: Vec::new(),
-        parts: Vec::new(),
+        objects: Vec::new(),
         files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),

@@ -79,7 +79,7 @@ fn a_file_holds_many_spheres_of_one_material() {
     let scene = load("file = \"heap.xyzr\"\nscale = 2\nmaterial = \"red\"\n[[material]]\nname = \"red\"");
     assert_eq!(scene.spheres, [sphere(Vec3::ZERO, 2.0), sphere(Vec3::new(6.0, -2.0, 1.0), 4.0)]);
     assert_eq!(scene.materials[0].name, "red");
-    let part = &scene.parts[0];
+    let part = &scene.objects[0];
     assert_eq!((part.name.as_str(), &part.primitives), ("heap.xyzr (red)", &Primitives::Spheres(0..2)));
     assert_eq!(part.bounds, [Vec3::new(-2.0, -6.0, -3.0), Vec3::new(10.0, 2.0, 5.0)]);
     assert!(scene.files[0].ends_with("heap.xyzr"));
@@ -96,7 +96,7 @@ fn parts_are_told_by_what_they_hold_and_materials_are_counted_over_all() {
         [[mesh]]\nshape = \"disk\"\n[[mesh]]\nshape = \"sphere\"\nmaterial = \"b\"\n\
         [[material]]\nname = \"a\"\n[[material]]\nname = \"b\"",
     );
-    let held: Vec<_> = scene.parts.iter().map(|part| part.primitives.clone()).collect();
+    let held: Vec<_> = scene.objects.iter().map(|part| part.primitives.clone()).collect();
     let want =
         [Primitives::Spheres(0..1), Primitives::Triangles(0..2), Primitives::Disks(0..1), Primitives::Spheres(1..2)];
     assert_eq!(held, want);

@@ -288,15 +288,18 @@ fn every_mesh_is_a_part_with_its_name_its_triangles_and_its_bounds() {
         [[mesh]]\nshape = \"box\"\nmin = [0, 1, 2]\nmax = [3, 4, 5]\n"
     );
     let (scene, _) = load(&scene);
-    let names: Vec<_> = scene.parts.iter().map(|part| part.name.as_str()).collect();
+    let names: Vec<_> = scene.objects.iter().map(|part| part.name.as_str()).collect();
     assert_eq!(names, ["sphere", "a.obj (default)", "box"]);
-    let ranges: Vec<_> = scene.parts.iter().map(|part| part.primitives.clone()).collect();
+    let ranges: Vec<_> = scene.objects.iter().map(|part| part.primitives.clone()).collect();
     assert_eq!(ranges, [0..20, 20..21, 21..33].map(Primitives::Triangles));
-    assert_eq!(scene.parts[1].bounds, [Vec3::new(-1.0, -1.0, 9.0), Vec3::new(0.0, 0.0, 9.0)]);
-    assert_eq!(scene.parts[2].bounds, [Vec3::new(0.0, 1.0, 2.0), Vec3::new(3.0, 4.0, 5.0)]);
+    assert_eq!(scene.objects[1].bounds, [Vec3::new(-1.0, -1.0, 9.0), Vec3::new(0.0, 0.0, 9.0)]);
+    assert_eq!(scene.objects[2].bounds, [Vec3::new(0.0, 1.0, 2.0), Vec3::new(3.0, 4.0, 5.0)]);
     let folder = Folder::new(&[("a.obj", TRIANGLE)]);
     let (bare, _) = folder.load("a.obj").unwrap();
-    assert_eq!((bare.parts[0].name.as_str(), bare.parts[0].primitives.clone()), ("a.obj", Primitives::Triangles(0..1)));
+    assert_eq!(
+        (bare.objects[0].name.as_str(), bare.objects[0].primitives.clone()),
+        ("a.obj", Primitives::Triangles(0..1))
+    );
     assert_eq!(bare.cameras, [crate::scene::default_camera(&bare, 1.0).unwrap()]);
 }
 
@@ -313,7 +316,7 @@ fn a_hundred_thousand_of_everything_take_seconds() {
     let (scene, warnings) = load(&text.concat());
     assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
     assert_eq!((scene.cameras.len(), scene.lights.len()), (100_000, 100_000));
-    assert_eq!((scene.materials.len(), scene.parts.len()), (50_000, 100_000));
+    assert_eq!((scene.materials.len(), scene.objects.len()), (50_000, 100_000));
     assert_eq!(warnings.len(), 50_000);
 }
 

@@ -1,7 +1,7 @@
 //! Disks in leaves.
 
 use super::primitives::counts;
-use super::{Identity, Meeting, accept};
+use super::{Identity, Meeting, accept, hidden};
 use crate::data::{Effects, Primitive};
 use crate::geometry::{self, Crossing, intersect_disk};
 use crate::ray::{Hit, Ray};
@@ -30,6 +30,7 @@ pub fn intersect<Q: Query, R: Real>(
     if effects.has(Effects::CULLING) && !Q::ANY && disk.is_culled() {
         inside = inside & crossing.front;
     }
+    inside = hidden::met::<Q, R>(effects, disk, ray, inside);
     if !inside.any() {
         return;
     }

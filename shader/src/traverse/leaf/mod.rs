@@ -2,6 +2,7 @@
 
 mod cutout;
 mod disk;
+mod hidden;
 mod primitives;
 mod sphere;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Spheres in leaves.
 
 use super::primitives::counts;
-use super::{Identity, Meeting, accept};
+use super::{Identity, Meeting, accept, hidden};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Sphere4};
 use crate::data::{Effects, Primitive};
@@ -95,6 +95,7 @@ fn accept_chord<Q: Query, R: Real>(
     if context.base.spec.effects.has(Effects::CULLING) && !Q::ANY && sphere.is_culled() {
         inside = inside & !end.far;
     }
+    inside = hidden::met::<Q, R>(context.base.spec.effects, sphere, ray, inside);
     if !inside.any() {
         return;
     }

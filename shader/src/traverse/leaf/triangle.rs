@@ -1,7 +1,7 @@
 //! Triangles in leaves.
 
 use super::primitives::counts;
-use super::{Identity, Meeting, accept};
+use super::{Identity, Meeting, accept, hidden};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Triangle4};
 use crate::data::{Effects, Launch, Primitive};
@@ -126,6 +126,7 @@ fn accept_candidate<Q: Query, R: Real>(
     if effects.has(Effects::CULLING) && !Q::ANY && triangle.is_culled() {
         inside = inside & candidate.front;
     }
+    inside = hidden::met::<Q, R>(effects, triangle, ray, inside);
     // This is rare, so transforming the vertices again costs less than keeping them since the intersection.
     if (inside & candidate.in_line()).any() {
         let [a, b, c] = triangle.vertices();

@@ -308,7 +308,8 @@ fn every_node_with_a_mesh_is_a_part_of_its_name() {
         { "mesh": 0, "name": "left" }, { "translation": [2, 0, 0], "mesh": 0 }, { "name": "empty" },
     ]);
     model.json["scenes"] = json!([{ "nodes": [0, 1, 2] }]);
-    let Gltf { obj, parts, .. } = model.load();
+    let Gltf { obj, .. } = model.load();
+    let parts = &obj.objects;
     let told: Vec<_> = parts.iter().map(|part| (part.name.as_str(), part.primitives.clone())).collect();
     assert_eq!(told, [("left", Primitives::Triangles(0..2)), ("tile", Primitives::Triangles(2..4))]);
     assert_eq!(parts[1].bounds, [2.0 * Vec3::X, 3.0 * Vec3::X + Vec3::Y]);

@@ -23,7 +23,7 @@ fn a_node_with_instances_has_a_copy_of_its_mesh_at_each() {
     model.json["extensionsRequired"] = json!(["EXT_mesh_gpu_instancing"]);
     let scene = model.load();
     let mesh = &scene.obj.mesh;
-    assert_eq!((mesh.triangles.len(), scene.parts.len(), scene.obj.warnings.len()), (2, 1, 0));
+    assert_eq!((mesh.triangles.len(), scene.obj.objects.len(), scene.obj.warnings.len()), (2, 1, 0));
     assert_eq!(mesh.positions[1], Vec3::new(2.0, 0.0, 3.0));
     assert!(mesh.positions[4].abs_diff_eq(Vec3::new(0.0, 7.0, 3.0), 1e-4), "{}", mesh.positions[4]);
     assert!(mesh.positions[5].abs_diff_eq(Vec3::new(-2.0, 5.0, 3.0), 1e-4), "{}", mesh.positions[5]);

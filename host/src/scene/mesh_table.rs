@@ -7,7 +7,7 @@ use super::named::{self, Wish};
 use super::obj::Obj;
 use super::table::Table;
 use super::transform::Transform;
-use super::{Part, Primitives, normal};
+use super::{Object, Primitives, Visibility, extent, normal};
 use crate::error::Result;
 
 /// Geometry in place, and the materials that it numbers.
@@ -18,16 +18,32 @@ pub struct Placed {
     pub materials: Vec<(String, Fields)>,
     /// This one instead of them all.
     pub material: Option<String>,
+    /// What a file itself is made of, by the triangles of the geometry.
+    pub objects: Vec<Object>,
+    pub visibility: Visibility,
 }
 
 impl Placed {
-    /// What users are told of the part that stands there.
-    pub fn part(&self, primitives: Primitives) -> Part {
+    /// The objects that stand there: those of a file that has several, or all of it as one.
+    pub fn objects(&self, primitives: Primitives) -> Vec<Object> {
+        let visibility = self.visibility;
+        if let (Geometry::Mesh(mesh), Primitives::Triangles(all), [_, _, ..]) =
+            (&self.geometry, &primitives, &*self.objects)
+        {
+            let of_file = self.objects.iter().filter_map(|object| {
+                let Primitives::Triangles(own) = &object.primitives else { return None };
+                let corners = mesh.triangles.get(own.clone())?.iter().flatten();
+                let bounds = extent::of(corners.map(|&vertex| mesh.positions[vertex as usize]));
+                let primitives = Primitives::Triangles(all.start + own.start..all.start + own.end);
+                Some(Object { name: object.name.clone(), primitives, bounds, visibility })
+            });
+            return of_file.collect();
+        }
         let name = match &self.material {
             Some(material) => format!("{} ({material})", self.name),
             None => self.name.clone(),
         };
-        Part { name, primitives, bounds: self.geometry.bounds() }
+        vec![Object { name, primitives, bounds: self.geometry.bounds(), visibility }]
     }
 }
 
@@ -40,7 +56,8 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
     let material = table.name("material")?;
     let smooth = table.flag("smooth")?;
     let wish = Wish { smooth, transform: Transform::read(table)? };
-    let (name, mut geometry, materials) = source(table, &wish, files)?;
+    let visibility = Visibility::read(table)?.unwrap_or_default();
+    let Source { name, mut geometry, materials, objects } = source(table, &wish, files)?;
     if let Geometry::Mesh(mesh) = &mut geometry {
         match smooth {
             Some(true) => normal::smooth(mesh),
@@ -55,17 +72,30 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
         return Err(table.fault(fault));
     }
     files.budget.take(&geometry);
-    Ok(Placed { name, geometry, materials, material })
+    Ok(Placed { name, geometry, materials, material, objects, visibility })
 }
 
-type Source = (String, Geometry, Vec<(String, Fields)>);
+/// A file or a shape as it is.
+struct Source {
+    name: String,
+    geometry: Geometry,
+    materials: Vec<(String, Fields)>,
+    objects: Vec<Object>,
+}
+
+impl Source {
+    /// Of what names no material.
+    fn plain(name: impl Into<String>, geometry: Geometry) -> Source {
+        Source { name: name.into(), geometry, materials: plain(), objects: Vec::new() }
+    }
+}
 
 fn source(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, wish, files),
         (false, true) => {
             let (word, geometry) = named::read(table, wish, files.budget, files.is_covered)?;
-            Ok((word.into(), geometry, plain()))
+            Ok(Source::plain(word, geometry))
         }
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
         (false, false) => Err(table.fault("[[mesh]] needs \"file\" or \"shape\"; add one")),
@@ -81,15 +111,16 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
     if is(&path, "xyzr") {
         table.rename("a file of spheres");
         let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
-        return Ok((name, geometry, plain()));
+        return Ok(Source::plain(name, geometry));
     }
     if !is(&path, "obj") && !is(&path, "ply") && !is_gltf(&path) {
         let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
     }
-    let Obj { mesh, materials, .. } = files.mesh(&path)?;
+    let Obj { mesh, materials, objects, .. } = files.mesh(&path)?;
     budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
-    Ok((name, Geometry::Mesh(mesh.clone()), materials.clone()))
+    let geometry = Geometry::Mesh(mesh.clone());
+    Ok(Source { name, geometry, materials: materials.clone(), objects: objects.clone() })
 }
 
 /// The materials of what names none.

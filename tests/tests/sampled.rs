@@ -8,8 +8,8 @@ use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::method::{Method, Traversal};
 use eyerays::quality::Bvh;
 use eyerays::scene::{
-    Background, Direct, Falloff, Filter, Integrator, Lens, Light, Mapping, PixelFilter, Projection, Sampler, Scene,
-    Settings, Transport,
+    Background, Direct, Falloff, Filter, Integrator, Lens, Light, Mapping, Matte, PixelFilter, Projection, Sampler,
+    Scene, Settings, Stereo, StereoLayout, Transport, Visibility,
 };
 use eyerays_tests::covered::covered;
 use eyerays_tests::{Posed, SAMPLED, assert_same_bits, gpu, on_cpu, pack, pack_in, quick_gpu, shipped};
@@ -255,6 +255,33 @@ fn lights_change_without_another_scene() {
 }
 
 /// Lenses, projections, shifts, pixel filters and clear backgrounds, by each integrator.
+/// Catchers, holes, what rays do not meet, clipping planes and two eyes, by paths and by Whitted's integrator.
+#[test]
+fn what_pictures_show_of_objects() {
+    let Some(gpu) = quick_gpu() else { return };
+    for (name, mattes) in
+        [("cornell_path", [Matte::Catcher, Matte::Holdout]), ("glass", [Matte::Shown, Matte::Holdout])]
+    {
+        let mut scene = shipped(name);
+        for (number, object) in scene.objects.iter_mut().enumerate() {
+            let reflection = number % 3 != 1;
+            let shadow = number % 4 != 2;
+            let matte = mattes.get(number).copied().unwrap_or_default();
+            object.visibility = Visibility { shadow, reflection, matte, ..Visibility::default() };
+        }
+        let camera = &mut scene.cameras[0];
+        let distance = (camera.target - camera.eye).length();
+        let stereo =
+            Stereo { layout: StereoLayout::SideBySide, distance: 0.05 * distance, convergence: Some(distance) };
+        (camera.clip, camera.stereo) = ([0.4 * distance, 1.4 * distance], Some(stereo));
+        let settings = Settings { size: (38, 29), samples: 2, spp: 0, ..scene.settings };
+        let posed = pack(&scene, &scene.cameras[0], settings);
+        assert_same(&gpu, &posed, Traversal::default(), name);
+        let alpha = on_cpu(&posed).0.alpha.expect("holes are not opaque");
+        assert!(alpha.iter().any(|&alpha| alpha < 1.0), "{name}");
+    }
+}
+
 #[test]
 fn what_cameras_have_beside_pinholes() {
     let Some(gpu) = quick_gpu() else { return };

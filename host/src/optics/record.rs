@@ -78,7 +78,8 @@ impl CameraRecord {
         let step = f64::from(numbers(self.camera.right).length());
         let eyes = f64::from(stereo.distance) / 2.0 * scale / step;
         let converging = stereo.convergence.map_or(0.0, |distance| eyes / (f64::from(distance) * scale));
-        if !(eyes.max(converging) < f64::from(1u32 << 30)) {
+        let is_possible = eyes.max(converging) < f64::from(1u32 << 30);
+        if !is_possible {
             return Err(refused(camera, "has eyes too far apart, or looking at a place too near: change its stereo"));
         }
         let eyes = [eyes, converging].map(|number| flushed(Vec3::splat(number as f32)).x);

@@ -37,6 +37,7 @@ fn specialisations() -> Vec<Specialisation> {
         order,
         path.with_launch(Launch::CELLS | Launch::BLOCKS),
         path.with_launch(Launch::LENS | Launch::FILTERED | Launch::ROUND | Launch::CLEAR),
+        path.with_launch(Launch::CLIPPED | Launch::STEREO | Launch::CLEAR | Launch::CATCHER),
         wave.without_launch(Launch::SECONDARY).with_launch(Launch::KEPT | Launch::LENS | Launch::PARALLEL),
     ]
 }

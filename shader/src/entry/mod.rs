@@ -125,7 +125,8 @@ macro_rules! shading {
         entry! {
             /// Adds what slots have summed, and the light that their last vertices waited for, to the film.
             accumulate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame shadows segments sums film] {
-                let sample = |slot| stage::sampled::<$R>(frame, spec.launch, slot, (sums, shadows, segments));
+                // By value: a pointer to the constants would lie in the closure.
+                let sample = move |slot| stage::sampled::<$R>(frame, spec.launch, slot, (&*sums, &*shadows, &*segments));
                 let pixel = camera::pixel(frame, spec.order, id.x);
                 if spec.launch.has(Launch::BLOCKS) {
                     stage::expose_blocks::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, true), sample, film);

@@ -2,6 +2,7 @@
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
 use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
+use crate::background::background;
 use crate::buffer::read;
 use crate::data::{Effects, Frame, Launch, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
@@ -11,7 +12,7 @@ use crate::ray::Ray;
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
-use crate::stage::{PathState, ShadowRay};
+use crate::stage::{Caught, PathState, ShadowRay, brightness};
 use crate::texture::{Covering, Place};
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
@@ -88,8 +89,23 @@ fn scattered<R: Scalar>(
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
-    let light = if catches { V3::zero() } else { light };
-    Scattered { is_caught: catches, ..Scattered::once(light, shadow, next, goes_on) }
+    if !catches {
+        return Scattered::once(light, shadow, next, goes_on);
+    }
+    let sky = if goes_on { unsampled(launch, lighting, &next) } else { V3::zero() };
+    let caught = Caught::under_way(brightness(shadow.light), brightness(sky));
+    Scattered { caught, ..Scattered::once(V3::zero(), shadow, next, goes_on) }
+}
+
+/// What a ray that meets nothing sees of the surroundings, if that is no light that is sampled.
+#[inline(always)]
+fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
+    let effects = launch.spec.effects;
+    if effects.has(Effects::ENVIRONMENT) && !path.density.eq(R::splat(0.0)) {
+        return V3::zero();
+    }
+    let seen = background(effects, launch.frame, lighting.environment, path.direction, false);
+    share(launch, path, seen)
 }
 
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),

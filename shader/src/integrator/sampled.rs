@@ -11,7 +11,7 @@ use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, AFTER_LENS, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{CLEARED, Caught, NON_FINITE, PathState, Segment, ShadowRay, brightness};
+use crate::stage::{CLEARED, Caught, NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
 use super::path::weight;
@@ -144,15 +144,15 @@ pub(super) struct Scattered<R: Real> {
     pub other: PathState<R>,
     /// Is there one?
     pub waits: bool,
-    /// Is what the shadow ray brings the light of a shadow catcher?
-    pub is_caught: bool,
+    /// What the vertex asks for if it is on a shadow catcher.
+    pub caught: Caught<R>,
 }
 
 impl<R: Scalar> Scattered<R> {
     /// Of a path that does not branch.
     #[inline(always)]
     pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
-        Scattered { light, shadow, next, goes_on, other: next, waits: false, is_caught: false }
+        Scattered { light, shadow, next, goes_on, other: next, waits: false, caught: Caught::nothing() }
     }
 }
 
@@ -211,6 +211,7 @@ pub fn scatter<R: Scalar>(
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
         let is_dark = is_clear || after_catcher;
+        caught = if after_catcher { caught.open() } else { caught };
         let light = if is_dark { V3::zero() } else { surroundings(launch, &context.lighting, &path) };
         Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
     } else if is_hole(launch, &path, primitive_index) {
@@ -218,6 +219,9 @@ pub fn scatter<R: Scalar>(
         Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
+        if after_catcher && launch.primitive(primitive_index).has(Primitive::CATCHER) {
+            caught = caught.open();
+        }
         let sample = camera::sample(launch.frame, slot);
         let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
         let coordinates = (hit.y, hit.z);
@@ -232,8 +236,8 @@ pub fn scatter<R: Scalar>(
             path::at(launch, context, &vertex)
         }
     };
-    if bits.has(Launch::CATCHER) && scattered.is_caught {
-        caught = Caught { full: brightness(scattered.shadow.light), state: Caught::<R>::WAITS };
+    if bits.has(Launch::CATCHER) && scattered.caught.is_some() {
+        caught = scattered.caught;
     }
     caught.store(bits, launch.frame, slot, sums);
     let (sum, word) = added(sum, word, &scattered);

@@ -106,8 +106,8 @@ impl PixelSums {
             squares,
             clear: if word & CLEARED == 0 { 0 } else { 1 },
             caught: if caught.is_some() { 1 } else { 0 },
-            full: channel(caught.full),
-            lit: if caught.state == Caught::<R>::LIT { channel(caught.full) } else { Quanta::default() },
+            full: channel(caught.full()),
+            lit: channel(caught.lit),
         }
     }
 

@@ -24,9 +24,15 @@ pub fn generate<R: Scalar>(
     // Brought near where the camera is far from the scene.
     let near = Ray::from_afar(origin, direction);
     if spec.launch.has(Launch::KEPT) {
-        // How far it goes is told from where it starts.
-        let origin = if spec.launch.has(Launch::CLIPPED) { near.origin } else { origin };
-        Path::of_camera(CameraRay { origin, ..ray }).store(frame.slots, slot, 0, paths);
+        let path = Path::of_camera(ray);
+        let path = if spec.launch.has(Launch::CLIPPED) {
+            let limit = camera::limit(frame, spec.launch, near.origin, direction);
+            // It is told from where the ray starts.
+            Path { origin: near.origin, ..path }.within(limit)
+        } else {
+            path
+        };
+        path.store(frame.slots, slot, 0, paths);
         return;
     }
     let path = PathState {

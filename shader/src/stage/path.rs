@@ -41,10 +41,24 @@ impl<R: Scalar> Path<R> {
     #[inline(always)]
     pub fn current(launch: &LaunchContext<'_>, slot: u32, paths: &[R::Record]) -> Self {
         if launch.spec.launch.has(Launch::SECONDARY | Launch::KEPT) {
-            return Self::load(launch.frame.slots, slot, 0, paths);
+            let path = Self::load(launch.frame.slots, slot, 0, paths);
+            let is_of_camera = launch.spec.launch.has(Launch::CLIPPED) && !launch.spec.launch.has(Launch::SECONDARY);
+            return if is_of_camera { Path { bounces: 0, ..path } } else { path };
         }
         let pixel = camera::pixel(launch.frame, launch.spec.order, slot);
         Self::of_camera(camera::plain_ray(launch.frame, launch.spec.launch, pixel))
+    }
+
+    /// A ray of the camera that goes so far, as it is kept ([`Launch::CLIPPED`]): the limit has the place of its bounces.
+    #[inline(always)]
+    pub fn within(self, limit: R) -> Self {
+        Path { bounces: limit.to_f32().to_bits(), ..self }
+    }
+
+    /// How far a slot's ray of the camera goes that was kept so.
+    #[inline(always)]
+    pub fn limit(slot: u32, paths: &[R::Record]) -> R {
+        R::splat(f32::from_bits(R::load(read(paths, slot)).1))
     }
 
     /// The path at a level of a slot. Levels lie apart, so that neighbouring slots load neighbours.

@@ -2,7 +2,6 @@
 
 use super::segment::NOWHERE;
 use super::{Path, Segment};
-use crate::camera;
 use crate::data::Launch;
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
@@ -23,7 +22,7 @@ pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Reco
     let limit = if is_none {
         R::splat(NOWHERE)
     } else if launch.has(Launch::CLIPPED) && is_of_camera(launch) {
-        camera::limit(context.base.frame, launch, origin, direction)
+        Path::limit(slot, paths)
     } else {
         R::splat(f32::MAX)
     };

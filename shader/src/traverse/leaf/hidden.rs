@@ -1,17 +1,32 @@
-//! Primitives that some rays do not meet, though they are in the way.
+//! Primitives that some rays do not meet, though they are in the way. Rays that start on no primitive are the camera's.
 
 use crate::data::{Effects, Primitive};
 use crate::ray::{Hit, Ray};
-use crate::real::Real;
+use crate::real::{Mask, Real};
 use crate::traverse::Query;
 
-/// The lanes of a mask whose rays meet a primitive by who sent them. Rays that start on no primitive are the camera's.
+/// Does none of the lanes' rays meet a primitive, by who sent them? What a GPU asks, whose values are single rays', before any test: once
+/// for all kinds, since every kernel holds it.
+#[inline(always)]
+pub(super) fn is_unmet<Q: Query, R: Real>(effects: Effects, primitive: &Primitive, ray: &Ray<R>) -> bool {
+    if !cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) {
+        return false;
+    }
+    !of_senders::<Q, R>(primitive, ray, R::splat(0.0).eq(R::splat(0.0))).any()
+}
+
+/// The lanes of a mask whose rays meet it: what a CPU asks, where few tests come so far.
 #[inline(always)]
 pub(super) fn met<Q: Query, R: Real>(effects: Effects, primitive: &Primitive, ray: &Ray<R>, mask: R::Mask) -> R::Mask {
     const ANY: u32 = Primitive::UNSEEN | Primitive::UNREFLECTED | Primitive::SHADOWLESS | Primitive::CATCHER;
-    if !effects.has(Effects::HIDDEN) || !primitive.has(ANY) {
+    if cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) || !primitive.has(ANY) {
         return mask;
     }
+    of_senders::<Q, R>(primitive, ray, mask)
+}
+
+#[inline(always)]
+fn of_senders<Q: Query, R: Real>(primitive: &Primitive, ray: &Ray<R>, mask: R::Mask) -> R::Mask {
     let mut met = mask;
     if Q::ANY {
         if primitive.has(Primitive::SHADOWLESS) {

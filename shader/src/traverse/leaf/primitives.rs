@@ -1,6 +1,6 @@
 //! Triangles alone, or with spheres and disks in any mixture.
 
-use super::{Leaf, disk, sphere, triangle};
+use super::{Leaf, disk, hidden, sphere, triangle};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{Bvh8Ref, LeafKind};
 use crate::data::{Effects, Primitive};
@@ -25,6 +25,9 @@ impl Leaf for Primitives {
         Q::on_primitive();
         let primitive = context.primitive(index);
         let effects = context.base.spec.effects;
+        if hidden::is_unmet::<Q, R>(effects, &primitive, ray) {
+            return;
+        }
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             sphere::intersect::<Q, R>(context, &primitive, index, ray, hit);
         } else if effects.has(Effects::DISK) && primitive.is_disk() {

@@ -14,13 +14,19 @@ pub fn background<R: Scalar>(
     direction: V3<R>,
     is_of_camera: bool,
 ) -> V3<R> {
-    let bottom = V3::splat(numbers(frame.horizon));
     if effects.has(Effects::ENVIRONMENT) {
         let environment = Environment::new(environment);
         if !is_of_camera || environment.is_visible() {
             return environment.radiance(direction);
         }
     }
+    gradient(effects, frame, direction)
+}
+
+/// The same without a picture.
+#[inline(always)]
+pub fn gradient<R: Scalar>(effects: Effects, frame: &Frame, direction: V3<R>) -> V3<R> {
+    let bottom = V3::splat(numbers(frame.horizon));
     if !effects.has(Effects::GRADIENT) {
         return bottom;
     }

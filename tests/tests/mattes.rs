@@ -209,10 +209,9 @@ fn clipping_planes_leave_out_what_is_not_between_them() {
     ] {
         let mut scene = empty();
         scene.background = Background::Colour(Vec3::splat(0.25));
-        let shining =
-            |light: f32| Material { emission: Vec3::splat(light), two_sided: true, ..matt(Vec3::splat(light)) };
-        let whitted = settings.transport.integrator == Integrator::Whitted;
-        let of = |light: f32| if whitted { matt(Vec3::splat(light)) } else { shining(light) };
+        let shining = |light: f32| Material { emission: Vec3::splat(light), two_sided: true, ..black() };
+        let is_whitted = settings.transport.integrator == Integrator::Whitted;
+        let of = |light: f32| if is_whitted { matt(Vec3::splat(light)) } else { shining(light) };
         scene.ambient = Vec3::ONE;
         add_wall(&mut scene, of(0.5), Vec3::NEG_Z * 2.0, 9.0);
         add_wall(&mut scene, of(1.0), Vec3::NEG_Z * 4.0, 18.0);

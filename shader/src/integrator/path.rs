@@ -2,7 +2,7 @@
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
 use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
-use crate::background::background;
+use crate::background::gradient;
 use crate::buffer::read;
 use crate::data::{Effects, Frame, Launch, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
@@ -92,20 +92,19 @@ fn scattered<R: Scalar>(
     if !catches {
         return Scattered::once(light, shadow, next, goes_on);
     }
-    let sky = if goes_on { unsampled(launch, lighting, &next) } else { V3::zero() };
+    let sky = if goes_on { unsampled(launch, &next) } else { V3::zero() };
     let caught = Caught::under_way(brightness(shadow.light), brightness(sky));
     Scattered { caught, ..Scattered::once(V3::zero(), shadow, next, goes_on) }
 }
 
 /// What a ray that meets nothing sees of the surroundings, if that is no light that is sampled.
 #[inline(always)]
-fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
+fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> V3<R> {
     let effects = launch.spec.effects;
-    if effects.has(Effects::ENVIRONMENT) && !path.density.eq(R::splat(0.0)) {
+    if effects.has(Effects::ENVIRONMENT) {
         return V3::zero();
     }
-    let seen = background(effects, launch.frame, lighting.environment, path.direction, false);
-    share(launch, path, seen)
+    share(launch, path, gradient(effects, launch.frame, path.direction))
 }
 
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),

@@ -5,14 +5,23 @@ use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real};
 use crate::traverse::Query;
 
-/// Does none of the lanes' rays meet a primitive, by who sent them? What a GPU asks, whose values are single rays', before any test: once
+/// Does a ray not meet a primitive, by who sent it? What a GPU asks, whose values are single rays', before any test: once
 /// for all kinds, since every kernel holds it.
 #[inline(always)]
 pub(super) fn is_unmet<Q: Query, R: Real>(effects: Effects, primitive: &Primitive, ray: &Ray<R>) -> bool {
     if !cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) {
         return false;
     }
-    !of_senders::<Q, R>(primitive, ray, R::splat(0.0).eq(R::splat(0.0))).any()
+    if Q::ANY {
+        let of_catcher = R::equals(Ray::<R>::OF_CATCHER, ray.source_primitive).any();
+        return primitive.has(if of_catcher {
+            Primitive::SHADOWLESS | Primitive::CATCHER
+        } else {
+            Primitive::SHADOWLESS
+        });
+    }
+    let of_camera = R::equals(Hit::<R>::NOTHING, ray.source_primitive).any();
+    primitive.has(if of_camera { Primitive::UNSEEN } else { Primitive::UNREFLECTED })
 }
 
 /// The lanes of a mask whose rays meet it: what a CPU asks, where few tests come so far.
@@ -22,11 +31,6 @@ pub(super) fn met<Q: Query, R: Real>(effects: Effects, primitive: &Primitive, ra
     if cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) || !primitive.has(ANY) {
         return mask;
     }
-    of_senders::<Q, R>(primitive, ray, mask)
-}
-
-#[inline(always)]
-fn of_senders<Q: Query, R: Real>(primitive: &Primitive, ray: &Ray<R>, mask: R::Mask) -> R::Mask {
     let mut met = mask;
     if Q::ANY {
         if primitive.has(Primitive::SHADOWLESS) {

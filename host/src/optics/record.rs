@@ -41,7 +41,8 @@ impl CameraRecord {
         let eye = eye.ok_or_else(|| refused(camera, "is too far away: move it nearer to the scene"))?;
         let needed = camera.bits();
         if needed & !job.optics().bits() != 0 {
-            let why = "maps its image, is clipped or has two eyes as no camera of the scene: add it to those before it is packed";
+            let why = "has a projection, clipping planes or eyes that no camera of the scene has: \
+                 add it to the scene's cameras before it is packed";
             return Err(refused(camera, why));
         }
         let axes = Axes { eye, right, up: right.cross(forward), forward };

@@ -39,7 +39,7 @@ fn above<R: Scalar>(interaction: &SurfaceInteraction<R>, vertex: V3<R>, normal: 
 mod tests {
     use super::*;
     use crate::data::{Normals, Primitive, pack};
-    use crate::ray::Hit;
+    use crate::ray::Ray;
     use crate::texture::Cone;
     use glam::Vec3;
     use proptest::prelude::*;
@@ -99,6 +99,6 @@ mod tests {
         let vertices = on_ball(0.3);
         let interaction = lift(vertices, vertices, (0.3, 0.3), true);
         let (up, down) = (interaction.normal, -interaction.normal);
-        assert_eq!([up, down].map(|d| interaction.source_primitive(d)), [0, Hit::<f64>::NOTHING]);
+        assert_eq!([up, down].map(|d| interaction.source_primitive(d)), [0, Ray::<f64>::OF_SURFACE]);
     }
 }

@@ -110,3 +110,21 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         }
     }
 }
+
+/// Far more threads than cores, so that some wait for the film while others have it: none may take up a further tile meanwhile.
+#[test]
+fn threads_that_wait_for_the_film_end() {
+    let scene = shipped("cornell");
+    let posed = std::sync::Arc::new(pack(&scene, &scene.cameras[0], settings(&scene, (256, 256), 1)));
+    let (told, ended) = std::sync::mpsc::channel();
+    std::thread::spawn(move || {
+        for _ in 0..60 {
+            let rendered = cpu::render::<f32>(&posed.packed, &posed.view, Traversal::default(), 24, &|_| ());
+            told.send(rendered.is_ok()).unwrap();
+        }
+    });
+    for number in 0..60 {
+        let is_ok = ended.recv_timeout(std::time::Duration::from_secs(120));
+        assert_eq!(is_ok, Ok(true), "rendering {number} does not end");
+    }
+}

@@ -122,24 +122,19 @@ impl Renderer {
         R: Number,
     {
         let view = view.part(part.region, part.samples)?;
+        self.threads.install(|| film.make_room())?;
         let film = Mutex::new(film);
-        let refused = Mutex::new(None);
         self.threads.install(|| {
             // A tile a task: coarser splitting leaves threads idle at the end.
             self.tiles(&view).into_par_iter().with_max_len(1).for_each(|region| {
                 let mut sums = self.planned.film(region);
                 let secondary = self.planned.add(&view, region, view.range(), &mut sums, observer);
                 let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
-                if let Err(error) = film.add_sums(region, &sums) {
-                    refused.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
-                }
+                film.add_part_alone(region, &sums);
                 film.add_rays(secondary);
                 done(region.pixels());
             });
         });
-        if let Some(error) = refused.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            return Err(error);
-        }
         film.into_inner().unwrap_or_else(PoisonError::into_inner).cover(view.whole());
         Ok(())
     }

@@ -162,7 +162,7 @@ impl Film {
     }
 
     /// Sums of nothing, where there are none yet. On all threads: a system takes long to hand so much memory to one.
-    fn make_room(&mut self) -> Result<()> {
+    pub(crate) fn make_room(&mut self) -> Result<()> {
         if self.sums.is_empty() {
             let all = self.reserve()?;
             self.sums.par_extend(rayon::iter::repeat_n(0, all));
@@ -171,6 +171,11 @@ impl Film {
     }
 
     /// Takes the memory of all sums, of so many words.
+    /// Adds the sums of a part by this thread alone, once there is room, see [`Layout::add_alone`].
+    pub(crate) fn add_part_alone(&mut self, region: Region, sums: &[u32]) {
+        Layout { region: self.window, words: self.words }.add_alone(&mut self.sums, region, sums);
+    }
+
     fn reserve(&mut self) -> Result<usize> {
         let all = self.window.pixels() as usize * self.words as usize;
         let (width, height) = self.size;
@@ -190,15 +195,31 @@ pub(crate) struct Layout {
 impl Layout {
     /// Adds sums of a region within this one.
     pub fn add(self, own: &mut [u32], region: Region, added: &[u32]) {
-        let Layout { region: Region { x, y, width, .. }, words } = self;
-        let (left, top) = (region.x - x, region.y - y);
-        let rows = own.par_chunks_mut((words * width) as usize).skip(top as usize).take(region.height as usize);
-        rows.zip(added.par_chunks((words * region.width) as usize)).with_min_len(16).for_each(|(own, added)| {
-            let (to, from) = (Row::new(0, width, words), Row::new(0, region.width, words));
-            for x in 0..region.width {
-                let both = PixelSums::load(own, to, left + x).plus(PixelSums::load(added, from, x));
-                both.store(own, to, left + x);
-            }
-        });
+        let (row, added_row) = self.lengths(region);
+        let rows = own.par_chunks_mut(row).skip((region.y - self.region.y) as usize).take(region.height as usize);
+        let rows = rows.zip(added.par_chunks(added_row)).with_min_len(16);
+        rows.for_each(|(own, added)| self.add_row(own, region, added));
+    }
+
+    /// The same by this thread alone: who holds a lock that others of its pool wait for must not wait for its pool, where it would
+    /// take up work that wants the lock, too.
+    pub fn add_alone(self, own: &mut [u32], region: Region, added: &[u32]) {
+        let (row, added_row) = self.lengths(region);
+        let rows = own.chunks_mut(row).skip((region.y - self.region.y) as usize).take(region.height as usize);
+        rows.zip(added.chunks(added_row)).for_each(|(own, added)| self.add_row(own, region, added));
+    }
+
+    /// Words of a row of both.
+    fn lengths(self, region: Region) -> (usize, usize) {
+        ((self.words * self.region.width) as usize, (self.words * region.width) as usize)
+    }
+
+    fn add_row(self, own: &mut [u32], region: Region, added: &[u32]) {
+        let left = region.x - self.region.x;
+        let (to, from) = (Row::new(0, self.region.width, self.words), Row::new(0, region.width, self.words));
+        for x in 0..region.width {
+            let both = PixelSums::load(own, to, left + x).plus(PixelSums::load(added, from, x));
+            both.store(own, to, left + x);
+        }
     }
 }

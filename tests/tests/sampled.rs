@@ -254,7 +254,6 @@ fn lights_change_without_another_scene() {
     assert_same_bits(&film.develop().unwrap(), &picture, "GPU");
 }
 
-/// Lenses, projections, shifts, pixel filters and clear backgrounds, by each integrator.
 /// Catchers, holes, what rays do not meet, clipping planes and two eyes, by paths and by Whitted's integrator.
 #[test]
 fn what_pictures_show_of_objects() {
@@ -282,6 +281,7 @@ fn what_pictures_show_of_objects() {
     }
 }
 
+/// Lenses, projections, shifts, pixel filters and clear backgrounds, by each integrator.
 #[test]
 fn what_cameras_have_beside_pinholes() {
     let Some(gpu) = quick_gpu() else { return };

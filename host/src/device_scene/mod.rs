@@ -12,6 +12,7 @@ use eyerays_shader::data::{
 mod alias;
 mod environment;
 mod feature;
+mod flags;
 mod frame;
 mod hierarchy;
 mod levels;
@@ -138,7 +139,7 @@ impl DeviceScene {
             textures,
             environment,
             emissive,
-            has_catchers: records::mattes(scene).any(|matte| matte == Matte::Catcher),
+            has_catchers: flags::mattes(scene).any(|matte| matte == Matte::Catcher),
             lamps,
             effects: Effects(effects.0 & !dark | many),
             background: scene.background,

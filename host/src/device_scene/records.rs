@@ -9,12 +9,13 @@ use eyerays_shader::real::SMALL;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
 
+use super::flags;
 use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
-    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, ObjectNumbers, Physical, Scene,
-    Settings, Visibility, Wall,
+    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, Physical, Scene, Settings, Visibility,
+    Wall,
 };
 
 /// A colour and an integer.
@@ -92,61 +93,19 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::CUTOUT, used(&is_cutout));
     ask(Effects::ENVIRONMENT, scene.environment.is_some());
     let hides = |of: Visibility| Visibility { matte: Matte::Shown, ..of } != Visibility::default();
-    ask(Effects::HIDDEN, visibilities(scene).any(hides) || mattes(scene).any(|matte| matte == Matte::Catcher));
-    ask(Effects::HOLDOUT, mattes(scene).any(|matte| matte == Matte::Holdout));
+    ask(
+        Effects::HIDDEN,
+        flags::visibilities(scene).any(hides) || flags::mattes(scene).any(|matte| matte == Matte::Catcher),
+    );
+    ask(Effects::HOLDOUT, flags::mattes(scene).any(|matte| matte == Matte::Holdout));
     Effects(bits)
 }
 
-/// All that its materials and objects say of who sees them.
-fn visibilities(scene: &Scene) -> impl Iterator<Item = Visibility> + '_ {
-    let of_materials = scene.materials.iter().map(|material| material.visibility);
-    of_materials.chain(scene.objects.iter().map(|object| object.visibility))
-}
-
-/// What pictures show of them.
-pub(super) fn mattes(scene: &Scene) -> impl Iterator<Item = Matte> + '_ {
-    visibilities(scene).map(|visibility| visibility.matte)
-}
-
-/// The flags of a primitive that is seen so.
-fn visibility_flags(Visibility { camera, shadow, reflection, matte }: Visibility) -> u32 {
-    let unless = |holds: bool, flag| if holds { 0 } else { flag };
-    let matte = match matte {
-        Matte::Shown => 0,
-        Matte::Catcher => Primitive::CATCHER,
-        Matte::Holdout => Primitive::HOLDOUT,
-    };
-    unless(camera, Primitive::UNSEEN)
-        | unless(shadow, Primitive::SHADOWLESS)
-        | unless(reflection, Primitive::UNREFLECTED)
-        | matte
-}
-
-/// Those of each primitive by its number and material.
-fn flags_of(scene: &Scene) -> impl Fn(usize, u32) -> u32 + Sync + use<> {
-    let of_material = |m: &Material| {
-        let flag = |flag, holds: bool| if holds { flag } else { 0 };
-        flag(Primitive::TRANSPARENT, is_transparent(m))
-            | flag(Primitive::CUTOUT, is_cutout(m))
-            | flag(Primitive::TWO_SIDED, m.two_sided)
-    };
-    let flags: Vec<u32> = scene.materials.iter().map(of_material).collect();
-    let seen: Vec<Visibility> = scene.materials.iter().map(|material| material.visibility).collect();
-    let of_objects: Vec<Visibility> = scene.objects.iter().map(|object| object.visibility).collect();
-    let is_plain = visibilities(scene).all(|visibility| visibility.is_plain());
-    let numbers = (!is_plain).then(|| ObjectNumbers::of(scene));
-    move |primitive, material| {
-        let Some(numbers) = &numbers else { return flags[material as usize] };
-        let object = numbers.find(primitive).map_or(Visibility::default(), |number| of_objects[number as usize]);
-        flags[material as usize] | visibility_flags(seen[material as usize].and(object))
-    }
-}
-
-fn is_transparent(m: &Material) -> bool {
+pub(super) fn is_transparent(m: &Material) -> bool {
     m.transmission != Vec3::ZERO || m.physical.is_some_and(|p| p.is_transparent())
 }
 
-fn is_cutout(m: &Material) -> bool {
+pub(super) fn is_cutout(m: &Material) -> bool {
     // Any opacity is at least 0.
     !matches!(m.alpha, Alpha::Opaque | Alpha::Mask(0.0))
 }
@@ -158,7 +117,7 @@ fn absorbs(p: &Physical) -> bool {
 /// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
 pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
     let mesh = &scene.mesh;
-    let flags = flags_of(scene);
+    let flags = flags::by_primitive(scene);
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());

@@ -158,17 +158,18 @@ impl Film {
     }
 }
 
-/// A pixel's samples in the mean.
 /// The share of a pixel that is opaque: what the camera sees of objects, and what they keep away of the light of shadow catchers.
 fn opacity(sums: &PixelSums, count: u32) -> f64 {
     let seen = count - sums.clear.min(count);
-    let caught = f64::from(sums.caught.min(seen));
+    let catcher = &sums.catcher;
+    let caught = f64::from(catcher.count.min(seen));
     // Without any light there is no shadow.
-    let full = light(sums.full);
-    let kept_away = if full > 0.0 { 1.0 - (light(sums.lit) / full).clamp(0.0, 1.0) } else { 0.0 };
+    let full = light(catcher.full);
+    let kept_away = if full > 0.0 { 1.0 - (light(catcher.lit) / full).clamp(0.0, 1.0) } else { 0.0 };
     (f64::from(seen) - caught + caught * kept_away) / f64::from(count.max(1))
 }
 
+/// A pixel's samples in the mean.
 pub(super) struct Mean {
     pub brightness: f64,
     /// Of the mean brightness.

@@ -170,12 +170,12 @@ impl Film {
         Ok(())
     }
 
-    /// Takes the memory of all sums, of so many words.
     /// Adds the sums of a part by this thread alone, once there is room, see [`Layout::add_alone`].
     pub(crate) fn add_part_alone(&mut self, region: Region, sums: &[u32]) {
         Layout { region: self.window, words: self.words }.add_alone(&mut self.sums, region, sums);
     }
 
+    /// Takes the memory of all sums, of so many words.
     fn reserve(&mut self) -> Result<usize> {
         let all = self.window.pixels() as usize * self.words as usize;
         let (width, height) = self.size;

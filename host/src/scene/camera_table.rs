@@ -137,13 +137,11 @@ fn stereo(table: &mut Table, projection: Projection) -> Result<Option<Stereo>> {
         let fault = |(key, _)| table.fault_of(key, format!("{key} is of two eyes; set stereo, too"));
         return idle.map_or(Ok(None), |idle| Err(fault(idle)));
     };
-    if projection.is_orthographic() {
-        return Err(table.fault_of("stereo", "along parallel rays two eyes see the same; remove it"));
+    let stereo = Stereo { layout, distance: distance.unwrap_or(Stereo::HUMAN), convergence };
+    match stereo.misfit(projection) {
+        Some((key, why)) => Err(table.fault_of(key, format!("{why}; remove it"))),
+        None => Ok(Some(stereo)),
     }
-    if convergence.is_some() && !projection.is_flat() {
-        return Err(table.fault_of("convergence", "where an image goes all around eyes look in parallel; remove it"));
-    }
-    Ok(Some(Stereo { layout, distance: distance.unwrap_or(Stereo::HUMAN), convergence }))
 }
 
 /// Keys that only say how a lens is.

@@ -3,6 +3,8 @@
 use eyerays_shader::data;
 use serde::{Deserialize, Serialize};
 
+use super::Projection;
+
 crate::choice::choices! {
     /// How the images of two eyes lie in one.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -30,6 +32,15 @@ pub struct Stereo {
 impl Stereo {
     /// How far human eyes are apart in the mean, in metres.
     pub const HUMAN: f32 = 0.063;
+
+    /// What of it a camera of a projection can't have, by its key, and why.
+    pub fn misfit(&self, projection: Projection) -> Option<(&'static str, &'static str)> {
+        if projection.is_orthographic() {
+            return Some(("stereo", "along parallel rays two eyes see the same"));
+        }
+        let turns = self.convergence.is_some() && !projection.is_flat();
+        turns.then_some(("convergence", "where an image goes all around eyes look in parallel"))
+    }
 
     /// The size of an eye's image.
     pub fn halved(&self, (width, height): (u32, u32)) -> (u32, u32) {

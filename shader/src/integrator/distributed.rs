@@ -11,7 +11,7 @@ use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, 
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
-use crate::stage::{Caught, PathState, ShadowRay};
+use crate::stage::{PathState, ShadowRay};
 use crate::texture::{Covering, Place};
 
 /// Adds what the surface emits and its ambient light, asks for the light of one light, and branches.
@@ -86,7 +86,7 @@ fn branched<R: Scalar>(
         goes_on: first || second,
         other: refracted,
         waits: first && second,
-        caught: Caught::nothing(),
+        catches: false,
     }
 }
 

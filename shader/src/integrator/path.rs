@@ -89,12 +89,15 @@ fn scattered<R: Scalar>(
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
-    if !catches {
-        return Scattered::once(light, shadow, next, goes_on);
-    }
-    let sky = if goes_on { unsampled(launch, &next) } else { V3::zero() };
-    let caught = Caught::under_way(brightness(shadow.light), brightness(sky));
-    Scattered { caught, ..Scattered::once(V3::zero(), shadow, next, goes_on) }
+    let light = if catches { V3::zero() } else { light };
+    Scattered { catches, ..Scattered::once(light, shadow, next, goes_on) }
+}
+
+/// What a vertex on a shadow catcher asks for: a sampled light, and the surroundings along the next ray.
+#[inline(always)]
+pub(super) fn caught<R: Scalar>(launch: &LaunchContext<'_>, scattered: &Scattered<R>) -> Caught<R> {
+    let sky = if scattered.goes_on { unsampled(launch, &scattered.next) } else { V3::zero() };
+    Caught::under_way(brightness(scattered.shadow.light), brightness(sky))
 }
 
 /// What a ray that meets nothing sees of the surroundings, if that is no light that is sampled.

@@ -144,15 +144,15 @@ pub(super) struct Scattered<R: Real> {
     pub other: PathState<R>,
     /// Is there one?
     pub waits: bool,
-    /// What the vertex asks for if it is on a shadow catcher.
-    pub caught: Caught<R>,
+    /// Is the vertex on a shadow catcher that the camera sees?
+    pub catches: bool,
 }
 
 impl<R: Scalar> Scattered<R> {
     /// Of a path that does not branch.
     #[inline(always)]
     pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
-        Scattered { light, shadow, next, goes_on, other: next, waits: false, caught: Caught::nothing() }
+        Scattered { light, shadow, next, goes_on, other: next, waits: false, catches: false }
     }
 }
 
@@ -236,8 +236,8 @@ pub fn scatter<R: Scalar>(
             path::at(launch, context, &vertex)
         }
     };
-    if bits.has(Launch::CATCHER) && scattered.caught.is_some() {
-        caught = scattered.caught;
+    if bits.has(Launch::CATCHER) && scattered.catches {
+        caught = path::caught(launch, &scattered);
     }
     caught.store(bits, launch.frame, slot, sums);
     let (sum, word) = added(sum, word, &scattered);

@@ -1,8 +1,8 @@
 //! Shadow catchers: what the camera sees of one is how much of its light others keep away, which the film keeps as two sums.
 
-use super::REACHED;
+use super::{LIGHT_FRACTION, LIGHT_MOST, REACHED};
 use crate::buffer::{read, write};
-use crate::data::{Frame, Launch};
+use crate::data::{Frame, Launch, Quanta};
 use crate::real::{Real, Scalar, V3};
 
 /// What a sample has of the catcher that its camera's ray meets: brightness that light brings to the pixel.
@@ -92,6 +92,35 @@ impl<R: Scalar> Caught<R> {
         if launch.has(Launch::CATCHER) {
             write(sums, frame.slots + slot, R::store(V3::new(self.light, self.sky, self.lit), self.state));
         }
+    }
+}
+
+/// What some samples of a pixel have of catchers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct CatcherSums {
+    /// Of how many samples the camera's ray met one.
+    pub count: u32,
+    /// The brightness that light brings to those if nothing else is there; of this and the next the last word is not kept.
+    pub full: Quanta,
+    /// What of it arrives.
+    pub lit: Quanta,
+}
+
+impl CatcherSums {
+    /// One sample's.
+    #[inline(always)]
+    pub fn of<R: Scalar>(caught: Caught<R>) -> Self {
+        if !caught.is_some() {
+            return CatcherSums::default();
+        }
+        let quanta = |of: R| Quanta::of(of.to_f32(), LIGHT_FRACTION, LIGHT_MOST);
+        CatcherSums { count: 1, full: quanta(caught.full()), lit: quanta(caught.lit) }
+    }
+
+    /// These samples and others.
+    #[inline(always)]
+    pub fn plus(self, other: Self) -> Self {
+        CatcherSums { count: self.count + other.count, full: self.full.plus(other.full), lit: self.lit.plus(other.lit) }
     }
 }
 

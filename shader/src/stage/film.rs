@@ -1,7 +1,7 @@
 //! The film: what the samples of every pixel come to, in sums that have no order. So a picture has the same bits whatever its samples
 //! were parted into: launches, tiles, devices, machines.
 
-use super::{CLEARED, Caught, NON_FINITE};
+use super::{CLEARED, CatcherSums, Caught, NON_FINITE};
 use crate::buffer::{read, write};
 use crate::camera::Pixel;
 use crate::data::{Frame, Launch, Quanta};
@@ -78,12 +78,8 @@ pub struct PixelSums {
     pub squares: Quanta,
     /// Samples whose camera's ray found nothing.
     pub clear: u32,
-    /// Samples whose camera's ray met a shadow catcher.
-    pub caught: u32,
-    /// The brightness of what a light brings to those if nothing else is there; of this and the next the last word is not kept.
-    pub full: Quanta,
-    /// Of what it does bring.
-    pub lit: Quanta,
+    /// Of shadow catchers.
+    pub catcher: CatcherSums,
 }
 
 impl PixelSums {
@@ -105,9 +101,7 @@ impl PixelSums {
             word: word & !CLEARED,
             squares,
             clear: if word & CLEARED == 0 { 0 } else { 1 },
-            caught: if caught.is_some() { 1 } else { 0 },
-            full: channel(caught.full()),
-            lit: channel(caught.lit),
+            catcher: CatcherSums::of(caught),
         }
     }
 
@@ -121,9 +115,7 @@ impl PixelSums {
             word: counted(self.word, other.word),
             squares: self.squares.plus(other.squares),
             clear: self.clear + other.clear,
-            caught: self.caught + other.caught,
-            full: self.full.plus(other.full),
-            lit: self.lit.plus(other.lit),
+            catcher: self.catcher.plus(other.catcher),
         }
     }
 
@@ -134,19 +126,12 @@ impl PixelSums {
         let channel = |word| Quanta(at(word), at(word + 1), at(word + 2), 0);
         let squares = if row.is_noisy() { Quanta(at(10), at(11), at(12), at(13)) } else { Quanta::default() };
         let clear = if row.counts_clear() { at(row.words - 1) } else { 0 };
-        let mut sums = PixelSums {
-            red: channel(0),
-            green: channel(3),
-            blue: channel(6),
-            word: at(9),
-            squares,
-            clear,
-            ..PixelSums::default()
+        let catcher = if row.knows_catchers() {
+            CatcherSums { full: channel(14), lit: channel(17), count: at(20) }
+        } else {
+            CatcherSums::default()
         };
-        if row.knows_catchers() {
-            (sums.full, sums.lit, sums.caught) = (channel(14), channel(17), at(20));
-        }
-        sums
+        PixelSums { red: channel(0), green: channel(3), blue: channel(6), word: at(9), squares, clear, catcher }
     }
 
     /// Keeps them there.
@@ -170,13 +155,13 @@ impl PixelSums {
             keep(13, self.squares.3);
         }
         if row.knows_catchers() {
-            keep(14, self.full.0);
-            keep(15, self.full.1);
-            keep(16, self.full.2);
-            keep(17, self.lit.0);
-            keep(18, self.lit.1);
-            keep(19, self.lit.2);
-            keep(20, self.caught);
+            keep(14, self.catcher.full.0);
+            keep(15, self.catcher.full.1);
+            keep(16, self.catcher.full.2);
+            keep(17, self.catcher.lit.0);
+            keep(18, self.catcher.lit.1);
+            keep(19, self.catcher.lit.2);
+            keep(20, self.catcher.count);
         }
         if row.counts_clear() {
             keep(row.words - 1, self.clear);

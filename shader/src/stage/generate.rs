@@ -20,19 +20,17 @@ pub fn generate<R: Scalar>(
     let pixel = camera::pixel(frame, spec.order, slot);
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
     let ray = camera::ray(frame, spec.launch, optics, pixel);
+    let is_kept = spec.launch.has(Launch::KEPT);
+    if is_kept && !spec.launch.has(Launch::CLIPPED) {
+        Path::of_camera(ray).store(frame.slots, slot, 0, paths);
+        return;
+    }
     let CameraRay { origin, direction, weight } = ray;
-    // Brought near where the camera is far from the scene.
+    // Brought near where the camera is far from the scene; how far it goes is told from there.
     let near = Ray::from_afar(origin, direction);
-    if spec.launch.has(Launch::KEPT) {
-        let path = Path::of_camera(ray);
-        let path = if spec.launch.has(Launch::CLIPPED) {
-            let limit = camera::limit(frame, spec.launch, near.origin, direction);
-            // It is told from where the ray starts.
-            Path { origin: near.origin, ..path }.within(limit)
-        } else {
-            path
-        };
-        path.store(frame.slots, slot, 0, paths);
+    let limit = camera::limit(frame, spec.launch, near.origin, direction);
+    if is_kept {
+        Path::of_camera(CameraRay { origin: near.origin, ..ray }).within(limit).store(frame.slots, slot, 0, paths);
         return;
     }
     let path = PathState {
@@ -46,6 +44,6 @@ pub fn generate<R: Scalar>(
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
     };
     let follows = pixel.inside && !weight.eq(R::splat(0.0));
-    let limit = if follows { camera::limit(frame, spec.launch, near.origin, direction) } else { R::splat(NOWHERE) };
+    let limit = if follows { limit } else { R::splat(NOWHERE) };
     path.store_within(limit, frame.slots, slot, 0, paths);
 }

@@ -17,7 +17,7 @@ mod shadow;
 mod together;
 mod trace;
 
-pub use caught::Caught;
+pub use caught::{CatcherSums, Caught};
 pub use film::{
     BLOCK, FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST,
     Sample, brightness, expose, expose_blocks, film_words,

@@ -17,8 +17,8 @@ pub fn traced<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Reco
     let path = Path::<R>::current(&context.base, slot, paths);
     let Path { origin, direction, weight, source_primitive, .. } = path;
     // A camera may have no ray at a place of its image.
-    let is_none = context.base.spec.launch.has(Launch::KEPT) && weight.greatest().eq(R::splat(0.0));
     let launch = context.base.spec.launch;
+    let is_none = launch.has(Launch::KEPT) && weight.greatest().eq(R::splat(0.0));
     let limit = if is_none {
         R::splat(NOWHERE)
     } else if launch.has(Launch::CLIPPED) && is_of_camera(launch) {

@@ -4,7 +4,6 @@ use clap::{Args, ValueEnum};
 use eyerays::scene::{Camera, Focus, Lens, Mapping, Projection, Stereo, StereoLayout};
 
 use super::choice::choice;
-
 use crate::error::{Error, Result};
 
 /// What an image holds.
@@ -189,17 +188,13 @@ impl LensArgs {
             let none = "the camera has one eye; add --stereo";
             return idle.map_or(Ok(None), |option| Err(Error::new(format!("{option}: {none}"))));
         };
-        if camera.projection.is_orthographic() {
-            return Err(Error::new("--stereo: along parallel rays two eyes see the same; leave it out"));
-        }
-        let convergence = self.convergence.or(own.and_then(|own| own.convergence));
-        if convergence.is_some() && !camera.projection.is_flat() {
-            return Err(Error::new(
-                "--convergence: where an image goes all around eyes look in parallel; leave it out",
-            ));
-        }
         let distance = self.eye_distance.or(own.map(|own| own.distance)).unwrap_or(Stereo::HUMAN);
-        Ok(Some(Stereo { layout, distance, convergence }))
+        let convergence = self.convergence.or(own.and_then(|own| own.convergence));
+        let stereo = Stereo { layout, distance, convergence };
+        match stereo.misfit(camera.projection) {
+            Some((key, why)) => Err(Error::new(format!("--{key}: {why}; leave it out"))),
+            None => Ok(Some(stereo)),
+        }
     }
 
     /// An option that only says how a lens is, if one is given.

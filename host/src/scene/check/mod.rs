@@ -192,16 +192,10 @@ fn lens(owner: &Owner, camera: &Camera, lens: &Lens) -> Unplaced<()> {
 
 fn stereo(owner: &Owner, camera: &Camera, stereo: &Stereo) -> Unplaced<()> {
     owner.number("distance of eyes", stereo.distance, Range::LENGTH)?;
-    if camera.projection.is_orthographic() {
-        return owner.refuse("has two eyes along parallel rays, which see the same; remove its stereo");
+    if let Some((key, why)) = stereo.misfit(camera.projection) {
+        return owner.refuse(&format!("has the key {key}, but {why}; remove it"));
     }
-    match stereo.convergence {
-        Some(_) if !camera.projection.is_flat() => {
-            owner.refuse("has two eyes that converge, which they do not where it sees all around; remove that")
-        }
-        Some(distance) => owner.number("convergence", distance, Range::LENGTH),
-        None => Ok(()),
-    }
+    stereo.convergence.map_or(Ok(()), |distance| owner.number("convergence", distance, Range::LENGTH))
 }
 
 fn object(object: &Object, scene: &Scene) -> Unplaced<()> {

@@ -5,6 +5,17 @@ use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real};
 use crate::traverse::Query;
 
+/// Whose rays a query tells apart from others, by what they start on, and the flags of primitives that those rays do not meet, and that
+/// the others do not: a shadow ray of a catcher, or a ray of the camera.
+#[inline(always)]
+fn senders<Q: Query, R: Real>() -> (u32, u32, u32) {
+    if Q::ANY {
+        (Ray::<R>::OF_CATCHER, Primitive::SHADOWLESS | Primitive::CATCHER, Primitive::SHADOWLESS)
+    } else {
+        (Hit::<R>::NOTHING, Primitive::UNSEEN, Primitive::UNREFLECTED)
+    }
+}
+
 /// Does a ray not meet a primitive, by who sent it? What a GPU asks, whose values are single rays', before any test: once
 /// for all kinds, since every kernel holds it.
 #[inline(always)]
@@ -12,41 +23,18 @@ pub(super) fn is_unmet<Q: Query, R: Real>(effects: Effects, primitive: &Primitiv
     if !cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) {
         return false;
     }
-    if Q::ANY {
-        let of_catcher = R::equals(Ray::<R>::OF_CATCHER, ray.source_primitive).any();
-        return primitive.has(if of_catcher {
-            Primitive::SHADOWLESS | Primitive::CATCHER
-        } else {
-            Primitive::SHADOWLESS
-        });
-    }
-    let of_camera = R::equals(Hit::<R>::NOTHING, ray.source_primitive).any();
-    primitive.has(if of_camera { Primitive::UNSEEN } else { Primitive::UNREFLECTED })
+    let (sender, from_it, from_others) = senders::<Q, R>();
+    primitive.has(if R::equals(sender, ray.source_primitive).any() { from_it } else { from_others })
 }
 
 /// The lanes of a mask whose rays meet it: what a CPU asks, where few tests come so far.
 #[inline(always)]
 pub(super) fn met<Q: Query, R: Real>(effects: Effects, primitive: &Primitive, ray: &Ray<R>, mask: R::Mask) -> R::Mask {
-    const ANY: u32 = Primitive::UNSEEN | Primitive::UNREFLECTED | Primitive::SHADOWLESS | Primitive::CATCHER;
-    if cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) || !primitive.has(ANY) {
+    let (sender, from_it, from_others) = senders::<Q, R>();
+    if cfg!(target_arch = "spirv") || !effects.has(Effects::HIDDEN) || !primitive.has(from_it | from_others) {
         return mask;
     }
-    let mut met = mask;
-    if Q::ANY {
-        if primitive.has(Primitive::SHADOWLESS) {
-            met = met & !met;
-        }
-        if primitive.has(Primitive::CATCHER) {
-            met = met & !R::equals(Ray::<R>::OF_CATCHER, ray.source_primitive);
-        }
-        return met;
-    }
-    let of_camera = R::equals(Hit::<R>::NOTHING, ray.source_primitive);
-    if primitive.has(Primitive::UNSEEN) {
-        met = met & !of_camera;
-    }
-    if primitive.has(Primitive::UNREFLECTED) {
-        met = met & of_camera;
-    }
-    met
+    let is_sender = R::equals(sender, ray.source_primitive);
+    let of_it = if primitive.has(from_it) { mask & !is_sender } else { mask };
+    if primitive.has(from_others) { of_it & is_sender } else { of_it }
 }

@@ -1,0 +1,51 @@
+//! What rays ask of a primitive before they look at its material.
+
+use eyerays_shader::data::Primitive;
+
+use super::records::{is_cutout, is_transparent};
+use crate::scene::{Material, Matte, ObjectNumbers, Scene, Visibility};
+
+/// All that its materials and objects say of who sees them.
+pub(super) fn visibilities(scene: &Scene) -> impl Iterator<Item = Visibility> + '_ {
+    let of_materials = scene.materials.iter().map(|material| material.visibility);
+    of_materials.chain(scene.objects.iter().map(|object| object.visibility))
+}
+
+/// What pictures show of them.
+pub(super) fn mattes(scene: &Scene) -> impl Iterator<Item = Matte> + '_ {
+    visibilities(scene).map(|visibility| visibility.matte)
+}
+
+/// The flags of a primitive that is seen so.
+fn visibility_flags(Visibility { camera, shadow, reflection, matte }: Visibility) -> u32 {
+    let unless = |holds: bool, flag| if holds { 0 } else { flag };
+    let matte = match matte {
+        Matte::Shown => 0,
+        Matte::Catcher => Primitive::CATCHER,
+        Matte::Holdout => Primitive::HOLDOUT,
+    };
+    unless(camera, Primitive::UNSEEN)
+        | unless(shadow, Primitive::SHADOWLESS)
+        | unless(reflection, Primitive::UNREFLECTED)
+        | matte
+}
+
+/// The flags of each primitive, by its number and material.
+pub(super) fn by_primitive(scene: &Scene) -> impl Fn(usize, u32) -> u32 + Sync + use<> {
+    let of_material = |m: &Material| {
+        let flag = |flag, holds: bool| if holds { flag } else { 0 };
+        flag(Primitive::TRANSPARENT, is_transparent(m))
+            | flag(Primitive::CUTOUT, is_cutout(m))
+            | flag(Primitive::TWO_SIDED, m.two_sided)
+    };
+    let flags: Vec<u32> = scene.materials.iter().map(of_material).collect();
+    let seen: Vec<Visibility> = scene.materials.iter().map(|material| material.visibility).collect();
+    let of_objects: Vec<Visibility> = scene.objects.iter().map(|object| object.visibility).collect();
+    let is_plain = visibilities(scene).all(|visibility| visibility.is_plain());
+    let numbers = (!is_plain).then(|| ObjectNumbers::of(scene));
+    move |primitive, material| {
+        let Some(numbers) = &numbers else { return flags[material as usize] };
+        let object = numbers.find(primitive).map_or(Visibility::default(), |number| of_objects[number as usize]);
+        flags[material as usize] | visibility_flags(seen[material as usize].and(object))
+    }
+}

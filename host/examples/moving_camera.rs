@@ -8,7 +8,8 @@ use eyerays::gpu::{AdapterRequest, Gpu, Renderer};
 use eyerays::job::Job;
 use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
-use eyerays::scene::{self, Camera};
+use eyerays::scene::Camera;
+use eyerays::scene_io;
 use eyerays::view::View;
 use glam::Vec3;
 
@@ -20,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let width: u32 = arguments.next().map_or(Ok(256), |width| width.parse())?;
     let height: u32 = arguments.next().map_or(Ok(width), |height| height.parse())?;
 
-    let (scene, warnings) = scene::load(&file)?;
+    let (scene, warnings) = scene_io::load(&file)?;
     warnings.iter().for_each(|warning| println!("{warning}"));
     let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
     let Ok(gpu) = Gpu::open(&AdapterRequest { software: true, exact: true, ..AdapterRequest::default() }) else {

@@ -9,12 +9,12 @@ use eyerays::gpu::{AdapterRequest, Caster, Gpu};
 use eyerays::job::Job;
 use eyerays::method::{Layout, Method};
 use eyerays::quality::Bvh;
-use eyerays::scene;
+use eyerays::scene_io;
 use eyerays::stream::Question;
 use glam::Vec3;
 
 fn main() -> Result<(), Box<dyn Error>> {
-    let (scene, _) = scene::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
+    let (scene, _) = scene_io::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes/cornell.toml"))?;
     let packed = Job::new(&scene, scene.settings, Bvh::Medium.quality())?;
 
     // From the middle of the room through the cells of a cube around it.

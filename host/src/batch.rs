@@ -36,7 +36,7 @@ pub struct Hit {
 /// # use eyerays::{cpu, job::Job, method::Method, quality::Bvh, scene, stream::Question};
 /// use eyerays::batch::{Batch, Ray};
 /// # fn main() -> eyerays::error::Result<()> {
-/// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
+/// # let (scene, _) = scene_io::load("../scenes/cornell.toml".as_ref())?;
 /// let job = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let down = Ray::new([0.0, 1.0, 0.0].into(), [0.0, -1.0, 0.0].into());
 /// let batch = Batch::new(&job, &[down]);
@@ -115,7 +115,7 @@ mod tests {
     use crate::cpu;
     use crate::method::Method;
     use crate::quality::Bvh;
-    use crate::scene;
+    use crate::scene_io;
     use crate::stream::Question;
 
     /// The floor of the shipped scene `whitted` from above, near and far: the same distance in the scene's units, wherever
@@ -123,7 +123,7 @@ mod tests {
     #[test]
     fn distances_are_in_the_scenes_units_from_where_a_ray_starts() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
-        let scene = scene::load(path.as_ref()).unwrap().0;
+        let scene = scene_io::load(path.as_ref()).unwrap().0;
         let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let bottom = scene.mesh.positions.iter().map(|p| p.y).fold(f32::INFINITY, f32::min);
         let corner = scene.mesh.positions.iter().copied().reduce(Vec3::min).unwrap() + Vec3::new(0.25, 0.0, 0.25);

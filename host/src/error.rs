@@ -5,10 +5,7 @@ use std::io::{self, ErrorKind};
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
 
-use crate::image::Format;
 use crate::line::one_line;
-use crate::picture::Picture;
-use crate::scene::Integrator;
 
 /// The result of everything that can fail on what the caller gave.
 pub type Result<T> = std::result::Result<T, Error>;
@@ -47,12 +44,16 @@ pub enum Error {
         /// The most that it may be.
         most: String,
     },
-    /// A picture that is empty, or larger than [`Picture::MAX_SIDE`] and [`Picture::MAX_PIXELS`] allow.
+    /// A picture that is empty or too large.
     Size {
         /// Columns.
         width: u32,
         /// Rows.
         height: u32,
+        /// The most of both.
+        most_side: u32,
+        /// The most pixels.
+        most_pixels: u64,
     },
     /// Too little memory for a picture of this size.
     Memory {
@@ -74,28 +75,28 @@ pub enum Error {
     BrokenFilm(&'static str),
     /// A picture that ends by its noise, of an integrator that has none.
     NoNoise {
-        /// The integrator.
-        integrator: Integrator,
+        /// The integrator's name.
+        integrator: &'static str,
     },
     /// Floats of 16 bits, in a format that has none.
     NoHalf {
-        /// The format.
-        format: Format,
+        /// The format's name.
+        format: &'static str,
     },
     /// A picture that tells how opaque it is, in a format that has no place for that.
     NoAlpha {
-        /// The format.
-        format: Format,
+        /// The format's name.
+        format: &'static str,
     },
     /// A tone map, in a format that keeps light as it is.
     NoTone {
-        /// The format.
-        format: Format,
+        /// The format's name.
+        format: &'static str,
     },
     /// Layers, in a format that has none.
     NoLayers {
-        /// The format.
-        format: Format,
+        /// The format's name.
+        format: &'static str,
     },
     /// So many threads can't be started.
     Threads {
@@ -254,13 +255,11 @@ impl Error {
             Error::OutOfRange { setting, value, least, most } => {
                 format!("{setting} {value} is not within {least} to {most}")
             }
-            Error::Size { width, height } if *width == 0 || *height == 0 => {
+            Error::Size { width, height, .. } if *width == 0 || *height == 0 => {
                 format!("an image of {width}x{height} pixels is empty; both sides must be at least 1")
             }
-            Error::Size { width, height } => format!(
-                "an image of {width}x{height} pixels is too large; a side is at most {} and all at most {} pixels",
-                Picture::MAX_SIDE,
-                Picture::MAX_PIXELS
+            Error::Size { width, height, most_side, most_pixels } => format!(
+                "an image of {width}x{height} pixels is too large; a side is at most {most_side} and all at most {most_pixels} pixels"
             ),
             Error::Memory { width, height } => {
                 format!("too little memory for an image of {width}x{height} pixels; choose a smaller size")

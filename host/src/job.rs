@@ -10,6 +10,7 @@ use glam::Vec3;
 
 use crate::device_scene::{DeviceScene, Feature, flushed};
 use crate::error::{Error, Result};
+use crate::integrator::needs;
 use crate::method::Traversal;
 use crate::scene::{Integrator, PixelFilter, Scene, Settings, Transport};
 
@@ -138,7 +139,7 @@ impl Job {
     fn camera_bits(&self) -> u32 {
         let is_filtered = self.settings.pixel_filter() != PixelFilter::Box;
         let optics = self.optics().bits() | if is_filtered { Launch::FILTERED } else { 0 };
-        let is_kept = !self.is_sampled()
+        let is_kept = !needs(self).stages.generates
             && optics & (Launch::LENS | Launch::ROUND | Launch::FILTERED | Launch::CLIPPED | Launch::STEREO) != 0;
         optics | if is_kept { Launch::KEPT } else { 0 } | self.film_bits()
     }
@@ -175,11 +176,6 @@ impl Job {
         }
     }
 
-    /// Is a picture made of samples, each of which asks for at most one shadow ray?
-    fn is_sampled(&self) -> bool {
-        self.feature.is_some() || self.settings.transport.integrator.samples()
-    }
-
     /// Every launch's record but for what a view says.
     pub(crate) fn frame(&self) -> Frame {
         let lights = self.lights().len() as u32;
@@ -195,7 +191,7 @@ impl Job {
             bounces: self.settings.bounces,
             min_contribution: self.settings.min_contribution,
             lights,
-            shadow_rays: if self.is_sampled() { 1 } else { lights },
+            shadow_rays: needs(self).shadow_rays,
             seed,
             emitters: self.lighting().emitters.len() as u32,
             roulette,
@@ -242,7 +238,7 @@ mod tests {
 
     fn whitted() -> Scene {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
-        crate::scene::load(path.as_ref()).unwrap().0
+        crate::scene_io::load(path.as_ref()).unwrap().0
     }
 
     fn refusal(scene: &Scene, settings: Settings) -> Option<String> {

@@ -8,11 +8,12 @@
 //! use eyerays::job::Job;
 //! use eyerays::quality::Bvh;
 //! use eyerays::render::{Backend, Choice, DeviceWish};
-//! use eyerays::scene::{self, Settings};
+//! use eyerays::scene::Settings;
+//! use eyerays::scene_io;
 //! use eyerays::view::View;
 //!
 //! # fn main() -> eyerays::error::Result<()> {
-//! let (scene, _warnings) = scene::load("../scenes/cornell.toml".as_ref())?;
+//! let (scene, _warnings) = scene_io::load("../scenes/cornell.toml".as_ref())?;
 //! let settings = Settings { size: (32, 32), samples: 1, ..scene.settings };
 //! let job = Job::new(&scene, settings, Bvh::Medium.quality())?;
 //! let view = View::new(&job, &scene.cameras[0])?;
@@ -54,6 +55,7 @@ pub mod quality;
 pub mod rays;
 pub mod render;
 pub mod scene;
+pub mod scene_io;
 pub mod stream;
 mod team;
 pub mod view;

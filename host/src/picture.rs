@@ -60,7 +60,7 @@ impl Picture {
     pub fn check_size(width: u32, height: u32) -> Result<usize> {
         let pixels = u64::from(width) * u64::from(height);
         if pixels == 0 || width.max(height) > Self::MAX_SIDE || pixels > Self::MAX_PIXELS {
-            return Err(Error::Size { width, height });
+            return Err(Error::Size { width, height, most_side: Self::MAX_SIDE, most_pixels: Self::MAX_PIXELS });
         }
         Ok(pixels as usize)
     }

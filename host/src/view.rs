@@ -211,11 +211,12 @@ mod tests {
     use crate::method::Traversal;
     use crate::quality::Bvh;
     use crate::scene::{self, Background, Projection, Scene};
+    use crate::scene_io;
 
     /// A square of edge 1 seen from so far away before black, and how many of 64 x 64 pixels it covers.
     fn covered(projection: Projection, distance: f32) -> usize {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
-        let (of, _) = scene::load(path.as_ref()).unwrap();
+        let (of, _) = scene_io::load(path.as_ref()).unwrap();
         let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
         let mut scene = Scene { background: Background::Colour(Vec3::ZERO), ambient: Vec3::ONE, ..of };
         scene.mesh = scene::Mesh {
@@ -247,7 +248,7 @@ mod tests {
     #[test]
     fn a_scene_without_orthographic_cameras_has_no_kernel_for_one() {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
-        let (scene, _) = scene::load(path.as_ref()).unwrap();
+        let (scene, _) = scene_io::load(path.as_ref()).unwrap();
         let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
         let camera = Camera { projection: Projection::Orthographic { height: 1.0 }, ..scene.cameras[0].clone() };
         let message = View::new(&packed, &camera).unwrap_err().to_string();

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::error::{Error, Result};
 use crate::film::{Film, Part};
 use crate::job::Job;
-use crate::noise::CellSums;
+use crate::noise::{CellSums, Lot};
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::team::Lost;
@@ -96,6 +96,24 @@ pub(crate) trait Grows: Send {
 
     /// Whole blocks of samples of cells of a view, which may be others each time: their sums, which are of no film that was started.
     fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums>;
+
+    /// Lots of cells until there is none any more: `next` gives one, and waits for it where it is told to; `done` hears what comes of
+    /// each, in their order, and of nothing more after a fault.
+    fn lots(&mut self, view: &View, next: &mut dyn FnMut(bool) -> Option<Lot>, done: &mut dyn FnMut(Result<CellSums>)) {
+        while let Some(Lot { cells, samples }) = next(true) {
+            let sums = self.cells(view, &cells, samples);
+            let is_lost = sums.is_err();
+            done(sums);
+            if is_lost {
+                return;
+            }
+        }
+    }
+
+    /// How many lots it has under way at once.
+    fn lots_at_once(&self) -> usize {
+        1
+    }
 
     /// The picture of a film, developed on its threads, and the rays that it took.
     fn develop(&self, film: &Film) -> Result<(Picture, Rays)> {
@@ -233,7 +251,8 @@ mod tests {
     use crate::job::Job;
     use crate::method::Traversal;
     use crate::quality::Bvh;
-    use crate::scene::{self, Settings};
+    use crate::scene::Settings;
+    use crate::scene_io;
 
     /// A device whose samples take so long each, and the batches that were added.
     struct Slow {
@@ -269,7 +288,7 @@ mod tests {
         }
 
         fn film(&mut self) -> Result<Film> {
-            Film::new(self.view.as_ref().unwrap(), 10)
+            Ok(Film::new(self.view.as_ref().unwrap(), 10))
         }
     }
 
@@ -279,7 +298,7 @@ mod tests {
 
     fn cornell(spp: u32) -> (Job, View) {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
-        let (scene, _) = scene::load(path.as_ref()).unwrap();
+        let (scene, _) = scene_io::load(path.as_ref()).unwrap();
         let settings = Settings { size: (16, 12), spp, bounces: 1, ..scene.settings };
         let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();

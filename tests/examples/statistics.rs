@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use eyerays::scene;
+use eyerays::scene_io;
 use eyerays_tests::driver::{Driver, kernels};
 use eyerays_tests::pack;
 
@@ -18,7 +18,7 @@ fn main() {
     };
     println!("{}\n", driver.name);
     for path in &scenes {
-        let (scene, _) = scene::load(Path::new(path)).unwrap_or_else(|e| panic!("{e}"));
+        let (scene, _) = scene_io::load(Path::new(path)).unwrap_or_else(|e| panic!("{e}"));
         let packed = pack(&scene, &scene.cameras[0], scene.settings).packed;
         for (name, kernel) in kernels(&packed) {
             let told = driver.compile(&kernel, &name).unwrap_or_else(|e| panic!("{path}, {name}: {e}"));

@@ -12,6 +12,7 @@ pub mod random;
 pub mod surface;
 
 use std::path::PathBuf;
+use std::sync::{Mutex, PoisonError};
 
 use eyerays::compare::compare;
 use eyerays::cpu;
@@ -20,7 +21,8 @@ use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::picture::Picture;
 use eyerays::rays::Rays;
-use eyerays::scene::{self, Camera, Direct, Scene, Settings, Transport};
+use eyerays::scene::{Camera, Direct, Scene, Settings, Transport};
+use eyerays::scene_io;
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_shader::data::Tuning;
@@ -37,7 +39,7 @@ pub const SAMPLED: [&str; 4] = ["cornell_path", "soft_shadows", "bleeding", "occ
 /// If it does not load.
 pub fn shipped(name: &str) -> Scene {
     let folder = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let (scene, _) = scene::load(&folder.join(name).with_extension("toml")).unwrap_or_else(|e| panic!("{e}"));
+    let (scene, _) = scene_io::load(&folder.join(name).with_extension("toml")).unwrap_or_else(|e| panic!("{e}"));
     scene
 }
 
@@ -88,12 +90,24 @@ impl std::ops::Deref for Posed {
 /// The GPU that tests run on, a software one such as lavapipe too: `EYERAYS_ADAPTER` names one, else it is
 /// the best. Without any, a test has nothing to do and says so, unless `EYERAYS_REQUIRE_GPU` is `1`.
 ///
+/// A process opens one for each precision and route, and never closes it: lavapipe has crashed once while threads opened and closed
+/// devices beside each other.
+///
 /// # Panics
 /// If there is none and there must be.
 pub fn gpu(want: &AdapterRequest) -> Option<Gpu> {
-    let adapter = std::env::var("EYERAYS_ADAPTER").ok();
-    match Gpu::open(&AdapterRequest { software: true, adapter, ..want.clone() }) {
-        Ok(gpu) => Some(gpu),
+    static OPEN: Mutex<Vec<([bool; 2], Gpu)>> = Mutex::new(Vec::new());
+    let kind = [want.exact, want.naga];
+    let want = AdapterRequest { software: true, adapter: std::env::var("EYERAYS_ADAPTER").ok(), ..want.clone() };
+    let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, gpu)) = open.iter().find(|(other, _)| *other == kind) {
+        return Some(gpu.clone());
+    }
+    match Gpu::open(&want) {
+        Ok(gpu) => {
+            open.push((kind, gpu.clone()));
+            Some(gpu)
+        }
         Err(error) => {
             let required = std::env::var("EYERAYS_REQUIRE_GPU").is_ok_and(|value| value == "1");
             assert!(!required, "EYERAYS_REQUIRE_GPU=1, but {error}");

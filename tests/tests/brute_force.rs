@@ -7,6 +7,7 @@ use std::path::Path;
 use eyerays::cpu;
 use eyerays::job::Job;
 use eyerays::scene;
+use eyerays::scene_io;
 use eyerays::stream::{Answers, Question, Stream, StreamRay};
 use eyerays_bvh::Quality;
 use eyerays_command::generate::{Files, Kind, Recipe};
@@ -23,7 +24,7 @@ fn generated(kind: Kind, folder: &Path) -> scene::Scene {
     let mesh = folder.join(kind.name()).with_extension("obj");
     let files = Files::beside(&mesh).unwrap();
     Recipe { kind, triangles: TRIANGLES, seed: 3 }.write(&files).unwrap();
-    scene::load(&mesh.with_extension("toml")).unwrap().0
+    scene_io::load(&mesh.with_extension("toml")).unwrap().0
 }
 
 fn pack(scene: &scene::Scene, quality: Quality) -> Job {

@@ -98,7 +98,7 @@ fn tiles_of_any_size_in_any_order_give_the_same_pixels() {
         for size in [(83, 61), (7, 5), (64, 1), (1, 61), (16, 32)] {
             let film_of = |tile| {
                 let view = packed.view.part(tile, packed.view.range()).unwrap();
-                let mut film = renderer.start(&view).unwrap();
+                let mut film = renderer.start(&view);
                 renderer.add::<f32>(&view, &mut film, view.whole(), &|_| (), &()).unwrap();
                 film
             };

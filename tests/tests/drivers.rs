@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use eyerays::scene;
+use eyerays::scene_io;
 use eyerays_tests::driver::{Driver, kernels};
 use eyerays_tests::{pack, settings};
 
@@ -57,7 +57,7 @@ fn compile_all() {
     let scenes = shipped_scenes();
     assert!(scenes.len() >= 12, "{scenes:?}");
     for path in scenes {
-        let (scene, _) = scene::load(&path).unwrap_or_else(|e| panic!("{e}"));
+        let (scene, _) = scene_io::load(&path).unwrap_or_else(|e| panic!("{e}"));
         let packed = pack(&scene, &scene.cameras[0], settings(&scene, (64, 64), 1)).packed;
         for (name, kernel) in kernels(&packed) {
             let told = driver.compile(&kernel, &name).unwrap_or_else(|e| panic!("{}, {name}: {e}", path.display()));

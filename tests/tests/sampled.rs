@@ -163,7 +163,7 @@ fn samples_in_parts() {
     let (picture, rays) = on_cpu(&packed);
     let renderer = cpu::Renderer::new(&packed, Traversal::default(), 2).unwrap();
     for parts in [&[8, 8][..], &[1, 3, 12]] {
-        let (mut film, mut first) = (renderer.start(&packed.view).unwrap(), 0);
+        let (mut film, mut first) = (renderer.start(&packed.view), 0);
         for &count in parts {
             let part = packed.view.samples_of(first..first + count);
             renderer.add::<f32>(&packed.view, &mut film, part, &|_| (), &()).unwrap();

@@ -9,7 +9,8 @@ use crate::error::Result;
 use eyerays::method::{Layout, Method, TriangleTest};
 use eyerays::quality::Bvh;
 use eyerays::render::{DeviceWish, Precision};
-use eyerays::scene::{Filter, Integrator, PixelFilter, Range, Sampler, Settings, Table, read_table};
+use eyerays::scene::{Filter, Integrator, PixelFilter, Range, Sampler, Settings};
+use eyerays::scene_io::{Table, read_table};
 
 /// What a settings file says; its keys are the names of options of `eyerays render`, with `_` for `-`. What it
 /// does not say is left to the command line and the scene.

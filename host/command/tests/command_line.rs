@@ -188,6 +188,31 @@ fn tone_maps_find_a_place_for_what_is_brighter_than_white() {
     }
 }
 
+/// Light is balanced wherever it is, and what is no light is not; nor are films, which their merge balances.
+#[test]
+fn the_light_that_is_asked_for_looks_white() {
+    let place = Place::new(&[("scene.toml", SCENE)]);
+    let layers = ["--layers", "albedo,direct"];
+    rendered(&place, "plain.exr", &layers);
+    rendered(&place, "warm.exr", &[&layers[..], &["--white-balance", "2900K"]].concat());
+    rendered(&place, "a.film", &["--white-balance", "2900"]);
+    place.succeed(&["merge", "a.film", "--white-balance", "2900", "-o", "merged.exr"]);
+    let white = image::WhiteBalance::of(2900.0).unwrap();
+    let light = |file: &str, layer: Option<&str>| match layer {
+        Some(layer) => image::read_layer(&place.path(file), layer).unwrap().pixels,
+        None => image::read(&place.path(file)).unwrap().pixels,
+    };
+    for layer in [None, Some("direct")] {
+        let balanced: Vec<[f32; 3]> = light("plain.exr", layer).into_iter().map(|pixel| white.apply(pixel)).collect();
+        assert!(balanced == light("warm.exr", layer) && balanced != light("plain.exr", layer), "{layer:?}");
+    }
+    assert_eq!(light("warm.exr", Some("albedo")), light("plain.exr", Some("albedo")));
+    assert_eq!(light("merged.exr", None), light("warm.exr", None));
+    for (kelvins, why) in [("100", "1700 to 25000"), ("warm", "no temperature; give kelvins"), ("nan", "1700 to 25000")] {
+        place.refuse(&["render", "scene.toml", "--white-balance", kelvins], &["--white-balance", why]);
+    }
+}
+
 /// The bytes of a picture of the scene.
 fn rendered(place: &Place, output: &str, options: &[&str]) -> Vec<u8> {
     place.succeed(&[&["render", "scene.toml", "--device", "cpu", "--reproducible", "-o", output], options].concat());

@@ -4,7 +4,8 @@ mod program;
 
 use std::fs;
 
-use eyerays::{image, scene};
+use eyerays::image;
+use eyerays::scene_io;
 use eyerays_command::generate::Kind;
 use program::Place;
 
@@ -18,7 +19,7 @@ fn a_scene_is_three_files_that_render_as_they_are() {
         let summary = outcome.stderr.strip_suffix('\n').unwrap();
         assert!(!summary.contains('\n') && names.iter().all(|name| summary.contains(name)), "{summary}");
         assert!(summary.contains("20000 triangles") && outcome.stdout.is_empty(), "{summary}");
-        let (scene, warnings) = scene::load(&place.path(&names[2])).unwrap();
+        let (scene, warnings) = scene_io::load(&place.path(&names[2])).unwrap();
         assert!(warnings.is_empty(), "{warnings:?}");
         assert_eq!((scene.settings.size, scene.mesh.triangles.len()), ((1024, 1024), 20_000));
         for number in 1..=5 {
@@ -44,7 +45,7 @@ fn spheres_are_a_list_and_a_scene_that_shows_it() {
     let list = fs::read_to_string(place.path("spheres.xyzr")).unwrap();
     assert_eq!(list.lines().count(), 1 + 100);
     assert!(list.starts_with("# eyerays generate spheres --count 100\n0 1 0 1\n"), "{list}");
-    let (scene, warnings) = scene::load(&place.path("spheres.toml")).unwrap();
+    let (scene, warnings) = scene_io::load(&place.path("spheres.toml")).unwrap();
     assert_eq!((scene.spheres.len(), scene.disks.len(), warnings.len()), (100, 1, 0));
     // By either name, and again.
     place.succeed(&["generate", "spheres", "--count", "101", "-q", "-o", "spheres.xyzr"]);

@@ -5,7 +5,7 @@ mod program;
 use std::fs;
 
 use eyerays::job::Job;
-use eyerays::scene;
+use eyerays::scene_io;
 use eyerays_bvh::Quality;
 use program::{Place, SCENE, TRIANGLE, has_gpu, shipped};
 
@@ -32,7 +32,7 @@ fn check_tells_what_is_in_a_scene_and_writes_nothing() {
 fn info_tells_the_hierarchies_of_a_scene() {
     let place = Place::new(&[]);
     let path = shipped("whitted");
-    let (scene, _) = scene::load(path.as_ref()).unwrap();
+    let (scene, _) = scene_io::load(path.as_ref()).unwrap();
     let table = place.succeed(&["info", &path]);
     let json = place.succeed(&["info", &path, "--json"]).json();
     let rows = table.text().lines().skip_while(|line| !line.starts_with("BVH")).skip(1);

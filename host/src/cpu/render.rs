@@ -30,11 +30,11 @@ const TILE: u32 = 32;
 /// ```
 /// # use eyerays::{cpu::Renderer, job::Job, method::Traversal, quality::Bvh, scene, view::View};
 /// # fn main() -> eyerays::error::Result<()> {
-/// # let (scene, _) = scene::load("../scenes/cornell.toml".as_ref())?;
+/// # let (scene, _) = scene_io::load("../scenes/cornell.toml".as_ref())?;
 /// let job = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;
 /// let view = View::of(&job, &scene.cameras[0], (16, 16), 2)?;
 /// let renderer = Renderer::new(&job, Traversal::default(), 0)?;
-/// let mut film = renderer.start(&view)?;
+/// let mut film = renderer.start(&view);
 /// for sample in view.range() {
 ///     renderer.add::<f32>(&view, &mut film, view.samples_of(sample..sample + 1), &|_| (), &())?;
 ///     let _so_far = film.develop()?;
@@ -89,17 +89,14 @@ impl Renderer {
     where
         R: Number,
     {
-        let mut film = self.start(view)?;
+        let mut film = self.start(view);
         self.add(view, &mut film, view.whole(), done, observer)?;
         self.threads.install(|| film.developed())
     }
 
     /// A film of a view without any sample.
-    ///
-    /// # Errors
-    /// If there is no memory for it.
-    pub fn start(&self, view: &View) -> Result<Film> {
-        self.threads.install(|| Film::new(view, self.planned.film_words()))
+    pub fn start(&self, view: &View) -> Film {
+        Film::new(view, self.planned.film_words())
     }
 
     /// Adds a part of a view to its film, in the arithmetic `R`: n and then n more give the bits of 2n at once. `done` hears of
@@ -178,11 +175,12 @@ mod tests {
 
     use super::*;
     use crate::quality::Bvh;
-    use crate::scene::{self, Scene, Settings};
+    use crate::scene::{Scene, Settings};
+    use crate::scene_io;
 
     fn lights() -> Scene {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/lights.toml");
-        scene::load(path.as_ref()).unwrap().0
+        scene_io::load(path.as_ref()).unwrap().0
     }
 
     fn packed(scene: &Scene, settings: Settings) -> Job {
@@ -198,7 +196,7 @@ mod tests {
         let renderer = Renderer::new(&packed, Traversal::default(), 3).unwrap();
         let (whole, rays) = renderer.render::<f32>(&view, &|_| (), &()).unwrap();
         for parts in [&[9][..], &[1, 8], &[4, 4, 1], &[3, 3, 3]] {
-            let (mut film, mut first) = (renderer.start(&view).unwrap(), 0);
+            let (mut film, mut first) = (renderer.start(&view), 0);
             for &count in parts {
                 let part = view.samples_of(first..first + count);
                 renderer.add::<f32>(&view, &mut film, part, &|_| (), &()).unwrap();
@@ -215,7 +213,7 @@ mod tests {
         let packed = packed(&scene, Settings { size: (16, 12), samples: 2, bounces: 0, ..scene.settings });
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
         let renderer = Renderer::new(&packed, Traversal::default(), 1).unwrap();
-        let mut film = renderer.start(&view).unwrap();
+        let mut film = renderer.start(&view);
         assert!(film.develop().unwrap().pixels.iter().all(|&pixel| pixel == [0.0; 3]));
         renderer.add::<f32>(&view, &mut film, view.samples_of(0..1), &|_| (), &()).unwrap();
         let one = film.develop().unwrap();

@@ -45,7 +45,7 @@ impl<R: Number> Grows for OnCpu<R> {
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
         // There may be no memory for two.
         self.growing = None;
-        self.growing = Some(Growing { view: *view, film: self.renderer.start(view)? });
+        self.growing = Some(Growing { view: *view, film: self.renderer.start(view) });
         Ok(())
     }
 

@@ -52,7 +52,7 @@ impl Film {
         if Target::around(window, size) != window {
             return Err(Error::new("a tile that noise decides about is cut at cells: give one of whole cells"));
         }
-        let film = Film::new(view, view.noisy_film_words())?;
+        let film = Film::new(view, view.noisy_film_words());
         Ok(Film { cells: Some(Cells::new(size, *target, most)), ..film })
     }
 

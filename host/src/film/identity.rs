@@ -23,7 +23,7 @@ use crate::view::View;
 pub struct Identity(BTreeMap<String, String>);
 
 impl Identity {
-    /// Of a view of a scene, rendered with this precision; `scene` is the [`fingerprint`](crate::scene::fingerprint) of what was
+    /// Of a view of a scene, rendered with this precision; `scene` is the [`fingerprint`](crate::scene_io::fingerprint) of what was
     /// packed.
     ///
     /// # Errors

@@ -18,7 +18,6 @@ pub(crate) use develop::Developer;
 pub use identity::Identity;
 
 use crate::error::{Error, Result};
-use crate::picture::Picture;
 use crate::view::{Region, View};
 
 /// Sums of the samples of a picture, or of a part of it: 40 bytes a pixel, and 56 where noise is told; 4 more where what is clear is
@@ -44,8 +43,8 @@ pub struct Film {
 
 impl Film {
     /// Without any sample, for a view; `words` are those of a pixel.
-    pub(crate) fn new(view: &View, words: u32) -> Result<Film> {
-        let film = Film {
+    pub(crate) fn new(view: &View, words: u32) -> Film {
+        Film {
             size: view.size(),
             window: view.region(),
             words,
@@ -54,9 +53,7 @@ impl Film {
             cells: None,
             secondary: 0,
             identity: Identity::default(),
-        };
-        Picture::check_size(film.size.0, film.size.1)?;
-        Ok(film)
+        }
     }
 
     /// Columns and rows of the image that it is of.

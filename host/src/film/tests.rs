@@ -9,13 +9,14 @@ use crate::method::Traversal;
 use crate::quality::Bvh;
 use crate::render::Precision;
 use crate::scene::{self, Integrator, Scene, Settings, Transport};
+use crate::scene_io;
 
 const SIZE: (u32, u32) = (17, 11);
 const SPP: u32 = 9;
 
 fn cornell() -> Scene {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
-    scene::load(path.as_ref()).unwrap().0
+    scene_io::load(path.as_ref()).unwrap().0
 }
 
 /// A scene by an integrator, and how it is seen.
@@ -28,7 +29,7 @@ fn posed(scene: &Scene, integrator: Integrator) -> (Job, View) {
 }
 
 fn rendered(renderer: &Renderer, view: &View) -> Film {
-    let mut film = renderer.start(view).unwrap();
+    let mut film = renderer.start(view);
     renderer.add::<f32>(view, &mut film, view.whole(), &|_| (), &()).unwrap();
     film
 }
@@ -120,7 +121,7 @@ fn small() -> Film {
     let (packed, view) = posed(&scene, Integrator::Path);
     let view = view.part(Region { x: 2, y: 3, width: 7, height: 5 }, 4..6).unwrap();
     let mut film = rendered(&Renderer::new(&packed, Traversal::default(), 1).unwrap(), &view);
-    film.identity = Identity::of(scene::fingerprint(&scene).unwrap(), &packed, &view, Precision::Exact).unwrap();
+    film.identity = Identity::of(scene_io::fingerprint(&scene).unwrap(), &packed, &view, Precision::Exact).unwrap();
     film
 }
 
@@ -151,7 +152,7 @@ fn films_of_other_pictures_are_refused_by_name() {
         change(&mut settings);
         let packed = Job::new(scene, settings, Bvh::Fast.quality()).unwrap();
         let view = View::new(&packed, &scene.cameras[0]).unwrap();
-        Identity::of(scene::fingerprint(scene).unwrap(), &packed, &view, precision).unwrap()
+        Identity::of(scene_io::fingerprint(scene).unwrap(), &packed, &view, precision).unwrap()
     };
     let as_it_is = |_: &mut Settings| ();
     let own = identity(&scene, &as_it_is, Precision::Exact);

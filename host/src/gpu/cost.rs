@@ -66,12 +66,13 @@ impl Cost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{self, Scene};
+    use crate::scene::Scene;
+    use crate::scene_io;
     use eyerays_bvh::Quality;
 
     fn shipped(name: &str) -> Scene {
         let path = format!("{}/../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"));
-        scene::load(path.as_ref()).unwrap().0
+        scene_io::load(path.as_ref()).unwrap().0
     }
 
     fn cost(scene: &Scene) -> Cost {

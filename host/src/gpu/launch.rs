@@ -35,7 +35,8 @@ const MOST_PASSES: u32 = 4;
 pub(super) struct Queue {
     gpu: Gpu,
     timer: Option<Timer>,
-    readback: Option<Readback>,
+    /// Memory that films were read into before.
+    readbacks: Vec<Readback>,
     /// For the counters alone.
     counters: Readback,
     /// Passes since the times were read.
@@ -52,12 +53,22 @@ pub(super) struct Queue {
     waves: u32,
 }
 
+/// Counters, times and films on their way to the host.
+pub(super) struct Arriving {
+    readback: Readback,
+    submission: wgpu::SubmissionIndex,
+    /// Bytes of times.
+    times: u64,
+    /// Bytes of each film.
+    films: Vec<u64>,
+}
+
 impl Queue {
     pub fn new(gpu: &Gpu) -> Self {
         Queue {
             gpu: gpu.clone(),
             timer: Timer::new(gpu, PASSES),
-            readback: None,
+            readbacks: Vec::new(),
             counters: Readback::new(gpu, COUNTERS),
             passes: 0,
             time: Duration::ZERO,
@@ -106,44 +117,67 @@ impl Queue {
         &mut self,
         counters: &wgpu::Buffer,
         films: &[(&wgpu::Buffer, u64)],
-        mut look: impl FnMut(usize, &[u8]),
+        look: impl FnMut(usize, &[u8]),
     ) -> Result<u64> {
+        let arriving = self.request(counters, films);
+        self.receive(arriving, look)?;
+        self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
+        Ok(self.rays)
+    }
+
+    /// Has the counters and some films sent when all that was submitted is done, and waits for nothing. Rays are counted anew from there.
+    pub fn request(&mut self, counters: &wgpu::Buffer, films: &[(&wgpu::Buffer, u64)]) -> Arriving {
         let mut encoder = self.gpu.device.create_command_encoder(&Default::default());
         let timed = self.timer.as_ref().filter(|_| self.passes > 0).map(|timer| {
             timer.resolve(&mut encoder, self.passes);
             timer.resolved(self.passes)
         });
-        let all: Vec<(&wgpu::Buffer, u64)> =
-            [(counters, COUNTERS)].into_iter().chain(timed).chain(films.iter().copied()).collect();
-        let size = all.iter().map(|(_, size)| size).sum();
-        let readback = match self.readback.take() {
-            Some(readback) if readback.size() >= size => readback,
-            _ => Readback::new(&self.gpu, size),
+        let all = [(counters, COUNTERS)].into_iter().chain(timed).chain(films.iter().copied());
+        let size = all.clone().map(|(_, size)| size).sum();
+        let fits = self.readbacks.iter().position(|readback| readback.size() >= size);
+        let readback = match fits {
+            Some(place) => self.readbacks.swap_remove(place),
+            None => Readback::new(&self.gpu, size),
         };
         let mut offset = 0;
-        for &(buffer, size) in &all {
+        for (buffer, size) in all {
             readback.copy(&mut encoder, buffer, offset, size);
             offset += size;
         }
-        self.gpu.queue.submit([encoder.finish()]);
-        let words: Vec<u32> = readback.read(&self.gpu, size, |bytes| {
-            let (counters, mut rest) = bytes.split_at(COUNTERS as usize);
-            if let (Some(timer), Some((_, size))) = (&self.timer, timed) {
-                let (times, films) = rest.split_at(size as usize);
+        encoder.clear_buffer(counters, 4 * u64::from(counter::RAYS), Some(4));
+        let submission = self.gpu.queue.submit([encoder.finish()]);
+        let times = timed.map_or(0, |(_, size)| size);
+        (self.passes, self.uncounted) = (0, 0);
+        Arriving { readback, submission, times, films: films.iter().map(|(_, size)| *size).collect() }
+    }
+
+    /// Waits until it has arrived, and shows each film.
+    pub fn receive(&mut self, arriving: Arriving, mut look: impl FnMut(usize, &[u8])) -> Result<()> {
+        let Arriving { readback, submission, times, films } = arriving;
+        let size = COUNTERS + times + films.iter().sum::<u64>();
+        readback.receive(&self.gpu, submission, size, |bytes| {
+            let (counters, rest) = bytes.split_at(COUNTERS as usize);
+            let (times, mut rest) = rest.split_at(times as usize);
+            if let Some(timer) = &self.timer {
                 self.time += timer.times(times).into_iter().sum::<Duration>();
-                rest = films;
             }
-            for (i, (_, size)) in films.iter().enumerate() {
-                let (film, others) = rest.split_at(*size as usize);
+            for (i, size) in films.into_iter().enumerate() {
+                let (film, others) = rest.split_at(size as usize);
                 look(i, film);
                 rest = others;
             }
-            readback::words(counters).collect()
+            let rays = readback::words(counters).nth(counter::RAYS as usize);
+            self.rays += u64::from(rays.expect("it is one of the counters"));
         })?;
-        (self.readback, self.passes) = (Some(readback), 0);
-        self.count(counters, words[counter::RAYS as usize]);
-        self.done += self.under_way.drain(..).map(|(_, pixels)| pixels).sum::<u64>();
-        Ok(self.rays)
+        // Those that were too small are not kept beside it.
+        self.readbacks.retain(|other| other.size() >= size);
+        self.readbacks.push(readback);
+        Ok(())
+    }
+
+    /// Secondary rays of all that has arrived since this was asked last.
+    pub fn take_rays(&mut self) -> u64 {
+        std::mem::take(&mut self.rays)
     }
 
     /// Takes what the device has counted of secondary rays, and lets it count anew.

@@ -32,8 +32,29 @@ impl Readback {
 
     /// Waits for all that was submitted, and shows the first `size` bytes to `look`.
     pub fn read<T>(&self, gpu: &Gpu, size: u64, look: impl FnOnce(&[u8]) -> T) -> Result<T> {
+        self.map(gpu, size, || gpu.wait(), look)
+    }
+
+    /// Waits for the submission that copies them, and shows the first `size` bytes to `look`.
+    pub fn receive<T>(
+        &self,
+        gpu: &Gpu,
+        submission: wgpu::SubmissionIndex,
+        size: u64,
+        look: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T> {
+        self.map(gpu, size, || gpu.wait_for(submission), look)
+    }
+
+    fn map<T>(
+        &self,
+        gpu: &Gpu,
+        size: u64,
+        wait: impl FnOnce() -> Result<()>,
+        look: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T> {
         self.staging.map_async(wgpu::MapMode::Read, ..size, |_| {});
-        let done = gpu.wait();
+        let done = wait();
         let seen = match self.staging.get_mapped_range(..size) {
             Ok(view) => Ok(look(&view)),
             Err(e) => {

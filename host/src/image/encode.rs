@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::SOFTWARE;
 use super::exr::{self, exposed};
 use super::transfer::{quantise, quantise_to_byte};
+use super::white::balanced;
 use super::{BitDepth, Encoding, Format, ToneMap};
 use crate::choice::Named;
 use crate::error::{Error, Result};
@@ -33,16 +34,17 @@ pub fn encode(picture: &Picture, format: Format, encoding: &Encoding, mut writer
     picture.validate()?;
     encoding.check(format)?;
     let scale = encoding.scale()?;
+    let picture = &*balanced(picture, encoding.white);
     let refused = |error: &dyn fmt::Display| Error::new(format!("the image cannot be encoded as {format}: {error}"));
     let bytes = match format {
         Format::Png => png(picture, encoding, scale).map_err(|e| refused(&e))?,
         // With how opaque it is, channels have names.
         Format::Exr if picture.alpha.is_some() => {
-            exr::layered(picture, &[], scale, encoding.half).map_err(|e| refused(&e))?
+            exr::layered(picture, &[], encoding, scale).map_err(|e| refused(&e))?
         }
         Format::Exr if encoding.half => exr::half(picture, scale).map_err(|e| refused(&e))?,
         Format::Exr => exr::single(picture, scale).map_err(|e| refused(&e))?,
-        Format::Hdr if picture.alpha.is_some() => return Err(Error::NoAlpha { format }),
+        Format::Hdr if picture.alpha.is_some() => return Err(Error::NoAlpha { format: format.name() }),
         Format::Hdr => hdr(picture, scale).map_err(|e| refused(&e))?,
     };
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
@@ -67,7 +69,8 @@ pub fn encode_layers(
             layer.name()
         )));
     }
-    let bytes = exr::layered(picture, layers, encoding.scale()?, encoding.half);
+    let shown = balanced(picture, encoding.white);
+    let bytes = exr::layered(&shown, layers, encoding, encoding.scale()?);
     let bytes = bytes.map_err(|error| Error::new(format!("the layers cannot be encoded as EXR: {error}")))?;
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }

@@ -10,6 +10,7 @@ use exr::prelude::*;
 use rayon::prelude::*;
 
 use super::SOFTWARE;
+use super::white::balanced;
 use crate::about::About;
 use crate::choice::Named;
 use crate::layers::{self, Values};
@@ -40,16 +41,17 @@ fn nearest_half(v: f32) -> f16 {
     f16::from_f32(if v.is_finite() { v.clamp(-most, most) } else { v })
 }
 
-/// The file's bytes with layers beside the picture, whose channels have the layer's name before a point. Light is exposed, and in
-/// floats of 16 bits if those are asked for; lengths and numbers keep 32 bits.
+/// The file's bytes with layers beside a picture that is balanced already, whose channels have the layer's name before a point. Light is
+/// balanced and exposed, and in floats of 16 bits if those are asked for; lengths and numbers keep 32 bits.
 pub(super) fn layered(
     picture: &Picture,
     layers: &[(layers::Layer, Values)],
+    encoding: &super::Encoding,
     scale: f64,
-    is_half: bool,
 ) -> Result<Vec<u8>> {
+    let is_half = encoding.half;
     let of = |name: String, values: &Values| match values {
-        Values::Light(picture) => three(picture, &name, ["R", "G", "B"], scale, is_half),
+        Values::Light(picture) => three(&balanced(picture, encoding.white), &name, ["R", "G", "B"], scale, is_half),
         Values::Colours(picture) => three(picture, &name, ["R", "G", "B"], 1.0, is_half),
         Values::Vectors(picture) => three(picture, &name, ["X", "Y", "Z"], 1.0, is_half),
         Values::Lengths(lengths) => vec![channel(&name, "Z", FlatSamples::F32(lengths.clone()))],

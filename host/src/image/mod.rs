@@ -20,6 +20,7 @@ mod read;
 mod texels;
 mod tone;
 mod transfer;
+mod white;
 
 use std::fmt;
 use std::path::Path;
@@ -34,6 +35,7 @@ pub use texels::{TextureBudget, decode_texture, read_texture};
 pub use tone::ToneMap;
 pub(crate) use transfer::byte_to_linear;
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
+pub use white::WhiteBalance;
 
 /// What wrote a file.
 const SOFTWARE: &str = concat!("eyerays ", env!("CARGO_PKG_VERSION"));
@@ -64,15 +66,20 @@ impl Format {
             other => Err(Error::file(path, format!("unknown image format \"{other}\"; use .png, .exr or .hdr"))),
         }
     }
+
+    /// How it is called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Format::Png => "PNG",
+            Format::Exr => "EXR",
+            Format::Hdr => "HDR",
+        }
+    }
 }
 
 impl fmt::Display for Format {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(match self {
-            Format::Png => "PNG",
-            Format::Exr => "EXR",
-            Format::Hdr => "HDR",
-        })
+        out.write_str(self.name())
     }
 }
 
@@ -112,6 +119,8 @@ pub struct Encoding {
     pub half: bool,
     /// After the exposure; only in a PNG, as the other formats keep light as it is.
     pub tone: ToneMap,
+    /// Which light looks white, in every format; without one Rec. 709's, which changes no bit.
+    pub white: Option<WhiteBalance>,
 }
 
 impl Encoding {
@@ -124,10 +133,10 @@ impl Encoding {
     /// Those of [`Encoding::scale`], floats of 16 bits in another format than EXR, and a tone map in another than PNG.
     pub fn check(&self, format: Format) -> Result<()> {
         if self.half && format != Format::Exr {
-            return Err(Error::NoHalf { format });
+            return Err(Error::NoHalf { format: format.name() });
         }
         if self.tone != ToneMap::None && format != Format::Png {
-            return Err(Error::NoTone { format });
+            return Err(Error::NoTone { format: format.name() });
         }
         self.scale().map(drop)
     }

@@ -2,7 +2,10 @@
 //! the shader.
 
 mod sampled;
+mod stages;
 mod whitted;
+
+pub use stages::{SAMPLED, Stages, WHITTED};
 
 use crate::job::Job;
 use crate::scene::Integrator;
@@ -30,8 +33,8 @@ pub struct Needs {
     pub paths: u32,
     /// How often rays go on.
     pub waves: Waves,
-    /// Does it sample? Then its stages are others, see [`crate::plan::Plan`].
-    pub is_sampled: bool,
+    /// Its table of stages.
+    pub stages: &'static Stages,
 }
 
 /// How many waves follow that of the camera's rays.

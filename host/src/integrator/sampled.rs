@@ -1,6 +1,6 @@
 //! Integrators that sample: one light at each vertex, and one direction in which to go on.
 
-use super::{Needs, Waves, whitted};
+use super::{Needs, SAMPLED, Waves, whitted};
 use crate::job::Job;
 
 /// Of the camera's rays alone.
@@ -21,5 +21,5 @@ pub fn path(packed: &Job) -> Needs {
 
 /// One path a slot, and one shadow ray at each of its vertices.
 fn once(waves: u32) -> Needs {
-    Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(waves), is_sampled: true }
+    Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(waves), stages: &SAMPLED }
 }

@@ -2,7 +2,7 @@
 
 use eyerays_shader::data::Effects;
 
-use super::{Needs, Waves};
+use super::{Needs, WHITTED, Waves};
 use crate::job::Job;
 
 /// What a scene asks for.
@@ -14,7 +14,7 @@ pub fn whitted(packed: &Job) -> Needs {
     } else {
         Waves::AtMost(packed.settings().bounces)
     };
-    Needs { shadow_rays: packed.lights().len() as u32, paths: paths(packed, waves), waves, is_sampled: false }
+    Needs { shadow_rays: packed.lights().len() as u32, paths: paths(packed, waves), waves, stages: &WHITTED }
 }
 
 /// A refracted ray waits at most once a bounce. Waiting rays and the one in hand share their pixel's light, a unit a colour

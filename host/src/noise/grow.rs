@@ -1,13 +1,13 @@
 //! Renders cells until each has enough samples.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 use std::sync::mpsc;
 use std::thread;
 use std::time::{Duration, Instant};
 
-use super::{CellSums, Target};
+use super::{CellSums, Lot, Target};
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::view::{Region, View};
@@ -15,9 +15,6 @@ use crate::watch::{Grows, Growth, Watch};
 
 /// Cells that are rendered at first, before it is known how long they take.
 const FIRST: usize = 16;
-/// Lots that a device has at most: it renders one while the cells of another decide.
-const LOTS: usize = 2;
-
 /// Renders what a film has not yet of a view until its noise is low enough, the time is up or somebody stops it.
 ///
 /// # Errors
@@ -35,28 +32,31 @@ pub(crate) fn go_on(
     };
     let mut open = Open::of(&film);
     let mut pace = Pace { start: Instant::now(), step: device.step(), rate: None, last: 0 };
+    // The cells of one decide while the device has the others.
+    let lots = device.lots_at_once() + 1;
     thread::scope(|scope| {
         let (ask, asked) = mpsc::channel();
         let (answer, answered) = mpsc::channel();
         // Ends when nobody asks any more.
         scope.spawn(move || render(device, view, &asked, &answer));
-        let (mut under_way, mut ends) = (0, false);
+        let (mut under_way, mut ends) = (VecDeque::new(), false);
+        let mut free = Instant::now();
         loop {
-            while under_way < LOTS && !ends {
+            while under_way.len() < lots && !ends {
                 let wanted = |count| pace.cells(&film.next_samples(count), watch);
-                let Some(lot) = open.take(LOTS - under_way, wanted, |count| film.next_samples(count)) else { break };
-                under_way += 1;
+                let left = lots - under_way.len();
+                let Some(lot) = open.take(left, wanted, |count| film.next_samples(count)) else { break };
+                under_way.push_back((lot.cells.clone(), lot.samples.clone(), Instant::now()));
                 // A device that failed takes no more, and what it failed with is answered.
                 let _ = ask.send(lot);
             }
-            if under_way == 0 {
-                return Ok(film);
-            }
-            let Done { lot: Lot { cells, samples }, sums, time } = answered.recv().expect("the device answers");
-            under_way -= 1;
+            let Some((cells, samples, asked)) = under_way.pop_front() else { return Ok(film) };
+            let Done { sums, at } = answered.recv().expect("the device answers");
             film.add_cells(&cells, samples.clone(), &sums?)?;
             open.sort(&film, &cells);
-            pace.took(cells.len() * samples.len(), cells.len(), time);
+            // It began when it was free of the lot before.
+            pace.took(cells.len() * samples.len(), cells.len(), at - asked.max(free));
+            free = at;
             tell(&film, &open, watch);
             let is_late = watch.limit.is_some_and(|limit| pace.start.elapsed() >= limit);
             ends |= is_late || watch.stop.load(Ordering::Relaxed);
@@ -64,29 +64,19 @@ pub(crate) fn go_on(
     })
 }
 
-/// Cells that get these samples next.
-struct Lot {
-    cells: Vec<Region>,
-    samples: Range<u32>,
-}
-
-/// What came of them, and how long it took.
+/// What came of a lot, and when.
 struct Done {
-    lot: Lot,
     sums: Result<CellSums>,
-    time: Duration,
+    at: Instant,
 }
 
 /// Renders lots as they are asked for, until none is any more.
 fn render(device: &mut dyn Grows, view: &View, asked: &mpsc::Receiver<Lot>, answer: &mpsc::Sender<Done>) {
-    for lot in asked {
-        let before = Instant::now();
-        let sums = device.cells(view, &lot.cells, lot.samples.clone());
-        let has_failed = sums.is_err();
-        if answer.send(Done { lot, sums, time: before.elapsed() }).is_err() || has_failed {
-            return;
-        }
-    }
+    let mut next = |waits: bool| if waits { asked.recv().ok() } else { asked.try_recv().ok() };
+    device.lots(view, &mut next, &mut |sums| {
+        // Nobody hears it who has gone.
+        let _ = answer.send(Done { sums, at: Instant::now() });
+    });
 }
 
 /// A film as large as a view that goes on with it.

@@ -6,6 +6,8 @@ mod steps;
 #[cfg(test)]
 mod tests;
 
+use std::ops::Range;
+
 use eyerays_shader::camera;
 
 pub(crate) use self::grow::go_on;
@@ -23,6 +25,12 @@ pub struct Target {
     tone: ToneMap,
     /// Of the exposure.
     scale: f64,
+}
+
+/// Cells that get samples: whole blocks of them.
+pub(crate) struct Lot {
+    pub cells: Vec<Region>,
+    pub samples: Range<u32>,
 }
 
 /// Sums of cells, and what else a device tells of them.

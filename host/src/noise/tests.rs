@@ -15,7 +15,8 @@ use crate::film::{Film, Part};
 use crate::job::Job;
 use crate::method::Traversal;
 use crate::quality::Bvh;
-use crate::scene::{self, Settings};
+use crate::scene::Settings;
+use crate::scene_io;
 use crate::view::View;
 use crate::watch::{Grows, Watch};
 
@@ -88,7 +89,7 @@ impl Grows for Noisy {
 
 fn posed(size: (u32, u32), spp: u32) -> (Job, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
-    let (scene, _) = scene::load(path.as_ref()).unwrap();
+    let (scene, _) = scene_io::load(path.as_ref()).unwrap();
     let settings = Settings { size, spp, bounces: 2, ..scene.settings };
     let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();

@@ -4,7 +4,7 @@ mod run;
 
 use eyerays_shader::data::{Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::{RECORDS, SHADOW_RECORDS, STATE_RECORDS, film_words};
+use eyerays_shader::stage::film_words;
 
 pub use run::{Executor, run};
 
@@ -97,37 +97,37 @@ impl Plan {
     /// # Errors
     /// Those of `resolve`.
     pub fn of(needs: &Needs, spec: Specialisation, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
-        let Needs { waves, shadow_rays, is_sampled, .. } = *needs;
-        let spec = if is_sampled && waves != Waves::AtMost(0) { spec.with_launch(Launch::GOES_ON) } else { spec };
-        // What surfaces scatter has no order that a grid of threads could keep.
-        let later = if is_sampled { Coherence::Scattered } else { Coherence::Secondary };
+        let Needs { waves, shadow_rays, stages, .. } = *needs;
+        let has_further = waves != Waves::AtMost(0);
+        let spec = spec.with_launch(if has_further { stages.goes_on } else { 0 });
         let plain = |stage, spec| Step { stage, traversal: None, spec };
         let wave = |spec: Specialisation, traced, shadowed| -> Result<Vec<Step>> {
-            // Rays that an integrator samples lie in memory as those of a stream do.
-            let rays = if is_sampled { spec.with_launch(Launch::STREAM) } else { spec };
-            let follows = |stage, coherence| Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: rays });
-            let trace = follows(Stage::Trace, traced)?;
-            if is_sampled {
-                return Ok(vec![trace, plain(Stage::Scatter, spec), follows(Stage::Shadow, shadowed)?]);
-            }
-            let shadow = if shadow_rays > 0 { Some(follows(Stage::Shadow, shadowed)?) } else { None };
-            Ok([Some(trace), shadow, Some(plain(Stage::Shade, spec))].into_iter().flatten().collect())
+            let step = |&stage: &Stage| {
+                let coherence = match stage {
+                    Stage::Trace => traced,
+                    Stage::Shadow => shadowed,
+                    _ => return Ok(plain(stage, spec)),
+                };
+                Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: spec.with_launch(stages.rays) })
+            };
+            let there = |stage: &&Stage| shadow_rays > 0 || **stage != Stage::Shadow;
+            stages.wave.iter().filter(there).map(step).collect()
         };
         let mut first = wave(spec, Coherence::Primary, Coherence::Shadow)?;
-        if is_sampled || spec.launch.has(Launch::KEPT) {
+        if stages.generates || spec.launch.has(Launch::KEPT) {
             first.insert(0, plain(Stage::Generate, spec));
         }
         let mut further = Vec::new();
-        if waves != Waves::AtMost(0) {
+        if has_further {
             let spec = spec.with_launch(Launch::SECONDARY);
             further.push(plain(Stage::Advance, spec));
-            further.extend(wave(spec, later, later)?);
+            further.extend(wave(spec, stages.further, stages.further)?);
         }
-        let last = vec![plain(if is_sampled { Stage::Accumulate } else { Stage::Gather }, spec)];
+        let last = vec![plain(stages.last, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, spec.launch, !further.is_empty());
-        let film_words = film_words(spec.launch, is_sampled);
+        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, spec.launch, has_further);
+        let film_words = film_words(spec.launch, stages.tells_noise);
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
 
@@ -175,17 +175,16 @@ impl Plan {
 
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
 fn slot_bytes(needs: &Needs, launch: Launch, has_queue: bool) -> Vec<(u32, u64)> {
-    let Needs { shadow_rays, paths, is_sampled, .. } = *needs;
-    let (path, shadow_ray) = if is_sampled { (STATE_RECORDS, SHADOW_RECORDS) } else { (RECORDS, 0) };
+    let Needs { shadow_rays, paths, stages, .. } = *needs;
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
     // Behind the light of all slots lies what they have of shadow catchers.
     let sums = if launch.has(Launch::CATCHER) { 2 } else { 1 };
     let all = [
-        (binding::PATHS, records(paths * path)),
+        (binding::PATHS, records(paths * stages.path_records)),
         (binding::HITS, Plan::RECORD_BYTES),
         (binding::SHADOWS, 4 * u64::from(shadow_rays)),
-        (binding::SEGMENTS, records(shadow_ray)),
+        (binding::SEGMENTS, records(stages.shadow_records)),
         (binding::SUMS, records(sums)),
         (binding::QUEUE, queue),
         (binding::NEXT, queue),
@@ -199,6 +198,7 @@ mod tests {
     use eyerays_shader::stage::NOISY_FILM_WORDS;
 
     use super::*;
+    use crate::integrator::{SAMPLED, WHITTED};
     use crate::method::Processor;
 
     fn plan(needs: Needs) -> Plan {
@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn rays_that_do_not_go_on_take_one_wave_and_no_queue() {
-        let plan = plan(Needs { shadow_rays: 2, paths: 0, waves: Waves::AtMost(0), is_sampled: false });
+        let plan = plan(Needs { shadow_rays: 2, paths: 0, waves: Waves::AtMost(0), stages: &WHITTED });
         assert_eq!(stages(&plan.first), [Stage::Trace, Stage::Shadow, Stage::Shade]);
         assert_eq!((stages(&plan.further), stages(&plan.last)), (vec![], vec![Stage::Gather]));
         assert_eq!(plan.slot_bytes, [(binding::HITS, 16), (binding::SHADOWS, 8), (binding::SUMS, 16)]);
@@ -222,7 +222,7 @@ mod tests {
     /// A vertex is scattered before its shadow ray is followed, whose light the next stage of the slot adds.
     #[test]
     fn paths_are_generated_scattered_and_accumulated() {
-        let plan = plan(Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(5), is_sampled: true });
+        let plan = plan(Needs { shadow_rays: 1, paths: 1, waves: Waves::AtMost(5), stages: &SAMPLED });
         assert_eq!(stages(&plan.first), [Stage::Generate, Stage::Trace, Stage::Scatter, Stage::Shadow]);
         assert_eq!(stages(&plan.further), [Stage::Advance, Stage::Trace, Stage::Scatter, Stage::Shadow]);
         assert_eq!(stages(&plan.last), [Stage::Accumulate]);

@@ -38,7 +38,7 @@ pub fn run(plan: &Plan, executor: &mut impl Executor) -> Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::integrator::{Needs, Waves};
+    use crate::integrator::{Needs, WHITTED, Waves};
     use crate::method::{Method, Traversal};
     use crate::plan::Stage;
 
@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn further_waves_run_while_rays_are_left_and_the_film_is_last() {
-        let needs = Needs { shadow_rays: 0, paths: 1, waves: Waves::AtMost(9), is_sampled: false };
+        let needs = Needs { shadow_rays: 0, paths: 1, waves: Waves::AtMost(9), stages: &WHITTED };
         let plan = Plan::of(&needs, Default::default(), |_| Ok(Traversal::from(Method::IfIf))).unwrap();
         let mut log = Log(Vec::new(), 3);
         run(&plan, &mut log).unwrap();

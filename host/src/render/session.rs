@@ -7,6 +7,7 @@ use std::time::{Duration, Instant};
 use super::rendering::{Rendering, Taken, repeated};
 use super::several::{Devices, cpu_name};
 use super::{Backend, DeviceWish, Opened, Precision, Why};
+use crate::choice;
 use crate::cpu::{self, OnCpu};
 use crate::error::{Error, Result};
 use crate::film::Film;
@@ -125,8 +126,9 @@ impl Session {
         from: Option<&Film>,
         watch: &Watch<'_>,
     ) -> Result<Rendering> {
-        if !needs(&self.job).is_sampled {
-            return Err(Error::NoNoise { integrator: self.job.settings().transport.integrator });
+        if !needs(&self.job).stages.tells_noise {
+            let integrator = choice::Named::name(self.job.settings().transport.integrator);
+            return Err(Error::NoNoise { integrator });
         }
         self.prepare_time = std::mem::take(&mut self.opening);
         self.watched(view, from, watch, |device, from, watch| noise::go_on(device, view, target, from, watch))

@@ -56,7 +56,7 @@ impl Camera {
     }
 
     /// Does its `up` tell which way is up? Not if it lies along the view, nearer than single precision tells apart.
-    pub(super) fn is_upright(&self) -> bool {
+    pub(crate) fn is_upright(&self) -> bool {
         let sine = self.forward().cross(self.up.as_dvec3().normalize_or_zero());
         sine.length() >= 1e-6
     }

@@ -20,7 +20,7 @@ impl Scene {
 }
 
 /// The least and the greatest corner of points; zeros where there are none.
-pub(super) fn of(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
+pub(crate) fn of(points: impl Iterator<Item = Vec3>) -> [Vec3; 2] {
     let widen = |[least, greatest]: [Vec3; 2], [low, high]: [Vec3; 2]| [least.min(low), greatest.max(high)];
     points.map(|point| [point; 2]).reduce(widen).unwrap_or_default()
 }

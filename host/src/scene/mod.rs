@@ -1,77 +1,37 @@
-//! A scene in world units, as the files describe it and before anything is packed for a device.
-//!
-//! A scene file is TOML. All there is to say, as an example:
-//!
-//! ```toml
-#![doc = include_str!("example.toml")]
-//! ```
+//! A scene in world units, as files describe it and before anything is packed for a device. [`scene_io`](crate::scene_io) reads and
+//! writes it.
 
-mod binary;
-mod budget;
 mod camera;
-mod camera_table;
 mod check;
-mod describe;
-mod document;
 mod environment;
-mod extent;
+pub(crate) mod extent;
 mod falloff;
-mod file;
-mod files;
 mod filter;
-mod frame;
-mod geometry;
-mod gltf;
+pub(crate) mod frame;
+pub(crate) mod hierarchy;
 mod lens;
-mod light_unit;
-mod lines;
-mod lit;
-mod load;
-mod map;
-mod material;
 mod matrices;
-mod merge;
-mod mesh_table;
-mod mtl;
-mod named;
-mod neighbours;
-mod normal;
-mod obj;
+pub(crate) mod normal;
 mod object;
 mod physical;
 mod pixel_filter;
-mod ply;
-mod polygon;
 mod primitive;
 mod projection;
 mod range;
 mod sampler;
-mod shape;
-mod source;
 mod stereo;
-mod studio;
-mod suggest;
-mod table;
-mod tally;
+pub(crate) mod studio;
 mod texture;
-mod transform;
 mod transport;
 mod visibility;
-mod xyzr;
 
-#[cfg(test)]
-mod tests;
-
-pub use binary::{ENDING, Hierarchy, fingerprint, write};
 pub use camera::Camera;
-pub use describe::describe;
 pub use environment::Environment;
 pub use falloff::Falloff;
 pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
+pub use hierarchy::Hierarchy;
 pub use lens::{Focus, Lens};
-pub use light_unit::LightUnit;
-pub use load::{Loading, load, load_as, read_as, read_table};
 pub use object::{Object, ObjectNumbers};
 pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use pixel_filter::PixelFilter;
@@ -80,8 +40,6 @@ pub use projection::{Mapping, Projection};
 pub use range::Range;
 pub use sampler::Sampler;
 pub use stereo::{Stereo, StereoLayout};
-pub use suggest::{nearest, suggest};
-pub use table::Table;
 pub use texture::{Alpha, Map, Maps, Placement, Texels, Texture, Wrap};
 pub use transport::{Direct, Integrator, Transport};
 pub use visibility::{Matte, Visibility};
@@ -94,13 +52,13 @@ use crate::choice::Named;
 use crate::error::{self, Error};
 
 /// The result of a check that does not know whose line it checks: the error is a fault and its remedy.
-type Unplaced<T> = Result<T, String>;
+pub(crate) type Unplaced<T> = Result<T, String>;
 
 /// The most triangles, spheres and disks that a scene may have together: traversal numbers them in the bits that a node
 /// reference has.
 pub const MAX_PRIMITIVES: usize = NodeRef::MAX_INDEX as usize;
 
-/// All that a picture is made from. Everything in it is finite and in range: [`load`] refuses the rest.
+/// All that a picture is made from. Everything in it is finite and in range: a [`Job`](crate::job::Job) refuses the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Every surface of triangles, merged and transformed to world units.

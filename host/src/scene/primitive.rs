@@ -67,7 +67,7 @@ impl Sphere {
     }
 
     /// What single precision can't hold of it, and the remedy; it follows the sphere's name.
-    pub(super) fn fault(&self) -> Option<&'static str> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
         fault(self.center, self.radius, self.bounds())
     }
 }
@@ -84,7 +84,7 @@ impl Disk {
     }
 
     /// As [`Sphere::fault`].
-    pub(super) fn fault(&self) -> Option<&'static str> {
+    pub(crate) fn fault(&self) -> Option<&'static str> {
         fault(self.center, self.radius, self.bounds())
     }
 }

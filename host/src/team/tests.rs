@@ -11,7 +11,8 @@ use crate::job::Job;
 use crate::method::Traversal;
 use crate::noise::{self, Target};
 use crate::quality::Bvh;
-use crate::scene::{self, Settings};
+use crate::scene::Settings;
+use crate::scene_io;
 use crate::watch::Watch;
 
 fn posed() -> (Job, View) {
@@ -20,7 +21,7 @@ fn posed() -> (Job, View) {
 
 fn posed_with(spp: u32) -> (Job, View) {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/cornell_path.toml");
-    let (scene, _) = scene::load(path.as_ref()).unwrap();
+    let (scene, _) = scene_io::load(path.as_ref()).unwrap();
     let settings = Settings { size: (24, 70), spp, bounces: 1, ..scene.settings };
     let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let view = View::new(&packed, &scene.cameras[0]).unwrap();

@@ -8,7 +8,7 @@ use eyerays::job::Job;
 use eyerays::method::{Processor, Traversal};
 use eyerays::plan::{Plan, Stage};
 use eyerays::quality::Bvh;
-use eyerays::scene;
+use eyerays::scene_io;
 use eyerays_passes::{Kernel, Kernels};
 use eyerays_shader::data::{Effects, Specialisation};
 use eyerays_shader::resources::RESOURCES;
@@ -137,7 +137,7 @@ fn kernels(compiler: &Compiler, edits: &[Edit]) -> Kernels {
 /// What each step of a scene's pictures runs by default.
 fn recipes(name: &str) -> Vec<(String, Specialisation, Stage)> {
     let path = source::shader().join("../scenes").join(name).with_extension("toml");
-    let (scene, _) = scene::load(&path).unwrap();
+    let (scene, _) = scene_io::load(&path).unwrap();
     let scene = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
     let traversal = Traversal::default();
     let plan = Plan::new(&scene, &traversal, |coherence| Ok(traversal.resolved(Processor::Gpu, coherence))).unwrap();

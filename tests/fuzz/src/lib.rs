@@ -14,7 +14,8 @@ use eyerays::job::Job;
 use eyerays::error::{Error, Result};
 use eyerays::method::Traversal;
 use eyerays::quality::Bvh;
-use eyerays::scene::{self, Integrator, Scene, Settings, Transport};
+use eyerays::scene::{Integrator, Scene, Settings, Transport};
+use eyerays::scene_io;
 use eyerays::view::View;
 
 /// A scene of more is not packed: that is tried by other tests, and takes long.
@@ -27,7 +28,7 @@ pub fn start() {
 
 /// Reads a file of that name with these bytes, and draws what it holds.
 pub fn read(name: &str, bytes: &[u8]) {
-    let read = scene::load(&place(name, bytes));
+    let read = scene_io::load(&place(name, bytes));
     let drawn = read.and_then(|(scene, _)| if scene.primitives() <= MOST_PRIMITIVES { draw(&scene) } else { Ok(()) });
     if let Err(error) = drawn {
         check_line(&error);

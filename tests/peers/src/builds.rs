@@ -6,7 +6,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use eyerays::job::Job;
-use eyerays::scene;
+use eyerays::scene_io;
 
 use crate::embree::Embree;
 use crate::{Options, QUALITIES, median, primitives};
@@ -20,7 +20,7 @@ pub fn heading() {
 /// Times both at every quality. Eyerays' time holds splitting, checks, packing and the nodes that a CPU walks; Embree's the
 /// copy of the primitives.
 pub fn builds(options: &Options, path: &Path) -> Result<(), Box<dyn Error>> {
-    let (scene, _) = scene::load(path)?;
+    let (scene, _) = scene_io::load(path)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     for (quality, own, embree) in QUALITIES {

@@ -15,7 +15,8 @@ use contest::{RayTracer, differing, hits};
 use embree3::BuildQuality;
 use eyerays::job::Job;
 use eyerays::method::{Method, Order, Traversal};
-use eyerays::scene::{self, Settings};
+use eyerays::scene::{Settings};
+use eyerays::scene_io;
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_command::bench::Kind;
@@ -102,7 +103,7 @@ fn primitives(packed: &Job) -> Vec<Primitive> {
 }
 
 fn contest(options: &Options, path: &std::path::Path) -> Result<(), Box<dyn Error>> {
-    let (scene, _) = scene::load(path)?;
+    let (scene, _) = scene_io::load(path)?;
     let settings = Settings { size: (options.size, options.size), samples: 1, ..scene.settings };
     let found = QUALITIES.iter().find(|(name, ..)| *name == options.quality);
     let &(_, quality, embree_quality) = found.ok_or("--quality is fast, medium or high")?;

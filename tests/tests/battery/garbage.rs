@@ -3,7 +3,8 @@
 use std::fmt::Write as _;
 
 use eyerays::job::Job;
-use eyerays::scene::{self, Projection, Scene, Settings};
+use eyerays::scene::{Projection, Scene, Settings};
+use eyerays::scene_io;
 use eyerays::view::View;
 use eyerays_bvh::Quality;
 use eyerays_tests::Posed;
@@ -103,7 +104,7 @@ fn files_of_random_numbers() {
         triangles.into_iter().for_each(|triangle| text += &face(triangle));
         let path = folder.path().join(format!("{seed}.obj"));
         std::fs::write(&path, text).unwrap();
-        match scene::load(&path) {
+        match scene_io::load(&path) {
             Ok((mut scene, _)) => {
                 scene.settings.size = (16, 12);
                 Some(scene)

@@ -1,7 +1,8 @@
 //! The scenes of triangles and the rays that all oracles are asked about, with fixed seeds.
 
 use eyerays::job::Job;
-use eyerays::scene::{self, Scene};
+use eyerays::scene::Scene;
+use eyerays::scene_io;
 use eyerays::stream::StreamRay;
 use eyerays_command::generate::{Files, Kind, Recipe};
 use eyerays_shader::camera::{self, CameraRay};
@@ -57,7 +58,7 @@ fn tessellated(name: &str) -> Scene {
         };
         std::fs::write(folder.path().join(file.file_name()), bytes).expect("a copy");
     }
-    scene::load(&folder.path().join(name).with_extension("toml")).unwrap().0
+    scene_io::load(&folder.path().join(name).with_extension("toml")).unwrap().0
 }
 
 fn hall() -> Scene {
@@ -65,7 +66,7 @@ fn hall() -> Scene {
     let mesh = folder.path().join("hall.obj");
     let files = Files::beside(&mesh).unwrap();
     Recipe { kind: Kind::Hall, triangles: 6000, seed: 3 }.write(&files).unwrap();
-    scene::load(&mesh.with_extension("toml")).unwrap().0
+    scene_io::load(&mesh.with_extension("toml")).unwrap().0
 }
 
 /// Triangles from 1 down to 2^-16 of the scene, many of them slivers, some in planes along the axes, some that share

@@ -2,7 +2,8 @@
 
 use eyerays::gpu::{AdapterRequest, Renderer};
 use eyerays::method::Traversal;
-use eyerays::scene::{self, Background, Light, Material, Projection, Scene, Settings};
+use eyerays::scene::{Background, Light, Material, Projection, Scene, Settings};
+use eyerays::scene_io;
 use eyerays_shader::material::{fresnel, refract};
 use eyerays_shader::real::{Real, Scalar, V3};
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt};
@@ -103,7 +104,7 @@ fn an_index_that_is_none_is_refused_by_its_name() {
             "[[material]]\nname = \"glass\"\ntransmission = [1.0, 1.0, 1.0]\nior = {ior}\n\n[[mesh]]\nshape = \"sphere\"\nmaterial = \"glass\"\n"
         );
         std::fs::write(&path, text).unwrap();
-        match scene::load(&path) {
+        match scene_io::load(&path) {
             Ok(_) => assert!(fits, "{ior}"),
             Err(error) => {
                 let line = error.to_string();

@@ -14,12 +14,13 @@ use super::*;
 use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, TriangleTest};
 use eyerays::scene::{self, Scene, Settings};
+use eyerays::scene_io;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays::view::View;
 
 fn scene() -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
-    scene::load(&path).unwrap().0
+    scene_io::load(&path).unwrap().0
 }
 
 /// The Cornell box as its first camera sees it.

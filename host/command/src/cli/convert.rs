@@ -15,7 +15,8 @@ use crate::error::{Error, Result, printable};
 use crate::output::{self, Destination};
 use eyerays::device_scene;
 use eyerays::quality::Bvh;
-use eyerays::scene::{self, Scene};
+use eyerays::scene::Scene;
+use eyerays::scene_io;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -50,8 +51,8 @@ impl Convert {
         let path = Path::new(&self.output);
         let is = |ending: &str| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
         let is_text = is("toml");
-        if !is_text && !is(scene::ENDING) {
-            let ending = scene::ENDING;
+        if !is_text && !is(scene_io::ENDING) {
+            let ending = scene_io::ENDING;
             return Err(Error::file(path, format!("the ending chooses the form; end the name in .{ending} or .toml")));
         }
         if is_text {
@@ -84,7 +85,7 @@ impl Convert {
         let build = || device_scene::hierarchy(scene, quality.quality()).map_err(|e| e.of(&self.scene));
         let bvh = if self.no_bvh { None } else { Some(progress::stage("building", quiet, build)?) };
         let hierarchy = bvh.as_ref().map(|bvh| (quality, bvh));
-        let write = || output::write_atomically(path, |out| Ok(scene::write(scene, hierarchy, out)?));
+        let write = || output::write_atomically(path, |out| Ok(scene_io::write(scene, hierarchy, out)?));
         progress::stage("writing", quiet, write)
     }
 
@@ -111,7 +112,7 @@ impl Convert {
         let text = format!(
             "# Made by eyerays convert: surfaces and textures are in {}.\n\n{}",
             printable(&name),
-            scene::describe(scene, &mesh)
+            scene_io::describe(scene, &mesh)
         );
         output::write_atomically(path, |out| {
             out.write_all(text.as_bytes()).map_err(|error| output::write_error(&error))

@@ -19,7 +19,7 @@ use eyerays::compare::{Comparison, compare, heat_map};
 use eyerays::image::{self, Encoding};
 use eyerays::picture::Picture;
 use eyerays::render::{Backend, DeviceWish, Precision, Rendering};
-use eyerays::scene;
+use eyerays::scene_io;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -118,7 +118,7 @@ impl Diff {
 
     fn pictures(&self, second: &PathBuf) -> Result<(Picture, Picture, [String; 2])> {
         for file in [&self.first, second] {
-            if has_extension(file, &["toml", "obj", scene::ENDING]) {
+            if has_extension(file, &["toml", "obj", scene_io::ENDING]) {
                 return Err(Error::file(
                     file,
                     "a scene is compared alone, from GPU and CPU; render two to compare them",

@@ -66,7 +66,7 @@ const NOT_OF_PARTS: [&str; 17] = [
 ];
 
 /// Options of `render` that are for the merge, which writes the picture.
-const OF_THE_MERGE: [&str; 4] = ["exposure", "bits", "tone", "half"];
+const OF_THE_MERGE: [&str; 5] = ["exposure", "white_balance", "bits", "tone", "half"];
 
 impl Farm {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {

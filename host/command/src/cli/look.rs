@@ -6,7 +6,7 @@ use super::choice::choice;
 use super::exposure::{Brightness, Exposure};
 use crate::error::Result;
 use crate::output::{self, Destination};
-use eyerays::image::{BitDepth, Encoding, Format, ToneMap};
+use eyerays::image::{BitDepth, Encoding, Format, ToneMap, WhiteBalance};
 use eyerays::picture::Picture;
 
 /// The options of what writes pictures.
@@ -15,6 +15,9 @@ pub(super) struct Look {
     /// Brighten the picture by this many stops; auto makes white what all but 1 % of the pixels with light are darker than
     #[arg(long, value_name = "EV|auto", default_value = "0", value_parser = Exposure::parse, allow_hyphen_values = true)]
     exposure: Exposure,
+    /// The light that looks white, in kelvins: 2900 of light bulbs, 5000 of the sun [default: 6504, a screen's white]
+    #[arg(long, value_name = "K", value_parser = white_balance)]
+    white_balance: Option<WhiteBalance>,
     /// Bits a channel of a PNG: 8 or 16
     #[arg(long, value_name = "BITS", default_value_t = 8)]
     bits: u32,
@@ -40,14 +43,14 @@ impl Look {
     pub fn encoding(&self, picture: &Picture) -> Result<Encoding> {
         let exposure_ev = match self.exposure {
             Exposure::Stops(stops) => stops,
-            Exposure::Auto => Brightness::of(picture).exposure(),
+            Exposure::Auto => self.brightness(picture).exposure(),
         };
         Ok(Encoding { exposure_ev, ..self.plain()? })
     }
 
     /// For a picture of something else than light: as it is.
     pub fn as_it_is(&self) -> Result<Encoding> {
-        Ok(Encoding { exposure_ev: 0.0, tone: ToneMap::None, ..self.plain()? })
+        Ok(Encoding { exposure_ev: 0.0, tone: ToneMap::None, white: None, ..self.plain()? })
     }
 
     /// How bright it is shown.
@@ -60,9 +63,18 @@ impl Look {
         self.tone
     }
 
+    /// Of a picture as its white is balanced.
+    fn brightness(&self, picture: &Picture) -> Brightness {
+        match self.white_balance {
+            Some(white) => Brightness::of(&white.balanced(picture)),
+            None => Brightness::of(picture),
+        }
+    }
+
     fn plain(&self) -> Result<Encoding> {
         let bits = BitDepth::from_bits(self.bits)?;
-        Ok(Encoding { exposure_ev: self.exposure.stops(), bits, half: self.half, tone: self.tone })
+        let (exposure_ev, white) = (self.exposure.stops(), self.white_balance);
+        Ok(Encoding { exposure_ev, bits, half: self.half, tone: self.tone, white })
     }
 
     /// What to say of a picture that is mostly beyond white. Formats of light hold it all, and tone maps find a place for it.
@@ -75,7 +87,7 @@ impl Look {
         if destination.is_film() || destination.format()? != Format::Png {
             return Ok(None);
         }
-        let brightness = Brightness::of(picture);
+        let brightness = self.brightness(picture);
         let share = brightness.beyond_white(encoding.exposure_ev);
         if share <= MOST_BEYOND_WHITE {
             return Ok(None);
@@ -88,4 +100,10 @@ impl Look {
     pub fn write(&self, picture: &Picture, destination: &Destination) -> Result<()> {
         output::write_picture(picture, destination, &self.encoding(picture)?)
     }
+}
+
+fn white_balance(text: &str) -> std::result::Result<WhiteBalance, String> {
+    let kelvins =
+        text.trim_end_matches(['k', 'K']).parse().map_err(|_| format!("{text:?} is no temperature; give kelvins"))?;
+    WhiteBalance::of(kelvins).map_err(|error| error.to_string())
 }

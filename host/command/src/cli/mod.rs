@@ -39,6 +39,7 @@ mod tradeoff;
 mod transport;
 mod watching;
 
+use std::fmt::Display;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -152,8 +153,8 @@ fn log(verbose: u8) {
     log.log_internal_errors(false).init();
 }
 
-/// Warnings of a scene, each on its line.
-fn warn(warnings: &[String], quiet: bool) {
+/// Warnings, each on its line.
+fn warn(warnings: &[impl Display], quiet: bool) {
     for warning in warnings.iter().filter(|_| !quiet) {
         console::say(format_args!("warning: {warning}"));
     }

@@ -6,6 +6,7 @@ use super::exposure::Exposure;
 use super::look::Look;
 use super::options::Effort;
 use crate::error::{Error, Result};
+use eyerays::choice::Named;
 use eyerays::noise::Target;
 use eyerays::scene::{Integrator, Scene};
 use eyerays::view::{Region, View};
@@ -52,7 +53,7 @@ impl NoiseArgs {
         }
         let integrator = effort.integrator().unwrap_or(scene.settings.transport.integrator);
         if integrator == Integrator::Whitted {
-            return Err(eyerays::error::Error::NoNoise { integrator }.into());
+            return Err(eyerays::error::Error::NoNoise { integrator: Named::name(integrator) }.into());
         }
         effort.without_grid(scene, "--noise", MOST)
     }

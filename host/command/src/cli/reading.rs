@@ -7,7 +7,9 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use clap::Args;
-use eyerays::scene::{self, Integrator, LightUnit, Loading, Scene};
+use eyerays::scene::{Integrator, Scene};
+use eyerays::scene_io;
+use eyerays::scene_io::{LightUnit, Loading};
 
 use super::choice::choice;
 use super::progress;
@@ -75,8 +77,8 @@ impl<'a> Read<'a> {
     pub fn scene(path: &'a Path, outputs: &[Destination], loading: Loading, quiet: bool) -> Result<Self> {
         let start = Instant::now();
         let load = || match is_standard_input(path) {
-            true => scene::read_as(io::stdin().lock(), called(path), loading),
-            false => scene::load_as(path, loading),
+            true => scene_io::read_as(io::stdin().lock(), called(path), loading),
+            false => scene_io::load_as(path, loading),
         };
         let (scene, warnings) = progress::stage("reading", quiet, load)?;
         let path = called(path);

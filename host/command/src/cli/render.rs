@@ -29,7 +29,8 @@ use crate::preset::Preset;
 use eyerays::denoise::Denoiser;
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{self, Scene, Settings};
+use eyerays::scene::{Scene, Settings};
+use eyerays::scene_io;
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -250,7 +251,7 @@ impl Task<'_> {
     fn opened(&self, scene: &Scene, path: &Path) -> Result<[u8; 32]> {
         let opening = || {
             thread::scope(|scope| {
-                let hash = scope.spawn(|| scene::fingerprint(scene));
+                let hash = scope.spawn(|| scene_io::fingerprint(scene));
                 let backend = self.backend.get().is_none().then(|| Backend::new(&self.choice));
                 (backend, hash.join().expect("hashing does not panic"))
             })

@@ -2,7 +2,7 @@
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Command, Error};
-use eyerays::scene::nearest;
+use eyerays::scene_io::nearest;
 
 /// What clap says, but of an unknown option: that names the nearest one only if it is near. Clap's own tip names any that
 /// shares some letters, or tells how to render a scene that is called like the option.

@@ -77,7 +77,7 @@ fn scene(list: &str, out: &mut dyn Write) -> io::Result<()> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use eyerays::scene;
+    use eyerays::scene_io;
 
     fn write(folder: &std::path::Path, count: u64) -> Pair {
         let pair = Pair::beside(&folder.join("flake.toml")).unwrap();
@@ -90,7 +90,7 @@ mod tests {
         let place = tempfile::tempdir().unwrap();
         for count in [1, 10, 1_000] {
             let pair = write(place.path(), count);
-            let (scene, warnings) = scene::load(pair.paths()[0]).unwrap();
+            let (scene, warnings) = scene_io::load(pair.paths()[0]).unwrap();
             assert!(warnings.is_empty(), "{warnings:?}");
             assert_eq!((scene.spheres.len() as u64, scene.disks.len(), scene.mesh.triangles.len()), (count, 1, 0));
             assert_eq!((scene.cameras.len(), scene.lights.len()), (5, 3));
@@ -105,7 +105,7 @@ mod tests {
     #[test]
     fn no_view_is_from_inside_a_sphere_or_below_the_ground() {
         let place = tempfile::tempdir().unwrap();
-        let (scene, _) = scene::load(write(place.path(), 10_000).paths()[0]).unwrap();
+        let (scene, _) = scene_io::load(write(place.path(), 10_000).paths()[0]).unwrap();
         for camera in &scene.cameras {
             let near = scene.spheres.iter().map(|s| s.center.distance(camera.eye) - s.radius).reduce(f32::min).unwrap();
             assert!(near > 0.05 && camera.eye.y > 0.0, "{}: {near}", camera.name);

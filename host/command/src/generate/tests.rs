@@ -10,6 +10,7 @@ use proptest::prelude::*;
 use super::{Files, Kind, Pair, Recipe, Spheres, obj};
 use eyerays::job::Job;
 use eyerays::scene::{self, Background, Scene};
+use eyerays::scene_io;
 use eyerays::view::View;
 use eyerays::{cpu, picture::Picture};
 
@@ -147,7 +148,7 @@ fn write(folder: &Path, recipe: Recipe) -> Files {
 fn load(kind: Kind, triangles: u64, seed: u64) -> Scene {
     let place = tempfile::tempdir().unwrap();
     let files = write(place.path(), Recipe { kind, triangles, seed });
-    let (scene, warnings) = scene::load(files.paths()[2]).unwrap();
+    let (scene, warnings) = scene_io::load(files.paths()[2]).unwrap();
     assert!(warnings.is_empty(), "{warnings:?}");
     assert_eq!(scene.mesh.triangles.len() as u64, triangles);
     scene
@@ -215,7 +216,7 @@ fn odd_names_are_held() {
         let place = tempfile::tempdir().unwrap();
         let files = Files::beside(&place.path().join(name)).unwrap();
         Recipe { kind: Kind::Hall, triangles: Kind::LEAST, seed: 1 }.write(&files).unwrap();
-        let (scene, warnings) = scene::load(files.paths()[2]).unwrap_or_else(|e| panic!("{name}: {e}"));
+        let (scene, warnings) = scene_io::load(files.paths()[2]).unwrap_or_else(|e| panic!("{name}: {e}"));
         assert!(warnings.is_empty() && scene.materials.len() > 5, "{name}: {warnings:?}");
     }
 }

@@ -195,7 +195,7 @@ pub fn write_layers(
 pub fn check_layers(destination: &Destination) -> Result<()> {
     match destination.format()? {
         Format::Exr => Ok(()),
-        format => Err(eyerays::error::Error::NoLayers { format }.into()),
+        format => Err(eyerays::error::Error::NoLayers { format: format.name() }.into()),
     }
 }
 
@@ -206,7 +206,7 @@ pub fn check_layers(destination: &Destination) -> Result<()> {
 pub fn check_alpha(destination: &Destination) -> Result<()> {
     match destination.format()? {
         Format::Png | Format::Exr => Ok(()),
-        format => Err(eyerays::error::Error::NoAlpha { format }.into()),
+        format => Err(eyerays::error::Error::NoAlpha { format: format.name() }.into()),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Launches over cells that lie anywhere in the image, of pictures that end by their noise: a cell alone would be far too small a launch.
-//! Their films lie beside and below each other in one, which is read back after each call.
+//! Their films lie beside and below each other in one, which is read while the device renders others.
 
+use std::collections::VecDeque;
 use std::ops::Range;
 
 use eyerays_shader::camera;
@@ -14,29 +15,39 @@ use super::read::whole_words;
 use super::{Memory, Renderer};
 use crate::error::{Error, Result};
 use crate::gpu::kernel::Kernel;
-use crate::gpu::launch::Launch;
+use crate::gpu::launch::{Arriving, Launch};
 use crate::gpu::memory::buffer;
 use crate::gpu::recipe::Recipe;
-use crate::noise::{CellSums, Target};
+use crate::noise::{CellSums, Lot, Target};
 use crate::plan::{self, Plan};
 use crate::view::{Region, View};
+
+/// Lots that are under way at once: the device renders one while the host takes the films of the one before.
+pub(super) const AT_ONCE: usize = 2;
 
 /// What launches over cells take beside those over regions.
 pub(super) struct Cells {
     plan: Plan,
     /// By the plan's steps.
     kernels: Vec<Kernel>,
-    lot: Option<Lot>,
+    /// Films that are not in use.
+    spare: Vec<CellFilm>,
 }
 
-/// Cells that are rendered at once.
-struct Lot {
+/// A film of cells that are rendered at once.
+struct CellFilm {
     grid: Grid,
     memory: Memory,
     table: wgpu::Buffer,
     film: wgpu::Buffer,
     /// For the step that binds the film.
     group: wgpu::BindGroup,
+}
+
+/// A lot that the device renders, in as many films as it takes; each has so many of its cells.
+struct UnderWay {
+    cells: Vec<Region>,
+    films: Vec<(usize, CellFilm, Arriving)>,
 }
 
 /// How many cells lie beside and below each other.
@@ -49,7 +60,7 @@ struct Grid {
 impl Cells {
     /// Gives memory back.
     pub fn forget(&mut self) {
-        self.lot = None;
+        self.spare.clear();
     }
 }
 
@@ -85,41 +96,100 @@ impl Grid {
 }
 
 impl Renderer {
-    /// The sums of whole blocks of samples of some cells.
-    pub(super) fn render_cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
+    /// Renders lots of cells, see [`Grows::lots`](crate::watch::Grows::lots): the host hands the next to the device before it takes the
+    /// films of the one before.
+    pub(super) fn render_lots(
+        &mut self,
+        view: &View,
+        next: &mut dyn FnMut(bool) -> Option<Lot>,
+        done: &mut dyn FnMut(Result<CellSums>),
+    ) {
+        let mut under_way = VecDeque::new();
+        loop {
+            let lot = if under_way.len() < AT_ONCE { next(under_way.is_empty()) } else { None };
+            let received = match (lot, under_way.is_empty()) {
+                (Some(lot), _) => self.submit_lot(view, lot, &mut under_way, done).map(|()| None),
+                (None, false) => self.receive_first(&mut under_way).map(Some),
+                (None, true) => break,
+            };
+            match received {
+                Ok(sums) => sums.into_iter().for_each(|sums| done(Ok(sums))),
+                Err(error) => {
+                    done(Err(error));
+                    break;
+                }
+            }
+        }
+        self.queue.forget();
+    }
+
+    /// Begins a lot. Those before are waited for if it needs more memory than they do.
+    fn submit_lot(
+        &mut self,
+        view: &View,
+        lot: Lot,
+        under_way: &mut VecDeque<UnderWay>,
+        done: &mut dyn FnMut(Result<CellSums>),
+    ) -> Result<()> {
+        let Lot { cells, samples } = lot;
         let least = Grid::of(1, self.order);
         let slots_of = |cells: u64| cells * u64::from(BLOCK) * least.region().pixels() / u64::from(least.cells());
         let wanted = slots_of((cells.len() as u64).next_multiple_of(least.cells().into()));
-        let wanted = wanted * samples.len() as u64 / u64::from(BLOCK);
-        self.reserve(wanted.min(self.most_slots.into()) as u32)?;
+        let wanted = (wanted * samples.len() as u64 / u64::from(BLOCK)).min(self.most_slots.into()) as u32;
+        if !self.has_slots(wanted) {
+            while !under_way.is_empty() {
+                done(Ok(self.receive_first(under_way)?));
+            }
+            self.reserve(wanted)?;
+        }
         let fits = u64::from(self.slots()) / slots_of(least.cells().into()) * u64::from(least.cells());
         if fits == 0 {
             return Err(Error::new("the GPU has too little memory for a block of samples of a cell"));
         }
-        let memory = self.memory.as_ref().expect("it was reserved");
-        self.queue.restart(memory.buffers.of(binding::COUNTERS));
-        let mut all = CellSums { sums: Vec::with_capacity(cells.len()), secondary: 0 };
-        for some in cells.chunks(fits as usize) {
-            let lot = self.lot(Grid::of(some.len() as u32, self.order))?;
-            let read = self.render_lot(&lot, view, some, samples.clone());
-            let (sums, secondary) = read?;
-            all.sums.extend(sums);
-            all.secondary = secondary;
-            self.cells.as_mut().expect("a lot is of them").lot = Some(lot);
+        if under_way.is_empty() {
+            let memory = self.memory.as_ref().expect("it was reserved");
+            self.queue.restart(memory.buffers.of(binding::COUNTERS));
         }
-        self.queue.forget();
-        Ok(all)
+        let mut films = Vec::new();
+        for some in cells.chunks(fits as usize) {
+            let film = self.cell_film(Grid::of(some.len() as u32, self.order))?;
+            let arriving = self.launch_cells(&film, view, some, samples.clone())?;
+            films.push((some.len(), film, arriving));
+        }
+        under_way.push_back(UnderWay { cells, films });
+        Ok(())
     }
 
-    /// Memory for so many cells, which was taken before if the last lot had as many.
-    fn lot(&mut self, grid: Grid) -> Result<Lot> {
+    /// Waits for the lot that began first.
+    fn receive_first(&mut self, under_way: &mut VecDeque<UnderWay>) -> Result<CellSums> {
+        let UnderWay { cells, films } = under_way.pop_front().expect("one is under way");
+        let Cells { plan, spare, .. } = self.cells.as_mut().expect("a lot is of them");
+        let (mut rest, words, mut sums) = (&cells[..], plan.film_words, Vec::with_capacity(cells.len()));
+        for (count, film, arriving) in films {
+            let (some, others) = rest.split_at(count);
+            self.queue.receive(arriving, |_, bytes| {
+                let all = whole_words(bytes);
+                let cut = |(place, &cell)| film.grid.cut(&all, place, cell, words);
+                sums.par_extend(some.par_iter().enumerate().map(cut));
+            })?;
+            spare.push(film);
+            rest = others;
+        }
+        Ok(CellSums { sums, secondary: self.queue.take_rays() })
+    }
+
+    /// A film of so many cells: one that was used before, if it is large enough.
+    fn cell_film(&mut self, grid: Grid) -> Result<CellFilm> {
         if self.cells.is_none() {
             self.cells = Some(self.compile_cells()?);
         }
         let cells = self.cells.as_mut().expect("they were compiled");
-        if let Some(lot) = cells.lot.take_if(|lot| lot.grid.cells() >= grid.cells()) {
-            return Ok(Lot { grid, ..lot });
+        if let Some(place) = cells.spare.iter().position(|film| film.grid.cells() >= grid.cells()) {
+            // The next may not be cut as this one.
+            return Ok(CellFilm { grid, ..cells.spare.swap_remove(place) });
         }
+        // Those that are too small are no longer of use.
+        cells.spare.clear();
         let cells = self.cells.as_ref().expect("they were compiled");
         let table = buffer(&self.gpu, binding::CELLS, 4 * u64::from(grid.cells()), Use::STORAGE | Use::COPY_DST);
         let film_bytes = cells.plan.film_bytes() * grid.region().pixels();
@@ -128,7 +198,7 @@ impl Renderer {
         let groups = self.groups(&cells.kernels, &buffers, Some(&table));
         let group = self.film_group(&cells.kernels, &film);
         self.gpu.check()?;
-        Ok(Lot { grid, memory: Memory { buffers, groups }, table, film, group })
+        Ok(CellFilm { grid, memory: Memory { buffers, groups }, table, film, group })
     }
 
     /// The kernels that start paths and keep the film are others; all else is the same.
@@ -137,43 +207,35 @@ impl Renderer {
         let target = self.gpu.target(self.exact);
         let kernels = self.known.compile(&self.gpu, plan.steps().map(|&step| Recipe::new(step, target)).collect());
         self.gpu.check()?;
-        Ok(Cells { plan, kernels, lot: None })
+        Ok(Cells { plan, kernels, spare: Vec::new() })
     }
 
-    /// Renders cells and reads their films; and how many secondary rays there were since the queue was restarted.
-    fn render_lot(
+    /// Has cells rendered and their film sent.
+    fn launch_cells(
         &mut self,
-        lot: &Lot,
+        film: &CellFilm,
         view: &View,
         cells: &[Region],
         samples: Range<u32>,
-    ) -> Result<(Vec<Vec<u32>>, u64)> {
+    ) -> Result<Arriving> {
         let Cells { plan, kernels, .. } = self.cells.as_ref().expect("a lot is of them");
         let mut corners: Vec<u32> = cells.iter().map(|cell| cell.x | cell.y << 16).collect();
         // Outside of every image.
-        corners.resize(lot.grid.cells() as usize, u32::MAX);
-        self.gpu.queue.write_buffer(&lot.table, 0, bytemuck::cast_slice(&corners));
-        let region = lot.grid.region();
-        let batch = lot.memory.buffers.slots / region.pixels() as u32 / BLOCK * BLOCK;
+        corners.resize(film.grid.cells() as usize, u32::MAX);
+        self.gpu.queue.write_buffer(&film.table, 0, bytemuck::cast_slice(&corners));
+        let region = film.grid.region();
+        let batch = film.memory.buffers.slots / region.pixels() as u32 / BLOCK * BLOCK;
         for first in samples.clone().step_by(batch as usize) {
             let count = batch.min(samples.end - first);
             let launch = view.launch(&self.job, region, first, count, self.order);
             let frame = Frame { anew: (first == samples.start).into(), ..launch };
-            let mut launch = Launch::new(plan, kernels, &lot.memory, &lot.group, &frame, &mut self.queue)?;
+            let mut launch = Launch::new(plan, kernels, &film.memory, &film.group, &frame, &mut self.queue)?;
             plan::run(plan, &mut launch)?;
             launch.submit(0)?;
             self.queue.finished()?;
         }
-        let words = plan.film_words;
         let bytes = plan.film_bytes() * region.pixels();
-        let mut sums = Vec::new();
-        let secondary =
-            self.queue.read(lot.memory.buffers.of(binding::COUNTERS), &[(&lot.film, bytes)], |_, bytes| {
-                let film = whole_words(bytes);
-                let cut = |(place, &cell)| lot.grid.cut(&film, place, cell, words);
-                sums = cells.par_iter().enumerate().map(cut).collect();
-            })?;
-        Ok((sums, secondary))
+        Ok(self.queue.request(film.memory.buffers.of(binding::COUNTERS), &[(&film.film, bytes)]))
     }
 }
 

@@ -27,7 +27,7 @@ use crate::error::Result;
 use crate::film::{Coverage, Film, Part};
 use crate::job::Job;
 use crate::method::Traversal;
-use crate::noise::CellSums;
+use crate::noise::{CellSums, Lot};
 use crate::picture::Picture;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
@@ -111,7 +111,18 @@ impl Grows for Renderer {
     }
 
     fn cells(&mut self, view: &View, cells: &[Region], samples: Range<u32>) -> Result<CellSums> {
-        self.render_cells(view, cells, samples)
+        let mut lot = Some(Lot { cells: cells.to_vec(), samples });
+        let mut sums = None;
+        self.render_lots(view, &mut |_| lot.take(), &mut |done| sums = Some(done));
+        sums.expect("each lot is answered")
+    }
+
+    fn lots(&mut self, view: &View, next: &mut dyn FnMut(bool) -> Option<Lot>, done: &mut dyn FnMut(Result<CellSums>)) {
+        self.render_lots(view, next, done);
+    }
+
+    fn lots_at_once(&self) -> usize {
+        cells::AT_ONCE
     }
 
     fn device_time(&self) -> Option<Duration> {
@@ -297,9 +308,14 @@ impl Renderer {
         self.buffers().slots
     }
 
+    /// Has it memory for launches of so many slots?
+    fn has_slots(&self, slots: u32) -> bool {
+        self.memory.as_ref().is_some_and(|memory| memory.buffers.slots >= slots)
+    }
+
     /// Takes memory for launches of so many slots, or of fewer where there is too little.
     fn reserve(&mut self, mut slots: u32) -> Result<()> {
-        if self.memory.as_ref().is_some_and(|memory| memory.buffers.slots >= slots) {
+        if self.has_slots(slots) {
             return Ok(());
         }
         // What launches under way use is given back only when they are done.

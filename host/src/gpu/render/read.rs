@@ -30,7 +30,7 @@ impl Renderer {
     /// If no film was started.
     pub fn film(&mut self) -> Result<Film> {
         let Growing { view, coverage, .. } = self.growing.as_ref().expect("a film was started");
-        let mut film = Film::new(view, self.plan.film_words)?;
+        let mut film = Film::new(view, self.plan.film_words);
         film.set_coverage(coverage.clone());
         let secondary = self.read(|region, sums| film.add_sums(region, sums))?;
         film.add_rays(secondary);

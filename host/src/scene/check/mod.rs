@@ -15,7 +15,7 @@ use crate::error::{Error, Result};
 
 impl Scene {
     /// Refuses numbers that are out of range, or that name what there is not: kernels read through them without checking
-    /// them again. [`load`](super::load) makes no such scene; code may.
+    /// them again. [`scene_io`](crate::scene_io) makes no such scene; code may.
     ///
     /// # Errors
     /// The first of them.

@@ -6,7 +6,7 @@ use super::*;
 use crate::scene::{Alpha, Checker, Environment, Map, Placement, Texels, Texture};
 
 fn loaded(path: &str) -> Scene {
-    crate::scene::load(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap().0
+    crate::scene_io::load(&std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap().0
 }
 
 /// What is said of a scene after a change.
@@ -18,7 +18,7 @@ fn after(whole: &Scene, spoil: fn(&mut Scene)) -> String {
 
 #[test]
 fn what_is_out_of_range_is_told_with_what_has_it() {
-    let whole = loaded("src/scene/example.toml");
+    let whole = loaded("src/scene_io/example.toml");
     assert_eq!(whole.check(), Ok(()));
     let after = |spoil| after(&whole, spoil);
     assert_eq!(after(|s| s.ambient.y = -1.0), "the scene has the ambient -1; it must be a finite number of at least 0");

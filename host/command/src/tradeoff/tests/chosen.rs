@@ -163,7 +163,7 @@ fn a_search_stops_after_so_many_trials_and_goes_on_past_what_is_left_out() {
 
 fn scene(reflection: f32) -> eyerays::scene::Scene {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
-    let mut scene = eyerays::scene::load(&path).unwrap().0;
+    let mut scene = eyerays::scene_io::load(&path).unwrap().0;
     let opaque =
         |m: Material| Material { reflection: glam::Vec3::splat(reflection), transmission: glam::Vec3::ZERO, ..m };
     scene.materials = scene.materials.into_iter().map(opaque).collect();

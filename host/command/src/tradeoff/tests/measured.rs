@@ -10,6 +10,7 @@ use eyerays::method::Processor;
 use eyerays::picture::Picture;
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{self, Integrator, Sampler, Settings, Transport};
+use eyerays::scene_io;
 use eyerays::stream::StreamRay;
 use eyerays::view::View;
 
@@ -29,7 +30,7 @@ fn errors_of_hits_are_counted_in_units_of_the_last_place() {
 
 fn subject() -> Subject {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/cornell.toml");
-    let (scene, _) = scene::load(&file).unwrap();
+    let (scene, _) = scene_io::load(&file).unwrap();
     let camera = scene.cameras[0].clone();
     let settings = Settings { size: (40, 36), ..scene.settings };
     Subject { name: "box".to_owned(), file, scene, camera, settings }
@@ -146,7 +147,7 @@ fn a_scene_that_can_not_be_packed_is_an_error() {
 #[test]
 fn a_reference_of_samples_tells_its_own_error() {
     let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes/bleeding.toml");
-    let (scene, _) = scene::load(&file).unwrap();
+    let (scene, _) = scene_io::load(&file).unwrap();
     let camera = scene.cameras[0].clone();
     let transport = Transport { clamp: 0.0, ..scene.settings.transport };
     let settings = Settings { size: (96, 72), spp: 4, bounces: 3, transport, ..scene.settings };

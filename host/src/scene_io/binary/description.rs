@@ -1,0 +1,97 @@
+//! What a scene is beside its geometry, as TOML.
+
+use glam::Vec3;
+use serde::{Deserialize, Serialize};
+
+use super::header::AGAIN;
+use super::textures::Pictures;
+use crate::quality;
+use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Object, Scene, Settings, Sphere, Unplaced};
+use crate::scene_io::budget::Budget;
+use crate::scene_io::source;
+
+/// The fields of a [`Scene`] but for its geometry, the texels of its textures and the files that it came from.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Description {
+    /// The quality of the hierarchy, if there is one.
+    pub hierarchy: Option<quality::Bvh>,
+    ambient: Vec3,
+    background: Background,
+    settings: Settings,
+    objects: Vec<Object>,
+    materials: Vec<Material>,
+    lights: Vec<Light>,
+    cameras: Vec<Camera>,
+    textures: Pictures,
+}
+
+impl Description {
+    /// That of a scene with these textures and a hierarchy of this quality.
+    pub fn of(scene: &Scene, textures: Pictures, hierarchy: Option<quality::Bvh>) -> Self {
+        Description {
+            hierarchy,
+            ambient: scene.ambient,
+            background: scene.background,
+            settings: scene.settings,
+            objects: scene.objects.clone(),
+            materials: scene.materials.clone(),
+            lights: scene.lights.clone(),
+            cameras: scene.cameras.clone(),
+            textures,
+        }
+    }
+
+    /// The same without settings, cameras and a hierarchy.
+    pub fn bare(scene: &Scene, textures: Pictures) -> Self {
+        let all = Self::of(scene, textures, None);
+        Description { settings: Settings::default(), cameras: Vec::new(), ..all }
+    }
+
+    /// Reads one.
+    ///
+    /// # Errors
+    /// No TOML, other fields, or more of them than the budget has room for.
+    pub fn parse(text: &[u8], budget: &Budget) -> Unplaced<Self> {
+        let text = std::str::from_utf8(text).map_err(|_| format!("its description is not UTF-8; {AGAIN}"))?;
+        budget.check_bytes(source::memory(text)).map_err(|why| format!("its description may {why}; write less"))?;
+        toml::from_str(text).map_err(|error| {
+            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
+            format!("line {line} of its description: {}; {AGAIN}", error.message().replace('\n', " "))
+        })
+    }
+
+    /// As text.
+    ///
+    /// # Errors
+    /// None that a scene could make.
+    pub fn text(&self) -> Unplaced<String> {
+        toml::to_string(self).map_err(|error| error.to_string())
+    }
+
+    /// The scene of this geometry and these texels, without a hierarchy.
+    ///
+    /// # Errors
+    /// Textures of other texels.
+    pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>, texels: &[u8]) -> Unplaced<Scene> {
+        let Description { hierarchy: _, ambient, background, settings, objects, materials, lights, cameras, textures } =
+            self;
+        let mut scene = Scene {
+            mesh,
+            spheres,
+            disks,
+            objects,
+            files: Vec::new(),
+            hierarchy: None,
+            materials,
+            lights,
+            cameras,
+            background,
+            environment: None,
+            ambient,
+            settings,
+        };
+        textures.give(&mut scene, texels)?;
+        Ok(scene)
+    }
+}

@@ -1,0 +1,67 @@
+//! Reading binary scenes.
+
+use std::path::Path;
+
+use super::description::Description;
+use super::header::{AGAIN, Header};
+use crate::error::{Error, Result};
+use crate::scene::hierarchy::records;
+use crate::scene::{Hierarchy, Mesh, Scene, Unplaced};
+use crate::scene_io::{budget::Budget, file};
+
+/// Loads a scene.
+///
+/// # Errors
+/// A file that cannot be read, is not of this form, or is damaged; one that holds what no scene may, whatever its hash.
+pub fn load(path: &Path, budget: Budget) -> Result<Scene> {
+    let scene = bytes(path).and_then(|bytes| parse(&bytes, budget));
+    scene.map_err(|fault| Error::file(path, fault))
+}
+
+/// The bytes of a file that begins as it should: a large one of another kind is not read.
+fn bytes(path: &Path) -> Unplaced<Vec<u8>> {
+    let mut file = file::open(path, u64::MAX)?;
+    let start = file.start(size_of::<Header>())?;
+    Header::of_start(&start, file.length())?;
+    file.whole_after(start)
+}
+
+/// The scene in these bytes.
+pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
+    let (header, sections) = Header::read(bytes)?;
+    let all = sections.map(|section| &bytes[section]);
+    header.check(&all)?;
+    let counts = header.counts;
+    budget.check(counts.triangles as usize, counts.positions as usize)?;
+    budget.check_round(counts.spheres as usize + counts.disks as usize)?;
+    budget.check_textures(counts.texels)?;
+    // Sections are copied, and what is of no primitive was not counted.
+    let copies = budget.check_bytes(2 * bytes.len() as u64);
+    copies.map_err(|why| format!("its {} bytes {why}; end other programs or use a smaller scene", bytes.len()))?;
+    let [description, positions, normals, first, second, tangents, colours, rest @ ..] = all;
+    let [triangles, materials, spheres, disks, texels, ..] = rest;
+    let mesh = Mesh {
+        positions: records(positions),
+        normals: records(normals),
+        triangles: records(triangles),
+        materials: records(materials),
+        coordinates: [records(first), records(second)],
+        tangents: records(tangents),
+        colours: records(colours),
+    };
+    let again = |fault| format!("{fault}; {AGAIN}");
+    let description = Description::parse(description, &budget)?;
+    let [.., pairs, order, bounds] = all;
+    let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, [pairs, order, bounds]));
+    let scene = description.scene(mesh, records(spheres), records(disks), texels).map_err(again)?;
+    let scene = Scene { hierarchy: kept, ..scene };
+    if scene.cameras.is_empty() {
+        return Err(again("it has no camera".into()));
+    }
+    let checked = scene.check().and_then(|()| scene.settings.check());
+    checked.map_err(|error| format!("{}; {MENDED}", error.message()))?;
+    Ok(scene)
+}
+
+/// The remedy for what no scene may be: this form is not for changing.
+const MENDED: &str = "mend it in the scene that this was made of, and write it again with eyerays convert";

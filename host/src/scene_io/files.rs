@@ -1,0 +1,146 @@
+//! The files that the `[[mesh]]` tables of a scene name.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use glam::Vec3;
+
+use super::budget::Budget;
+use super::gltf::{self, Gltf};
+use super::load::Loading;
+use super::map::Images;
+use super::obj::{self, Obj};
+use super::ply::{self, Ply};
+use super::table::Table;
+use super::{Warning, WarningKind};
+use super::{file, mesh_table, xyzr};
+use crate::error::Result;
+use crate::scene::Sphere;
+
+/// What a scene file has of which its meshes may have others.
+#[derive(Default, Clone, Copy)]
+pub struct Own {
+    pub lights: bool,
+    pub cameras: bool,
+}
+
+/// Files already read, since a scene may place one many times, and what is left of the memory for others.
+pub struct Files<'p> {
+    folder: &'p Path,
+    /// What is left for the geometry that is not placed yet.
+    pub budget: Budget,
+    /// The pictures of all.
+    pub images: Images,
+    /// Do materials of the scene file cover meshes with textures?
+    pub is_covered: bool,
+    /// Has the scene file lights of its own, and cameras?
+    pub has: Own,
+    meshes: HashMap<PathBuf, Obj>,
+    spheres: HashMap<PathBuf, Vec<Sphere>>,
+    /// What was ignored in them.
+    pub warnings: Vec<Warning>,
+    /// Every file that was read, material files too.
+    pub paths: Vec<PathBuf>,
+}
+
+impl<'p> Files<'p> {
+    /// The files that a scene in `folder` names, all within the budget.
+    pub fn new(folder: &'p Path, budget: Budget, loading: Loading) -> Self {
+        Files {
+            folder,
+            budget,
+            images: Images::within(folder, budget, loading),
+            is_covered: false,
+            has: Own::default(),
+            meshes: HashMap::new(),
+            spheres: HashMap::new(),
+            warnings: Vec::new(),
+            paths: Vec::new(),
+        }
+    }
+
+    /// Where the file of a table's key `file` lies.
+    ///
+    /// # Errors
+    /// There is no file that can be read.
+    pub fn place(&self, table: &Table, name: &str) -> Result<PathBuf> {
+        let path = self.folder.join(name);
+        // What is wrong with the name is the scene's fault, what is in the file is the file's.
+        file::open(&path, file::MOST_MESH)
+            .map_err(|fault| table.fault_of("file", format!("{}: {fault}", path.display())))?;
+        Ok(path)
+    }
+
+    /// A mesh.
+    ///
+    /// # Errors
+    /// Those of [`read_mesh`].
+    pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
+        if !self.meshes.contains_key(path) {
+            let mut obj = match is_gltf(path) {
+                true => meshes_of(path, gltf::load(path, self.budget, self.images.loading)?, self.has),
+                false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
+            };
+            self.warnings.append(&mut obj.warnings);
+            self.paths.push(path.to_owned());
+            self.paths.append(&mut obj.libraries);
+            self.meshes.insert(path.to_owned(), obj);
+        }
+        Ok(&self.meshes[path])
+    }
+
+    /// Spheres.
+    ///
+    /// # Errors
+    /// Those of [`xyzr::load`].
+    pub fn spheres(&mut self, path: &Path) -> Result<&[Sphere]> {
+        if !self.spheres.contains_key(path) {
+            let spheres = xyzr::load(path, self.budget)?;
+            self.paths.push(path.to_owned());
+            self.spheres.insert(path.to_owned(), spheres);
+        }
+        Ok(&self.spheres[path])
+    }
+}
+
+/// Reads a Wavefront mesh or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other
+/// arguments are those of [`obj::load`].
+///
+/// # Errors
+/// Those of [`obj::load`] and [`ply::load`].
+pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: bool) -> Result<Obj> {
+    if !is(path, "ply") {
+        return obj::load(path, budget, images, is_covered);
+    }
+    let Ply { mesh, warnings } = ply::load(path, budget)?;
+    let mut materials = mesh_table::plain();
+    if !mesh.colours.is_empty() {
+        // Vertices say what colour it is.
+        materials[0].1.diffuse = Some(Vec3::ONE);
+    }
+    Ok(Obj { mesh, materials, warnings, ..Obj::default() })
+}
+
+/// The meshes of a scene, with a warning of what else it has and the scene file has not.
+fn meshes_of(path: &Path, scene: Gltf, own: Own) -> Obj {
+    let Gltf { mut obj, lights, cameras, .. } = scene;
+    let what = match (!lights.is_empty() && !own.lights, !cameras.is_empty() && !own.cameras) {
+        (true, true) => "lights and cameras",
+        (true, false) => "lights",
+        (false, true) => "cameras",
+        (false, false) => return obj,
+    };
+    let why = "a mesh brings none into a scene file: \"eyerays convert\" writes one that has them";
+    obj.warnings.push(Warning::new(WarningKind::LeftOut, path, format!("its {what} are left out, {why}")));
+    obj
+}
+
+/// Is it a glTF file by its ending, of JSON or binary?
+pub fn is_gltf(path: &Path) -> bool {
+    is(path, "gltf") || is(path, "glb")
+}
+
+/// Does the path end like this, in capitals or not?
+pub fn is(path: &Path, extension: &str) -> bool {
+    path.extension().is_some_and(|end| end.eq_ignore_ascii_case(extension))
+}

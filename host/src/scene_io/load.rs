@@ -1,0 +1,271 @@
+//! From a path to a scene.
+
+use std::io::Read;
+use std::path::Path;
+
+use glam::Vec3;
+
+use super::LightUnit;
+use super::binary;
+use super::budget::Budget;
+use super::file;
+use super::files::{Files, Own, is, is_gltf, read_mesh};
+use super::geometry::Geometry;
+use super::gltf::{self, Gltf};
+use super::lit;
+use super::map::Images;
+use super::material::Fields;
+use super::merge::{Merge, Merged, Override, Overrides};
+use super::mesh_table::{self, Placed};
+use super::obj::Obj;
+use super::source::Source;
+use super::table::Table;
+use super::{Warning, WarningKind};
+use super::{camera_table, document};
+use crate::error::{Error, Result};
+use crate::memory::Room;
+use crate::scene::Range;
+use crate::scene::frame;
+use crate::scene::studio;
+use crate::scene::{Background, Integrator, Sampler, Scene, Settings, Transport, Visibility};
+
+/// Loads a TOML scene, a glTF scene, a bare Wavefront or PLY mesh, or a binary scene ([`write`](super::write)), and says in
+/// warnings what of it is not drawn.
+///
+/// A bare mesh is seen from three quarters in front and above, lit by two lights under a pale sky. A glTF scene is drawn by
+/// paths, from its own cameras and by its own lights; without them it is seen as a mesh is, in a studio of three lamps.
+///
+/// # Errors
+/// A path that is no readable `.toml`, `.gltf`, `.glb`, `.obj`, `.ply` or `.eyerays` file, or anything in it that makes no sense: each is one line
+/// that names file, line and remedy.
+pub fn load(path: &Path) -> Result<(Scene, Vec<Warning>)> {
+    load_as(path, Loading::default())
+}
+
+/// How a scene is read.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Loading {
+    /// May models name material files, pictures and buffers outside their folders? Those of strangers should not.
+    pub allow_outside: bool,
+    /// In what unit the intensities of a glTF scene's lights are. Without one they are in what its writer is known to use: candela
+    /// and lux, or Blender's, of which a warning tells.
+    pub light_unit: Option<LightUnit>,
+    /// Which integrator will draw it, if that is known: under paths the light `Ke` of MTL files shines.
+    pub integrator: Option<Integrator>,
+}
+
+/// As [`load`], in this way.
+///
+/// # Errors
+/// Those of [`load`].
+pub fn load_as(path: &Path, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    load_within(path, Budget::new(Room::now()), loading)
+}
+
+/// As [`load_as`], of a TOML scene that comes from no file, such as standard input. Errors call it `name`, and the files that it
+/// names are relative to the folder of that.
+///
+/// # Errors
+/// Those of [`load_as`].
+pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let bytes = file::read_stream(stream, file::MOST_TEXT).map_err(|fault| Error::file(name, fault))?;
+    parse(name, &bytes, Budget::new(Room::now()), loading)
+}
+
+/// As [`load_as`], of a scene within the budget.
+pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
+    if is(path, binary::ENDING) {
+        Ok((binary::load(path, budget)?, Vec::new()))
+    } else if is(path, "toml") {
+        load_toml(path, budget, loading)
+    } else if is(path, "obj") || is(path, "ply") {
+        load_mesh(path, budget, loading)
+    } else if is_gltf(path) {
+        load_gltf(path, budget, loading)
+    } else if is(path, "gz") {
+        Err(Error::file(path, "it is compressed; unpack it (gunzip) and name what comes out"))
+    } else {
+        let fault = "unknown kind of scene; name a .toml, .gltf, .glb or .eyerays scene or an .obj or .ply mesh";
+        Err(Error::file(path, fault))
+    }
+}
+
+fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let mut images = Images::within(file::folder(path), budget, loading);
+    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
+    scene.files.extend(images.paths());
+    if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
+        // Whitted's model draws nothing that shines, and paths no ambient light.
+        (scene.settings, scene.ambient) = (of_paths(), Vec3::ZERO);
+    }
+    Ok((framed(path, scene)?, warnings))
+}
+
+/// What the camera sees behind a glTF scene without light, which the studio lights: a bright grey of 80 %.
+const BACKDROP: Vec3 = Vec3::splat(0.6);
+
+fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let Gltf { obj, lights, cameras, aspect } = gltf::load(path, budget, loading)?;
+    let (scene, warnings) = bare(path, obj)?;
+    let is_lit = lit::is_lit(&scene, &lights);
+    let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
+    let environment = (!is_lit).then(studio::environment);
+    let mut settings = of_paths();
+    settings.size = aspect.map_or(settings.size, frame::size);
+    let scene = Scene { lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
+    Ok((framed(path, scene)?, warnings))
+}
+
+/// Enough samples of paths to look at a model.
+fn of_paths() -> Settings {
+    Settings {
+        spp: 64,
+        sampler: Sampler::Sobol,
+        bounces: 6,
+        transport: Transport { integrator: Integrator::Path, ..Transport::default() },
+        ..Settings::default()
+    }
+}
+
+/// A scene of one mesh without a camera, and the warnings of it.
+fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
+    let Obj { mesh, materials, warnings, libraries, objects } = obj;
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let (geometry, visibility) = (Geometry::Mesh(mesh), Visibility::default());
+    let placed = Placed { name, geometry, materials, material: None, objects: Vec::new(), visibility };
+    let mut merge = Merge::default();
+    merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
+    let Merged { mesh, spheres, disks, objects: whole, materials } = merge.finish();
+    let scene = Scene {
+        mesh,
+        spheres,
+        disks,
+        objects: if objects.is_empty() { whole } else { objects },
+        files: libraries,
+        materials,
+        lights: frame::lights(),
+        cameras: Vec::new(),
+        background: frame::background(),
+        environment: None,
+        ambient: Vec3::splat(0.2),
+        settings: Settings::default(),
+        hierarchy: None,
+    };
+    Ok((scene, warnings))
+}
+
+/// Gives a scene without a camera one that sees all of it.
+fn framed(path: &Path, mut scene: Scene) -> Result<Scene> {
+    if scene.cameras.is_empty() {
+        let (width, height) = scene.settings.size;
+        let camera = frame::default_camera(&scene, f64::from(width) / f64::from(height));
+        let fault = "the scene is too large to be seen whole; make it smaller or add a [[camera]]";
+        scene.cameras.push(camera.ok_or_else(|| Error::file(path, fault))?);
+    }
+    Ok(scene)
+}
+
+fn load_toml(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
+    parse(path, &bytes, budget, loading)
+}
+
+/// Makes something of the tables of a TOML file.
+///
+/// # Errors
+/// No readable TOML file, and those of `make`.
+pub fn read_table<T>(path: &Path, make: impl FnOnce(Table) -> Result<T>) -> Result<T> {
+    let bytes = file::read(path, file::MOST_TEXT).map_err(|fault| Error::file(path, fault))?;
+    make(Source::new(path, text(path, &bytes)?).parse(&Budget::new(Room::now()))?)
+}
+
+fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
+    std::str::from_utf8(bytes).map_err(|error| {
+        let good = &bytes[..error.valid_up_to()];
+        let line = 1 + good.iter().filter(|&&byte| byte == b'\n').count();
+        Error::line(path, line, "this is not UTF-8 text; save the file as UTF-8")
+    })
+}
+
+/// The scene of a TOML text, whose meshes are relative to the folder of `path`.
+pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
+    let settings = table.table("render")?.map(document::settings);
+    let settings = settings.transpose()?.unwrap_or_default();
+    let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));
+    let mut files = Files::new(file::folder(path), budget, Loading { integrator, ..loading });
+    files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
+    let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
+    let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
+    let ambient = table.triple("ambient", Range::AMOUNT)?;
+    let cameras = camera_table::cameras(table.tables("camera")?.unwrap_or_default())?;
+    let lights = table.tables("light")?.map(document::lights).transpose()?;
+    let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
+    let meshes = table.tables("mesh")?.unwrap_or_default();
+    // A section's misspelt name is a likelier fault than a missing section.
+    table.done()?;
+    if meshes.is_empty() {
+        let fault = "there is no [[mesh]]; add one with a file or a shape";
+        return Err(Error::file(path, fault));
+    }
+    files.is_covered = overrides.values().any(Override::has_maps);
+    let Merged { mesh, spheres, disks, objects, materials } = merge(meshes, &overrides, &mut files)?.finish();
+    let mut warnings = files.warnings;
+    warnings.extend(overrides.values().filter_map(Override::warning));
+    let names_lights = lights.is_some();
+    let mut scene = Scene {
+        mesh,
+        spheres,
+        disks,
+        objects,
+        files: files.paths.into_iter().chain(files.images.paths()).collect(),
+        materials,
+        lights: lights.unwrap_or_else(frame::lights),
+        cameras,
+        background,
+        environment,
+        ambient: ambient.unwrap_or(Vec3::ZERO),
+        settings,
+        hierarchy: None,
+    };
+    if !names_lights {
+        frame::without_spare_lamps(&mut scene, settings.transport.integrator);
+    }
+    for material in &scene.materials {
+        let idle = material.physical.and_then(|physical| physical.idle());
+        let said = idle.map(|idle| format!("material {:?}: {idle}", material.name));
+        warnings.extend(said.map(|said| Warning::new(WarningKind::Idle, path, said)));
+    }
+    Ok((framed(path, scene)?, warnings))
+}
+
+fn overrides(tables: Vec<Table>, images: &mut Images) -> Result<Overrides> {
+    let mut overrides = Overrides::new();
+    for mut table in tables {
+        let (name, fields) = Fields::read(&mut table, images)?;
+        let idle = format!("no surface has the material {name:?}");
+        let idle = Warning::of(WarningKind::Idle, &table.fault_of("name", idle));
+        if overrides.contains_key(&name) {
+            let fault = format!("a second material {name:?}; rename one");
+            return Err(table.fault_of("name", fault));
+        }
+        table.done()?;
+        overrides.insert(name, Override::new(fields, idle));
+    }
+    Ok(overrides)
+}
+
+fn merge(tables: Vec<Table>, overrides: &Overrides, files: &mut Files) -> Result<Merge> {
+    let mut merge = Merge::default();
+    for mut table in tables {
+        let placed = mesh_table::read(&mut table, files)?;
+        let key = if placed.material.is_some() { "material" } else { "file" };
+        let fault = merge.add(placed, overrides).err();
+        if let Some(fault) = fault {
+            return Err(table.fault_of(key, fault));
+        }
+        table.done()?;
+    }
+    Ok(merge)
+}

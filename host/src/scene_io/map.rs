@@ -1,0 +1,124 @@
+//! The textures that a scene file names, and how its materials take them.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use glam::Vec2;
+
+use super::budget::Budget;
+use super::load::Loading;
+use super::table::Table;
+use crate::error::Result;
+use crate::image::{TextureBudget, read_texture};
+#[cfg(test)]
+use crate::memory::Room;
+use crate::scene::Range;
+use crate::scene::{Map, Maps, Placement, Texture, Wrap};
+
+/// Pictures already read, since materials share them.
+pub struct Images {
+    folder: PathBuf,
+    /// How the meshes that name some of them are read.
+    pub loading: Loading,
+    budget: TextureBudget,
+    /// For what is read beside them.
+    pub room: Budget,
+    textures: HashMap<PathBuf, Arc<Texture>>,
+    opacities: HashMap<PathBuf, Arc<Texture>>,
+}
+
+impl Images {
+    /// The pictures that a file in `folder` names, and those that its meshes do, with all the room that there is.
+    #[cfg(test)]
+    pub fn new(folder: &Path, loading: Loading) -> Self {
+        Images::within(folder, Budget::new(Room::now()), loading)
+    }
+
+    /// The pictures that a file in `folder` names, and those that its meshes do, and what there is room for beside them.
+    pub fn within(folder: &Path, room: Budget, loading: Loading) -> Self {
+        Images {
+            folder: folder.to_owned(),
+            loading,
+            budget: TextureBudget::default(),
+            room,
+            textures: HashMap::new(),
+            opacities: HashMap::new(),
+        }
+    }
+
+    /// The picture of a name, relative to the folder.
+    ///
+    /// # Errors
+    /// Those of [`read_texture`].
+    pub fn texture(&mut self, name: &str) -> Result<Arc<Texture>> {
+        self.at(&self.folder.join(name))
+    }
+
+    /// The picture of a path.
+    ///
+    /// # Errors
+    /// Those of [`read_texture`].
+    pub fn at(&mut self, path: &Path) -> Result<Arc<Texture>> {
+        if let Some(texture) = self.textures.get(path) {
+            return Ok(texture.clone());
+        }
+        let texture = Arc::new(read_texture(path, &mut self.budget)?);
+        self.textures.insert(path.to_owned(), texture.clone());
+        Ok(texture)
+    }
+
+    /// The [opacity](Texture::opacity) of the picture of a path.
+    pub fn opacity_of(&mut self, path: &Path, texture: &Texture) -> Arc<Texture> {
+        self.opacities.entry(path.to_owned()).or_insert_with(|| Arc::new(texture.opacity())).clone()
+    }
+
+    /// Every file that was read, in the order of their names.
+    pub fn paths(self) -> Vec<PathBuf> {
+        let mut paths: Vec<_> = self.textures.into_keys().collect();
+        paths.sort();
+        paths
+    }
+}
+
+/// Takes the maps of a `[[material]]` table: each the name of a picture, or a table of that and its placement.
+///
+/// # Errors
+/// A picture that cannot be read, or a number out of range.
+pub fn maps(table: &mut Table, images: &mut Images) -> Result<Maps> {
+    let mut map = |key| Ok::<_, crate::error::Error>(map(table, key, images)?.map(|(map, _)| map));
+    let maps = Maps {
+        base: map("base_texture")?,
+        metallic_roughness: map("metallic_roughness_texture")?,
+        emission: map("emission_texture")?,
+        transmission: map("transmission_texture")?,
+        specular_weight: map("specular_weight_texture")?,
+        specular_tint: map("specular_tint_texture")?,
+        anisotropy: map("anisotropy_texture")?,
+        opacity: map("opacity_texture")?,
+        ..Maps::default()
+    };
+    let normal = self::map(table, "normal_texture", images)?;
+    let normal_scale = normal.as_ref().map_or(1.0, |(_, scale)| *scale);
+    Ok(Maps { normal: normal.map(|(map, _)| map), normal_scale, ..maps })
+}
+
+/// A map and, of normals, their scale.
+fn map(table: &mut Table, key: &'static str, images: &mut Images) -> Result<Option<(Map, f32)>> {
+    let Some((name, of)) = table.text_or_table(key, "file")? else { return Ok(None) };
+    let texture = images.texture(&name).map_err(|error| table.fault_of(key, error.to_string()))?;
+    let Some(mut of) = of else { return Ok(Some((Map { texture, placement: Placement::default() }, 1.0))) };
+    let scale = of.two("scale", Range::ANY)?.unwrap_or(Vec2::ONE);
+    let offset = of.two("offset", Range::ANY)?.unwrap_or(Vec2::ZERO);
+    let rotation = of.number("rotation", Range::ANY)?.unwrap_or(0.0);
+    let wrap: Wrap = of.choice("wrap")?.unwrap_or_default();
+    let placement = Placement {
+        set: of.whole("set", 0, 1)?.unwrap_or(0),
+        wrap: [wrap; 2],
+        nearest: of.flag("nearest")?.unwrap_or(false),
+        ..Placement::default().transformed(scale, rotation, offset)
+    };
+    let strength = if key == "normal_texture" { of.number("strength", Range::ANY)? } else { None };
+    of.done()?;
+    Ok(Some((Map { texture, placement }, strength.unwrap_or(1.0))))
+}

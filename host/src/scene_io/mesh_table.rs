@@ -1,0 +1,130 @@
+//! A `[[mesh]]` of a TOML scene: a file or a shape, and where it goes.
+
+use super::files::{Files, is, is_gltf};
+use super::geometry::Geometry;
+use super::material::{DEFAULT, Fields};
+use super::named::{self, Wish};
+use super::obj::Obj;
+use super::table::Table;
+use super::transform::Transform;
+use super::visible;
+use crate::error::Result;
+use crate::scene::{Object, Primitives, Visibility, extent, normal};
+
+/// Geometry in place, and the materials that it numbers.
+pub struct Placed {
+    /// The file as the scene names it, or the shape's word.
+    pub name: String,
+    pub geometry: Geometry,
+    pub materials: Vec<(String, Fields)>,
+    /// This one instead of them all.
+    pub material: Option<String>,
+    /// What a file itself is made of, by the triangles of the geometry.
+    pub objects: Vec<Object>,
+    pub visibility: Visibility,
+}
+
+impl Placed {
+    /// The objects that stand there: those of a file that has several, or all of it as one.
+    pub fn objects(&self, primitives: Primitives) -> Vec<Object> {
+        let visibility = self.visibility;
+        if let (Geometry::Mesh(mesh), Primitives::Triangles(all), [_, _, ..]) =
+            (&self.geometry, &primitives, &*self.objects)
+        {
+            let of_file = self.objects.iter().filter_map(|object| {
+                let Primitives::Triangles(own) = &object.primitives else { return None };
+                let corners = mesh.triangles.get(own.clone())?.iter().flatten();
+                let bounds = extent::of(corners.map(|&vertex| mesh.positions[vertex as usize]));
+                let primitives = Primitives::Triangles(all.start + own.start..all.start + own.end);
+                Some(Object { name: object.name.clone(), primitives, bounds, visibility })
+            });
+            return of_file.collect();
+        }
+        let name = match &self.material {
+            Some(material) => format!("{} ({material})", self.name),
+            None => self.name.clone(),
+        };
+        vec![Object { name, primitives, bounds: self.geometry.bounds(), visibility }]
+    }
+}
+
+/// Reads a `[[mesh]]` table, but for refusing unknown keys.
+///
+/// # Errors
+/// A file that cannot be read, no file and no shape or both, a number out of range, or a transform that
+/// leads out of single precision.
+pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
+    let material = table.name("material")?;
+    let smooth = table.flag("smooth")?;
+    let wish = Wish { smooth, transform: Transform::read(table)? };
+    let visibility = visible::read(table)?.unwrap_or_default();
+    let Source { name, mut geometry, materials, objects } = source(table, &wish, files)?;
+    if let Geometry::Mesh(mesh) = &mut geometry {
+        match smooth {
+            Some(true) => normal::smooth(mesh),
+            Some(false) => mesh.normals.clear(),
+            None => {}
+        }
+    }
+    if let Some(transform) = &wish.transform {
+        geometry.apply(transform);
+    }
+    if let Some(fault) = geometry.fault() {
+        return Err(table.fault(fault));
+    }
+    files.budget.take(&geometry);
+    Ok(Placed { name, geometry, materials, material, objects, visibility })
+}
+
+/// A file or a shape as it is.
+struct Source {
+    name: String,
+    geometry: Geometry,
+    materials: Vec<(String, Fields)>,
+    objects: Vec<Object>,
+}
+
+impl Source {
+    /// Of what names no material.
+    fn plain(name: impl Into<String>, geometry: Geometry) -> Source {
+        Source { name: name.into(), geometry, materials: plain(), objects: Vec::new() }
+    }
+}
+
+fn source(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
+    match (table.has("file"), table.has("shape")) {
+        (true, false) => from_file(table, wish, files),
+        (false, true) => {
+            let (word, geometry) = named::read(table, wish, files.budget, files.is_covered)?;
+            Ok(Source::plain(word, geometry))
+        }
+        (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
+        (false, false) => Err(table.fault("[[mesh]] needs \"file\" or \"shape\"; add one")),
+    }
+}
+
+fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
+    table.rename("a mesh of a file");
+    let name = table.name("file")?;
+    let name = table.need("file", name)?;
+    let path = files.place(table, &name)?;
+    let budget = files.budget;
+    if is(&path, "xyzr") {
+        table.rename("a file of spheres");
+        let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
+        return Ok(Source::plain(name, geometry));
+    }
+    if !is(&path, "obj") && !is(&path, "ply") && !is_gltf(&path) {
+        let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
+        return Err(table.fault_of("file", fault));
+    }
+    let Obj { mesh, materials, objects, .. } = files.mesh(&path)?;
+    budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
+    let geometry = Geometry::Mesh(mesh.clone());
+    Ok(Source { name, geometry, materials: materials.clone(), objects: objects.clone() })
+}
+
+/// The materials of what names none.
+pub fn plain() -> Vec<(String, Fields)> {
+    vec![(DEFAULT.into(), Fields::default())]
+}

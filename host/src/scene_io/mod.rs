@@ -1,0 +1,52 @@
+//! Reads scenes from files of every kind there is, and writes them: TOML, glTF, Wavefront, PLY, and a binary form.
+//!
+//! A scene file is TOML. All there is to say, as an example:
+//!
+//! ```toml
+#![doc = include_str!("example.toml")]
+//! ```
+
+mod binary;
+mod budget;
+mod camera_table;
+mod describe;
+mod document;
+mod file;
+mod files;
+mod geometry;
+mod gltf;
+mod light_unit;
+mod lines;
+mod lit;
+mod load;
+mod map;
+mod material;
+mod merge;
+mod mesh_table;
+mod mtl;
+mod named;
+mod neighbours;
+mod obj;
+mod physical;
+mod ply;
+mod polygon;
+mod shape;
+mod source;
+mod suggest;
+mod table;
+mod tally;
+mod transform;
+mod visible;
+mod warning;
+mod xyzr;
+
+#[cfg(test)]
+mod tests;
+
+pub use binary::{ENDING, fingerprint, write};
+pub use describe::describe;
+pub use light_unit::LightUnit;
+pub use load::{Loading, load, load_as, read_as, read_table};
+pub use suggest::{nearest, suggest};
+pub use table::Table;
+pub use warning::{Warning, WarningKind};

@@ -1,0 +1,108 @@
+//! Where a mesh goes: scaled, then turned about x, y and z, then moved.
+
+use glam::{DMat3, DVec3, Vec3};
+
+use super::table::Table;
+use crate::error::Result;
+use crate::math;
+use crate::scene::Mesh;
+use crate::scene::Range;
+use crate::scene::normal::unit;
+
+/// An affine map that can be undone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transform {
+    linear: DMat3,
+    translate: DVec3,
+    scale: DVec3,
+}
+
+impl Transform {
+    /// Reads `scale`, `rotate` (degrees) and `translate` of a `[[mesh]]` table, all optional.
+    ///
+    /// # Errors
+    /// A number that is not finite, or a scale of zero.
+    pub fn read(table: &mut Table) -> Result<Option<Transform>> {
+        let scale = table.triple_or_number("scale", Range::FACTOR)?;
+        let rotate = table.triple("rotate", Range::ANY)?;
+        let translate = table.triple("translate", Range::ANY)?;
+        if scale.is_none() && rotate.is_none() && translate.is_none() {
+            return Ok(None);
+        }
+        Ok(Some(Transform::new(
+            scale.unwrap_or(Vec3::ONE),
+            rotate.unwrap_or(Vec3::ZERO),
+            translate.unwrap_or(Vec3::ZERO),
+        )))
+    }
+
+    /// Scales, then turns by `rotate` degrees about the fixed x, y and z axes in this order
+    /// (counter-clockwise looking against the axis), then moves.
+    pub fn new(scale: Vec3, rotate: Vec3, translate: Vec3) -> Self {
+        let [x, y, z] = rotate.to_array().map(|angle| sin_cos(f64::from(angle)));
+        let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
+        let about_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
+        let about_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
+        let scale = scale.as_dvec3();
+        Transform {
+            linear: about_z * about_y * about_x * DMat3::from_diagonal(scale),
+            translate: translate.as_dvec3(),
+            scale,
+        }
+    }
+
+    /// Does a sphere stay one? It does in a mirror.
+    pub fn keeps_spheres(&self) -> bool {
+        let scale = self.scale.abs();
+        scale.x == scale.y && scale.y == scale.z
+    }
+
+    /// A place.
+    pub fn place(&self, position: Vec3) -> Vec3 {
+        (self.linear * position.as_dvec3() + self.translate).as_vec3()
+    }
+
+    /// A length in a transform that keeps spheres.
+    pub fn length(&self, length: f32) -> f32 {
+        (f64::from(length) * self.scale.x.abs()) as f32
+    }
+
+    /// A unit normal in a transform that keeps spheres; in a mirror the front stays the front.
+    pub fn normal(&self, normal: Vec3) -> Vec3 {
+        unit(self.linear * normal.as_dvec3())
+    }
+
+    /// Moves a mesh. A mirror turns the triangles around, so that their fronts stay outside.
+    pub fn apply(&self, mesh: &mut Mesh) {
+        for position in &mut mesh.positions {
+            *position = self.place(*position);
+        }
+        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.linear;
+        // The cofactors are the inverse's transpose but for the length and the determinant's sign.
+        let mirrored = x.cross(y).dot(z) < 0.0;
+        let sign = if mirrored { -1.0 } else { 1.0 };
+        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+        for normal in &mut mesh.normals {
+            *normal = unit(cofactors * normal.as_dvec3() * sign);
+        }
+        for tangent in &mut mesh.tangents {
+            let along = unit(self.linear * tangent.truncate().as_dvec3());
+            *tangent = along.extend(tangent.w * sign as f32);
+        }
+        if mirrored {
+            mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
+        }
+    }
+}
+
+/// Sine and cosine of degrees, exact for whole quarter turns: walls stay flat.
+fn sin_cos(degrees: f64) -> (f64, f64) {
+    let turn = degrees.rem_euclid(360.0);
+    match turn {
+        0.0 => (0.0, 1.0),
+        90.0 => (1.0, 0.0),
+        180.0 => (0.0, -1.0),
+        270.0 => (-1.0, 0.0),
+        _ => math::sin_cos(turn.to_radians()),
+    }
+}

@@ -33,7 +33,7 @@ pub struct Hit {
 /// Rays as kernels take them, for [`crate::cpu::cast`] and [`crate::gpu::Caster`].
 ///
 /// ```
-/// # use eyerays::{cpu, job::Job, method::Method, quality::Bvh, scene, stream::Question};
+/// # use eyerays::{cpu, job::Job, method::Method, quality::Bvh, scene_io, stream::Question};
 /// use eyerays::batch::{Batch, Ray};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene_io::load("../scenes/cornell.toml".as_ref())?;

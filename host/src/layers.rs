@@ -1,6 +1,9 @@
 //! A picture in layers: beside its light what the camera sees, for those who denoise pictures or put them together.
 
+use rayon::prelude::*;
+
 use crate::choice::choices;
+use crate::cryptomatte::{Counter, Cryptomatte};
 use crate::device_scene::Feature;
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -35,6 +38,10 @@ choices! {
         Samples = "samples",
         /// The picture as it was before it was denoised
         Noisy = "noisy",
+        /// Cryptomatte of objects by their names, over the pixel's first 64 samples
+        CryptoObject = "crypto_object",
+        /// Cryptomatte of materials, likewise
+        CryptoMaterial = "crypto_material",
     }
 }
 
@@ -51,6 +58,8 @@ pub enum Values {
     Lengths(Vec<f32>),
     /// Numbers, from 1.
     Numbers(Vec<u32>),
+    /// Shares of names.
+    Shares(Cryptomatte),
 }
 
 impl Values {
@@ -60,6 +69,7 @@ impl Values {
             Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture.pixels.len(),
             Values::Lengths(lengths) => lengths.len(),
             Values::Numbers(numbers) => numbers.len(),
+            Values::Shares(matte) => matte.pixels(),
         }
     }
 }
@@ -77,7 +87,8 @@ pub fn render(
 ) -> Result<Vec<(Layer, Values)>> {
     let job = session.job().clone();
     let settings = Settings { spp: rendering.samples, ..*job.settings() };
-    let mut studio = Studio { session, camera, window: rendering.region, settings, direct: None, places: None };
+    let mut studio =
+        Studio { session, camera, window: rendering.region, settings, direct: None, places: None, mattes: None };
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
     let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
     session.turn(&job)?;
@@ -130,7 +141,12 @@ struct Studio<'a> {
     settings: Settings,
     direct: Option<Picture>,
     places: Option<Vec<Place>>,
+    /// Of objects and of materials.
+    mattes: Option<[Cryptomatte; 2]>,
 }
+
+/// Samples of a pixel that count for its Cryptomattes: each is a picture of its own.
+const COUNTED: u32 = 64;
 
 /// What is seen at the middle of a pixel, if anything is.
 #[derive(Clone, Copy)]
@@ -160,6 +176,8 @@ impl Studio<'_> {
                 self.numbers(|primitive| objects.find(primitive).map_or(0, |number| number + 1))?
             }
             Layer::Material => self.numbers(|primitive| material(scene, primitive) + 1)?,
+            Layer::CryptoObject => Values::Shares(self.mattes(scene)?[0].clone()),
+            Layer::CryptoMaterial => Values::Shares(self.mattes(scene)?[1].clone()),
         })
     }
 
@@ -179,9 +197,9 @@ impl Studio<'_> {
         if self.places.is_none() {
             let middle = Settings { spp: 1, sampler: Sampler::Regular, ..self.settings };
             let scale = self.session.job().normalisation().scale;
-            let place = |[depth, low, high]: [f32; 3]| {
-                let primitive = (low as usize + ((high as usize) << 16)).checked_sub(1);
-                let depth = if primitive.is_some() { (f64::from(depth) / scale) as f32 } else { f32::INFINITY };
+            let place = |pixel: [f32; 3]| {
+                let primitive = primitive(pixel);
+                let depth = if primitive.is_some() { (f64::from(pixel[0]) / scale) as f32 } else { f32::INFINITY };
                 Place { depth, primitive }
             };
             let pinhole = Camera { lens: None, ..self.camera.clone() };
@@ -189,6 +207,31 @@ impl Studio<'_> {
             self.places = Some(seen.pixels.into_iter().map(place).collect());
         }
         Ok(self.places.as_deref().expect("they were just made"))
+    }
+
+    /// What the first samples of each pixel show, sample by sample.
+    fn mattes(&mut self, scene: &Scene) -> Result<&[Cryptomatte; 2]> {
+        if self.mattes.is_none() {
+            let pixels = self.window.pixels() as usize;
+            let numbers = ObjectNumbers::of(scene);
+            let mut objects =
+                Counter::new("CryptoObject", scene.objects.iter().map(|object| object.name.as_str()), pixels);
+            let mut materials =
+                Counter::new("CryptoMaterial", scene.materials.iter().map(|material| material.name.as_str()), pixels);
+            let job = self.session.job().with(self.settings)?.showing(Some(Feature::Place));
+            self.session.turn(&job)?;
+            let view = View::new(&job, self.camera)?;
+            let samples = view.range();
+            for sample in samples.start..samples.end.min(samples.start + COUNTED) {
+                let seen = self.session.render(&view.part(self.window, sample..sample + 1)?, 1, &|_| ())?.picture;
+                let primitive = |pixel: &[f32; 3]| primitive(*pixel);
+                let seen = seen.pixels.par_iter().map(primitive);
+                objects.add(seen.clone().map(|seen| Some(numbers.find(seen?)? as usize)));
+                materials.add(seen.map(|seen| Some(material(scene, seen?) as usize)));
+            }
+            self.mattes = Some([objects, materials].map(Counter::done));
+        }
+        Ok(self.mattes.as_ref().expect("they were just counted"))
     }
 
     fn picture(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
@@ -200,6 +243,11 @@ impl Studio<'_> {
         self.session.turn(&job)?;
         Ok(self.session.render(&seen(&job, camera, self.window)?, 1, &|_| ())?.picture)
     }
+}
+
+/// The primitive that a pixel of [`Feature::Place`] shows.
+fn primitive([_, low, high]: [f32; 3]) -> Option<usize> {
+    (low as usize + ((high as usize) << 16)).checked_sub(1)
 }
 
 /// The light that a picture has and another has not. What rounding leaves below zero is none.

@@ -34,6 +34,7 @@ pub mod batch;
 pub mod choice;
 pub mod compare;
 pub mod cpu;
+pub mod cryptomatte;
 pub mod denoise;
 pub mod device_scene;
 pub mod error;

@@ -8,7 +8,7 @@ use eyerays::method::Method;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Disk, Object, Primitives, Sampler, Scene, Settings, Visibility};
+use eyerays::scene::{Disk, Lens, Matte, Object, PixelFilter, Primitives, Sampler, Scene, Settings, Visibility};
 use eyerays::stream::Question;
 use eyerays::view::{Region, View};
 use eyerays_tests::covered::covered;
@@ -17,8 +17,20 @@ use glam::Vec3;
 
 const SIZE: (u32, u32) = (48, 36);
 
-/// The picture of a scene on the CPU, and all its layers in their order.
-fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
+/// What a picture is rendered for here, mostly.
+const ALL: [Layer; 8] = [
+    Layer::Colour,
+    Layer::Albedo,
+    Layer::Normal,
+    Layer::Depth,
+    Layer::Object,
+    Layer::Material,
+    Layer::Direct,
+    Layer::Indirect,
+];
+
+/// The picture of a scene on the CPU, and layers of it in their order.
+fn layered(scene: &Scene, spp: u32, layers: &[Layer]) -> (Picture, Vec<(Layer, Values)>) {
     let settings = Settings { size: SIZE, spp, sampler: Sampler::Sobol, ..scene.settings };
     let packed = Job::new(scene, settings, Bvh::Fast.quality()).unwrap();
     let choice = Choice { device: DeviceWish::Cpu, threads: 2, ..Choice::default() };
@@ -26,17 +38,7 @@ fn layered(scene: &Scene, spp: u32) -> (Picture, Vec<(Layer, Values)>) {
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     let mut session = backend.open(&packed).unwrap();
     let picture = session.render(&view, 1, &|_| ()).unwrap();
-    let all = [
-        Layer::Colour,
-        Layer::Albedo,
-        Layer::Normal,
-        Layer::Depth,
-        Layer::Object,
-        Layer::Material,
-        Layer::Direct,
-        Layer::Indirect,
-    ];
-    let layers = layers::render(&mut session, (scene, &scene.cameras[0]), &picture, &all).unwrap();
+    let layers = layers::render(&mut session, (scene, &scene.cameras[0]), &picture, layers).unwrap();
     let again = session.render(&view, 1, &|_| ()).unwrap();
     assert!(again.picture.bits_equal(&picture.picture), "layers change the session that they are of");
     (picture.picture, layers)
@@ -46,7 +48,7 @@ fn layer(layers: &[(Layer, Values)], wanted: Layer) -> &Picture {
     let (_, values) = layers.iter().find(|(layer, _)| *layer == wanted).expect("it was asked for");
     match values {
         Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture,
-        Values::Lengths(_) | Values::Numbers(_) => panic!("{wanted:?} is no picture"),
+        Values::Lengths(_) | Values::Numbers(_) | Values::Shares(_) => panic!("{wanted:?} is no picture"),
     }
 }
 
@@ -108,7 +110,7 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
         visibility: Visibility::default(),
     });
     assert!(!scene.spheres.is_empty() && !scene.mesh.triangles.is_empty());
-    let (_, layers) = layered(&scene, 1);
+    let (_, layers) = layered(&scene, 1, &ALL);
     let packed = Job::new(&scene, scene.settings, Bvh::Fast.quality()).unwrap();
     let (rays, forward): (Vec<_>, Vec<_>) = rays(&scene).into_iter().unzip();
     let batch = Batch::new(&packed, &rays);
@@ -141,7 +143,7 @@ fn direct_and_indirect_light_are_all_of_it() {
         let mut scene = scene;
         scene.settings.transport.integrator = eyerays::scene::Integrator::Path;
         scene.settings.bounces = 4;
-        let (picture, layers) = layered(&scene, 4);
+        let (picture, layers) = layered(&scene, 4, &ALL);
         let (direct, indirect) = (layer(&layers, Layer::Direct), layer(&layers, Layer::Indirect));
         assert!(indirect.pixels.iter().filter(|pixel| pixel.iter().any(|&c| c > 0.0)).count() > 100);
         for (i, pixel) in picture.pixels.iter().enumerate() {
@@ -151,7 +153,7 @@ fn direct_and_indirect_light_are_all_of_it() {
             }
         }
         scene.settings.bounces = 0;
-        let (_, layers) = layered(&scene, 4);
+        let (_, layers) = layered(&scene, 4, &ALL);
         assert!(layer(&layers, Layer::Indirect).pixels.iter().all(|&pixel| pixel == [0.0; 3]));
     }
 }
@@ -159,7 +161,7 @@ fn direct_and_indirect_light_are_all_of_it() {
 #[test]
 fn albedo_is_the_colour_of_surfaces_and_normals_are_on_the_viewers_side() {
     let scene = shipped("bleeding");
-    let (_, layers) = layered(&scene, 1);
+    let (_, layers) = layered(&scene, 1, &ALL);
     let (albedo, normal) = (layer(&layers, Layer::Albedo), layer(&layers, Layer::Normal));
     let forward = (scene.cameras[0].target - scene.cameras[0].eye).normalize();
     let materials = numbers(&layers, Layer::Material);
@@ -188,9 +190,50 @@ fn a_preview_has_the_colours_at_the_middle_of_each_pixel() {
     let packed = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
     let window = Region { x: 0, y: 0, width: SIZE.0, height: SIZE.1 };
     let preview = layers::preview(&packed, &scene.cameras[0], window, 2).unwrap();
-    let (_, layers) = layered(&scene, 1);
+    let (_, layers) = layered(&scene, 1, &ALL);
     for (i, (&seen, &number)) in preview.pixels.iter().zip(numbers(&layers, Layer::Material)).enumerate() {
         let colour = if number == 0 { Vec3::ZERO } else { scene.materials[number as usize - 1].diffuse };
         assert_eq!(Vec3::from(seen), colour, "pixel {i}");
     }
+}
+
+/// The opacity of a picture in which all but one name are holes.
+fn alone(scene: &Scene, name: &str, spp: u32) -> Vec<f32> {
+    let mut scene = scene.clone();
+    for object in scene.objects.iter_mut().filter(|object| object.name != name) {
+        object.visibility.matte = Matte::Holdout;
+    }
+    layered(&scene, spp, &[]).0.alpha.expect("holes are not opaque")
+}
+
+/// Each sample counts for what its ray meets first: what is left where all else is a hole, sample for sample, through a lens and by a filter
+/// that reaches beyond the pixel, too.
+#[test]
+fn cryptomattes_are_the_shares_of_samples_that_meet_a_name_first() {
+    let mut scene = shipped("bleeding");
+    for (number, object) in scene.objects.iter_mut().enumerate() {
+        object.name = format!("object {}", number % 4);
+    }
+    scene.settings.pixel_filter = Some(PixelFilter::BlackmanHarris);
+    scene.cameras[0].lens = Some(Lens::round(0.05));
+    let (_, layers) = layered(&scene, 32, &[Layer::CryptoObject, Layer::CryptoMaterial]);
+    let [objects, materials] = [0, 1].map(|number: usize| match &layers[number].1 {
+        Values::Shares(matte) => matte,
+        other => panic!("{other:?}"),
+    });
+    let names: Vec<String> = (0..4).map(|number| format!("object {number}")).collect();
+    let mut sum = vec![0.0; objects.pixels()];
+    for name in &names {
+        let share = objects.share(name);
+        assert_eq!(share, alone(&scene, name, 32), "{name}");
+        assert!(share.iter().any(|&share| share > 0.0 && share < 1.0) && share.contains(&1.0), "{name}");
+        sum.iter_mut().zip(share).for_each(|(sum, share)| *sum += share);
+    }
+    // Every pixel shows materials where it shows objects.
+    let mut of_materials = vec![0.0; materials.pixels()];
+    let unique: std::collections::BTreeSet<&str> = scene.materials.iter().map(|m| m.name.as_str()).collect();
+    for name in unique {
+        of_materials.iter_mut().zip(materials.share(name)).for_each(|(sum, share)| *sum += share);
+    }
+    assert_eq!(sum, of_materials);
 }

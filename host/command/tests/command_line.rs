@@ -208,8 +208,10 @@ fn the_light_that_is_asked_for_looks_white() {
     }
     assert_eq!(light("warm.exr", Some("albedo")), light("plain.exr", Some("albedo")));
     assert_eq!(light("merged.exr", None), light("warm.exr", None));
-    for (kelvins, why) in [("100", "1700 to 25000"), ("warm", "no temperature; give kelvins"), ("nan", "1700 to 25000")] {
-        place.refuse(&["render", "scene.toml", "--white-balance", kelvins], &["--white-balance", why]);
+    for (kelvins, why) in [("100", "1700 to 25000"), ("warm", "no temperature; give kelvins"), ("nan", "1700 to 25000")]
+    {
+        let refused = place.run(&["render", "scene.toml", "--white-balance", kelvins]);
+        assert!(refused.code == Some(2) && refused.stderr.contains(why), "{kelvins}: {}", refused.stderr);
     }
 }
 

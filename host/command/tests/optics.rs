@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::BufReader;
 
 use eyerays::film::Film;
-use program::{Place, SCENE};
+use program::{Place, SCENE, opacity};
 
 fn place() -> Place {
     Place::new(&[("scene.toml", SCENE)])
@@ -126,4 +126,31 @@ fn filters_are_those_of_their_names() {
     let own = hash(&place, &path);
     assert_eq!(own, hash(&place, &[&path[..], &["--pixel-filter", "blackman-harris"]].concat()));
     assert_ne!(own, hash(&place, &[&path[..], &["--pixel-filter", "box"]].concat()));
+}
+
+/// What films keep of shadow catchers and holes goes through files: parts come together, and so does what noise decides about.
+#[test]
+fn films_of_shadow_catchers_are_kept_and_merged() {
+    let floor =
+        "[[mesh]]\nshape = \"quad\"\ncorners = [[-3, -1, 3], [3, -1, 3], [3, -1, -3], [-3, -1, -3]]\ncatcher = true\n";
+    let lit = SCENE.replace(
+        "[render]\n",
+        "[background]\ncolor = [1, 1, 1]\n\n[render]\nintegrator = \"path\"\nsampler = \"sobol\"\n",
+    );
+    let place = Place::new(&[("scene.toml", &format!("{lit}\n{floor}"))]);
+    let render = |options: &[&str]| place.succeed(&[&RENDER, options].concat());
+    render(&["--spp", "7", "-o", "whole.png"]);
+    render(&["--spp", "7", "--samples-from", "0", "--samples-to", "3", "-o", "a.film"]);
+    render(&["--spp", "7", "--samples-from", "3", "--samples-to", "7", "-o", "b.film"]);
+    place.succeed(&["merge", "b.film", "a.film", "-o", "merged.png"]);
+    let [whole, merged] = ["whole.png", "merged.png"].map(|name| opacity(&place.path(name)));
+    assert_eq!(merged, whole);
+    assert!(whole.iter().any(|alpha| (25..230).contains(alpha)));
+
+    let noise = ["--noise", "0.2", "--spp", "96"];
+    render(&[&noise[..], &["-o", "noisy.png"]].concat());
+    render(&[&noise[..], &["-o", "noisy.film"]].concat());
+    place.succeed(&["merge", "noisy.film", "-o", "again.png"]);
+    let [noisy, again] = ["noisy.png", "again.png"].map(|name| opacity(&place.path(name)));
+    assert_eq!(again, noisy);
 }

@@ -28,7 +28,7 @@ const TILE: u32 = 32;
 /// Samples can be added to a film bit by bit, with the bits of all at once:
 ///
 /// ```
-/// # use eyerays::{cpu::Renderer, job::Job, method::Traversal, quality::Bvh, scene, view::View};
+/// # use eyerays::{cpu::Renderer, job::Job, method::Traversal, quality::Bvh, scene_io, view::View};
 /// # fn main() -> eyerays::error::Result<()> {
 /// # let (scene, _) = scene_io::load("../scenes/cornell.toml".as_ref())?;
 /// let job = Job::new(&scene, scene.settings, Bvh::Fast.quality())?;

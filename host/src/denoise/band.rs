@@ -4,7 +4,6 @@ use std::ops::Range;
 
 use super::guides::Pixels;
 use super::surface::weight;
-use crate::picture::Picture;
 
 /// How far neighbours are looked for, along each axis.
 const RADIUS: isize = 7;
@@ -31,8 +30,8 @@ impl<'p> Band<'p> {
         Band { pixels, rows, single: vec![0.0; around], across: vec![0.0; around], sums: vec![[0.0; 4]; count] }
     }
 
-    /// Averages the rows of a picture.
-    pub fn denoise(mut self, picture: &Picture, rows: &mut [[f32; 3]]) {
+    /// Averages the rows, whose pixels without noise stay as they are.
+    pub fn denoise(mut self, rows: &mut [[f32; 3]]) {
         for (dx, dy) in (-RADIUS..=RADIUS).flat_map(|dy| (-RADIUS..=RADIUS).map(move |dx| (dx, dy))) {
             self.compare(dx, dy);
             self.add(dx, dy);
@@ -40,7 +39,6 @@ impl<'p> Band<'p> {
         let first = self.rows.start * self.pixels.width;
         for (i, (pixel, sums)) in rows.iter_mut().zip(&self.sums).enumerate() {
             let (at, colour) = (first + i, self.pixels.colour[first + i]);
-            *pixel = picture.pixels[at];
             if self.pixels.variance[at] > 0.0 {
                 *pixel = [0, 1, 2].map(|channel| sums[channel] / sums[3] * colour[channel]);
             }

@@ -10,9 +10,6 @@ mod surface;
 mod tests;
 mod variance;
 
-use rayon::prelude::*;
-
-use self::band::Band;
 pub use self::guides::Guides;
 use self::guides::Pixels;
 pub use self::oidn::Oidn;
@@ -33,10 +30,7 @@ choices! {
 }
 
 /// What a picture says that was denoised by [`Denoiser::Own`].
-const METHOD: &str = "joint non-local means, version 1";
-
-/// Rows that a thread takes at once.
-const ROWS: usize = 16;
+const METHOD: &str = "joint non-local means, version 2";
 
 impl Denoiser {
     /// The picture with less noise, and what did that.
@@ -48,7 +42,9 @@ impl Denoiser {
             Denoiser::Own => Ok((denoise(picture, guides)?, METHOD.to_owned())),
             Denoiser::Oidn => {
                 let oidn = Oidn::find()?;
-                Ok((oidn.denoise(picture, guides)?, format!("Open Image Denoise {}", oidn.version())))
+                let mut denoised = oidn.denoise(picture, guides)?;
+                denoised.alpha = opacity(picture, guides);
+                Ok((denoised, format!("Open Image Denoise {}", oidn.version())))
             }
         }
     }
@@ -61,12 +57,18 @@ impl Denoiser {
 /// Guides of another size, a picture of single samples, whose noise nobody knows, or too little memory.
 pub fn denoise(picture: &Picture, guides: &Guides<'_>) -> Result<Picture> {
     guides.check(picture)?;
-    let pixels = Pixels::new(picture, guides);
-    let mut denoised = picture.clone();
-    let width = picture.width as usize;
-    denoised.pixels.par_chunks_mut(ROWS * width).enumerate().for_each(|(number, rows)| {
-        let first = number * ROWS;
-        Band::new(&pixels, first..first + rows.len() / width).denoise(picture, rows);
-    });
-    Ok(denoised)
+    let pixels = Pixels::of_light(picture, guides).denoised(&picture.pixels);
+    let Picture { width, height, noise, about, .. } = picture;
+    let (about, alpha) = (about.clone(), opacity(picture, guides));
+    Ok(Picture { width: *width, height: *height, pixels, alpha, noise: *noise, about })
+}
+
+/// How opaque pixels are, with less noise where shadow catchers make some.
+fn opacity(picture: &Picture, guides: &Guides<'_>) -> Option<Vec<f32>> {
+    let alpha = picture.alpha.as_ref()?;
+    let Some(errors) = guides.opacity_error else { return Some(alpha.clone()) };
+    let as_it_is: Vec<[f32; 3]> = alpha.iter().map(|&alpha| [alpha; 3]).collect();
+    let denoised = Pixels::of_opacity(picture, alpha, errors, guides).denoised(&as_it_is);
+    // A mean may be rounded to more than the greatest.
+    Some(denoised.into_iter().map(|[alpha, ..]| alpha.min(1.0)).collect())
 }

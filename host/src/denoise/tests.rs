@@ -38,7 +38,8 @@ impl Plain {
     }
 
     fn guides(&self) -> Guides<'_> {
-        Guides { albedo: &self.albedo, normal: &self.normal, depth: &self.depth, error: &self.error }
+        let Plain { albedo, normal, depth, error, .. } = self;
+        Guides { albedo, normal, depth, error, opacity_error: None }
     }
 }
 
@@ -145,4 +146,45 @@ fn guides_of_other_pictures_and_single_samples_are_refused() {
     assert!(refusal(&plain).contains("render two or more"));
     plain.depth.pop();
     assert!(refusal(&plain).contains("other pixels than the picture"));
+}
+
+/// A black surface mirrors white light, and its colour differs by less than it is seen: no channel stands out.
+#[test]
+fn light_that_dark_surfaces_mirror_stays_white() {
+    let mut plain = Plain::new((32, 32), 0.05, |_, _| 0.5);
+    let dark =
+        |i: usize| [0.016 + 0.002 * (i % 5) as f32, 0.015 + 0.003 * (i % 4) as f32, 0.017 + 0.002 * (i % 3) as f32];
+    plain.albedo.pixels.iter_mut().enumerate().for_each(|(i, albedo)| *albedo = dark(i));
+    let denoised = plain.denoised();
+    let apart = denoised.pixels.iter().map(|[r, g, b]| (r - g).abs().max((g - b).abs()));
+    assert!(apart.fold(0.0, f32::max) < 1e-5);
+    assert!(off(&denoised, 0..32, |_| 0.5) < 0.02);
+}
+
+/// A shadow that half of the light is kept away in, and none beside it: each sample tells all or nothing.
+#[test]
+fn shadows_that_are_caught_have_less_noise_and_keep_their_edge() {
+    const SAMPLES: f32 = 64.0;
+    let shadow = |x: usize| if x < 24 { 0.5 } else { 0.0 };
+    let mut plain = Plain::new((48, 40), 0.5 / SAMPLES.sqrt(), |x, _| shadow(x as usize));
+    let alpha: Vec<f32> =
+        plain.picture.pixels.iter().enumerate().map(|(i, p)| if i % 48 < 24 { p[0] } else { 0.0 }).collect();
+    let errors: Vec<f32> = alpha.iter().map(|a| (2.0 * a * (1.0 - a) / SAMPLES).max(0.0).sqrt()).collect();
+    plain.picture.pixels.fill([0.0; 3]);
+    plain.picture.alpha = Some(alpha.clone());
+    let denoised = denoise(&plain.picture, &Guides { opacity_error: Some(&errors), ..plain.guides() }).unwrap();
+    let off = |alpha: &[f32], columns: std::ops::Range<usize>| {
+        let squares =
+            alpha.chunks(48).flat_map(|row| columns.clone().map(|x| (row[x] - shadow(x)).powi(2)).collect::<Vec<_>>());
+        let squares: Vec<f32> = squares.collect();
+        (squares.iter().sum::<f32>() / squares.len() as f32).sqrt()
+    };
+    let after = denoised.alpha.unwrap();
+    let (before, inside, beside) = (off(&alpha, 2..20), off(&after, 2..20), off(&after, 28..48));
+    assert!((before - 0.0625).abs() < 0.01 && inside < before / 3.0 && beside < 1e-3, "{before} {inside} {beside}");
+    let edge = off(&after, 20..28);
+    assert!(edge < before, "{edge}");
+    assert!(denoised.pixels == plain.picture.pixels);
+    // Unless somebody tells how noisy they are, they stay as they are.
+    assert_eq!(denoise(&plain.picture, &plain.guides()).unwrap().alpha, Some(alpha));
 }

@@ -1,7 +1,7 @@
 //! From sums to a picture.
 
 use eyerays_shader::data::Quanta;
-use eyerays_shader::stage::{LIGHT_FRACTION, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
+use eyerays_shader::stage::{CatcherSums, LIGHT_FRACTION, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
 use rayon::prelude::*;
 
 use super::Film;
@@ -137,6 +137,27 @@ impl Film {
         errors.collect()
     }
 
+    /// The standard error of how opaque each pixel is, as far as shadow catchers make it noisy; row by row, 0 elsewhere. None without
+    /// any. A sample tells that its light arrives or does not, and no sample tells how unequal the lights are that are sampled: twice the
+    /// variance of equal ones.
+    pub fn opacity_errors(&self) -> Option<Vec<f32>> {
+        let (width, words) = (self.window.width, self.words);
+        if !Row::new(0, width, words).knows_catchers() {
+            return None;
+        }
+        let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
+        let errors = rows.flat_map_iter(|(sums, y)| {
+            let of = move |(count, x)| {
+                let catcher = PixelSums::load(sums, Row::new(0, width, words), x).catcher;
+                let (caught, kept_away) = (f64::from(catcher.count.max(1)), kept_away(&catcher));
+                let variance = 2.0 * kept_away * (1.0 - kept_away) / caught;
+                (f64::from(catcher.count) / f64::from(u32::max(count, 1)) * variance.sqrt()) as f32
+            };
+            self.counts(y).into_iter().zip(0..).map(of)
+        });
+        Some(errors.collect())
+    }
+
     /// How many samples each pixel of its window has, row by row.
     pub fn samples(&self) -> Vec<u32> {
         (0..self.window.height).flat_map(|row| self.counts(row)).collect()
@@ -161,12 +182,15 @@ impl Film {
 /// The share of a pixel that is opaque: what the camera sees of objects, and what they keep away of the light of shadow catchers.
 fn opacity(sums: &PixelSums, count: u32) -> f64 {
     let seen = count - sums.clear.min(count);
-    let catcher = &sums.catcher;
-    let caught = f64::from(catcher.count.min(seen));
+    let caught = f64::from(sums.catcher.count.min(seen));
+    (f64::from(seen) - caught + caught * kept_away(&sums.catcher)) / f64::from(count.max(1))
+}
+
+/// The share of the light of shadow catchers that others keep away.
+fn kept_away(catcher: &CatcherSums) -> f64 {
     // Without any light there is no shadow.
     let full = light(catcher.full);
-    let kept_away = if full > 0.0 { 1.0 - (light(catcher.lit) / full).clamp(0.0, 1.0) } else { 0.0 };
-    (f64::from(seen) - caught + caught * kept_away) / f64::from(count.max(1))
+    if full > 0.0 { 1.0 - (light(catcher.lit) / full).clamp(0.0, 1.0) } else { 0.0 }
 }
 
 /// A pixel's samples in the mean.

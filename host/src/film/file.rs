@@ -17,7 +17,8 @@ use crate::noise::{Target, whole_blocks};
 use crate::picture::Picture;
 use crate::scene::Settings;
 use crate::view::Region;
-use eyerays_shader::stage::{FILM_WORDS, NOISY_FILM_WORDS};
+use eyerays_shader::data::Launch;
+use eyerays_shader::stage::{NOISY_FILM_WORDS, film_words};
 
 /// No text begins like this; the last byte tells the version.
 const MAGIC: [u8; 8] = *b"\x89EYFILM\x01";
@@ -134,7 +135,8 @@ impl Header {
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
         let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
-        let is_known = [FILM_WORDS, FILM_WORDS + 1, NOISY_FILM_WORDS, NOISY_FILM_WORDS + 1].contains(&words);
+        let kept = [0, Launch::CLEAR, Launch::CATCHER, Launch::CLEAR | Launch::CATCHER].map(Launch);
+        let is_known = kept.iter().any(|&kept| [false, true].iter().any(|&noisy| film_words(kept, noisy) == words));
         if !is_within(window, image) || !is_known || parts.len() > MOST_PARTS {
             return Err(damaged());
         }

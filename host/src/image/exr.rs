@@ -56,6 +56,10 @@ pub(super) fn layered(
         Values::Vectors(picture) => three(picture, &name, ["X", "Y", "Z"], 1.0, is_half),
         Values::Lengths(lengths) => vec![channel(&name, "Z", FlatSamples::F32(lengths.clone()))],
         Values::Numbers(numbers) => vec![channel(&name, "id", FlatSamples::U32(numbers.clone()))],
+        Values::Shares(matte) => {
+            let channels = matte.channels().into_iter();
+            channels.map(|(name, values)| channel("", &name, FlatSamples::F32(values))).collect()
+        }
     };
     let mut channels: SmallVec<[_; 4]> = three(picture, "", ["R", "G", "B"], scale, is_half).into();
     let alpha = picture.alpha.as_ref().map(|alpha| channel("", "A", floats(alpha.par_iter().copied(), is_half)));
@@ -63,9 +67,37 @@ pub(super) fn layered(
     channels.extend(layers.iter().flat_map(|(layer, values)| of(format!("{}.", layer.name()), values)));
     let mut image = Image::from_encoded_channels(size(picture), Encoding::SMALL_LOSSLESS, AnyChannels::sort(channels));
     image.layer_data.attributes = attributes(&picture.about);
+    for (_, values) in layers {
+        let Values::Shares(matte) = values else { continue };
+        let said = matte.attributes().into_iter();
+        let texts = said.filter_map(|(name, value)| Some((Text::new_or_none(name)?, Text::new_or_none(value)?)));
+        let other = &mut image.layer_data.attributes.other;
+        other.extend(texts.map(|(name, value)| (name, AttributeValue::Text(value))));
+    }
     let mut bytes = Cursor::new(Vec::new());
     write(&image, &mut bytes)?;
-    Ok(bytes.into_inner())
+    let mut bytes = bytes.into_inner();
+    sort_attributes(&mut bytes);
+    Ok(bytes)
+}
+
+/// Brings the attributes of a file of one part into the order of their names: the crate keeps those that it does not know in another order
+/// each time.
+fn sort_attributes(bytes: &mut [u8]) {
+    // Behind the magic number and the version.
+    const FIRST: usize = 8;
+    let mut attributes = Vec::new();
+    let mut at = FIRST;
+    while bytes[at] != 0 {
+        let text = |from: usize| from + bytes[from..].iter().position(|&byte| byte == 0).expect("texts end") + 1;
+        let value = text(text(at));
+        let size = bytes[value..value + 4].try_into().expect("four bytes");
+        let end = value + 4 + u32::from_le_bytes(size) as usize;
+        attributes.push(bytes[at..end].to_vec());
+        at = end;
+    }
+    attributes.sort_unstable();
+    bytes[FIRST..at].copy_from_slice(&attributes.concat());
 }
 
 fn channel(layer: &str, name: &str, samples: FlatSamples) -> AnyChannel<FlatSamples> {

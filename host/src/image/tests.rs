@@ -331,3 +331,69 @@ proptest! {
         }
     }
 }
+
+/// What a file alone tells of the share that a name has of each pixel, as Cryptomatte's specification 1.2.0 has it.
+fn share_by_the_file(path: &std::path::Path, layer: &str, name: &str) -> Vec<f32> {
+    use ::exr::prelude::{AttributeValue, FlatSamples, read_first_flat_layer_from_file};
+    let image = read_first_flat_layer_from_file(path).unwrap();
+    let said: std::collections::BTreeMap<String, String> = image
+        .layer_data
+        .attributes
+        .other
+        .iter()
+        .filter_map(|(key, value)| match value {
+            AttributeValue::Text(text) => Some((key.to_string(), text.to_string())),
+            _ => None,
+        })
+        .collect();
+    let text = |key: &str| said[key].clone();
+    let keys: Vec<String> = said.keys().cloned().collect();
+    let of_layer = |key: &&String| key.starts_with("cryptomatte/") && key.ends_with("/name") && text(key) == layer;
+    let key = keys.iter().find(of_layer).unwrap().strip_suffix("/name").unwrap();
+    assert_eq!(
+        (text(&format!("{key}/hash")), text(&format!("{key}/conversion"))),
+        ("MurmurHash3_32".into(), "uint32_to_float32".into())
+    );
+    let manifest: serde_json::Value = serde_json::from_str(&text(&format!("{key}/manifest"))).unwrap();
+    let id = f32::from_bits(u32::from_str_radix(manifest[name].as_str().unwrap(), 16).unwrap());
+    let channel = |name: String| match &image.layer_data.channel_data.list.iter().find(|c| c.name == *name)?.sample_data
+    {
+        FlatSamples::F32(values) => Some(values.clone()),
+        other => panic!("{name}: {other:?}"),
+    };
+    let mut shares = vec![0.0; image.layer_data.size.area()];
+    for (number, [of_id, of_share]) in (0..).flat_map(|number| [(number, ["R", "G"]), (number, ["B", "A"])]) {
+        let Some(ids) = channel(format!("{layer}{number:02}.{of_id}")) else { break };
+        let found = channel(format!("{layer}{number:02}.{of_share}")).unwrap();
+        let found = ids.into_iter().zip(found).map(|(own, share)| if own == id { share } else { 0.0 });
+        shares.iter_mut().zip(found).for_each(|(sum, share)| *sum += share);
+    }
+    shares
+}
+
+#[test]
+fn cryptomattes_are_read_by_who_knows_their_specification_alone() {
+    use crate::cryptomatte::Counter;
+    use rayon::prelude::*;
+    let mut counter = Counter::new("CryptoMaterial", ["red", "blau \u{fc}ber", "red"].into_iter(), 3);
+    for seen in [[Some(0), None, Some(1)], [Some(2), None, Some(0)], [Some(1), Some(1), None], [None, None, Some(1)]] {
+        counter.add(seen.into_par_iter());
+    }
+    let matte = counter.done();
+    let file = tempfile::NamedTempFile::new().unwrap();
+    let picture = Picture::from_pixels(3, 1, vec![[0.5; 3]; 3]).unwrap();
+    let layers = [(Layer::CryptoMaterial, Values::Shares(matte.clone()))];
+    // Halves would be other numbers.
+    let encoding = Encoding { half: true, ..Encoding::default() };
+    encode_layers(&picture, &layers, &encoding, std::fs::File::create(file.path()).unwrap()).unwrap();
+    let written = std::fs::read(file.path()).unwrap();
+    for _ in 0..8 {
+        let mut again = Vec::new();
+        encode_layers(&picture, &layers, &encoding, &mut again).unwrap();
+        assert!(again == written, "the same picture is the same bytes");
+    }
+    for (name, wanted) in [("red", [0.5, 0.0, 0.25]), ("blau \u{fc}ber", [0.25, 0.25, 0.5])] {
+        assert_eq!(share_by_the_file(file.path(), "CryptoMaterial", name), wanted, "{name}");
+        assert_eq!(matte.share(name), wanted, "{name}");
+    }
+}

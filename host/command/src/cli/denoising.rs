@@ -1,6 +1,7 @@
 //! Pictures that noise is taken off.
 
 use eyerays::denoise::{Denoiser, Guides, Oidn};
+use eyerays::film::Film;
 use eyerays::layers::{Layer, Values};
 use eyerays::picture::Picture;
 use eyerays::scene::Integrator;
@@ -21,12 +22,15 @@ pub(super) fn check(denoiser: Denoiser, integrator: Integrator) -> Result<()> {
     Err(Error::new(format!("--denoise: pictures of the integrator {integrator} have no noise; leave it out")))
 }
 
-/// Takes noise off a picture by its layers, which get the noisy one, too. The picture says what did it.
+/// Takes noise off a picture by its layers, which get the noisy one, too; and by its film off what shadow catchers make of it. The picture says what did it.
 pub(super) fn denoised(
     denoiser: Denoiser,
     picture: &Picture,
+    film: Option<&Film>,
     layers: &mut Vec<(Layer, Values)>,
 ) -> Result<(Picture, String)> {
+    let opacity_errors = film.and_then(Film::opacity_errors);
+    let opacity_error = opacity_errors.as_deref();
     let find = |wanted| layers.iter().find(|(layer, _)| *layer == wanted).map(|(_, values)| values);
     let guides = match NEEDED.map(find) {
         [
@@ -34,7 +38,7 @@ pub(super) fn denoised(
             Some(Values::Vectors(normal)),
             Some(Values::Lengths(depth)),
             Some(Values::Lengths(error)),
-        ] => Guides { albedo, normal, depth, error },
+        ] => Guides { albedo, normal, depth, error, opacity_error },
         _ => unreachable!("they were rendered"),
     };
     let denoised = denoiser.denoise(picture, &guides)?;

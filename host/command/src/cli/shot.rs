@@ -158,7 +158,7 @@ impl Studio<'_> {
         });
         let (mut layers, mut denoised) = (layers.map_err(|error| error.of(self.path))?, None);
         if let Some(denoiser) = self.of.denoise {
-            let denoise = || denoising::denoised(denoiser, &rendering.picture, &mut layers);
+            let denoise = || denoising::denoised(denoiser, &rendering.picture, rendering.film.as_ref(), &mut layers);
             let (picture, by) = progress::stage("denoising", self.quiet || self.of.json, denoise)?;
             (rendering.picture, denoised) = (picture, Some(by));
             // Formats without layers have no place for the noisy picture.

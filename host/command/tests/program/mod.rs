@@ -4,7 +4,8 @@
 #![allow(dead_code)]
 
 use std::ffi::OsStr;
-use std::fs;
+use std::fs::{self, File};
+use std::io::BufReader;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -138,4 +139,13 @@ pub fn has_gpu() -> bool {
         eprintln!("skipped: there is no adapter");
     }
     any
+}
+
+/// How opaque each pixel of a PNG of 8 bits is.
+pub fn opacity(path: &Path) -> Vec<u8> {
+    let mut reader = png::Decoder::new(BufReader::new(File::open(path).unwrap())).read_info().unwrap();
+    assert_eq!(reader.info().color_type, png::ColorType::Rgba);
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    pixels.chunks_exact(4).map(|pixel| pixel[3]).collect()
 }

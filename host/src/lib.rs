@@ -39,6 +39,7 @@ pub mod denoise;
 pub mod device_scene;
 pub mod error;
 pub mod film;
+pub mod fireflies;
 pub mod gpu;
 pub mod image;
 pub mod integrator;

@@ -17,7 +17,7 @@ fn a_converted_scene_renders_to_the_same_picture_without_the_files_that_it_came_
         };
         assert_eq!(picture(&file), picture(&shipped(name)), "{name}");
     }
-    let again = place.succeed(&["convert", "lights.eyerays", "again.eyerays", "-q"]);
+    let again = place.succeed(&["convert", "lights.eyerays", "-o", "again.eyerays", "-q"]);
     assert!(again.stderr.is_empty());
     let [once, twice] = ["lights", "again"].map(|name| std::fs::read(place.path(&format!("{name}.eyerays"))).unwrap());
     assert_eq!(once, twice);

@@ -11,6 +11,7 @@ use crate::choice;
 use crate::cpu::{self, OnCpu};
 use crate::error::{Error, Result};
 use crate::film::Film;
+use crate::fireflies::{self, Buckets};
 use crate::gpu::{Gpu, Renderer, warm};
 use crate::integrator::needs;
 use crate::job::Job;
@@ -159,6 +160,30 @@ impl Session {
         self.rendered(view, 1, |device| {
             let film = device.expose(view, done)?;
             Ok((device.develop(&film)?, Some(film)))
+        })
+    }
+
+    /// Renders a picture in buckets of its samples, without what a few of them are far too bright by, see [`fireflies`]. The film is that
+    /// of all samples. A picture of each bucket is kept meanwhile, 12 bytes a pixel.
+    ///
+    /// # Errors
+    /// As [`Session::render`], and fewer samples than buckets.
+    pub fn expose_in(&mut self, view: &View, buckets: Buckets, done: &(dyn Fn(u64) + Sync)) -> Result<Rendering> {
+        let parts = buckets.of(view.range())?;
+        self.rendered(view, 1, |device| {
+            let (mut pictures, mut all) = (Vec::new(), None::<Film>);
+            for samples in &parts {
+                let film = device.expose(&view.part(view.region(), samples.clone())?, done)?;
+                pictures.push(device.develop(&film)?.0);
+                match &mut all {
+                    Some(all) => all.merge(film)?,
+                    None => all = Some(film),
+                }
+            }
+            let film = all.expect("there are several buckets");
+            let (picture, rays) = device.develop(&film)?;
+            let Picture { pixels, .. } = fireflies::without(&pictures)?;
+            Ok(((Picture { pixels, ..picture }, rays), Some(film)))
         })
     }
 

@@ -34,8 +34,11 @@ pub(super) struct Convert {
     /// The scene: .toml, .gltf, .glb, .obj, .ply or .eyerays
     scene: PathBuf,
     /// The file to write: .eyerays, or .toml of a .gltf, .glb, .obj or .ply
-    #[arg(value_name = "FILE")]
-    output: OsString,
+    #[arg(value_name = "FILE", required_unless_present = "output")]
+    file: Option<OsString>,
+    /// The same, for those who are used to it from the other commands
+    #[arg(short, long, value_name = "FILE", conflicts_with = "file")]
+    output: Option<OsString>,
     /// Quality of the hierarchy that an .eyerays file holds; renderings of another quality build their own [default: medium]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>())]
     bvh: Option<Bvh>,
@@ -48,7 +51,7 @@ pub(super) struct Convert {
 
 impl Convert {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
-        let path = Path::new(&self.output);
+        let path = Path::new(self.file.as_ref().or(self.output.as_ref()).expect("one is required"));
         let is = |ending: &str| path.extension().is_some_and(|end| end.eq_ignore_ascii_case(ending));
         let is_text = is("toml");
         if !is_text && !is(scene_io::ENDING) {

@@ -19,6 +19,8 @@ pub(super) struct Facts<'a> {
     pub rendering: &'a Rendering,
     /// What took noise off the picture, if anything did.
     pub denoised: Option<&'a str>,
+    /// Of how many buckets it is made without fireflies, if it is.
+    pub fireflies: Option<u32>,
     /// Without what differs from run to run and from device to device.
     pub reproducible: bool,
 }
@@ -43,6 +45,10 @@ impl Facts<'_> {
             .with("noise", rendering.picture.noise())
             .with("noise_target", rendering.film.as_ref().and_then(Film::cells).map(|cells| cells.target().noise()))
             .with("identity", settings);
+        let about = match self.fireflies {
+            Some(by) => about.with("fireflies", format!("left out of {by} buckets")),
+            None => about,
+        };
         let about = match self.denoised {
             Some(by) => about.with("denoised", by),
             None => about,

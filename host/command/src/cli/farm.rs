@@ -45,7 +45,8 @@ pub(super) struct Farm {
 
 /// Options of `render` that no part of a picture takes: what the job says itself, what films do not hold, and files that other
 /// machines may not have.
-const NOT_OF_PARTS: [&str; 17] = [
+const NOT_OF_PARTS: [&str; 18] = [
+    "fireflies",
     "all_cameras",
     "turntable",
     "frames",

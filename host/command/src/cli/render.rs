@@ -27,6 +27,7 @@ use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::denoise::Denoiser;
+use eyerays::fireflies::Buckets;
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
 use eyerays::scene::{Scene, Settings};
@@ -72,6 +73,10 @@ pub(super) struct Render {
     /// Take noise off the finished picture, by the surfaces that it shows; an .exr file keeps the noisy one as a layer [default: own]
     #[arg(long, value_name = "BY", value_parser = choice::<Denoiser>(), num_args = 0..=1, require_equals = true, default_missing_value = "own", conflicts_with_all = ["tile", "samples_from", "samples_to", "repeat"])]
     pub denoise: Option<Denoiser>,
+    /// Leave out what makes a few pixels far too bright: samples are put into so many buckets, 9 to 64, and those that are far brighter
+    /// than a pixel's others are left out [default: 15]
+    #[arg(long, value_name = "BUCKETS", value_parser = buckets, num_args = 0..=1, require_equals = true, default_missing_value = "15", conflicts_with_all = ["samples_from", "samples_to", "repeat", "time_limit", "noise", "checkpoint", "resume", "preview_every"])]
+    pub fireflies: Option<Buckets>,
     /// Write the colours of the surfaces to the output first, by the CPU, to be seen while a GPU gets ready; the picture replaces them
     #[arg(long)]
     preview: bool,
@@ -177,9 +182,11 @@ impl Render {
                 "--preview replaces what it wrote, which standard output can't: name a file with --output",
             ));
         }
-        if destination.is_film() && (self.preview || self.denoise.is_some() || !self.layers.is_empty()) {
+        let is_of_pictures =
+            self.preview || self.denoise.is_some() || self.fireflies.is_some() || !self.layers.is_empty();
+        if destination.is_film() && is_of_pictures {
             return Err(Error::new(
-                "--preview, --layers and --denoise are for pictures, not for films: drop them, or name an .exr file",
+                "--preview, --layers, --fireflies and --denoise are for pictures, not for films: drop them, or name an .exr file",
             ));
         }
         self.look.check(destination)?;
@@ -302,4 +309,9 @@ impl Task<'_> {
         }
         Ok(())
     }
+}
+
+fn buckets(text: &str) -> std::result::Result<Buckets, String> {
+    let count = text.parse().map_err(|_| format!("{text:?} is no number of buckets"))?;
+    Buckets::new(count).map_err(|error| error.to_string())
 }

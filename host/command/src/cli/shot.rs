@@ -16,6 +16,7 @@ use super::watching::{self, Watching};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::{Film, Identity};
+use eyerays::fireflies::Buckets;
 use eyerays::layers::{self, Layer, Values};
 use eyerays::render::{Backend, Choice, Precision, Rendering, Session};
 use eyerays::scene::{Camera, Scene};
@@ -92,7 +93,12 @@ impl Studio<'_> {
             session.reserve(view).map_err(|error| error.of(self.path))?;
         }
         // Of one sample there is nothing to be seen before it is done, nor to be kept.
-        let rendering = if repeat == 1 && (view.samples() > 1 || from.is_some()) {
+        let rendering = if let Some(buckets) = self.of.fireflies {
+            let bar = progress::pixels(view.region().pixels() * u64::from(buckets.count()), is_silent);
+            let rendering = session.expose_in(view, buckets, &|pixels| bar.inc(pixels));
+            bar.finish_and_clear();
+            rendering
+        } else if repeat == 1 && (view.samples() > 1 || from.is_some()) {
             let watching = Watching {
                 bar: match target {
                     Some(_) => progress::cells(is_silent),
@@ -180,7 +186,17 @@ impl Studio<'_> {
         let Place { camera, view, destination, .. } = place;
         let (scene, reproducible) = (self.path, self.of.reproducible);
         let denoised = layers.denoised.as_deref();
-        let facts = Facts { scene, camera, view, identity: &identity, rendering: &rendering, denoised, reproducible };
+        let fireflies = self.of.fireflies.map(Buckets::count);
+        let facts = Facts {
+            scene,
+            camera,
+            view,
+            identity: &identity,
+            rendering: &rendering,
+            denoised,
+            fireflies,
+            reproducible,
+        };
         rendering.picture.about = facts.about();
         let start = Instant::now();
         progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers.all))?;

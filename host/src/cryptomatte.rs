@@ -1,7 +1,7 @@
 //! Cryptomatte: how much of each pixel every object or material has, by its name, for those who put pictures together (Friedman and Jones,
 //! Fully Automatic ID Mattes with Support for Motion Blur and Transparency, 2015; in files as its specification 1.2.0 has it).
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::io::Cursor;
 
 use rayon::prelude::*;
@@ -14,7 +14,7 @@ pub const RANKS: usize = 6;
 pub struct Cryptomatte {
     /// What files call it.
     layer: &'static str,
-    /// Names that are seen.
+    /// All names that there are.
     names: Vec<String>,
     /// Of each pixel, row by row: names by their place, and their shares, the largest first; 0 of none.
     pixels: Vec<[(u32, f32); RANKS]>,
@@ -115,7 +115,10 @@ impl Cryptomatte {
     /// What a file says of it, by attributes.
     pub(crate) fn attributes(&self) -> [(String, String); 4] {
         let key = format!("{:08x}", hash(self.layer));
-        let seen: BTreeMap<&str, String> = self.names.iter().map(|name| (name.as_str(), hex(name))).collect();
+        let ranks = self.pixels.iter().flatten().filter(|(_, share)| *share > 0.0);
+        let places: BTreeSet<u32> = ranks.map(|&(place, _)| place).collect();
+        let names = places.into_iter().map(|place| self.names[place as usize].as_str());
+        let seen: BTreeMap<&str, String> = names.map(|name| (name, hex(name))).collect();
         let manifest = in_ascii(&serde_json::to_string(&seen).expect("names are texts"));
         let values = [("name", self.layer.to_owned()), ("hash", "MurmurHash3_32".to_owned())];
         let others = [("conversion", "uint32_to_float32".to_owned()), ("manifest", manifest)];
@@ -221,6 +224,7 @@ mod tests {
     fn a_file_says_how_names_became_numbers() {
         let mut counter = Counter::new("CryptoObject", ["a \"cup\"", "Stühle 🪑"].into_iter(), 1);
         counter.add([Some(0)].into_par_iter());
+        counter.add([Some(1)].into_par_iter());
         let said: BTreeMap<String, String> = counter.done().attributes().into();
         let key = &format!("{:08x}", hash("CryptoObject"))[..7];
         let of = |what: &str| said[&format!("cryptomatte/{key}/{what}")].as_str();

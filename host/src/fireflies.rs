@@ -42,53 +42,95 @@ impl Buckets {
         let (first, count) = (samples.start, samples.len() as u64);
         if count < u64::from(self.0) {
             let Buckets(buckets) = self;
-            return Err(Error::new(format!("{count} samples do not fill {buckets} buckets: render as many or more")));
+            let message = format!(
+                "{buckets} buckets take as many samples or more of a pixel, and there are {count}: render more"
+            );
+            return Err(Error::new(message));
         }
         let end = |bucket: u32| first + (count * u64::from(bucket) / u64::from(self.0)) as u32;
         Ok((0..self.0).map(|bucket| end(bucket)..end(bucket + 1)).collect())
     }
 }
 
-/// A picture of the pictures of its buckets, in their number.
+/// A bucket of samples.
+pub struct Bucket {
+    /// What they show in the mean.
+    pub picture: Picture,
+    /// How many there are of each pixel.
+    pub samples: u32,
+}
+
+/// The picture of all samples, but for the buckets that are left out of each pixel. Pixels that none is left out of keep their bits.
 ///
 /// # Errors
-/// They are of different sizes, or none.
-pub fn without(buckets: &[Picture]) -> Result<Picture> {
-    let Some(first) = buckets.first() else { return Err(Error::new("there is no picture to take fireflies off")) };
-    if buckets.iter().any(|picture| (picture.width, picture.height) != (first.width, first.height)) {
+/// The buckets' pictures have other sizes.
+pub fn without(mut picture: Picture, buckets: &[Bucket]) -> Result<Picture> {
+    let size = (picture.width, picture.height);
+    if buckets.iter().any(|bucket| (bucket.picture.width, bucket.picture.height) != size) {
         return Err(Error::new("the buckets' pictures have other sizes: render them of one view"));
     }
-    let pixel = |at: usize| robust(buckets.iter().map(|picture| picture.pixels[at]).collect());
-    let pixels = (0..first.pixels.len()).into_par_iter().map(pixel).collect();
-    Picture::from_pixels(first.width, first.height, pixels)
+    let kept: Vec<Option<Kept>> = (0..picture.pixels.len()).into_par_iter().map(|at| kept(buckets, at)).collect();
+    for (pixel, kept) in picture.pixels.iter_mut().zip(&kept) {
+        *pixel = kept.as_ref().map_or(*pixel, |kept| kept.light);
+    }
+    // As much of the pixel is opaque as sends the light that is left.
+    for (alpha, kept) in picture.alpha.iter_mut().flatten().zip(&kept) {
+        *alpha = kept.as_ref().map_or(*alpha, |kept| kept.alpha);
+    }
+    Ok(picture)
 }
 
 /// How many standard deviations of darker buckets a brighter one may be above their mean.
 const FAR: f64 = 8.0;
-/// How many times as bright as their mean it may be, however equal they are: what is less changes its pixel little, and edges of what is not
-/// much brighter are no fireflies.
+/// How many times as bright as their mean it may be, however equal they are: what is less changes its pixel little.
 const BRIGHT: f64 = 1.5;
 
-/// The mean of means, but for the brightest, one after the other, that are far brighter than all darker ones: at most a third of them.
-fn robust(mut means: Vec<[f32; 3]>) -> [f32; 3] {
-    means.sort_by(|a, b| brightness(a).total_cmp(&brightness(b)));
-    let least = means.len() - means.len() / 3;
-    let mut kept = means.len();
-    while kept > least && is_far(brightness(&means[kept - 1]), &means[..kept - 1]) {
-        kept -= 1;
-    }
-    let sum = means[..kept].iter().fold([0.0; 3], |sum, colour| [0, 1, 2].map(|i| sum[i] + f64::from(colour[i])));
-    sum.map(|channel| (channel / kept as f64) as f32)
+/// What is left of a pixel.
+struct Kept {
+    light: [f32; 3],
+    alpha: f32,
 }
 
-/// Is something far brighter than all of these?
-fn is_far(bright: f64, others: &[[f32; 3]]) -> bool {
+/// A pixel without its brightest buckets, one after the other, that are far brighter than all darker ones: at most a third of them. None if
+/// there are no such.
+fn kept(buckets: &[Bucket], at: usize) -> Option<Kept> {
+    let mut order: Vec<&Bucket> = buckets.iter().collect();
+    let bright = |bucket: &Bucket| brightness(&bucket.picture.pixels[at]);
+    order.sort_by(|a, b| bright(a).total_cmp(&bright(b)));
+    let means: Vec<f64> = order.iter().map(|bucket| bright(bucket)).collect();
+    let left = left(&means);
+    if left == order.len() {
+        return None;
+    }
+    let (mut light, mut alpha, mut samples) = ([0.0; 3], 0.0, 0.0);
+    for Bucket { picture, samples: count } in &order[..left] {
+        let weight = f64::from(*count);
+        light = [0, 1, 2].map(|i| light[i] + weight * f64::from(picture.pixels[at][i]));
+        alpha += weight * picture.alpha.as_ref().map_or(1.0, |alpha| f64::from(alpha[at]));
+        samples += weight;
+    }
+    Some(Kept { light: light.map(|channel| (channel / samples) as f32), alpha: (alpha / samples) as f32 })
+}
+
+/// How many of the sorted means are left.
+fn left(means: &[f64]) -> usize {
+    let least = means.len() - means.len() / 3;
+    let mut left = means.len();
+    while left > least && is_far(means[left - 1], &means[..left - 1]) {
+        left -= 1;
+    }
+    left
+}
+
+/// Is something far brighter than all of these? Where they are equal to the last bit they show something even, and it shows the edge of
+/// something else.
+fn is_far(bright: f64, others: &[f64]) -> bool {
     let count = others.len() as f64;
-    let middle = others.iter().map(brightness).sum::<f64>() / count;
-    let apart = others.iter().map(|other| brightness(other) - middle);
-    let squares = apart.map(|apart| apart * apart).sum::<f64>();
+    let middle = others.iter().sum::<f64>() / count;
+    let squares = others.iter().map(|other| (other - middle) * (other - middle)).sum::<f64>();
     let deviation = (squares / (count - 1.0)).sqrt();
-    bright > (middle + FAR * deviation).max(BRIGHT * middle) + f64::from(f32::MIN_POSITIVE)
+    let is_even = others.first() == others.last();
+    !is_even && bright > (middle + FAR * deviation).max(BRIGHT * middle)
 }
 
 fn brightness(colour: &[f32; 3]) -> f64 {
@@ -99,49 +141,73 @@ fn brightness(colour: &[f32; 3]) -> f64 {
 mod tests {
     use super::*;
 
-    fn grey(values: &[f32]) -> Vec<[f32; 3]> {
-        values.iter().map(|&value| [value; 3]).collect()
+    /// A picture of one pixel in buckets of these means, all of as many samples.
+    fn robust(means: &[[f32; 3]]) -> [f32; 3] {
+        let picture = |pixel| Picture::from_pixels(1, 1, vec![pixel]).unwrap();
+        let buckets: Vec<Bucket> = means.iter().map(|&mean| Bucket { picture: picture(mean), samples: 4 }).collect();
+        let sum = means.iter().fold([0.0; 3], |sum, mean| [0, 1, 2].map(|i| sum[i] + mean[i]));
+        without(picture(sum.map(|channel| channel / means.len() as f32)), &buckets).unwrap().pixels[0]
+    }
+
+    fn grey(values: &[f32]) -> f32 {
+        robust(&values.iter().map(|&value| [value; 3]).collect::<Vec<_>>())[0]
     }
 
     #[test]
     fn equal_buckets_are_their_mean_and_bright_ones_are_left_out() {
-        assert_eq!(robust(grey(&[2.0; 15])), [2.0; 3]);
-        assert_eq!(robust(grey(&[0.0; 9])), [0.0; 3]);
+        assert_eq!((grey(&[2.0; 15]), grey(&[0.0; 9])), (2.0, 0.0));
         let noisy: Vec<f32> = (0..15).map(|i| 1.0 + 0.1 * (i % 3) as f32).collect();
         for fireflies in [&[(3, 1e4)][..], &[(0, 1e6), (9, 1e4)], &[(1, 40.0)]] {
             let mut means = noisy.clone();
             fireflies.iter().for_each(|&(i, bright)| means[i] = bright);
-            let [left, ..] = robust(grey(&means));
+            let left = grey(&means);
             assert!((0.99..1.25).contains(&left), "{fireflies:?}: {left}");
         }
     }
 
-    /// What more than a third of the buckets have is no firefly, and what all have least.
+    /// What more than a third of the buckets have is no firefly, and neither is what stands out a little.
     #[test]
     fn light_that_many_samples_find_stays() {
         let half: Vec<f32> = (0..15).map(|i| if i % 2 == 0 { 0.0 } else { 10.0 }).collect();
-        assert_eq!(robust(grey(&half)), [70.0 / 15.0; 3]);
-        let edge: Vec<f32> = (0..16).map(|i| 1.0 + i as f32 / 16.0).collect();
-        let mean = edge.iter().sum::<f32>() / 16.0;
-        assert!((robust(grey(&edge))[0] - mean).abs() < 1e-6);
+        assert_eq!(grey(&half), 70.0 / 15.0);
+        let even: Vec<f32> = (0..16).map(|i| 1.0 + i as f32 / 16.0).collect();
+        assert_eq!(grey(&even), even.iter().sum::<f32>() / 16.0);
     }
 
-    /// A pixel at the edge of something a little brighter, which few samples show, beside what is the same for all.
+    /// A pixel of which few samples show something else than an even background, black or not.
     #[test]
     fn edges_are_no_fireflies() {
-        let edge: Vec<f32> = (0..15).map(|i| if i < 2 { 1.4 } else { 1.0 }).collect();
-        assert!((robust(grey(&edge))[0] - 15.8 / 15.0).abs() < 1e-6);
+        for (background, other) in [(0.0, 1.0), (1.0, 30.0)] {
+            let edge: Vec<f32> = (0..15).map(|i| if i < 1 { other } else { background }).collect();
+            assert!((grey(&edge) - (14.0 * background + other) / 15.0).abs() < 1e-6);
+        }
     }
 
     #[test]
     fn colours_stay_together() {
         let mut means = [[1.0, 0.0, 0.0], [0.9, 0.1, 0.0], [1.1, 0.0, 0.1]].repeat(5);
         means[4] = [0.0, 50.0, 50.0];
-        let [red, green, blue] = robust(means);
+        let [red, green, blue] = robust(&means);
         assert!(red > 0.9 && green < 0.15 && blue < 0.15, "{red} {green} {blue}");
     }
 
-    /// Of noise without outliers nothing is left out: the mean of many pixels is that of all samples.
+    /// Larger buckets count for more, and what is left out takes along how opaque it was.
+    #[test]
+    fn what_is_left_is_the_mean_of_its_samples() {
+        let bucket = |light: f32, opaque: f32, samples| {
+            let picture = Picture::from_pixels(1, 1, vec![[light; 3]]).unwrap();
+            Bucket { picture: Picture { alpha: Some(vec![opaque]), ..picture }, samples }
+        };
+        let mut buckets: Vec<Bucket> = (0..8).map(|i| bucket(1.0 + i as f32 / 100.0, 0.5, 1)).collect();
+        buckets.push(bucket(0.5, 0.25, 8));
+        buckets.push(bucket(1000.0, 1.0, 1));
+        let all = Picture { alpha: Some(vec![0.4]), ..Picture::from_pixels(1, 1, vec![[59.5; 3]]).unwrap() };
+        let left = without(all, &buckets).unwrap();
+        let (light, alpha) = (left.pixels[0][0], left.alpha.unwrap()[0]);
+        assert!((light - (8.28 + 4.0) / 16.0).abs() < 1e-6 && (alpha - 0.375).abs() < 1e-6, "{light} {alpha}");
+    }
+
+    /// Of noise without outliers nothing is left out.
     #[test]
     fn what_is_evenly_noisy_keeps_its_light() {
         let mut state = 1u32;
@@ -149,9 +215,10 @@ mod tests {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             0.8 + 0.4 * (state >> 8) as f32 / (1 << 24) as f32
         };
-        let pixels = 4000;
-        let sum: f32 = (0..pixels).map(|_| robust((0..15).map(|_| [drawn(); 3]).collect())[0]).sum();
-        assert!((sum / pixels as f32 - 1.0).abs() < 2e-3, "{}", sum / pixels as f32);
+        for _ in 0..4000 {
+            let means: Vec<f32> = (0..15).map(|_| drawn()).collect();
+            assert_eq!(grey(&means), means.iter().sum::<f32>() / 15.0);
+        }
     }
 
     #[test]
@@ -162,7 +229,7 @@ mod tests {
             let lengths = ranges.iter().map(|range| range.len());
             assert!(ranges.len() == count as usize && lengths.clone().max().unwrap() - lengths.min().unwrap() <= 1);
         }
-        assert!(Buckets::new(15).unwrap().of(0..14).unwrap_err().message().contains("do not fill 15 buckets"));
+        assert!(Buckets::new(15).unwrap().of(0..14).unwrap_err().message().contains("15 buckets take as many samples"));
         for count in [0, 1, 8, 65] {
             assert!(Buckets::new(count).is_err(), "{count}");
         }

@@ -30,8 +30,20 @@ fn pictures_are_nearer_to_what_they_come_to() {
 fn equal_samples_give_the_very_picture_and_files_say_how_they_were_made() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     // Rays of the corner show the background alone.
-    let options =
-        ["render", "scene.toml", "--device", "cpu", "--spp", "9", "--sampler", "sobol", "--json", "--reproducible"];
+    let options = [
+        "render",
+        "scene.toml",
+        "--device",
+        "cpu",
+        "--spp",
+        "9",
+        "--sampler",
+        "sobol",
+        "--integrator",
+        "path",
+        "--json",
+        "--reproducible",
+    ];
     for (name, more) in [("a.exr", &[][..]), ("b.exr", &["--fireflies=9"])] {
         place.succeed(&[&options[..], &["-o", name], more].concat());
     }
@@ -47,7 +59,12 @@ fn what_makes_no_buckets_is_refused() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     let scene = ["render", "scene.toml", "--device", "cpu"];
     let refuse = |more: &[&str], why: &str| place.refuse(&[&scene[..], more].concat(), &[why]);
-    refuse(&["--spp", "9", "--sampler", "sobol", "--fireflies", "-o", "a.png"], "9 samples do not fill 15 buckets");
+    let path = ["--integrator", "path", "--sampler", "sobol", "--fireflies", "-o", "a.png"];
+    refuse(
+        &[&["--spp", "9"], &path[..]].concat(),
+        "15 buckets take as many samples or more of a pixel, and there are 9",
+    );
+    refuse(&["--samples", "4", "--fireflies", "-o", "a.png"], "pictures of the integrator whitted have none");
     refuse(&["--fireflies", "-o", "a.film"], "are for pictures, not for films");
     for (count, why) in [("8", "not within 9 to 64"), ("many", "is no number of buckets")] {
         let refused = place.run(&[&scene[..], &[&format!("--fireflies={count}")]].concat());

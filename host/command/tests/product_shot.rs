@@ -55,7 +55,6 @@ fn the_page_of_a_product_shot_works_as_it_is_written() {
     for line in &commands {
         place.succeed(&quick(line));
     }
-    place.succeed(&["convert", "chess.glb", "start.toml"]);
     place.succeed(&["check", "start.toml"]);
 
     // The model is opaque, its surroundings are clear, and its shadow is between.

@@ -11,7 +11,7 @@ use crate::choice;
 use crate::cpu::{self, OnCpu};
 use crate::error::{Error, Result};
 use crate::film::Film;
-use crate::fireflies::{self, Buckets};
+use crate::fireflies::{self, Bucket, Buckets};
 use crate::gpu::{Gpu, Renderer, warm};
 use crate::integrator::needs;
 use crate::job::Job;
@@ -174,7 +174,7 @@ impl Session {
             let (mut pictures, mut all) = (Vec::new(), None::<Film>);
             for samples in &parts {
                 let film = device.expose(&view.part(view.region(), samples.clone())?, done)?;
-                pictures.push(device.develop(&film)?.0);
+                pictures.push(Bucket { picture: device.develop(&film)?.0, samples: samples.len() as u32 });
                 match &mut all {
                     Some(all) => all.merge(film)?,
                     None => all = Some(film),
@@ -182,8 +182,7 @@ impl Session {
             }
             let film = all.expect("there are several buckets");
             let (picture, rays) = device.develop(&film)?;
-            let Picture { pixels, .. } = fireflies::without(&pictures)?;
-            Ok(((Picture { pixels, ..picture }, rays), Some(film)))
+            Ok(((fireflies::without(picture, &pictures)?, rays), Some(film)))
         })
     }
 

@@ -36,7 +36,7 @@ pub(super) struct Convert {
     /// The file to write: .eyerays, or .toml of a .gltf, .glb, .obj or .ply
     #[arg(value_name = "FILE", required_unless_present = "output")]
     file: Option<OsString>,
-    /// The same, for those who are used to it from the other commands
+    /// The file to write, instead of FILE
     #[arg(short, long, value_name = "FILE", conflicts_with = "file")]
     output: Option<OsString>,
     /// Quality of the hierarchy that an .eyerays file holds; renderings of another quality build their own [default: medium]

@@ -103,7 +103,10 @@ impl Look {
 }
 
 fn white_balance(text: &str) -> std::result::Result<WhiteBalance, String> {
-    let kelvins =
-        text.trim_end_matches(['k', 'K']).parse().map_err(|_| format!("{text:?} is no temperature; give kelvins"))?;
+    let kelvins = text
+        .strip_suffix(['k', 'K'])
+        .unwrap_or(text)
+        .parse()
+        .map_err(|_| format!("{text:?} is no temperature; give kelvins"))?;
     WhiteBalance::of(kelvins).map_err(|error| error.to_string())
 }

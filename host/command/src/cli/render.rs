@@ -30,7 +30,7 @@ use eyerays::denoise::Denoiser;
 use eyerays::fireflies::Buckets;
 use eyerays::layers::{self, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Scene, Settings};
+use eyerays::scene::{Integrator, Scene, Settings};
 use eyerays::scene_io;
 
 pub(super) const EXAMPLES: &str = "\
@@ -291,6 +291,9 @@ impl Task<'_> {
                 output::check_alpha(&destination)?;
             }
             let view = eyerays::view::View::new(&loaded.packed, &shot.camera).map_err(|error| error.of(path))?;
+            if let Some(buckets) = self.of.fireflies {
+                check_fireflies(buckets, loaded.packed.settings().transport.integrator, &view)?;
+            }
             let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;
             let view = self.of.part.of(&view)?;
             self.of.noise.check(&view)?;
@@ -314,4 +317,13 @@ impl Task<'_> {
 fn buckets(text: &str) -> std::result::Result<Buckets, String> {
     let count = text.parse().map_err(|_| format!("{text:?} is no number of buckets"))?;
     Buckets::new(count).map_err(|error| error.to_string())
+}
+
+/// Refuses a picture that has no fireflies, and too few samples to tell.
+fn check_fireflies(buckets: Buckets, integrator: Integrator, view: &eyerays::view::View) -> Result<()> {
+    if !integrator.samples() {
+        let why = "pictures of the integrator";
+        return Err(Error::new(format!("--fireflies: {why} {integrator} have none; leave it out")));
+    }
+    buckets.of(view.range()).map(drop).map_err(|error| Error::new(format!("--fireflies: {}", error.message())))
 }

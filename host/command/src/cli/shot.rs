@@ -153,6 +153,8 @@ impl Studio<'_> {
         let asked = self.of.layers();
         let mut needed = asked.clone();
         if self.of.denoise.is_some() {
+            // That is what comes of it, whether it is asked for or not.
+            needed.retain(|&layer| layer != Layer::Noisy);
             needed.extend(denoising::NEEDED.into_iter().filter(|layer| !asked.contains(layer)));
         }
         if needed.is_empty() {

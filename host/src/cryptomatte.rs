@@ -120,11 +120,13 @@ impl Cryptomatte {
         let names = places.into_iter().map(|place| self.names[place as usize].as_str());
         let seen: BTreeMap<&str, String> = names.map(|name| (name, hex(name))).collect();
         let manifest = in_ascii(&serde_json::to_string(&seen).expect("names are texts"));
-        let values = [("name", self.layer.to_owned()), ("hash", "MurmurHash3_32".to_owned())];
-        let others = [("conversion", "uint32_to_float32".to_owned()), ("manifest", manifest)];
-        let [a, b] = values.map(|(what, value)| (format!("cryptomatte/{}/{what}", &key[..7]), value));
-        let [c, d] = others.map(|(what, value)| (format!("cryptomatte/{}/{what}", &key[..7]), value));
-        [a, b, c, d]
+        let values = [
+            ("name", self.layer.to_owned()),
+            ("hash", "MurmurHash3_32".to_owned()),
+            ("conversion", "uint32_to_float32".to_owned()),
+            ("manifest", manifest),
+        ];
+        values.map(|(what, value)| (format!("cryptomatte/{}/{what}", &key[..7]), value))
     }
 }
 

@@ -53,6 +53,13 @@ impl Picture {
         Ok(picture)
     }
 
+    /// The same picture of other pixels, as many.
+    pub(crate) fn with_pixels(&self, pixels: Vec<[f32; 3]>) -> Picture {
+        // Field by field: a copy of the pixels would be thrown away.
+        let Picture { width, height, ref alpha, noise, ref about, .. } = *self;
+        Picture { width, height, pixels, alpha: alpha.clone(), noise, about: about.clone() }
+    }
+
     /// The number of pixels of a size, if a picture may have it.
     ///
     /// # Errors

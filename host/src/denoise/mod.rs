@@ -58,9 +58,7 @@ impl Denoiser {
 pub fn denoise(picture: &Picture, guides: &Guides<'_>) -> Result<Picture> {
     guides.check(picture)?;
     let pixels = Pixels::of_light(picture, guides).denoised(&picture.pixels);
-    let Picture { width, height, noise, about, .. } = picture;
-    let (about, alpha) = (about.clone(), opacity(picture, guides));
-    Ok(Picture { width: *width, height: *height, pixels, alpha, noise: *noise, about })
+    Ok(Picture { alpha: opacity(picture, guides), ..picture.with_pixels(pixels) })
 }
 
 /// How opaque pixels are, with less noise where shadow catchers make some.

@@ -75,10 +75,7 @@ impl WhiteBalance {
 
     /// A picture of light as it looks then.
     pub fn balanced(&self, picture: &Picture) -> Picture {
-        let pixels = picture.pixels.par_iter().map(|&pixel| self.apply(pixel)).collect();
-        // Field by field: a copy of the pixels would be thrown away.
-        let Picture { width, height, alpha, noise, about, .. } = picture;
-        Picture { width: *width, height: *height, pixels, alpha: alpha.clone(), noise: *noise, about: about.clone() }
+        picture.with_pixels(picture.pixels.par_iter().map(|&pixel| self.apply(pixel)).collect())
     }
 }
 

@@ -22,7 +22,8 @@ pub(super) fn check(denoiser: Denoiser, integrator: Integrator) -> Result<()> {
     Err(Error::new(format!("--denoise: pictures of the integrator {integrator} have no noise; leave it out")))
 }
 
-/// Takes noise off a picture by its layers, which get the noisy one, too; and by its film off what shadow catchers make of it. The picture says what did it.
+/// Takes noise off a picture by its layers, which get the noisy one, too; and by its film off what shadow catchers make of it. The picture
+/// says what did it.
 pub(super) fn denoised(
     denoiser: Denoiser,
     picture: &Picture,

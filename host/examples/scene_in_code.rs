@@ -64,7 +64,7 @@ fn scene() -> Scene {
         objects: Vec::new(),
         files: Vec::new(),
         materials: vec![plain, mirror],
-        lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE }],
+        lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE, group: String::new() }],
         cameras: vec![Camera::new(
             "front",
             vec3(0.5, 1.5, 4.0),
@@ -72,6 +72,7 @@ fn scene() -> Scene {
             Projection::Perspective { fov: 50.0 },
         )],
         background: Background::Colour(vec3(0.2, 0.3, 0.5)),
+        background_group: String::new(),
         ambient: Vec3::ONE,
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
         hierarchy: None,

@@ -4,13 +4,14 @@ use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Effects, Frame, Launch, Layout, Specialisation, pack};
+use eyerays_shader::data::{Aovs, Effects, Frame, Launch, Layout, Specialisation, pack};
 use eyerays_shader::material::ALBEDOS;
 use glam::Vec3;
 
 use crate::device_scene::{DeviceScene, Feature, flushed};
 use crate::error::{Error, Result};
 use crate::integrator::needs;
+use crate::layers;
 use crate::method::Traversal;
 use crate::scene::{Integrator, PixelFilter, Scene, Settings, Transport};
 
@@ -20,6 +21,7 @@ pub struct Job {
     scene: Arc<DeviceScene>,
     settings: Settings,
     feature: Option<Feature>,
+    aovs: Aovs,
     optic_tables: Arc<OnceLock<Vec<u32>>>,
 }
 
@@ -61,10 +63,16 @@ impl Job {
                 "the scene has a shadow catcher, which paths alone show: set the integrator to \"path\"",
             ));
         }
-        Ok(Job { scene, settings, feature: None, optic_tables: Arc::default() })
+        let lights = !matches!(settings.transport.integrator, Integrator::Path | Integrator::Ao);
+        if scene.is_linked() && lights {
+            return Err(Error::new(
+                "some materials are lit by some lamps alone (lit_by), which paths alone tell apart: set the integrator to \"path\"",
+            ));
+        }
+        Ok(Job { scene, settings, feature: None, aovs: Aovs(0), optic_tables: Arc::default() })
     }
 
-    /// The same scene by other settings, with light.
+    /// The same scene by other settings, with light and nothing beside it.
     ///
     /// # Errors
     /// As [`Job::of`].
@@ -78,7 +86,26 @@ impl Job {
     /// The same scene and settings, with pictures that show something else instead of light, or light again.
     #[must_use]
     pub fn showing(&self, feature: Option<Feature>) -> Job {
-        Job { feature, ..self.clone() }
+        Job { feature, aovs: Aovs(0), ..self.clone() }
+    }
+
+    /// The same job, whose films keep some more of each pixel beside its light.
+    ///
+    /// # Errors
+    /// The integrator traces no paths, or groups of lamps are asked of a scene without any.
+    pub fn keeping(&self, aovs: Aovs) -> Result<Job> {
+        layers::check(aovs, self.settings.transport.integrator, self.light_groups())?;
+        Ok(Job { aovs, ..self.clone() })
+    }
+
+    /// What its films keep beside light.
+    pub fn aovs(&self) -> Aovs {
+        self.aovs
+    }
+
+    /// How many variables that are.
+    pub(crate) fn aov_count(&self) -> u32 {
+        self.aovs.count(self.light_groups().names().len() as u32)
     }
 
     /// The scene.
@@ -132,6 +159,7 @@ impl Job {
             layout: Layout(traversal.layout.bits() | split),
             order: traversal.order.bits(),
             tuning: traversal.tuning,
+            aovs: self.aovs,
         }
     }
 
@@ -200,6 +228,8 @@ impl Job {
             environment: self.lighting().environment,
             far: self.lighting().far,
             vertices: self.primitives().len() as u32,
+            aovs: self.aov_count(),
+            group: self.background_group(),
             ..Frame::default()
         }
     }

@@ -53,6 +53,16 @@ impl Picture {
         Ok(picture)
     }
 
+    /// The light that it has and another has not. What rounding leaves of it below zero is none.
+    ///
+    /// # Errors
+    /// As [`Picture::validate`].
+    pub(crate) fn without(&self, other: &Picture) -> Result<Picture> {
+        let less = |(a, b): (&[f32; 3], &[f32; 3])| [0, 1, 2].map(|channel| (a[channel] - b[channel]).max(0.0));
+        let pixels = self.pixels.iter().zip(&other.pixels).map(less).collect();
+        Picture::from_pixels(self.width, self.height, pixels)
+    }
+
     /// The same picture of other pixels, as many.
     pub(crate) fn with_pixels(&self, pixels: Vec<[f32; 3]>) -> Picture {
         // Field by field: a copy of the pixels would be thrown away.

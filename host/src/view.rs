@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use eyerays_shader::camera::{self, FILTER_STEPS};
 use eyerays_shader::data::{Frame, Launch, Order};
-use eyerays_shader::stage::film_words;
+use eyerays_shader::stage::{FilmWords, film_words};
 use serde::{Deserialize, Serialize};
 
 use crate::error::{Error, Result};
@@ -71,6 +71,8 @@ pub struct View {
     end: u32,
     /// What its films keep beside light, see [`Launch`].
     film: u32,
+    /// Arbitrary output variables of its films.
+    aovs: u32,
 }
 
 impl View {
@@ -107,6 +109,7 @@ impl View {
             first: 0,
             end: settings.samples_a_pixel(),
             film: packed.film_bits(),
+            aovs: packed.aov_count(),
         })
     }
 
@@ -157,8 +160,8 @@ impl View {
     }
 
     /// Words of a pixel of its film where noise is told.
-    pub(crate) fn noisy_film_words(&self) -> u32 {
-        film_words(Launch(self.film), true)
+    pub(crate) fn noisy_film_words(&self) -> FilmWords {
+        FilmWords { light: film_words(Launch(self.film), true), aovs: self.aovs }
     }
 
     /// How many samples of a pixel are rendered, in both directions together.

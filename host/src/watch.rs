@@ -246,6 +246,8 @@ mod tests {
     use std::cell::RefCell;
     use std::sync::Arc;
 
+    use eyerays_shader::stage::FilmWords;
+
     use super::*;
     use crate::cpu::{OnCpu, Renderer};
     use crate::job::Job;
@@ -288,7 +290,7 @@ mod tests {
         }
 
         fn film(&mut self) -> Result<Film> {
-            Ok(Film::new(self.view.as_ref().unwrap(), 10))
+            Ok(Film::new(self.view.as_ref().unwrap(), FilmWords::of_light(10)))
         }
     }
 

@@ -5,7 +5,7 @@ use eyerays_shader::data::{Frame, Launch, Light, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
-use eyerays_shader::stage;
+use eyerays_shader::stage::{self, FilmWords};
 
 use crate::follow::{Query, follow};
 use crate::isa::Isa;
@@ -59,7 +59,7 @@ pub trait Number: Scalar<Record: Send + Sync> {
     fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
 
     /// The same, with the light that their last vertices waited for.
-    fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
+    fn accumulate(frame: &Frame, spec: Specialisation, records: &mut Records<Self>, film: &mut [u32]);
 }
 
 /// Compiles every stage for a number.
@@ -105,20 +105,24 @@ macro_rules! number {
                 let sample = |slot: u32| stage::Sample::of(Self::load(records.sums[slot as usize]));
                 for slot in 0..frame.pixel_slots {
                     let pixel = camera::pixel(frame, spec.order, slot);
-                    stage::expose::<Self>(frame, (pixel, slot), stage::film_words(spec.launch, false), sample, film);
+                    let words = FilmWords::of_light(stage::film_words(spec.launch, false));
+                    stage::expose::<Self>(frame, (pixel, slot), words, sample, film);
                 }
             }
 
-            fn accumulate(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {
+            fn accumulate(frame: &Frame, spec: Specialisation, records: &mut Records<Self>, film: &mut [u32]) {
                 let Records { shadows, segments, sums, .. } = records;
-                let sample = |slot| stage::sampled::<Self>(frame, spec.launch, slot, (sums, shadows, segments));
-                let words = stage::film_words(spec.launch, true);
+                let words = FilmWords::sampled(frame, spec);
                 for slot in 0..frame.pixel_slots {
+                    let sample = |slot| stage::sampled::<Self>(frame, spec.launch, slot, (sums, shadows, segments));
                     let pixel = camera::pixel(frame, spec.order, slot);
                     if spec.launch.has(Launch::BLOCKS) {
                         stage::expose_blocks::<Self>(frame, (pixel, slot), words, sample, film);
                     } else {
                         stage::expose::<Self>(frame, (pixel, slot), words, sample, film);
+                    }
+                    if spec.aovs.any() {
+                        stage::expose_aovs::<Self>(frame, spec, (pixel, slot), (sums, shadows, segments), words, film);
                     }
                 }
             }

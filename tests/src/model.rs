@@ -15,6 +15,7 @@ pub fn empty() -> Scene {
         lights: Vec::new(),
         cameras: vec![Camera::new("front", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 1.0 })],
         background: Background::Colour(Vec3::ZERO),
+        background_group: String::new(),
         ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
         hierarchy: None,
@@ -86,10 +87,10 @@ pub fn add_box(scene: &mut Scene, material: Material, min: Vec3, max: Vec3) {
 
 /// White light that travels along `direction` from infinitely far.
 pub fn sun(direction: Vec3) -> Light {
-    Light::Directional { direction, colour: Vec3::ONE }
+    Light::Directional { direction, colour: Vec3::ONE, group: String::new() }
 }
 
 /// White light from a place.
 pub fn lamp(position: Vec3) -> Light {
-    Light::Point { position, colour: Vec3::ONE }
+    Light::Point { position, colour: Vec3::ONE, group: String::new() }
 }

@@ -13,7 +13,7 @@ use eyerays::stream::Question;
 use eyerays::view::{Region, View};
 use eyerays_tests::covered::covered;
 use eyerays_tests::shipped;
-use glam::Vec3;
+use glam::{Vec2, Vec3};
 
 const SIZE: (u32, u32) = (48, 36);
 
@@ -47,8 +47,10 @@ fn layered(scene: &Scene, spp: u32, layers: &[Layer]) -> (Picture, Vec<(Layer, V
 fn layer(layers: &[(Layer, Values)], wanted: Layer) -> &Picture {
     let (_, values) = layers.iter().find(|(layer, _)| *layer == wanted).expect("it was asked for");
     match values {
-        Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) => picture,
-        Values::Lengths(_) | Values::Numbers(_) | Values::Shares(_) => panic!("{wanted:?} is no picture"),
+        Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture) | Values::Coordinates(picture) => {
+            picture
+        }
+        other => panic!("{wanted:?} is {other:?}"),
     }
 }
 
@@ -93,6 +95,35 @@ fn part(scene: &Scene, primitive: usize) -> u32 {
         Primitives::Disks(range) => primitive.checked_sub(triangles + spheres).is_some_and(|own| range.contains(&own)),
     };
     1 + scene.objects.iter().position(|part| holds(&part.primitives)).expect("all primitives are of parts") as u32
+}
+
+/// Where rays through the middles of pixels meet something; and coordinates that are laid over a wall by its places.
+#[test]
+fn positions_are_where_rays_meet_things_and_coordinates_go_with_them() {
+    let mut scene = shipped("bleeding");
+    let mesh = &mut scene.mesh;
+    mesh.coordinates[0] = mesh.positions.iter().map(|p| Vec2::new(0.5 * p.x - p.y, p.z + 2.0 * p.y)).collect();
+    let (_, layers) = layered(&scene, 1, &[Layer::Position, Layer::Uv, Layer::Depth]);
+    let [positions, uv] = [Layer::Position, Layer::Uv].map(|of| layer(&layers, of));
+    let (mut met, mut covered) = (0, 0);
+    for (i, (ray, forward)) in rays(&scene).into_iter().enumerate() {
+        let [depth, place] = [f64::from(depths(&layers)[i]), 0.0];
+        if depth.is_infinite() {
+            assert_eq!((positions.pixels[i], uv.pixels[i]), ([place as f32; 3], [0.0; 3]));
+            continue;
+        }
+        let at = ray.origin.as_dvec3() + ray.direction.as_dvec3().normalize() * (depth / forward);
+        let seen = Vec3::from(positions.pixels[i]);
+        assert!((at - seen.as_dvec3()).length() < 1e-4 * at.length().max(1.0), "pixel {i}: {seen} is not {at}");
+        met += 1;
+        let [u, v, w] = uv.pixels[i];
+        if [u, v] != [0.0; 2] {
+            let want = Vec2::new(0.5 * seen.x - seen.y, seen.z + 2.0 * seen.y);
+            assert!((Vec2::new(u, v) - want).length() < 1e-3 && w == 0.0, "pixel {i}: {u}, {v} is not {want}");
+            covered += 1;
+        }
+    }
+    assert!(met > 500 && covered > 300, "{met} {covered}");
 }
 
 #[test]

@@ -156,7 +156,7 @@ fn in_sphere(material: Material) -> Scene {
 /// With a point light in its centre.
 fn lit_sphere() -> Scene {
     let mut scene = in_sphere(matt(Vec3::splat(0.5)));
-    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI) });
+    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI), group: String::new() });
     scene
 }
 
@@ -183,9 +183,13 @@ fn a_point_light_that_lies_on_a_ceiling() {
     let corner = |x: f32, z: f32| Vec3::new(5.0 * x, 2.0, 5.0 * z);
     let ceiling = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
     add_quad(&mut scene, black(), ceiling);
-    scene.lights.push(Light::Point { position: Vec3::new(0.7, 2.0, -0.4), colour: Vec3::splat(10.0) });
+    scene.lights.push(Light::Point {
+        position: Vec3::new(0.7, 2.0, -0.4),
+        colour: Vec3::splat(10.0),
+        group: String::new(),
+    });
     // Another kind of light beside it, which sends none.
-    scene.lights.push(Light::Directional { direction: Vec3::NEG_Y, colour: Vec3::ZERO });
+    scene.lights.push(Light::Directional { direction: Vec3::NEG_Y, colour: Vec3::ZERO, group: String::new() });
     let square = 0.7 * 0.7 + 2.0 * 2.0 + 0.4 * 0.4;
     let want = 10.0 / square * (2.0 / f64::sqrt(square)) / f64::from(PI);
     let (got, _) = mean(&render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), once()));
@@ -253,7 +257,7 @@ fn no_light_comes_from_below_a_smooth_surface() {
         scene.materials.push(Material { two_sided: true, ..lamp(1.0) });
         let center = Vec3::new(6.0, height, 0.0);
         scene.disks.push(Disk { center, normal: Vec3::NEG_X, radius: 0.5, material: 1 });
-        scene.lights.push(Light::Point { position: center + Vec3::NEG_X, colour: Vec3::ONE });
+        scene.lights.push(Light::Point { position: center + Vec3::NEG_X, colour: Vec3::ONE, group: String::new() });
         scene
     };
     let camera = at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO);

@@ -70,7 +70,7 @@ fn everything_at_once() {
     let Some(gpu) = quick_gpu() else { return };
     let mut scene = shipped("glass");
     scene.background = Background::Gradient { horizon: Vec3::new(0.3, 0.2, 0.1), zenith: Vec3::new(0.1, 0.2, 0.5) };
-    scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2) });
+    scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2), group: String::new() });
     let (position, target) = (Vec3::new(1.0, 4.0, 2.0), Vec3::ZERO);
     scene.lights.push(Light::Spot {
         position,
@@ -79,6 +79,7 @@ fn everything_at_once() {
         outer: 30.0,
         inner: 10.0,
         falloff: Falloff::Smooth,
+        group: String::new(),
     });
     scene.materials[0].emission = Vec3::new(0.2, 0.3, 0.1);
     for (direct, sampler) in [(Direct::Power, Sampler::Random), (Direct::Balance, Sampler::Jittered)] {
@@ -226,12 +227,11 @@ fn lights_change_without_another_scene() {
     let mut scene = shipped("lights");
     scene.settings.transport.integrator = Integrator::Path;
     let settings = settings(&scene, (24, 18), 4);
-    let dark = |light: &Light| match *light {
-        Light::Point { position, .. } => Light::Point { position, colour: Vec3::ZERO },
-        Light::Directional { direction, .. } => Light::Directional { direction, colour: Vec3::ZERO },
-        Light::Spot { position, target, outer, inner, falloff, .. } => {
-            Light::Spot { position, target, outer, inner, falloff, colour: Vec3::ZERO }
-        }
+    let dark = |light: &Light| {
+        let mut light = light.clone();
+        let (Light::Point { colour, .. } | Light::Directional { colour, .. } | Light::Spot { colour, .. }) = &mut light;
+        *colour = Vec3::ZERO;
+        light
     };
     let black = Scene { lights: scene.lights.iter().map(dark).collect(), ..scene.clone() };
     let packed = pack(&black, &black.cameras[0], settings);

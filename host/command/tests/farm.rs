@@ -67,7 +67,7 @@ fn options_that_render_would_refuse_are_refused_at_once() {
         (&["--", "--no-passthrough"], &["--precision fast"]),
         (&["--", "--help"], &["eyerays render --help"]),
         (&["--", "-o", "a.exr"], &["--output is not for parts"]),
-        (&["--", "--layers", "depth"], &["--layers is not for parts"]),
+        (&["--", "--layers", "depth"], &["--layers: depth"]),
         (&["--", "--samples-from", "1"], &["--samples-from is not for parts"]),
         (&["--", "--tone", "agx"], &["--tone is not for parts", "add it to the merge"]),
         (&["--", "--settings", "fast.toml"], &["--settings is not for parts"]),

@@ -48,3 +48,83 @@ fn layers_that_are_not_there_are_refused_with_those_that_are() {
     fs::write(place.path("cut.exr"), &whole[..whole.len() / 2]).unwrap();
     place.refuse(&["diff", "a.exr", "cut.exr", "--layer", "depth"], &["cut.exr: "]);
 }
+
+/// A floor and a ball by a lamp of a group and another one.
+const STUDIO: &str = r#"
+[render]
+size = [24, 18]
+spp = 8
+sampler = "sobol"
+integrator = "path"
+
+[background]
+color = [0.2, 0.2, 0.3]
+
+[[camera]]
+name = "front"
+eye = [0, 1, 4]
+target = [0, 0, 0]
+
+[[light]]
+kind = "point"
+position = [2, 3, 2]
+group = "key"
+
+[[light]]
+kind = "point"
+position = [-2, 3, 2]
+
+[[mesh]]
+shape = "quad"
+corners = [[-4, -1, 4], [4, -1, 4], [4, -1, -4], [-4, -1, -4]]
+
+[[mesh]]
+shape = "sphere"
+"#;
+
+const KEPT: [&str; 6] = ["albedo", "normal", "direct", "diffuse_direct", "group_key", "group_rest"];
+
+fn kept<'a>(more: &[&'a str]) -> Vec<&'a str> {
+    let layers = "albedo,normal,direct,diffuse_direct,light_groups";
+    [&["render", "studio.toml", "--device", "cpu", "--layers", layers], more].concat()
+}
+
+/// By samples, by tiles, and in one that was ended and gone on with.
+#[test]
+fn layers_are_merged_and_gone_on_with_like_the_light() {
+    let place = Place::new(&[("studio.toml", STUDIO)]);
+    place.succeed(&kept(&["-o", "whole.exr"]));
+    place.succeed(&kept(&["--samples-to", "3", "-o", "a.film"]));
+    place.succeed(&kept(&["--samples-from", "3", "--tile", "0,0,24,7", "-o", "b.film"]));
+    place.succeed(&kept(&["--samples-from", "3", "--tile", "0,7,24,11", "-o", "c.film"]));
+    place.succeed(&["merge", "c.film", "a.film", "b.film", "-o", "merged.exr"]);
+    place.succeed(&kept(&["--spp", "5", "-o", "on.film"]));
+    place.succeed(&kept(&["--resume", "-o", "on.film"]));
+    place.succeed(&["merge", "on.film", "-o", "on.exr"]);
+    place.succeed(&["diff", "whole.exr", "merged.exr"]);
+    for layer in KEPT {
+        for other in ["merged.exr", "on.exr"] {
+            place.succeed(&["diff", "whole.exr", other, "--layer", layer]);
+        }
+    }
+    let other = ["render", "studio.toml", "--device", "cpu", "--layers", "albedo", "--resume", "-o", "on.film"];
+    place.refuse(&other, &["on.film", "layers"]);
+}
+
+#[test]
+fn a_film_keeps_no_layer_that_is_no_sum_of_samples() {
+    let place = Place::new(&[("studio.toml", STUDIO)]);
+    for more in [&["-o", "a.film"][..], &["--samples-to", "3", "-o", "a.exr"]] {
+        let depth = ["render", "studio.toml", "--device", "cpu", "--layers", "albedo,depth"];
+        place.refuse(&[&depth, more].concat(), &["--layers: depth"]);
+    }
+    let whitted = ["render", "studio.toml", "--device", "cpu", "--integrator", "whitted", "--layers", "emission"];
+    place.refuse(&[&whitted[..], &["-o", "a.exr"]].concat(), &["--integrator path"]);
+    let plain = STUDIO.replace("group = \"key\"", "");
+    fs::write(place.path("plain.toml"), plain).unwrap();
+    let groups = ["render", "plain.toml", "--device", "cpu", "--layers", "light_groups", "-o", "a.exr"];
+    place.refuse(&groups, &["plain.toml: no lamp of the scene is in a group"]);
+    let odd = STUDIO.replace("group = \"key\"", "group = \"a.b\"");
+    fs::write(place.path("odd.toml"), odd).unwrap();
+    place.refuse(&["check", "odd.toml"], &["a group of lamps is called \"a.b\""]);
+}

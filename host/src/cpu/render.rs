@@ -240,7 +240,7 @@ mod tests {
             assert!(film.bits_equal(&render::<f32>(&fresh, &view, Traversal::default(), 1, &|_| ()).unwrap().0));
         }
         for light in &mut scene.lights {
-            if let Light::Point { position, colour } | Light::Spot { position, colour, .. } = light {
+            if let Light::Point { position, colour, .. } | Light::Spot { position, colour, .. } = light {
                 (*position, *colour) = (*position + Vec3::Y * 0.1, *colour * 0.5);
             }
         }

@@ -8,7 +8,7 @@ use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{BLOCK, ShadowInputs};
+use eyerays_shader::stage::{BLOCK, FilmWords, ShadowInputs};
 
 use crate::device_scene::SceneView;
 use crate::error::Result;
@@ -61,13 +61,13 @@ impl Planned {
     }
 
     /// Words of a pixel of a film.
-    pub fn film_words(&self) -> u32 {
+    pub fn film_words(&self) -> FilmWords {
         self.plan.film_words
     }
 
     /// An empty film for a region, for [`Planned::add`].
     pub fn film(&self, region: Region) -> Vec<u32> {
-        vec![0; region.pixels() as usize * self.plan.film_words as usize]
+        vec![0; region.pixels() as usize * self.plan.film_words.all() as usize]
     }
 
     /// Adds samples of a region, wherever its edges are, to its film, and returns how many secondary rays they took. Samples that
@@ -159,7 +159,7 @@ impl<R: Number> Executor for Launch<'_, R> {
             }
             Stage::Scatter => self.scatter(&scene),
             Stage::Gather => R::gather(self.frame, step.spec, &self.records, self.film),
-            Stage::Accumulate => R::accumulate(self.frame, step.spec, &self.records, self.film),
+            Stage::Accumulate => R::accumulate(self.frame, step.spec, &mut self.records, self.film),
         }
         Ok(())
     }

@@ -12,6 +12,8 @@ pub enum Feature {
     /// The distance from the camera's plane in the normalised scene, then one more than the number of the primitive as what is left
     /// of it over 2^16 and as how often that fits. Numbers have no mean: of one sample a pixel.
     Place,
+    /// Where it is, in the normalised scene. Of one sample a pixel, too.
+    Position,
 }
 
 impl Feature {
@@ -23,7 +25,7 @@ impl Feature {
         let matters = match self {
             Feature::Albedo => SHAPE | Effects::CHECKER | Effects::PHYSICAL,
             Feature::Normal => SHAPE | Effects::SMOOTH | Effects::TANGENTS,
-            Feature::Place => SHAPE,
+            Feature::Place | Feature::Position => SHAPE,
         };
         Effects(effects.0 & matters)
     }
@@ -34,6 +36,7 @@ impl Feature {
             Feature::Albedo => Launch::ALBEDO,
             Feature::Normal => Launch::NORMAL,
             Feature::Place => Launch::PLACE,
+            Feature::Position => Launch::POSITION,
         }
     }
 }

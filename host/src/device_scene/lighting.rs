@@ -9,7 +9,7 @@ use super::light_tree::{Bounded, Cone, LightTree};
 use super::normalisation::Normalisation;
 use super::records::colour;
 use super::textures::Textures;
-use crate::scene::{Light, Material};
+use crate::scene::{Light, LightGroups, Material};
 
 /// What emits, as kernels read it.
 #[derive(Debug, Clone, Default)]
@@ -41,7 +41,7 @@ pub(super) struct Lamps {
 
 impl Lamps {
     pub fn new(
-        materials: &[Material],
+        (materials, groups): (&[Material], &LightGroups),
         primitives: &[Primitive],
         (textures, far_light): (&Textures, Option<f64>),
     ) -> Self {
@@ -65,6 +65,7 @@ impl Lamps {
             let bit = |bit: u32, is_set: bool| if is_set { bit } else { 0 };
             let bits =
                 bit(Emission::TWO_SIDED, material.two_sided) | bit(Emission::COLOURED, material.emission_is_coloured);
+            let bits = bits | groups.number(&material.group) << Emission::FLAGS;
             let sides = UVec4::new(bits, map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };
@@ -146,8 +147,15 @@ fn normal(primitive: &Primitive) -> DVec3 {
 impl Lighting {
     /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene; or, of many that have a
     /// place, as its light may arrive.
-    pub(super) fn new(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Self {
-        let choices = choices(lights, lamps, normalisation);
+    pub(super) fn new(
+        lights: (&[Light], &[LightRecord]),
+        lamps: &Lamps,
+        (groups, background): (&LightGroups, u32),
+        normalisation: &Normalisation,
+    ) -> Self {
+        let group = |light: &Light| groups.number(light.group());
+        let groups = lights.0.iter().map(group).collect();
+        let choices = choices(lights, lamps, Groups { lights: groups, background }, normalisation);
         let total: f64 = choices.iter().map(|choice| choice.power).sum();
         let with_density = |&(emission, flux): &(Emission, f64)| {
             let density = if total > 0.0 { (flux / total) as f32 } else { 0.0 };
@@ -163,7 +171,10 @@ impl Lighting {
     /// Each as often as its power says.
     fn by_power(choices: &[Choice]) -> Self {
         let powers: Vec<f64> = choices.iter().map(|choice| choice.power).collect();
-        let emitter = |(choice, drawn): (&Choice, UVec4)| Emitter { light: choice.record, choice: drawn };
+        let emitter = |(choice, drawn): (&Choice, UVec4)| Emitter {
+            light: choice.record,
+            choice: UVec4 { w: choice.group << Emitter::STEPS, ..drawn },
+        };
         let emitters = choices.iter().zip(table(&powers)).map(emitter).collect();
         Lighting { emitters, environment: environment_share(choices), ..Lighting::default() }
     }
@@ -176,13 +187,13 @@ impl Lighting {
         let bounded: Vec<Bounded> = choices.iter().filter_map(|choice| choice.bounded).collect();
         let tree = LightTree::new(&bounded, far as u32);
         let Lighting { mut emitters, environment, .. } = Lighting::by_power(&choices[..far]);
-        emitters.iter_mut().for_each(|emitter| emitter.choice.w = steps);
+        emitters.iter_mut().for_each(|emitter| emitter.choice.w |= steps);
         let near = choices[far..].iter().zip(&tree.trails).map(|(choice, &trail)| {
             let mut light = choice.record;
             if light.position.w == Emitter::PRIMITIVE {
                 light.position.y = trail;
             }
-            Emitter { light, choice: UVec4::new(0, 0, 0, steps) }
+            Emitter { light, choice: UVec4::new(0, 0, 0, steps | choice.group << Emitter::STEPS) }
         });
         emitters.extend(near);
         let environment = environment * (steps as f32 / LightNode::STEPS as f32);
@@ -196,21 +207,44 @@ struct Choice {
     record: LightRecord,
     /// Where it is, unless it is far away.
     bounded: Option<Bounded>,
+    /// The group of a light without extent, or of the environment.
+    group: u32,
+}
+
+/// The groups of what is no lamp.
+struct Groups {
+    lights: Vec<u32>,
+    background: u32,
 }
 
 /// All of a scene: its lights, its lamps, and its environment.
-fn choices(lights: (&[Light], &[LightRecord]), lamps: &Lamps, normalisation: &Normalisation) -> Vec<Choice> {
-    let of_light = |(light, record): (&Light, &LightRecord)| {
+fn choices(
+    lights: (&[Light], &[LightRecord]),
+    lamps: &Lamps,
+    groups: Groups,
+    normalisation: &Normalisation,
+) -> Vec<Choice> {
+    let of_light = |((light, record), &group): ((&Light, &LightRecord), &u32)| {
         let record = scaled(light, record, normalisation);
-        Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record), record }
+        Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record), record, group }
     };
-    let of_lamp = |lamp: &Lamp| Choice { power: lamp.power, record: lamp.record(), bounded: Some(lamp.bounded) };
+    let of_lamp =
+        |lamp: &Lamp| Choice { power: lamp.power, record: lamp.record(), bounded: Some(lamp.bounded), group: 0 };
     // A black environment is chosen where there is nothing else: kernels that know one choose something.
     let is_only = lights.0.is_empty() && lamps.is_empty();
     let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
     // That on a scene within a sphere of radius 1.
-    let far = far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None });
-    lights.0.iter().zip(lights.1).map(of_light).chain(lamps.lamps.iter().map(of_lamp)).chain(far).collect()
+    let group = groups.background;
+    let far = far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None, group });
+    lights
+        .0
+        .iter()
+        .zip(lights.1)
+        .zip(&groups.lights)
+        .map(of_light)
+        .chain(lamps.lamps.iter().map(of_lamp))
+        .chain(far)
+        .collect()
 }
 
 /// The probability of the environment, if it is among some choices.

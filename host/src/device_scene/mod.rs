@@ -41,7 +41,7 @@ use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::method::Method;
 use crate::optics::Optics;
-use crate::scene::{Background, Light, Matte, Scene, Settings};
+use crate::scene::{Background, Light, LightGroups, Matte, Scene, Settings};
 
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
@@ -59,6 +59,9 @@ pub struct DeviceScene {
     environment: Vec<u32>,
     /// A material that emits, by its name.
     emissive: Option<String>,
+    groups: LightGroups,
+    /// The group of the surroundings.
+    background_group: u32,
     has_catchers: bool,
     lamps: Lamps,
     /// Those of any settings.
@@ -108,7 +111,8 @@ impl DeviceScene {
         }
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
-        let material = |m| records::material(m, scene.ambient, normalisation.scale);
+        let groups = LightGroups::of(scene);
+        let material = |m| records::material(m, groups.unlit(m), scene.ambient, normalisation.scale);
         let statistics = Statistics::of(&bvh, &primitives);
         // One thing after the other, so that no more lies in memory than must.
         let nodes = centred(bvh.nodes);
@@ -121,9 +125,10 @@ impl DeviceScene {
         let textures = Textures::new(scene, effects, &bvh.order)?;
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
-        let lamps = Lamps::new(&scene.materials, &primitives, (&textures, far_light));
+        let background_group = groups.number(&scene.background_group);
+        let lamps = Lamps::new((&scene.materials, &groups), &primitives, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
-        let lighting = Lighting::new((&scene.lights, &lights), &lamps, &normalisation);
+        let lighting = Lighting::new((&scene.lights, &lights), &lamps, (&groups, background_group), &normalisation);
         let many = if lighting.nodes.is_empty() { 0 } else { Effects::MANY_LIGHTS };
         Ok(DeviceScene {
             statistics,
@@ -139,6 +144,8 @@ impl DeviceScene {
             textures,
             environment,
             emissive,
+            groups,
+            background_group,
             has_catchers: flags::mattes(scene).any(|matte| matte == Matte::Catcher),
             lamps,
             effects: Effects(effects.0 & !dark | many),
@@ -238,6 +245,21 @@ impl DeviceScene {
         self.emissive.as_deref()
     }
 
+    /// Are some materials not lit by all lamps?
+    pub(crate) fn is_linked(&self) -> bool {
+        self.effects.has(Effects::LINKED)
+    }
+
+    /// Its groups of lamps.
+    pub fn light_groups(&self) -> &LightGroups {
+        &self.groups
+    }
+
+    /// The number of the group that its surroundings are in.
+    pub(crate) fn background_group(&self) -> u32 {
+        self.background_group
+    }
+
     /// Are some objects shadow catchers?
     pub(crate) fn has_catchers(&self) -> bool {
         self.has_catchers
@@ -295,7 +317,8 @@ impl DeviceScene {
                 "the scene was packed with {number} lights of other kinds: pack it again to change more than their values"
             )));
         }
-        let lighting = Lighting::new((others, &records), &self.lamps, &self.normalisation);
+        let groups = (&self.groups, self.background_group);
+        let lighting = Lighting::new((others, &records), &self.lamps, groups, &self.normalisation);
         Ok((records, lighting))
     }
 }

@@ -46,6 +46,11 @@ impl Normalisation {
         placed.to_array().iter().all(|x| x.abs() < FARTHEST).then_some(placed)
     }
 
+    /// A place of the normalised scene, in world units.
+    pub fn in_world(&self, p: Vec3) -> Vec3 {
+        (p.as_dvec3() / self.scale + self.origin.as_dvec3()).as_vec3()
+    }
+
     /// A place as a kernel takes it; coordinates below 2^-60 are zero (no subnormals).
     pub fn place(&self, p: Vec3) -> Vec3 {
         flushed(self.exactly(p.as_dvec3()).as_vec3())

@@ -97,6 +97,7 @@ pub(super) fn effects(scene: &Scene) -> Effects {
         Effects::HIDDEN,
         flags::visibilities(scene).any(hides) || flags::mattes(scene).any(|matte| matte == Matte::Catcher),
     );
+    ask(Effects::LINKED, used(&|m| m.lit_by.is_some()));
     ask(Effects::HOLDOUT, flags::mattes(scene).any(|matte| matte == Matte::Holdout));
     Effects(bits)
 }
@@ -161,7 +162,7 @@ pub(super) fn normals(scene: &Scene, order: &[u32]) -> Vec<Normals> {
 }
 
 /// A material's record.
-pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecord {
+pub(super) fn material(m: &Material, unlit: u32, ambient: Vec3, scale: f64) -> MaterialRecord {
     let ior = if is_transparent(m) { m.ior } else { 0.0 };
     // Cells much larger than the scene are one cell, whatever their exact size.
     let cells = |size: f32| (1.0 / (f64::from(size) * scale)).clamp(1e-6, 1e30) as f32;
@@ -170,7 +171,7 @@ pub(super) fn material(m: &Material, ambient: Vec3, scale: f64) -> MaterialRecor
         None => (colour(Vec3::ZERO, 0), colour(Vec3::ZERO, 0)),
     };
     MaterialRecord {
-        ambient: colour(m.ambient() * ambient, 0),
+        ambient: colour(m.ambient() * ambient, unlit),
         diffuse: colour(m.diffuse, 0),
         specular: colour(m.specular, flushed_number(m.shininess).to_bits()),
         reflection: colour(m.reflection, ior.to_bits()),
@@ -220,11 +221,13 @@ pub(super) fn light(light: &Light, index: usize, normalisation: &Normalisation) 
         axis: pack(axis, outer.to_bits()),
     };
     Ok(match *light {
-        Light::Point { position, colour } => record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0)),
-        Light::Directional { direction, colour } => {
+        Light::Point { position, colour, .. } => {
+            record(at(position)?, LightRecord::POINT, colour, Vec3::ZERO, (0.0, 0.0))
+        }
+        Light::Directional { direction, colour, .. } => {
             record(unit(-direction), LightRecord::DIRECTIONAL, colour, Vec3::ZERO, (0.0, 0.0))
         }
-        Light::Spot { position, target, colour, outer, inner, falloff } => {
+        Light::Spot { position, target, colour, outer, inner, falloff, .. } => {
             let cosine = |degrees: f32| flushed_number(math::cos(f64::from(degrees).to_radians()) as f32);
             let axis = unit_between(position, target);
             let (inner, outer) = (cosine(inner), cosine(outer));

@@ -92,7 +92,7 @@ impl Film {
         let mut bands = vec![Vec::new(); window.height.div_ceil(Target::CELL) as usize];
         of.iter().zip(&added.sums).for_each(|(cell, sums)| bands[band(cell) as usize].push((*cell, sums)));
         // Rows of cells on all threads: a device waits meanwhile.
-        let rows = self.sums.par_chunks_mut((Target::CELL * window.width * words) as usize);
+        let rows = self.sums.par_chunks_mut((Target::CELL * window.width) as usize * words.all() as usize);
         rows.zip(bands).for_each(|(own, cells)| {
             for (cell, sums) in cells {
                 let region = Region { y: cell.y, height: cell.height, ..window };

@@ -1,11 +1,13 @@
 //! From sums to a picture.
 
 use eyerays_shader::data::Quanta;
-use eyerays_shader::stage::{CatcherSums, LIGHT_FRACTION, NON_FINITE, PixelSums, Row, SQUARE_FRACTION};
+use eyerays_shader::stage::{
+    AovSums, CatcherSums, FilmWords, LIGHT_FRACTION, NON_FINITE, PixelSums, Row, SQUARE_FRACTION,
+};
 use rayon::prelude::*;
 
 use super::Film;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::Region;
@@ -37,7 +39,7 @@ impl Developer {
     }
 
     /// Develops rows from `first` on, whose sums are these; `counts` tells the samples of each pixel of a row, counted from there.
-    pub fn rows<C>(&mut self, first: u32, words: u32, sums: &[u32], counts: impl Fn(u32) -> C + Sync)
+    pub fn rows<C>(&mut self, first: u32, words: FilmWords, sums: &[u32], counts: impl Fn(u32) -> C + Sync)
     where
         C: AsRef<[u32]>,
     {
@@ -47,7 +49,7 @@ impl Developer {
             self.opaque(first, words, sums, &counts);
         }
         let pixels = self.picture.pixels.par_chunks_mut(width as usize).skip(first as usize);
-        let rows = pixels.zip(sums.par_chunks((words * width) as usize));
+        let rows = pixels.zip(sums.par_chunks(words.all() as usize * width as usize));
         let told = rows.enumerate().map(|(y, (pixels, sums))| {
             let (row, mut told) = (Row::new(0, width, words), Told::default());
             for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
@@ -71,14 +73,14 @@ impl Developer {
     }
 
     /// Tells how opaque the pixels of rows are.
-    fn opaque<C>(&mut self, first: u32, words: u32, sums: &[u32], counts: &(impl Fn(u32) -> C + Sync))
+    fn opaque<C>(&mut self, first: u32, words: FilmWords, sums: &[u32], counts: &(impl Fn(u32) -> C + Sync))
     where
         C: AsRef<[u32]>,
     {
         let width = self.picture.width;
         let alpha = self.picture.alpha.get_or_insert_with(|| vec![0.0; self.picture.pixels.len()]);
         let rows = alpha.par_chunks_mut(width as usize).skip(first as usize);
-        rows.zip(sums.par_chunks((words * width) as usize)).enumerate().for_each(|(y, (alpha, sums))| {
+        rows.zip(sums.par_chunks(words.all() as usize * width as usize)).enumerate().for_each(|(y, (alpha, sums))| {
             let row = Row::new(0, width, words);
             for ((share, x), &count) in alpha.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
                 *share = opacity(&PixelSums::load(sums, row, x), count) as f32;
@@ -87,7 +89,7 @@ impl Developer {
     }
 
     /// The picture, and what was counted of its rays.
-    pub fn done(mut self, words: u32) -> (Picture, Rays) {
+    pub fn done(mut self, words: FilmWords) -> (Picture, Rays) {
         let pixels = self.picture.pixels.len();
         self.picture.noise = if Row::new(0, 0, words).is_noisy() { self.noise.share(pixels) } else { None };
         (self.picture, self.rays)
@@ -121,7 +123,7 @@ impl Film {
     /// samples. Infinite with fewer than two samples, and where no noise is told.
     pub fn errors(&self) -> Vec<f32> {
         let (width, words, samples_a_square) = (self.window.width, self.words, self.samples_a_square());
-        let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
+        let rows = self.sums.par_chunks(words.all() as usize * width as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let counts = self.counts(y);
             let row = Row::new(0, width, words);
@@ -145,7 +147,7 @@ impl Film {
         if !Row::new(0, width, words).knows_catchers() {
             return None;
         }
-        let rows = self.sums.par_chunks((words * width) as usize).zip(0..self.window.height);
+        let rows = self.sums.par_chunks(words.all() as usize * width as usize).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let of = move |(count, x)| {
                 let catcher = PixelSums::load(sums, Row::new(0, width, words), x).catcher;
@@ -158,6 +160,27 @@ impl Film {
         Some(errors.collect())
     }
 
+    /// An arbitrary output variable by its number: every pixel the mean of its samples, zeros without any.
+    ///
+    /// # Errors
+    /// There is no such, or no memory for it.
+    pub fn aov(&self, number: u32) -> Result<Picture> {
+        let (Region { width, height, .. }, words) = (self.window, self.words);
+        if number >= words.aovs {
+            return Err(Error::new(format!("the film keeps {} layers of a pixel, counted from 0", words.aovs)));
+        }
+        let mut picture = Picture::new(width, height)?;
+        let rows = self.sums.par_chunks(words.all() as usize * width as usize);
+        picture.pixels.par_chunks_mut(width as usize).zip(rows).enumerate().for_each(|(y, (pixels, sums))| {
+            let row = Row::new(0, width, words);
+            for ((pixel, x), count) in pixels.iter_mut().zip(0..).zip(self.counts(y as u32)) {
+                let AovSums { x: red, y: green, z: blue } = AovSums::load(sums, row, number, x);
+                *pixel = [red, green, blue].map(|sum| (light(sum) / f64::from(count.max(1))) as f32);
+            }
+        });
+        Ok(picture)
+    }
+
     /// How many samples each pixel of its window has, row by row.
     pub fn samples(&self) -> Vec<u32> {
         (0..self.window.height).flat_map(|row| self.counts(row)).collect()
@@ -166,7 +189,7 @@ impl Film {
     /// What was traced for it.
     pub fn rays(&self) -> Rays {
         let (width, words) = (self.window.width, self.words);
-        let rows = self.sums.par_chunks((words * width) as usize);
+        let rows = self.sums.par_chunks(words.all() as usize * width as usize);
         let counted = rows.map(|sums| {
             let of = |x| PixelSums::load(sums, Row::new(0, width, words), x).word;
             let add = |(shadow, lost), word| {

@@ -18,7 +18,7 @@ use crate::picture::Picture;
 use crate::scene::Settings;
 use crate::view::Region;
 use eyerays_shader::data::Launch;
-use eyerays_shader::stage::{NOISY_FILM_WORDS, film_words};
+use eyerays_shader::stage::{FilmWords, NOISY_FILM_WORDS, film_words};
 
 /// No text begins like this; the last byte tells the version.
 const MAGIC: [u8; 8] = *b"\x89EYFILM\x01";
@@ -31,6 +31,13 @@ const MOST_HEADER: u64 = 1 << 24;
 /// The most parts of a coverage, each of which is compared with all others.
 const MOST_PARTS: usize = 8192;
 
+/// The most arbitrary output variables: more than there are, and groups of lamps.
+const MOST_AOVS: u32 = 512;
+
+fn is_none(count: &u32) -> bool {
+    *count == 0
+}
+
 /// What a film is beside its sums.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,7 +45,11 @@ struct Header {
     identity: Identity,
     size: (u32, u32),
     window: Region,
+    /// Of the light of a pixel.
     words: u32,
+    /// Arbitrary output variables of a pixel.
+    #[serde(default, skip_serializing_if = "is_none")]
+    aovs: u32,
     parts: Vec<Part>,
     secondary: u64,
     /// Whether sums follow: a film without samples has none.
@@ -71,7 +82,8 @@ impl Film {
             identity: self.identity.clone(),
             size: self.size,
             window: self.window,
-            words: self.words,
+            words: self.words.light,
+            aovs: self.words.aovs,
             parts: self.coverage.parts().to_vec(),
             secondary: self.secondary,
             has_sums: !self.sums.is_empty(),
@@ -131,13 +143,15 @@ impl Film {
 impl Header {
     /// The film without its sums, if it can be one, and how many there are.
     fn film(self) -> Result<(Film, usize)> {
-        let Header { identity, size, window, words, parts, secondary, has_sums, cells } = self;
+        let Header { identity, size, window, words, aovs, parts, secondary, has_sums, cells } = self;
         Picture::check_size(size.0, size.1).map_err(|_| damaged())?;
         let image = Region { x: 0, y: 0, width: size.0, height: size.1 };
         let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
         let kept = [0, Launch::CLEAR, Launch::CATCHER, Launch::CLEAR | Launch::CATCHER].map(Launch);
         let is_known = kept.iter().any(|&kept| [false, true].iter().any(|&noisy| film_words(kept, noisy) == words));
-        if !is_within(window, image) || !is_known || parts.len() > MOST_PARTS {
+        let names = identity.layers().len() as u32;
+        let is_named = aovs <= MOST_AOVS && (names == 0 || names == aovs);
+        if !is_within(window, image) || !is_known || !is_named || parts.len() > MOST_PARTS {
             return Err(damaged());
         }
         let cells = cells.map(|cells| cells.cells(size, window)).transpose()?;
@@ -152,8 +166,9 @@ impl Header {
                 return Err(damaged());
             }
         }
+        let words = FilmWords { light: words, aovs };
         let mut film = Film { size, window, words, sums: Vec::new(), coverage, cells, secondary, identity };
-        let count = if has_sums { window.pixels() as usize * words as usize } else { 0 };
+        let count = if has_sums { window.pixels() as usize * words.all() as usize } else { 0 };
         film.sums.try_reserve_exact(count).map_err(|_| Error::Memory { width: size.0, height: size.1 })?;
         Ok((film, count))
     }

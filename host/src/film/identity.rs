@@ -9,12 +9,16 @@ use sha2::{Digest, Sha256};
 use crate::choice::Named;
 use crate::error::{Error, Result};
 use crate::job::Job;
+use crate::layers;
 use crate::method::Traversal;
 use crate::noise::Target;
 use crate::picture::hexadecimal;
 use crate::render::Precision;
 use crate::scene::Settings;
 use crate::view::View;
+
+/// What names of layers are under.
+const LAYERS: &str = "layers";
 
 /// All that the bits of a sample depend on, by names: the scene, the camera, settings, the kernels, and in fast precision the device.
 /// An empty one is as good as any.
@@ -43,6 +47,10 @@ impl Identity {
         if !optics.is_empty() {
             all.insert("optics".to_owned(), hexadecimal(&Sha256::digest(bytemuck::cast_slice::<u32, u8>(optics))));
         }
+        let kept = layers::names(packed);
+        if !kept.is_empty() {
+            all.insert(LAYERS.to_owned(), kept.join(","));
+        }
         if settings.sampler.has_cells() {
             all.insert("samples".to_owned(), settings.samples_a_pixel().to_string());
         }
@@ -66,6 +74,11 @@ impl Identity {
     pub fn until(mut self, target: &Target) -> Identity {
         self.0.extend(target.entries().map(|(name, value)| (name.to_owned(), value)));
         self
+    }
+
+    /// What its arbitrary output variables are called, in their order.
+    pub fn layers(&self) -> Vec<String> {
+        self.0.get(LAYERS).map_or_else(Vec::new, |names| names.split(',').map(str::to_owned).collect())
     }
 
     /// Names and values.

@@ -9,7 +9,7 @@ mod identity;
 #[cfg(test)]
 mod tests;
 
-use eyerays_shader::stage::{PixelSums, Row};
+use eyerays_shader::stage::{AovSums, FilmWords, PixelSums, Row};
 use rayon::prelude::*;
 
 pub use cells::Cells;
@@ -21,13 +21,13 @@ use crate::error::{Error, Result};
 use crate::view::{Region, View};
 
 /// Sums of the samples of a picture, or of a part of it: 40 bytes a pixel, and 56 where noise is told; 4 more where what is clear is
-/// counted.
+/// counted, 36 more for each arbitrary output variable.
 #[derive(Debug, Clone)]
 pub struct Film {
     size: (u32, u32),
     window: Region,
     /// Of a pixel.
-    words: u32,
+    words: FilmWords,
     /// Row by row; in a row one word of all its pixels after another. Nothing before the first are added, since a system takes
     /// milliseconds to hand over so much memory.
     sums: Vec<u32>,
@@ -43,7 +43,7 @@ pub struct Film {
 
 impl Film {
     /// Without any sample, for a view; `words` are those of a pixel.
-    pub(crate) fn new(view: &View, words: u32) -> Film {
+    pub(crate) fn new(view: &View, words: FilmWords) -> Film {
         Film {
             size: view.size(),
             window: view.region(),
@@ -54,6 +54,11 @@ impl Film {
             secondary: 0,
             identity: Identity::default(),
         }
+    }
+
+    /// How many arbitrary output variables it keeps of each pixel.
+    pub fn aovs(&self) -> u32 {
+        self.words.aovs
     }
 
     /// Columns and rows of the image that it is of.
@@ -174,7 +179,7 @@ impl Film {
 
     /// Takes the memory of all sums, of so many words.
     fn reserve(&mut self) -> Result<usize> {
-        let all = self.window.pixels() as usize * self.words as usize;
+        let all = self.window.pixels() as usize * self.words.all() as usize;
         let (width, height) = self.size;
         self.sums.try_reserve_exact(all).map_err(|_| Error::Memory { width, height })?;
         Ok(all)
@@ -186,7 +191,7 @@ impl Film {
 pub(crate) struct Layout {
     pub region: Region,
     /// Of a pixel.
-    pub words: u32,
+    pub words: FilmWords,
 }
 
 impl Layout {
@@ -208,7 +213,7 @@ impl Layout {
 
     /// Words of a row of both.
     fn lengths(self, region: Region) -> (usize, usize) {
-        ((self.words * self.region.width) as usize, (self.words * region.width) as usize)
+        (self.words.all() as usize * self.region.width as usize, self.words.all() as usize * region.width as usize)
     }
 
     fn add_row(self, own: &mut [u32], region: Region, added: &[u32]) {
@@ -217,6 +222,12 @@ impl Layout {
         for x in 0..region.width {
             let both = PixelSums::load(own, to, left + x).plus(PixelSums::load(added, from, x));
             both.store(own, to, left + x);
+        }
+        for number in 0..self.words.aovs {
+            for x in 0..region.width {
+                let both = AovSums::load(own, to, number, left + x).plus(AovSums::load(added, from, number, x));
+                both.store(own, to, number, left + x);
+            }
         }
     }
 }

@@ -54,6 +54,17 @@ pub(super) fn layered(
         Values::Light(picture) => three(&balanced(picture, encoding.white), &name, ["R", "G", "B"], scale, is_half),
         Values::Colours(picture) => three(picture, &name, ["R", "G", "B"], 1.0, is_half),
         Values::Vectors(picture) => three(picture, &name, ["X", "Y", "Z"], 1.0, is_half),
+        Values::Coordinates(picture) => {
+            let mut all = three(picture, &name, ["U", "V", "W"], 1.0, is_half);
+            all.truncate(2);
+            all
+        }
+        Values::Parts(parts) => {
+            let of = |(name, picture): &(String, Picture)| {
+                three(&balanced(picture, encoding.white), &format!("{name}."), ["R", "G", "B"], scale, is_half)
+            };
+            parts.iter().flat_map(of).collect()
+        }
         Values::Lengths(lengths) => vec![channel(&name, "Z", FlatSamples::F32(lengths.clone()))],
         Values::Numbers(numbers) => vec![channel(&name, "id", FlatSamples::U32(numbers.clone()))],
         Values::Shares(matte) => {

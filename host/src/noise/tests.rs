@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use eyerays_shader::real::V3;
-use eyerays_shader::stage::{BLOCK, NOISY_FILM_WORDS, PixelSums, Row};
+use eyerays_shader::stage::{BLOCK, FilmWords, NOISY_FILM_WORDS, PixelSums, Row};
 use glam::Vec3;
 
 use super::*;
@@ -75,7 +75,7 @@ impl Grows for Noisy {
             let mut sums = vec![0; cell.pixels() as usize * NOISY_FILM_WORDS as usize];
             for (x, y) in (0..cell.height).flat_map(|y| (0..cell.width).map(move |x| (x, y))) {
                 let pixel = self.pixel(cell.x + x, cell.y + y, samples.clone());
-                pixel.store(&mut sums, Row::new(y, cell.width, NOISY_FILM_WORDS), x);
+                pixel.store(&mut sums, Row::new(y, cell.width, FilmWords::of_light(NOISY_FILM_WORDS)), x);
             }
             sums
         };

@@ -2,9 +2,9 @@
 
 mod run;
 
-use eyerays_shader::data::{Launch, Specialisation};
+use eyerays_shader::data::{Aovs, Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::film_words;
+use eyerays_shader::stage::{FilmWords, film_words, sum_records};
 
 pub use run::{Executor, run};
 
@@ -77,7 +77,7 @@ pub struct Plan {
     /// Bytes that a sample in flight takes of each buffer, by its binding.
     pub slot_bytes: Vec<(u32, u64)>,
     /// Words of 4 bytes that a pixel takes of the film.
-    pub film_words: u32,
+    pub film_words: FilmWords,
 }
 
 impl Plan {
@@ -89,18 +89,29 @@ impl Plan {
     /// # Errors
     /// Those of `resolve`.
     pub fn new(packed: &Job, traversal: &Traversal, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
-        Plan::of(&needs(packed), packed.specialisation(traversal), resolve)
+        Plan::of(&needs(packed), packed.specialisation(traversal), packed.aov_count(), resolve)
     }
 
-    /// For what an integrator needs.
+    /// For what an integrator needs, with films of so many arbitrary output variables.
     ///
     /// # Errors
     /// Those of `resolve`.
-    pub fn of(needs: &Needs, spec: Specialisation, resolve: impl Fn(Coherence) -> Result<Traversal>) -> Result<Plan> {
+    pub fn of(
+        needs: &Needs,
+        spec: Specialisation,
+        aovs: u32,
+        resolve: impl Fn(Coherence) -> Result<Traversal>,
+    ) -> Result<Plan> {
         let Needs { waves, shadow_rays, stages, .. } = *needs;
+        let sums = sum_records(spec, aovs);
         let has_further = waves != Waves::AtMost(0);
         let spec = spec.with_launch(if has_further { stages.goes_on } else { 0 });
-        let plain = |stage, spec| Step { stage, traversal: None, spec };
+        // Rays are the same whatever films keep, and so are the kernels that follow them.
+        let of_rays = |spec| Specialisation { aovs: Aovs(0), ..spec };
+        let plain = |stage, spec| {
+            let sums = matches!(stage, Stage::Scatter | Stage::Accumulate);
+            Step { stage, traversal: None, spec: if sums { spec } else { of_rays(spec) } }
+        };
         let wave = |spec: Specialisation, traced, shadowed| -> Result<Vec<Step>> {
             let step = |&stage: &Stage| {
                 let coherence = match stage {
@@ -108,7 +119,7 @@ impl Plan {
                     Stage::Shadow => shadowed,
                     _ => return Ok(plain(stage, spec)),
                 };
-                Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: spec.with_launch(stages.rays) })
+                Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: of_rays(spec).with_launch(stages.rays) })
             };
             let there = |stage: &&Stage| shadow_rays > 0 || **stage != Stage::Shadow;
             stages.wave.iter().filter(there).map(step).collect()
@@ -126,8 +137,8 @@ impl Plan {
         let last = vec![plain(stages.last, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, spec.launch, has_further);
-        let film_words = film_words(spec.launch, stages.tells_noise);
+        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, sums, has_further);
+        let film_words = FilmWords { light: film_words(spec.launch, stages.tells_noise), aovs };
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
 
@@ -145,7 +156,7 @@ impl Plan {
 
     /// Bytes that a pixel takes of the film.
     pub fn film_bytes(&self) -> u64 {
-        4 * u64::from(self.film_words)
+        4 * u64::from(self.film_words.all())
     }
 
     /// Bytes that a sample in flight takes of a resource, 0 if the plan has not got it.
@@ -174,12 +185,10 @@ impl Plan {
 }
 
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
-fn slot_bytes(needs: &Needs, launch: Launch, has_queue: bool) -> Vec<(u32, u64)> {
+fn slot_bytes(needs: &Needs, sums: u32, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, stages, .. } = *needs;
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
-    // Behind the light of all slots lies what they have of shadow catchers.
-    let sums = if launch.has(Launch::CATCHER) { 2 } else { 1 };
     let all = [
         (binding::PATHS, records(paths * stages.path_records)),
         (binding::HITS, Plan::RECORD_BYTES),
@@ -204,7 +213,7 @@ mod tests {
     fn plan(needs: Needs) -> Plan {
         let effects = Effects(Effects::LIT | Effects::SMOOTH);
         let spec = Specialisation { effects, ..Specialisation::default() };
-        Plan::of(&needs, spec, |coherence| Ok(Traversal::default().resolved(Processor::Gpu, coherence))).unwrap()
+        Plan::of(&needs, spec, 0, |coherence| Ok(Traversal::default().resolved(Processor::Gpu, coherence))).unwrap()
     }
 
     fn stages(steps: &[Step]) -> Vec<Stage> {
@@ -229,7 +238,7 @@ mod tests {
         for bytes in [(binding::SHADOWS, 4), (binding::PATHS, 64), (binding::SEGMENTS, 48)] {
             assert!(plan.slot_bytes.contains(&bytes), "{bytes:?}");
         }
-        assert_eq!(plan.film_words, NOISY_FILM_WORDS);
+        assert_eq!(plan.film_words, FilmWords::of_light(NOISY_FILM_WORDS));
         let streams = plan.steps().filter(|step| step.spec.launch.has(Launch::STREAM));
         assert!(streams.map(|step| step.stage).all(|stage| matches!(stage, Stage::Trace | Stage::Shadow)));
     }

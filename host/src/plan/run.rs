@@ -58,7 +58,7 @@ mod tests {
     #[test]
     fn further_waves_run_while_rays_are_left_and_the_film_is_last() {
         let needs = Needs { shadow_rays: 0, paths: 1, waves: Waves::AtMost(9), stages: &WHITTED };
-        let plan = Plan::of(&needs, Default::default(), |_| Ok(Traversal::from(Method::IfIf))).unwrap();
+        let plan = Plan::of(&needs, Default::default(), 0, |_| Ok(Traversal::from(Method::IfIf))).unwrap();
         let mut log = Log(Vec::new(), 3);
         run(&plan, &mut log).unwrap();
         let wave = [(2, Stage::Advance), (3, Stage::Trace), (4, Stage::Shade)];

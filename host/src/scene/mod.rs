@@ -10,6 +10,7 @@ mod filter;
 pub(crate) mod frame;
 pub(crate) mod hierarchy;
 mod lens;
+mod light_groups;
 mod matrices;
 pub(crate) mod normal;
 mod object;
@@ -32,6 +33,7 @@ pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
 pub use hierarchy::Hierarchy;
 pub use lens::{Focus, Lens};
+pub use light_groups::LightGroups;
 pub use object::{Object, ObjectNumbers};
 pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use pixel_filter::PixelFilter;
@@ -81,6 +83,8 @@ pub struct Scene {
     pub background: Background,
     /// Light from far away, which takes the background's place.
     pub environment: Option<Environment>,
+    /// The group of lamps that the background or the environment is in, empty for none.
+    pub background_group: String,
     /// Ambient light, linear RGB; times a material's ambient colour.
     pub ambient: Vec3,
     /// What the scene file asks of a rendering; the command line has the last word.
@@ -171,6 +175,12 @@ pub struct Material {
     pub emission: Vec3,
     /// Does its back emit too? Culling leaves it.
     pub two_sided: bool,
+    /// The group of lamps that what is made of it is in, empty for none.
+    #[serde(default)]
+    pub group: String,
+    /// The groups of lamps that light it, [`LightGroups::REST`] for those without one; all if none is said. Paths tell.
+    #[serde(default)]
+    pub lit_by: Option<Vec<String>>,
     /// Is the emission multiplied with the colours of vertices?
     #[serde(default)]
     pub emission_is_coloured: bool,
@@ -214,6 +224,9 @@ pub enum Light {
         position: Vec3,
         /// Linear RGB times intensity.
         colour: Vec3,
+        /// The group that it is in, empty for none.
+        #[serde(default)]
+        group: String,
     },
     /// Shines one way from infinitely far.
     Directional {
@@ -221,6 +234,9 @@ pub enum Light {
         direction: Vec3,
         /// Linear RGB times intensity.
         colour: Vec3,
+        /// The group that it is in, empty for none.
+        #[serde(default)]
+        group: String,
     },
     /// Shines into a cone.
     Spot {
@@ -237,7 +253,26 @@ pub enum Light {
         /// How it fades between them.
         #[serde(default)]
         falloff: Falloff,
+        /// The group that it is in, empty for none.
+        #[serde(default)]
+        group: String,
     },
+}
+
+impl Light {
+    /// The group that it is in, empty for none.
+    pub fn group(&self) -> &str {
+        let (Light::Point { group, .. } | Light::Directional { group, .. } | Light::Spot { group, .. }) = self;
+        group
+    }
+
+    /// The same light in a group.
+    #[must_use]
+    pub fn in_group(mut self, name: &str) -> Light {
+        let (Light::Point { group, .. } | Light::Directional { group, .. } | Light::Spot { group, .. }) = &mut self;
+        name.clone_into(group);
+        self
+    }
 }
 
 /// What a ray that hits nothing returns, linear RGB.

@@ -161,6 +161,7 @@ fn background(text: &mut Text, scene: &Scene) {
             text.key("zenith", triple(zenith));
         }
     }
+    group(text, &scene.background_group);
     if let Some(Environment { texture, rotation, scale, visible }) = &scene.environment {
         let name = if *texture == studio::texture() { studio::NAME } else { &texture.name };
         text.key("environment", quoted(name));
@@ -214,19 +215,26 @@ fn lens(text: &mut Text, of: &Lens) {
     text.other("anamorphic", of.ratio, 1.0);
 }
 
+/// The group that lamps are in.
+fn group(text: &mut Text, name: &str) {
+    if !name.is_empty() {
+        text.key("group", quoted(name));
+    }
+}
+
 fn light(text: &mut Text, of: &Light) {
     match *of {
-        Light::Point { position, colour } => {
+        Light::Point { position, colour, .. } => {
             text.key("kind", quoted("point"));
             text.key("position", triple(position));
             text.colour("color", colour, Vec3::ONE);
         }
-        Light::Directional { direction, colour } => {
+        Light::Directional { direction, colour, .. } => {
             text.key("kind", quoted("directional"));
             text.key("direction", triple(direction));
             text.colour("color", colour, Vec3::ONE);
         }
-        Light::Spot { position, target, colour, outer, inner, falloff } => {
+        Light::Spot { position, target, colour, outer, inner, falloff, .. } => {
             text.key("kind", quoted("spot"));
             text.key("position", triple(position));
             text.key("target", triple(target));
@@ -238,6 +246,7 @@ fn light(text: &mut Text, of: &Light) {
             }
         }
     }
+    group(text, of.group());
 }
 
 fn material(text: &mut Text, of: &Material) {
@@ -250,6 +259,11 @@ fn material(text: &mut Text, of: &Material) {
     text.other("ior", of.ior, Material::default().ior);
     text.colour("emission", of.emission, Vec3::ZERO);
     text.other("two_sided", of.two_sided, false);
+    group(text, &of.group);
+    if let Some(lit_by) = &of.lit_by {
+        let names: Vec<String> = lit_by.iter().map(|name| quoted(name).to_string()).collect();
+        text.key("lit_by", format!("[{}]", names.join(", ")));
+    }
     visibility(text, of.visibility);
     match of.alpha {
         Alpha::Opaque => {}

@@ -53,7 +53,7 @@ fn transport(table: &mut Table) -> Result<Transport> {
 ///
 /// # Errors
 /// Both or neither, a colour below 0, or an unknown key.
-pub fn background(mut table: Table, images: &mut Images) -> Result<(Background, Option<Environment>)> {
+pub fn background(mut table: Table, images: &mut Images) -> Result<Surroundings> {
     if table.has("color") && (table.has("horizon") || table.has("zenith")) {
         let fault = "[background] has a color and a gradient; remove the one or the other";
         return Err(table.fault_of("color", fault));
@@ -72,8 +72,23 @@ pub fn background(mut table: Table, images: &mut Images) -> Result<(Background, 
         (None, None, None) => Background::Colour(table.need("color", colour)?),
         _ => Background::Gradient { horizon: table.need("horizon", horizon)?, zenith: table.need("zenith", zenith)? },
     };
+    let group = table.name("group")?.unwrap_or_default();
     table.done()?;
-    Ok((background, environment))
+    Ok(Surroundings { background, environment, group })
+}
+
+/// What is around a scene.
+pub struct Surroundings {
+    pub background: Background,
+    pub environment: Option<Environment>,
+    /// Of lamps, empty for none.
+    pub group: String,
+}
+
+impl Default for Surroundings {
+    fn default() -> Self {
+        Surroundings { background: Background::Colour(Vec3::ZERO), environment: None, group: String::new() }
+    }
 }
 
 /// The picture that `[background]` names, if it does; with it a colour is what the camera sees of one that is not visible.
@@ -117,11 +132,12 @@ fn light(mut table: Table) -> Result<Light> {
     let kind = table.word("kind", &words)?;
     let kind = table.need("kind", kind)?;
     let colour = light_colour(&mut table)?;
+    let group = table.name("group")?.unwrap_or_default();
     let light = match kind {
         Kind::Point => {
             table.rename("a point light");
             let position = table.triple("position", Range::ANY)?;
-            Light::Point { position: table.need("position", position)?, colour }
+            Light::Point { position: table.need("position", position)?, colour, group }
         }
         Kind::Directional => {
             table.rename("a directional light");
@@ -131,9 +147,9 @@ fn light(mut table: Table) -> Result<Light> {
                 let fault = "the direction is zero; say which way the light travels";
                 return Err(table.fault_of("direction", fault));
             }
-            Light::Directional { direction, colour }
+            Light::Directional { direction, colour, group }
         }
-        Kind::Spot => spot(&mut table, colour)?,
+        Kind::Spot => spot(&mut table, colour)?.in_group(&group),
     };
     table.done()?;
     Ok(light)
@@ -153,7 +169,7 @@ fn spot(table: &mut Table, colour: Vec3) -> Result<Light> {
     let outer = table.need("angle", angle)? / 2.0;
     let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
     let falloff = table.choice("falloff")?.unwrap_or_default();
-    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness), falloff })
+    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness), falloff, group: String::new() })
 }
 
 fn light_colour(table: &mut Table) -> Result<Vec3> {

@@ -46,7 +46,7 @@ fn of_lights(scene: &Scene, lights: &[Light]) -> f64 {
     };
     let irradiance = |light: &Light| match *light {
         Light::Directional { colour, .. } => brightness(colour),
-        Light::Point { position, colour } | Light::Spot { position, colour, .. } => at(position, colour),
+        Light::Point { position, colour, .. } | Light::Spot { position, colour, .. } => at(position, colour),
     };
     lights.iter().map(irradiance).sum::<f64>() / PI
 }

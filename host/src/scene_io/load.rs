@@ -8,6 +8,7 @@ use glam::Vec3;
 use super::LightUnit;
 use super::binary;
 use super::budget::Budget;
+use super::document::Surroundings;
 use super::file;
 use super::files::{Files, Own, is, is_gltf, read_mesh};
 use super::geometry::Geometry;
@@ -133,7 +134,7 @@ fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
     let Obj { mesh, materials, warnings, libraries, objects } = obj;
     let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let (geometry, visibility) = (Geometry::Mesh(mesh), Visibility::default());
-    let placed = Placed { name, geometry, materials, material: None, objects: Vec::new(), visibility };
+    let placed = Placed { name, geometry, materials, material: None, objects: Vec::new(), visibility, lit_by: None };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
     let Merged { mesh, spheres, disks, objects: whole, materials } = merge.finish();
@@ -148,6 +149,7 @@ fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
         cameras: Vec::new(),
         background: frame::background(),
         environment: None,
+        background_group: String::new(),
         ambient: Vec3::splat(0.2),
         settings: Settings::default(),
         hierarchy: None,
@@ -197,7 +199,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
     let mut files = Files::new(file::folder(path), budget, Loading { integrator, ..loading });
     files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
-    let (background, environment) = background.transpose()?.unwrap_or((Background::Colour(Vec3::ZERO), None));
+    let Surroundings { background, environment, group } = background.transpose()?.unwrap_or_default();
     let ambient = table.triple("ambient", Range::AMOUNT)?;
     let cameras = camera_table::cameras(table.tables("camera")?.unwrap_or_default())?;
     let lights = table.tables("light")?.map(document::lights).transpose()?;
@@ -225,6 +227,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         cameras,
         background,
         environment,
+        background_group: group,
         ambient: ambient.unwrap_or(Vec3::ZERO),
         settings,
         hierarchy: None,

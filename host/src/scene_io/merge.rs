@@ -85,11 +85,11 @@ impl Merge {
         let all = placed.material.as_deref();
         let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
         self.objects.extend(placed.objects(self.next(&placed.geometry)));
-        let Placed { mut geometry, materials, .. } = placed;
+        let Placed { mut geometry, materials, lit_by, .. } = placed;
         let mut numbers = vec![all; materials.len()];
         geometry.renumber(|local| {
             let (name, fields) = &materials[local as usize];
-            *numbers[local as usize].get_or_insert_with(|| self.number(name, fields.clone(), overrides))
+            *numbers[local as usize].get_or_insert_with(|| self.number(name, (fields.clone(), &lit_by), overrides))
         });
         match geometry {
             Geometry::Mesh(mesh) => self.append(mesh),
@@ -172,15 +172,17 @@ impl Merge {
             return Err(format!("unknown material {name:?}; {}", suggest(name, known)));
         }
         let fields = own.map_or(Fields::default(), |(_, fields)| fields.clone());
-        Ok(self.number(name, fields, overrides))
+        Ok(self.number(name, (fields, &placed.lit_by), overrides))
     }
 
-    fn number(&mut self, name: &str, fields: Fields, overrides: &Overrides) -> u32 {
+    /// The number of a material of a mesh, which may be lit by other lamps than others of it.
+    fn number(&mut self, name: &str, (fields, lit_by): (Fields, &Option<Vec<String>>), overrides: &Overrides) -> u32 {
         let fields = match overrides.get(name) {
             Some(over) => over.over(fields),
             None => fields,
         };
-        let material = fields.finish(name);
+        let lit_by = lit_by.clone().or_else(|| fields.lit_by.clone());
+        let material = Fields { lit_by, ..fields }.finish(name);
         // Two files may mean different things by a name.
         let same = self.by_name.entry(name.to_owned()).or_default();
         let found = same.iter().find(|&&number| self.materials[number as usize] == material);

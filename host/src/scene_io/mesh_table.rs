@@ -22,6 +22,8 @@ pub struct Placed {
     /// What a file itself is made of, by the triangles of the geometry.
     pub objects: Vec<Object>,
     pub visibility: Visibility,
+    /// The groups of lamps that light it, where it says more than its materials do.
+    pub lit_by: Option<Vec<String>>,
 }
 
 impl Placed {
@@ -58,6 +60,7 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
     let smooth = table.flag("smooth")?;
     let wish = Wish { smooth, transform: Transform::read(table)? };
     let visibility = visible::read(table)?.unwrap_or_default();
+    let lit_by = table.names("lit_by")?;
     let Source { name, mut geometry, materials, objects } = source(table, &wish, files)?;
     if let Geometry::Mesh(mesh) = &mut geometry {
         match smooth {
@@ -73,7 +76,7 @@ pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
         return Err(table.fault(fault));
     }
     files.budget.take(&geometry);
-    Ok(Placed { name, geometry, materials, material, objects, visibility })
+    Ok(Placed { name, geometry, materials, material, objects, visibility, lit_by })
 }
 
 /// A file or a shape as it is.

@@ -100,6 +100,19 @@ impl<'s> Table<'s> {
         }
     }
 
+    /// A list of names.
+    pub fn names(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
+        self.map(key, |table, value| {
+            let not = || table.mismatch(key, "a list of names in quotes", &value);
+            let DeValue::Array(items) = value.get_ref() else { return Err(not()) };
+            let name = |item: &Spanned<DeValue<'_>>| match item.get_ref() {
+                DeValue::String(text) => Ok(text.clone().into_owned()),
+                _ => Err(not()),
+            };
+            items.iter().map(name).collect()
+        })
+    }
+
     /// One of a few words.
     pub fn word<T: Copy>(&mut self, key: &'static str, words: &[(&str, T)]) -> Result<Option<T>> {
         let Some(text) = self.text(key)? else {

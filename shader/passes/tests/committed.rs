@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Effects, Launch, Layout, Order, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Launch, Layout, Order, Specialisation};
 use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
@@ -38,6 +38,11 @@ fn specialisations() -> Vec<Specialisation> {
         path.with_launch(Launch::CELLS | Launch::BLOCKS),
         path.with_launch(Launch::LENS | Launch::FILTERED | Launch::ROUND | Launch::CLEAR),
         path.with_launch(Launch::CLIPPED | Launch::STEREO | Launch::CLEAR | Launch::CATCHER),
+        Specialisation { aovs: Aovs(u32::MAX), ..all },
+        Specialisation {
+            aovs: Aovs(Aovs::ALBEDO | Aovs::GROUPS),
+            ..path.with_launch(Launch::CATCHER | Launch::BLOCKS)
+        },
         wave.without_launch(Launch::SECONDARY).with_launch(Launch::KEPT | Launch::LENS | Launch::PARALLEL),
     ]
 }
@@ -164,6 +169,31 @@ fn cells_and_blocks_are_in_no_kernel_that_is_not_asked_for_them() {
     assert!(plain.instructions() != blocks.instructions());
     assert_eq!(cut("exact::accumulate", Launch::CELLS).instructions(), plain.instructions());
     assert_eq!(cut("exact::generate", Launch::BLOCKS).bindings(), [binding::FRAME, binding::PATHS]);
+}
+
+/// Only films that keep layers pay for them.
+#[test]
+fn a_layer_that_no_film_keeps_is_in_no_kernel() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let lit = effects(Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL).with_launch(Launch::GOES_ON);
+    let cut = |entry: &str, aovs| {
+        let spec = Specialisation { aovs: Aovs(aovs), ..lit };
+        kernels.cut(entry, &spec.constants()).unwrap()
+    };
+    let scatter = |aovs| cut("exact::scatter", aovs).instructions();
+    for bit in 0..12 {
+        assert!(scatter(1 << bit) > scatter(0), "layer {bit} is nothing");
+        let (all, without) = (Aovs(u32::MAX).0, !(1 << bit));
+        // Parts of a surface share their instructions.
+        let is_shared = Aovs::LOBES & (1 << bit) != 0;
+        assert!(is_shared || scatter(all) > scatter(without), "layer {bit} is there though none asks for it");
+    }
+    assert!(scatter(u32::MAX) > scatter(!Aovs::LOBES));
+    assert!(cut("exact::accumulate", 1).instructions() > cut("exact::accumulate", 0).instructions());
+    assert_eq!(cut("exact::accumulate", 1).bindings(), cut("exact::accumulate", 0).bindings());
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::generate"] {
+        assert_eq!(cut(entry, u32::MAX).words(), cut(entry, 0).words(), "{entry}");
+    }
 }
 
 /// Functions of their own that one effect, or any of some, alone needs.

@@ -13,16 +13,31 @@ pub struct Emitter {
     /// integer is the index of the primitive, and the other numbers those of the functions below.
     pub light: Light,
     /// The threshold below which a draw that came to this entry means it, the number of the emitter that it means otherwise,
-    /// the bits of the probability that this emitter is chosen at all, and 0. Where lights are chosen by a
-    /// [hierarchy](super::LightNode), of all that are far away alone, with the steps of 2^-23 of the probability that one of these is.
+    /// the bits of the probability that this emitter is chosen at all, and from bit [`Emitter::STEPS`] on its group. Where lights are chosen by a
+    /// [hierarchy](super::LightNode), of all that are far away alone, with the steps of 2^-23 of the probability that one of these is below
+    /// the group.
     pub choice: UVec4,
 }
 
 impl Emitter {
+    /// The bits of the integer of `choice` below those of its group.
+    pub const STEPS: u32 = 24;
     /// The kind of a primitive that emits.
     pub const PRIMITIVE: u32 = 3;
     /// The kind of light from far away.
     pub const ENVIRONMENT: u32 = 4;
+
+    /// Steps of the probability that a light is chosen which is far away.
+    #[inline(always)]
+    pub fn steps(&self) -> u32 {
+        self.choice.w & ((1 << Self::STEPS) - 1)
+    }
+
+    /// The group of a light that is no primitive; 0 for none. That of a primitive is its material's, see [`Emission::group`].
+    #[inline(always)]
+    pub fn group(&self) -> u32 {
+        self.choice.w >> Self::STEPS
+    }
 
     /// A primitive's number in the scene.
     #[inline(always)]
@@ -50,17 +65,25 @@ pub struct Emission {
     /// Radiance, linear RGB; the integer is the bits of the probability density over the area of the normalised scene that a
     /// place on it is chosen as a light, 0 if it emits nothing.
     pub radiance: UVec4,
-    /// Bits of [`Emission::TWO_SIDED`] and [`Emission::COLOURED`], the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
+    /// Bits of [`Emission::TWO_SIDED`] and [`Emission::COLOURED`] with the group of lamps above them, the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
     /// the map of its opacity and the bits of a number: at least 0 what opacity is multiplied with, and below 0 less the least opacity
     /// that is there.
     pub sides: UVec4,
 }
 
 impl Emission {
+    /// The bits below those of the group.
+    pub const FLAGS: u32 = 8;
     /// Backs emit too.
     pub const TWO_SIDED: u32 = 1;
     /// The radiance is multiplied with the colours of vertices.
     pub const COLOURED: u32 = 2;
+
+    /// The group of lamps that what is made of it is in; 0 for none.
+    #[inline(always)]
+    pub fn group(&self) -> u32 {
+        self.sides.x >> Self::FLAGS
+    }
 
     /// Does it shine to whoever sees its front, or its back?
     #[inline(always)]

@@ -2,7 +2,7 @@
 
 use super::{Camera, Launch};
 use bytemuck::{Pod, Zeroable};
-use glam::UVec4;
+use glam::{UVec2, UVec4};
 
 /// What a launch renders: samples of every pixel of a region. Its uniform buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -83,6 +83,12 @@ pub struct Frame {
     pub eyes: f32,
     /// The same times the part of its distance at which both look at one place: 0 if they look in parallel.
     pub converging: f32,
+    /// How many arbitrary output variables the film keeps ([`Aovs`](super::Aovs)).
+    pub aovs: u32,
+    /// The group of lamps that the surroundings are in; 0 for none.
+    pub group: u32,
+    /// Nothing: records are whole words of 16 bytes.
+    pub unused: UVec2,
 }
 
 impl Frame {

@@ -5,6 +5,7 @@
 //! which a device may flush). Coordinates are in the normalised scene: the host divides the scene by
 //! a power of two so that every vertex lies in [-1, 1].
 
+mod aovs;
 mod camera;
 mod compact;
 mod cwbvh;
@@ -19,6 +20,7 @@ mod shading;
 mod specialisation;
 mod texture;
 
+pub use aovs::Aovs;
 pub use camera::{Camera, Projection, Stereo};
 pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;

@@ -21,7 +21,7 @@ pub struct Normals {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Material {
-    /// Ambient colour times the scene's ambient light.
+    /// Ambient colour times the scene's ambient light; the integer has a bit for each group of lamps that does not light it.
     pub ambient: UVec4,
     /// Diffuse colour.
     pub diffuse: UVec4,

@@ -1,5 +1,7 @@
 //! What a kernel is compiled for: constants, so that it holds no instruction for anything else.
 
+use super::Aovs;
+
 /// A set of bits of which a kernel knows each while it is compiled.
 macro_rules! bits {
     ($(#[$doc:meta])* $name:ident { $($(#[$bit_doc:meta])* $bit:ident = $place:literal;)* }) => {
@@ -24,6 +26,8 @@ macro_rules! bits {
         }
     };
 }
+
+pub(super) use bits;
 
 bits! {
     /// What a scene shading like; a kernel holds no instruction for effects that it does not have.
@@ -88,6 +92,8 @@ bits! {
         HIDDEN = 28;
         /// Some cut a hole into the picture.
         HOLDOUT = 29;
+        /// Some surfaces are not lit by lamps of all groups, and the integrator traces paths.
+        LINKED = 30;
     }
 }
 
@@ -153,12 +159,14 @@ bits! {
         CLIPPED = 27;
         /// The image may hold those of two eyes.
         STEREO = 28;
+        /// Only where what the camera sees first is.
+        POSITION = 29;
     }
 }
 
 impl Launch {
     /// What the camera sees first is asked for, not its light.
-    pub const FEATURE: u32 = Launch::ALBEDO | Launch::NORMAL | Launch::PLACE;
+    pub const FEATURE: u32 = Launch::ALBEDO | Launch::NORMAL | Launch::PLACE | Launch::POSITION;
 }
 
 bits! {
@@ -240,6 +248,8 @@ pub struct Specialisation {
     pub order: Order,
     /// When hybrid methods part.
     pub tuning: Tuning,
+    /// What the film keeps beside light.
+    pub aovs: Aovs,
 }
 
 impl Specialisation {
@@ -254,8 +264,8 @@ impl Specialisation {
     }
 
     /// The value of each specialisation constant by its number; the entry points declare them in this order.
-    pub fn constants(&self) -> [(u32, u32); 5] {
-        let Specialisation { effects, launch, layout, order, tuning } = *self;
-        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0)]
+    pub fn constants(&self) -> [(u32, u32); 6] {
+        let Specialisation { effects, launch, layout, order, tuning, aovs } = *self;
+        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0), (6, aovs.0)]
     }
 }

@@ -41,6 +41,7 @@ macro_rules! declare_entry {
                     #[spirv(spec_constant(id = 3, default = 0))] launch: u32,
                     #[spirv(spec_constant(id = 4, default = 0))] layout: u32,
                     #[spirv(spec_constant(id = 5, default = 0))] order: u32,
+                    #[spirv(spec_constant(id = 6, default = 0))] aovs: u32,
                     $d($d have)*
                 ) {
                     let $d spec = Specialisation {
@@ -49,6 +50,7 @@ macro_rules! declare_entry {
                         launch: Launch(launch),
                         layout: Layout(layout),
                         order: Order(order),
+                        aovs: Aovs(aovs),
                     };
                     $d body
                 }
@@ -125,13 +127,17 @@ macro_rules! shading {
         entry! {
             /// Adds what slots have summed, and the light that their last vertices waited for, to the film.
             accumulate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame shadows segments sums film] {
+                let pixel = camera::pixel(frame, spec.order, id.x);
+                let words = stage::FilmWords::sampled(frame, spec);
+                if spec.aovs.any() {
+                    stage::expose_aovs::<$R>(frame, spec, (pixel, id.x), (&mut *sums, &*shadows, &*segments), words, film);
+                }
                 // By value: a pointer to the constants would lie in the closure.
                 let sample = move |slot| stage::sampled::<$R>(frame, spec.launch, slot, (&*sums, &*shadows, &*segments));
-                let pixel = camera::pixel(frame, spec.order, id.x);
                 if spec.launch.has(Launch::BLOCKS) {
-                    stage::expose_blocks::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, true), sample, film);
+                    stage::expose_blocks::<$R>(frame, (pixel, id.x), words, sample, film);
                 } else {
-                    stage::expose::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, true), sample, film);
+                    stage::expose::<$R>(frame, (pixel, id.x), words, sample, film);
                 }
             }
         }
@@ -148,7 +154,8 @@ macro_rules! shading {
             gather<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame sums film] {
                 let sample = |slot| stage::Sample::of(<$R>::load(read(sums, slot)));
                 let pixel = camera::pixel(frame, spec.order, id.x);
-                stage::expose::<$R>(frame, (pixel, id.x), stage::film_words(spec.launch, false), sample, film);
+                let words = stage::FilmWords::of_light(stage::film_words(spec.launch, false));
+                stage::expose::<$R>(frame, (pixel, id.x), words, sample, film);
             }
         }
     };

@@ -79,15 +79,8 @@ fn branched<R: Scalar>(
 ) -> Scattered<R> {
     let counts = |path: &PathState<R>| counts(launch, path.bounces, path.weight);
     let (first, second) = (counts(&reflected), counts(&refracted));
-    Scattered {
-        light,
-        shadow,
-        next: if first { reflected } else { refracted },
-        goes_on: first || second,
-        other: refracted,
-        waits: first && second,
-        catches: false,
-    }
+    let next = if first { reflected } else { refracted };
+    Scattered { other: refracted, waits: first && second, ..Scattered::once(light, shadow, next, first || second) }
 }
 
 /// A sample of one light as seen from a vertex.

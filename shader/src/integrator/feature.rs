@@ -19,6 +19,8 @@ pub(super) fn at<R: Scalar>(
     let seen = vertex.met(launch);
     let feature = if launch.spec.launch.has(Launch::PLACE) {
         place(launch, &seen)
+    } else if launch.spec.launch.has(Launch::POSITION) {
+        seen.interaction.position
     } else {
         let covering = seen.covering(launch, &context.shading, false);
         let surface = Surface::new(launch.spec.effects, &context.shading, &seen, &covering);
@@ -49,7 +51,7 @@ fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>) -> V3<R> {
 /// The share of white light from everywhere that a surface sends on, in linear RGB: a matt surface's colour, what metal reflects, and
 /// what glass lets pass.
 #[inline(always)]
-fn albedo<R: Scalar>(
+pub(super) fn albedo<R: Scalar>(
     effects: Effects,
     physicals: &[Physical],
     (seen, surface): (&Seen<R>, &Surface<R>),

@@ -1,10 +1,11 @@
 //! Path tracing (thesis 3.4.4; Kajiya, The Rendering Equation, 1986): at each vertex one sample of a light and one of the surface,
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
-use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
+use super::feature::albedo;
+use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::background::gradient;
 use crate::buffer::read;
-use crate::data::{Effects, Frame, Launch, Primitive, numbers};
+use crate::data::{Aovs, Effects, Frame, Launch, Material, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
@@ -12,7 +13,7 @@ use crate::ray::Ray;
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
-use crate::stage::{Caught, PathState, ShadowRay, brightness};
+use crate::stage::{Caught, Contribution, FirstSurface, PathState, ShadowRay, Split, brightness};
 use crate::texture::{Covering, Place};
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
@@ -34,41 +35,73 @@ pub(super) fn at<R: Scalar>(
     }
     let covering = seen.covering(launch, shading, is_last);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
+    let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, &seen));
     if is_last {
-        return Scattered::once(light, ShadowRay::none(), path, false);
+        return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
     let surface = Surface::new(effects, shading, &seen, &covering);
+    if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
+        let albedo = albedo(effects, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
+        let normal = surface.normal.map(|c| c.flush(FAINT));
+        outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
+    }
     let seen = Seen { interaction: lifted(effects, shading, &seen), ..seen };
     if effects.has(Effects::PHYSICAL) {
         let closure = closure(effects, context, (&seen, &surface), &covering);
-        return scattered(launch, lighting, vertex, (&seen, &closure), light);
+        return scattered(launch, context, vertex, (&seen, &closure), (light, outputs));
     }
     let interaction = seen.interaction;
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    scattered(launch, lighting, vertex, (&seen, &lobes), light)
+    scattered(launch, context, vertex, (&seen, &lobes), (light, outputs))
+}
+
+/// The group of lamps that a surface is in, where somebody asks for it.
+#[inline(always)]
+fn group<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, seen: &Seen<R>) -> u32 {
+    let effects = launch.spec.effects;
+    let is_asked = launch.spec.aovs.has(Aovs::GROUPS) || effects.has(Effects::LINKED);
+    if !is_asked || !effects.has(Effects::EMISSIVE) {
+        return 0;
+    }
+    read(lighting.emissions, seen.material()).group()
+}
+
+/// The groups of lamps that do not light a surface.
+#[inline(always)]
+fn unlit<R: Scalar>(launch: &LaunchContext<'_>, materials: &[Material], seen: &Seen<R>) -> u32 {
+    if launch.spec.effects.has(Effects::LINKED) { read(materials, seen.material()).ambient.w } else { 0 }
 }
 
 /// The light of one light, and the next ray, by a surface's closure.
 #[inline(always)]
 fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
-    lighting: &Lighting<'_>,
+    ScatterContext { shading, lighting, .. }: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     (seen, closure): (&Seen<R>, &impl Closure<R>),
-    light: V3<R>,
+    (light, mut outputs): (V3<R>, Outputs<R>),
 ) -> Scattered<R> {
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
     let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent());
     let is_asked = is_lit(launch) && closure.is_rough();
+    let unlit = unlit(launch, shading.materials, seen);
     let lamp = if is_asked {
-        EmitterSample::new(launch, lighting, &view, decisions.x, vertex.draws.pair(bounces))
+        let lamp = EmitterSample::new(launch, lighting, &view, decisions.x, vertex.draws.pair(bounces));
+        let lights = PathState { unlit, ..vertex.path }.is_lit_by(launch.spec.effects, lamp.group);
+        if lights { lamp } else { EmitterSample::none() }
     } else {
         EmitterSample::none()
     };
     let (at, draws) = ((&interaction, view.origin), (decisions.y, decisions.w));
     let (arriving, sample) = closure.eval_and_sample(at, lamp.direction, draws, || vertex.draws.set(bounces + 1));
+    if launch.spec.aovs.has(Aovs::LOBES) && bounces == 0 {
+        let passes = |direction| !interaction.receives(direction);
+        let sampled = Split::new(arriving.value, arriving.diffuse, passes(lamp.direction));
+        let further = Split::new(sample.factor, sample.diffuse, passes(sample.direction));
+        outputs.surface = FirstSurface { sampled, further, ..outputs.surface };
+    }
     let catches = vertex.catches(launch, &seen.primitive);
     // A catcher gets all of the light that is sampled, and none that chance finds.
     let lamp = if catches { EmitterSample { density: EmitterSample::<R>::none().density, ..lamp } } else { lamp };
@@ -85,12 +118,12 @@ fn scattered<R: Scalar>(
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
     // What a lamp's density depends on that the path finds.
     let side = if launch.spec.effects.has(Effects::MANY_LIGHTS) { view.side } else { 0 };
-    let next = PathState { beside: (width, R::splat(side as f32)), ..next };
+    let next = PathState { beside: (width, R::splat(side as f32)), unlit, ..next };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
     let light = if catches { V3::zero() } else { light };
-    Scattered { catches, ..Scattered::once(light, shadow, next, goes_on) }
+    Scattered { catches, outputs, ..Scattered::once(light, shadow, next, goes_on) }
 }
 
 /// What a vertex on a shadow catcher asks for: a sampled light, and the surroundings along the next ray.
@@ -104,7 +137,7 @@ pub(super) fn caught<R: Scalar>(launch: &LaunchContext<'_>, scattered: &Scattere
 #[inline(always)]
 fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> V3<R> {
     let effects = launch.spec.effects;
-    if effects.has(Effects::ENVIRONMENT) {
+    if effects.has(Effects::ENVIRONMENT) || !path.is_lit_by(effects, launch.frame.group) {
         return V3::zero();
     }
     share(launch, path, gradient(effects, launch.frame, path.direction))
@@ -141,7 +174,8 @@ fn emitted<R: Scalar>(
     covering: &Covering<R>,
 ) -> V3<R> {
     let effects = launch.spec.effects;
-    if !effects.has(Effects::EMISSIVE) {
+    let is_lit = vertex.path.is_lit_by(effects, group(launch, lighting, seen));
+    if !effects.has(Effects::EMISSIVE) || !is_lit {
         return V3::zero();
     }
     let Seen { primitive, interaction, .. } = *seen;
@@ -175,7 +209,7 @@ fn sampled_light<R: Scalar>(
     vertex: &Vertex<R>,
     (interaction, view): (&SurfaceInteraction<R>, &Viewpoint<R>),
     sample: &EmitterSample<R>,
-    Scattering { value, density }: Scattering<R>,
+    Scattering { value, density, .. }: Scattering<R>,
 ) -> ShadowRay<R> {
     let (effects, zero) = (launch.spec.effects, R::splat(0.0));
     let mut light = value.times(sample.light).map(|c| c.flush(FAINT));
@@ -241,6 +275,7 @@ mod tests {
             source_primitive: 0,
             weight: V3::zero(),
             bounces: 0,
+            unlit: 0,
             density: 0.0,
             pixel: 0,
             beside: (0.0, 0.0),

@@ -11,7 +11,7 @@ use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, AFTER_LENS, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{CLEARED, Caught, NON_FINITE, PathState, Segment, ShadowRay};
+use crate::stage::{AovSlot, CLEARED, Caught, Contribution, FirstSurface, NON_FINITE, PathState, Segment, ShadowRay};
 use glam::UVec4;
 
 use super::path::weight;
@@ -94,7 +94,8 @@ impl<R: Scalar> Vertex<R> {
         let EmitterSample { direction, limit, .. } = *sample;
         let segment = Segment { origin, direction, limit, source_primitive: interaction.source_primitive(direction) };
         let path = PathState { bounces: self.path.bounces + 1, ..self.path };
-        ShadowRay { segment, light: share(launch, &path, light) }
+        let tag = if launch.spec.aovs.any() { Contribution::<R>::tag(sample.group, path.bounces) } else { 0 };
+        ShadowRay { segment, light: share(launch, &path, light), tag }
     }
 
     /// Is it on a shadow catcher that the camera sees?
@@ -146,13 +147,35 @@ pub(super) struct Scattered<R: Real> {
     pub waits: bool,
     /// Is the vertex on a shadow catcher that the camera sees?
     pub catches: bool,
+    /// What arbitrary output variables ask of it.
+    pub outputs: Outputs<R>,
+}
+
+/// What the film's arbitrary output variables ask of a vertex.
+#[derive(Clone, Copy)]
+pub(super) struct Outputs<R: Real> {
+    /// How the light that it adds at once was found, see [`Contribution`].
+    pub found: u32,
+    /// The group of the lamp that sends it.
+    pub group: u32,
+    /// What it tells as the first.
+    pub surface: FirstSurface<R>,
+}
+
+impl<R: Scalar> Outputs<R> {
+    /// Of light that was found so, of a group of lamps.
+    #[inline(always)]
+    pub fn of(found: u32, group: u32) -> Self {
+        Outputs { found, group, surface: FirstSurface::none() }
+    }
 }
 
 impl<R: Scalar> Scattered<R> {
     /// Of a path that does not branch.
     #[inline(always)]
     pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
-        Scattered { light, shadow, next, goes_on, other: next, waits: false, catches: false }
+        let outputs = Outputs::of(Contribution::<R>::SURFACE, 0);
+        Scattered { light, shadow, next, goes_on, other: next, waits: false, catches: false, outputs }
     }
 }
 
@@ -194,14 +217,19 @@ pub fn scatter<R: Scalar>(
 ) -> bool {
     let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
     let slots = launch.frame.slots;
-    let path = PathState::<R>::load(slots, slot, 0, paths);
-    let bits = launch.spec.launch;
+    let path = PathState::<R>::load(slots, slot, 0, paths).unpacked(launch.spec.effects);
+    let (bits, aovs) = (launch.spec.launch, launch.spec.aovs);
+    let outputs = AovSlot::new(launch.frame, launch.spec, slot);
     let (sum, mut word, mut caught) = if starts {
         (V3::zero(), 0, Caught::nothing())
     } else {
         let (sum, word) = R::load(read(sums, slot));
         let caught = Caught::<R>::load(bits, launch.frame, slot, sums);
-        let arrived = if caught.waits() { V3::zero() } else { ShadowRay::<R>::arrived(slots, slot, shadows, segments) };
+        let (arrived, tag) = ShadowRay::<R>::arrived(slots, slot, shadows, segments);
+        let arrived = if caught.waits() { V3::zero() } else { arrived };
+        if aovs.any() {
+            outputs.add(&Contribution::of_shadow_ray(arrived, tag), sums);
+        }
         (sum + arrived, word, caught.answered(read(shadows, slot)))
     };
     let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
@@ -213,7 +241,10 @@ pub fn scatter<R: Scalar>(
         let is_dark = is_clear || after_catcher;
         caught = if after_catcher { caught.open() } else { caught };
         let light = if is_dark { V3::zero() } else { surroundings(launch, &context.lighting, &path) };
-        Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
+        Scattered {
+            outputs: Outputs::of(Contribution::<R>::SURROUNDINGS, launch.frame.group),
+            ..Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
+        }
     } else if is_hole(launch, &path, primitive_index) {
         word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
         Scattered::once(V3::zero(), ShadowRay::none(), path, false)
@@ -240,6 +271,9 @@ pub fn scatter<R: Scalar>(
         caught = path::caught(launch, &scattered);
     }
     caught.store(bits, launch.frame, slot, sums);
+    if aovs.any() {
+        output(outputs, (starts, path.bounces), &scattered, sums);
+    }
     let (sum, word) = added(sum, word, &scattered);
     write(sums, slot, R::store(sum, word));
     scattered.shadow.store(slots, slot, segments);
@@ -258,7 +292,7 @@ fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive
 #[inline(always)]
 fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
     let (effects, frame) = (launch.spec.effects, launch.frame);
-    if launch.spec.launch.has(Launch::FEATURE) {
+    if launch.spec.launch.has(Launch::FEATURE) || !path.is_lit_by(effects, frame.group) {
         return V3::zero();
     }
     let seen = background(effects, frame, lighting.environment, path.direction, path.bounces == 0);
@@ -284,7 +318,7 @@ fn follow<R: Scalar>(
         return branch(launch.frame.slots, slot, path, scattered, paths);
     }
     if scattered.goes_on {
-        scattered.next.store(launch.frame.slots, slot, 0, paths);
+        scattered.next.packed(launch.spec.effects).store(launch.frame.slots, slot, 0, paths);
     }
     scattered.goes_on
 }
@@ -314,11 +348,34 @@ fn branch<R: Scalar>(
     true
 }
 
+/// Adds a vertex' light to the film's arbitrary output variables.
+#[inline(always)]
+fn output<R: Scalar>(
+    outputs: AovSlot,
+    (starts, bounces): (bool, u32),
+    scattered: &Scattered<R>,
+    sums: &mut [R::Record],
+) {
+    let Outputs { found, group, surface } = &scattered.outputs;
+    if starts {
+        outputs.start(surface, sums);
+    }
+    if is_finite(scattered.light) {
+        let light = Contribution { light: scattered.light, bounces, group: *group, found: *found };
+        outputs.add(&light, sums);
+    }
+}
+
+/// Are all channels finite?
+#[inline(always)]
+fn is_finite<R: Scalar>(v: V3<R>) -> bool {
+    v.x.is_finite() && v.y.is_finite() && v.z.is_finite()
+}
+
 /// A sum with a vertex' light, and the count of its shadow rays. What is not finite is left out and flagged.
 #[inline(always)]
 fn added<R: Scalar>(sum: V3<R>, word: u32, scattered: &Scattered<R>) -> (V3<R>, u32) {
     let (light, asked) = (scattered.light, scattered.shadow.light);
-    let is_finite = |v: V3<R>| v.x.is_finite() && v.y.is_finite() && v.z.is_finite();
     let word = if scattered.shadow.asks() { word + 1 } else { word };
     let word = if is_finite(light) && is_finite(asked) { word } else { word | NON_FINITE };
     (if is_finite(light) { sum + light } else { sum }, word)

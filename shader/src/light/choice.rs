@@ -24,7 +24,7 @@ pub(super) fn picked<R: Scalar>(
     if !launch.spec.effects.has(Effects::MANY_LIGHTS) {
         return of_table(launch.frame.emitters, choice);
     }
-    let steps = read(lighting.emitters, 0).choice.w;
+    let steps = read(lighting.emitters, 0).steps();
     let mut guide = Guide::draw(choice, place);
     if !guide.is_second(steps) {
         let (emitter, own) = of_table(launch.frame.far, guide.word());
@@ -79,7 +79,7 @@ pub(super) fn per_area_of_hit<R: Scalar>(
     if emitter.light.position.w != Emitter::PRIMITIVE || emitter.number() != primitive.number() {
         return R::splat(0.0);
     }
-    let steps = emitter.choice.w;
+    let steps = emitter.steps();
     let found = descend(lighting.nodes, view, probability(STEPS - steps), Guide::trail(emitter.trail()));
     per_area(effects, emission, &emitter, found.probability)
 }

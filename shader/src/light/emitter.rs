@@ -7,7 +7,7 @@
 use super::choice::{per_area, per_area_of_hit, picked};
 use super::{Environment, LightSample, SHORT, Viewpoint};
 use crate::buffer::read;
-use crate::data::{Effects, Emission, Emitter, Light, LightNode, Primitive, numbers};
+use crate::data::{Aovs, Effects, Emission, Emitter, Light, LightNode, Primitive, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
 use crate::sampler::unit;
@@ -40,6 +40,8 @@ pub struct EmitterSample<R: Real> {
     pub light: V3<R>,
     /// How likely it was found.
     pub density: Density<R>,
+    /// The group of the lamp that it is of ([`Aovs::GROUPS`]); 0 for none.
+    pub group: u32,
 }
 
 /// A density over solid angle, as a fraction, since the cosine may be almost zero.
@@ -63,7 +65,7 @@ impl<R: Scalar> EmitterSample<R> {
     pub fn none() -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let density = Density { over: zero, under: one };
-        EmitterSample { direction: V3::new(zero, zero, one), limit: -one, light: V3::zero(), density }
+        EmitterSample { direction: V3::new(zero, zero, one), limit: -one, light: V3::zero(), density, group: 0 }
     }
 
     /// Samples one light of all as seen from a place: `choice` draws which, `place` where on it.
@@ -75,11 +77,24 @@ impl<R: Scalar> EmitterSample<R> {
         choice: u32,
         place: (u32, u32),
     ) -> Self {
-        let (effects, origin) = (launch.spec.effects, view.origin);
         let (emitter, probability) = picked(launch, lighting, view, choice, place);
-        if effects.has(Effects::MANY_LIGHTS) && probability.eq(R::splat(0.0)) {
+        if launch.spec.effects.has(Effects::MANY_LIGHTS) && probability.eq(R::splat(0.0)) {
             return Self::none();
         }
+        let sample = Self::of(launch, lighting, (&emitter, probability), view, place);
+        EmitterSample { group: group(launch, lighting, &emitter), ..sample }
+    }
+
+    /// Samples a light that was chosen with some probability.
+    #[inline(always)]
+    fn of(
+        launch: &LaunchContext<'_>,
+        lighting: &Lighting<'_>,
+        (emitter, probability): (&Emitter, R),
+        view: &Viewpoint<R>,
+        place: (u32, u32),
+    ) -> Self {
+        let (effects, origin) = (launch.spec.effects, view.origin);
         if effects.has(Effects::ENVIRONMENT) && emitter.light.position.w == Emitter::ENVIRONMENT {
             return Environment::new(lighting.environment).sample(place, probability);
         }
@@ -88,11 +103,11 @@ impl<R: Scalar> EmitterSample<R> {
         }
         let primitive = launch.primitive(emitter.light.axis.w);
         let emission = read(lighting.emissions, primitive.material());
-        let per_area = per_area(effects, &emission, &emitter, probability);
+        let per_area = per_area(effects, &emission, emitter, probability);
         let sample = if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             Self::of_sphere(&primitive, (&emission, per_area), origin, place)
         } else {
-            Self::of_plane(launch, lighting, (&primitive, &emitter), (&emission, per_area), (origin, place))
+            Self::of_plane(launch, lighting, (&primitive, emitter), (&emission, per_area), (origin, place))
         };
         if effects.has(Effects::HIDDEN) && primitive.has(Primitive::UNREFLECTED) {
             // No path finds it by chance.
@@ -110,7 +125,7 @@ impl<R: Scalar> EmitterSample<R> {
         let density = Density { over: zero, under: one };
         if effects.has(Effects::DIRECTIONAL) && light.position.w == Light::DIRECTIONAL {
             let light = (colour * probability.reciprocal()).map(|c| c.flush(FAINT));
-            return EmitterSample { direction, limit: R::splat(f32::MAX), light, density };
+            return EmitterSample { direction, limit: R::splat(f32::MAX), light, density, group: 0 };
         }
         let away = (V3::<R>::splat(numbers(light.position)) - origin).map(|c| c.flush(SMALL));
         let distance = away.direction_and_length().1;
@@ -120,7 +135,7 @@ impl<R: Scalar> EmitterSample<R> {
         let inverse = distance.reciprocal().min(R::splat(MOST));
         let light = ((colour * inverse).map(|c| c.flush(FAINT)) * inverse).map(|c| c.flush(FAINT));
         let light = (light * probability.reciprocal()).map(|c| c.flush(FAINT));
-        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density }
+        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density, group: 0 }
     }
 
     /// A triangle or a disk.
@@ -175,7 +190,7 @@ impl<R: Scalar> EmitterSample<R> {
             return Self::none();
         }
         let light = density.share_of(V3::splat(numbers(emission.radiance)));
-        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density }
+        EmitterSample { direction, limit: distance * R::splat(1.0 - SHORT), light, density, group: 0 }
     }
 
     #[inline(always)]
@@ -206,7 +221,7 @@ impl<R: Scalar> EmitterSample<R> {
             return Self::none();
         }
         let light = density.share_of(V3::splat(numbers(emission.radiance)));
-        EmitterSample { direction, limit, light, density }
+        EmitterSample { direction, limit, light, density, group: 0 }
     }
 }
 
@@ -272,6 +287,18 @@ impl<R: Scalar> Cone<R> {
         let two = R::splat(2.0);
         Density { over: (two * (per_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
     }
+}
+
+/// The group that a light is in, where somebody asks for it.
+#[inline(always)]
+fn group(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
+    if !launch.spec.aovs.has(Aovs::GROUPS) && !launch.spec.effects.has(Effects::LINKED) {
+        return 0;
+    }
+    if !launch.spec.effects.has(Effects::EMISSIVE) || emitter.light.position.w != Emitter::PRIMITIVE {
+        return emitter.group();
+    }
+    read(lighting.emissions, launch.primitive(emitter.light.axis.w).material()).group()
 }
 
 /// How often a place on a triangle that is not opaque everywhere is there to send out light.

@@ -172,7 +172,7 @@ impl<'a> Environment<'a> {
         let direction = self.turned(local, true).direction_and_length().0;
         let density = self.likely(row, column, probability);
         let light = density.share_of(self.radiance(direction));
-        EmitterSample { direction, limit: R::splat(f32::MAX), light, density }
+        EmitterSample { direction, limit: R::splat(f32::MAX), light, density, group: 0 }
     }
 }
 

@@ -109,14 +109,15 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     }
 
     /// What the base and what comes out from between facets send to the viewer of light from a direction of the frame on this side,
-    /// with its cosine over pi.
+    /// with its cosine over pi; and what of that the base does.
     #[inline(always)]
-    fn matt(&self, to: V3<R>) -> V3<R> {
+    fn matt(&self, to: V3<R>) -> (V3<R>, V3<R>) {
         let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
         if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
             let (out, left) = self.energy.near_side(self.effects, self.albedos, to);
             let left = if self.layers.is_coated { left } else { R::splat(1.0) };
-            return (self.layers.diffuse * left + out) * cosine;
+            let base = self.layers.diffuse * left;
+            return ((base + out) * cosine, base * cosine);
         }
         let up = V3::splat(Vec3::Z);
         let share = if self.layers.is_coated {
@@ -124,7 +125,8 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         } else {
             self.under
         };
-        self.layers.diffuse * (share * cosine).flush(FAINT)
+        let base = self.layers.diffuse * (share * cosine).flush(FAINT);
+        (base, base)
     }
 
     /// The probabilities of what is matt, on this side and on the far one, and of the facets.
@@ -152,13 +154,14 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     fn on_this_side(&self, to: V3<R>) -> Scattering<R> {
         let h = half(self.viewer, to);
         let (facet, (matt, _, facets)) = (self.facet(h), self.shares());
-        let (mut value, mut density) = (self.matt(to), matt * (to.z * R::splat(INVERSE_PI)));
+        let ((mut value, base), mut density) = (self.matt(to), matt * (to.z * R::splat(INVERSE_PI)));
         if !self.is_smooth {
             let (mirrored, likely) = self.layers.ggx.reflected(self.viewer, to, h);
             value = value + facet.reflected * mirrored;
             density = density + facets * facet.probability * likely;
         }
-        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT) }
+        let diffuse = base.map(|c| c.flush(FAINT));
+        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT), diffuse }
     }
 
     #[inline(always)]
@@ -181,7 +184,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
             value = value + self.layers.through * (facet.rest * passed);
             density = density + facets * (R::splat(1.0) - facet.probability) * likely;
         }
-        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT) }
+        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT), diffuse: V3::zero() }
     }
 
     /// Where a facet of normal `h` sends the path, in the frame: along its mirrored or its refracted ray.
@@ -256,7 +259,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         }
         let agrees = self.agrees(interaction, to, direction);
         let factor = V3::select(agrees, self.smooth_factor(facet, reflects), V3::zero());
-        ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
+        ClosureSample::only(direction, factor, self.leave(interaction, direction))
     }
 
     /// Along a direction whose scattering is known.
@@ -265,14 +268,15 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         &self,
         interaction: &SurfaceInteraction<R>,
         (chosen, direction): (&Chosen<R>, V3<R>),
-        Scattering { value, density }: Scattering<R>,
+        Scattering { value, density, diffuse }: Scattering<R>,
     ) -> ClosureSample<R> {
         let zero = R::splat(0.0);
         // Between facets light may leave on the wrong side, whose density is of other ways to get there.
         let counts = zero.lt(chosen.to.z) == chosen.reflects && zero.lt(density);
         let over = R::select(counts, density, R::splat(1.0)).reciprocal();
-        let factor = V3::select(counts, (value * over).map(|c| c.flush(FAINT)), V3::zero());
-        ClosureSample { direction, factor, density, origin: interaction.scattered_ray_origin(direction) }
+        let of_sample = |part: V3<R>| V3::select(counts, (part * over).map(|c| c.flush(FAINT)), V3::zero());
+        let origin = interaction.scattered_ray_origin(direction);
+        ClosureSample { direction, factor: of_sample(value), density, origin, diffuse: of_sample(diffuse) }
     }
 
     /// Where a ray starts whose direction could be no other: glass magnifies a step beside its own line; a mirror has corners to

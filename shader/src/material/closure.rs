@@ -11,6 +11,8 @@ pub struct Scattering<R: Real> {
     pub value: V3<R>,
     /// The density over solid angle with which [`Closure::sample`] finds that direction.
     pub density: R,
+    /// What of the value the diffuse part of the surface scatters.
+    pub diffuse: V3<R>,
 }
 
 /// A direction in which a path goes on.
@@ -24,6 +26,8 @@ pub struct ClosureSample<R: Real> {
     pub density: R,
     /// Where the ray starts.
     pub origin: V3<R>,
+    /// What of the factor the diffuse part of the surface scatters.
+    pub diffuse: V3<R>,
 }
 
 /// A surface as it is seen along a path.
@@ -65,6 +69,14 @@ impl<R: Scalar> Scattering<R> {
     /// Of a direction that counts for nothing.
     #[inline(always)]
     pub fn none() -> Self {
-        Scattering { value: V3::zero(), density: R::splat(0.0) }
+        Scattering { value: V3::zero(), density: R::splat(0.0), diffuse: V3::zero() }
+    }
+}
+
+impl<R: Scalar> ClosureSample<R> {
+    /// The one direction of a mirror or a lens.
+    #[inline(always)]
+    pub fn only(direction: V3<R>, factor: V3<R>, origin: V3<R>) -> Self {
+        ClosureSample { direction, factor, density: R::splat(0.0), origin, diffuse: V3::zero() }
     }
 }

@@ -89,7 +89,8 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
             return Scattering::none();
         }
         let factor = (cosine * R::splat(INVERSE_PI)).flush(FAINT);
-        Scattering { value: self.colour * factor, density: self.diffuse_probability() * factor }
+        let value = self.colour * factor;
+        Scattering { value, density: self.diffuse_probability() * factor, diffuse: value }
     }
 
     #[inline(always)]
@@ -122,12 +123,12 @@ impl<R: Scalar> Lobes<R> {
             let factor =
                 V3::select(interaction.receives(direction), self.colour * probability.reciprocal(), V3::zero());
             let density = probability * cosine * R::splat(INVERSE_PI);
-            return ClosureSample { direction, factor, density, origin };
+            return ClosureSample { direction, factor, density, origin, diffuse: factor };
         }
         let passes = step >= self.reflected;
         let direction = V3::select(passes, self.specular.refracted, self.specular.mirrored);
         let factor = V3::select(passes, self.specular.lens, self.specular.mirror);
         let origin = self.specular.leave(interaction, direction);
-        ClosureSample { direction, factor, density: R::splat(0.0), origin }
+        ClosureSample::only(direction, factor, origin)
     }
 }

@@ -1,10 +1,10 @@
 //! The film: what the samples of every pixel come to, in sums that have no order. So a picture has the same bits whatever its samples
 //! were parted into: launches, tiles, devices, machines.
 
-use super::{CLEARED, CatcherSums, Caught, NON_FINITE};
+use super::{AOV_WORDS, CLEARED, CatcherSums, Caught, NON_FINITE};
 use crate::buffer::{read, write};
 use crate::camera::Pixel;
-use crate::data::{Frame, Launch, Quanta};
+use crate::data::{Frame, Launch, Quanta, Specialisation};
 use crate::real::{Real, Scalar, V3};
 
 /// A channel of a sample is a whole number of quanta of 2^-40, rounded to single precision before.
@@ -21,10 +21,41 @@ pub const FILM_WORDS: u32 = 10;
 /// Words of a pixel with the squares of its samples' brightness, or of that of its blocks.
 pub const NOISY_FILM_WORDS: u32 = 14;
 
+/// Words of a pixel of a film.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FilmWords {
+    /// Of its light, see [`film_words`].
+    pub light: u32,
+    /// Arbitrary output variables behind them, of [`AOV_WORDS`] words each.
+    pub aovs: u32,
+}
+
+impl FilmWords {
+    /// Of a film of light alone.
+    #[inline(always)]
+    pub fn of_light(light: u32) -> Self {
+        FilmWords { light, aovs: 0 }
+    }
+
+    /// Of the film of a launch of sampled light.
+    #[inline(always)]
+    pub fn sampled(frame: &Frame, spec: Specialisation) -> Self {
+        // Known where there are none.
+        let aovs = if spec.aovs.any() { frame.aovs } else { 0 };
+        FilmWords { light: film_words(spec.launch, true), aovs }
+    }
+
+    /// All of them.
+    #[inline(always)]
+    pub fn all(self) -> u32 {
+        self.light + self.aovs * AOV_WORDS
+    }
+}
+
 /// More words of a pixel that knows shadow catchers: three a sum, and a count.
 const CATCHER_WORDS: u32 = 7;
 
-/// Words of a pixel, with noise or without; one more where clear samples are counted, and more of one that tells noise where shadow
+/// Words of the light of a pixel, with noise or without; one more where clear samples are counted, and more of one that tells noise where shadow
 /// catchers are known.
 #[inline(always)]
 pub fn film_words(launch: Launch, is_noisy: bool) -> u32 {
@@ -182,15 +213,21 @@ pub struct Row {
     pub first: u32,
     /// Its pixels.
     pub columns: u32,
-    /// Words of a pixel, see [`film_words`].
+    /// Words of the light of a pixel, see [`film_words`].
     pub words: u32,
 }
 
 impl Row {
     /// A row of a film of so many columns.
     #[inline(always)]
-    pub fn new(y: u32, columns: u32, words: u32) -> Self {
-        Row { first: y * words * columns, columns, words }
+    pub fn new(y: u32, columns: u32, words: FilmWords) -> Self {
+        Row { first: y * words.all() * columns, columns, words: words.light }
+    }
+
+    /// Where a word of an arbitrary output variable is.
+    #[inline(always)]
+    pub fn aov(self, number: u32, word: u32) -> u32 {
+        self.first + (self.words + number * AOV_WORDS + word) * self.columns
     }
 
     /// Does a pixel have squares?
@@ -218,7 +255,7 @@ impl Row {
 pub fn expose<R: Scalar>(
     frame: &Frame,
     (pixel, slot): (Pixel, u32),
-    words: u32,
+    words: FilmWords,
     sample: impl Fn(u32) -> Sample<R>,
     film: &mut [u32],
 ) {
@@ -243,7 +280,7 @@ pub fn expose<R: Scalar>(
 pub fn expose_blocks<R: Scalar>(
     frame: &Frame,
     (pixel, slot): (Pixel, u32),
-    words: u32,
+    words: FilmWords,
     sample: impl Fn(u32) -> Sample<R>,
     film: &mut [u32],
 ) {
@@ -286,6 +323,8 @@ mod tests {
 
     const SIZE: (u32, u32) = (9, 5);
     const PIXELS: usize = 45;
+    const PLAIN: FilmWords = FilmWords { light: FILM_WORDS, aovs: 0 };
+    const NOISY: FilmWords = FilmWords { light: NOISY_FILM_WORDS, aovs: 0 };
 
     /// `batch` samples in flight of a region of 9x5 pixels.
     fn frame(batch: u32, sample: u32, anew: bool) -> Frame {
@@ -302,7 +341,7 @@ mod tests {
         }
     }
 
-    fn exposed(frame: &Frame, words: u32, film: &mut [u32], sample: impl Fn(u32) -> (f32, u32)) {
+    fn exposed(frame: &Frame, words: FilmWords, film: &mut [u32], sample: impl Fn(u32) -> (f32, u32)) {
         for slot in 0..frame.pixel_slots {
             let pixel = camera::pixel(frame, Order(0), slot);
             let sample = |slot| {
@@ -313,7 +352,7 @@ mod tests {
         }
     }
 
-    fn pixels(film: &[u32], words: u32) -> Vec<PixelSums> {
+    fn pixels(film: &[u32], words: FilmWords) -> Vec<PixelSums> {
         let place = |i: u32| (Row::new(i / SIZE.0, SIZE.0, words), i % SIZE.0);
         (0..PIXELS as u32).map(place).map(|(row, x)| PixelSums::load(film, row, x)).collect()
     }
@@ -340,10 +379,10 @@ mod tests {
                 for &batch in batches {
                     let frame = frame(batch, first, first == 7);
                     let value = |slot| VALUES[(first - 7 + slot / frame.pixel_slots + turned) as usize % 5];
-                    exposed(&frame, NOISY_FILM_WORDS, &mut film, |slot| (value(slot), 2));
+                    exposed(&frame, NOISY, &mut film, |slot| (value(slot), 2));
                     first += batch;
                 }
-                assert!(pixels(&film, NOISY_FILM_WORDS).iter().all(|&pixel| pixel == want), "{batches:?} {turned}");
+                assert!(pixels(&film, NOISY).iter().all(|&pixel| pixel == want), "{batches:?} {turned}");
             }
         }
     }
@@ -351,8 +390,8 @@ mod tests {
     #[test]
     fn every_pixel_has_its_own_slots_and_those_outside_have_none() {
         let frame = frame(2, 0, true);
-        for words in [FILM_WORDS, NOISY_FILM_WORDS] {
-            let mut film = vec![0; words as usize * PIXELS];
+        for words in [PLAIN, NOISY] {
+            let mut film = vec![0; words.light as usize * PIXELS];
             exposed(&frame, words, &mut film, |slot| (slot as f32, 1));
             let found = pixels(&film, words);
             for slot in 0..frame.pixel_slots {
@@ -361,7 +400,7 @@ mod tests {
                     let light = Quanta::of((2 * slot + frame.pixel_slots) as f32, LIGHT_FRACTION, LIGHT_MOST);
                     let PixelSums { red, word, squares, .. } = found[pixel.index as usize];
                     assert_eq!((red, word), (light, 2));
-                    assert_eq!(squares == Quanta::default(), words == FILM_WORDS, "{slot}");
+                    assert_eq!(squares == Quanta::default(), words == PLAIN, "{slot}");
                 }
             }
         }
@@ -372,17 +411,17 @@ mod tests {
         let frame = frame(3, 0, true);
         let words = [3 | NON_FINITE, 4 | NON_FINITE, 5];
         let mut film = vec![0; FILM_WORDS as usize * PIXELS];
-        exposed(&frame, FILM_WORDS, &mut film, |slot| (1.0, words[(slot / frame.pixel_slots) as usize]));
-        assert!(pixels(&film, FILM_WORDS).iter().all(|pixel| pixel.word == 12 | NON_FINITE));
+        exposed(&frame, PLAIN, &mut film, |slot| (1.0, words[(slot / frame.pixel_slots) as usize]));
+        assert!(pixels(&film, PLAIN).iter().all(|pixel| pixel.word == 12 | NON_FINITE));
     }
 
     #[test]
     fn clear_samples_are_counted_beside_shadow_rays() {
         let launch = Launch(Launch::CLEAR);
         for (is_noisy, first) in [(false, 0), (true, 0), (false, 1), (true, 2)] {
-            let (words, frame) = (film_words(launch, is_noisy), frame(3, 0, true));
+            let (words, frame) = (FilmWords::of_light(film_words(launch, is_noisy)), frame(3, 0, true));
             let told = [3 | CLEARED, 4, CLEARED | NON_FINITE];
-            let mut film = vec![5; words as usize * PIXELS];
+            let mut film = vec![5; words.light as usize * PIXELS];
             exposed(&frame, words, &mut film, |slot| (1.0, told[((slot / frame.pixel_slots) + first) as usize % 3]));
             let right = |p: &PixelSums| (p.clear, p.word) == (2, 7 | NON_FINITE);
             assert!(pixels(&film, words).iter().all(right), "{is_noisy} {first}");
@@ -409,7 +448,7 @@ mod tests {
                         let light = value(first + slot / frame.pixel_slots);
                         Sample::of((V3::<f32>::splat(Vec3::new(light, -light, 2.0 * light)), 1))
                     };
-                    expose_blocks::<f32>(&frame, (pixel, slot), NOISY_FILM_WORDS, sample, &mut film);
+                    expose_blocks::<f32>(&frame, (pixel, slot), NOISY, sample, &mut film);
                 }
                 first += blocks * BLOCK;
             }
@@ -418,8 +457,8 @@ mod tests {
         assert!(films[1..].iter().all(|film| *film == films[0]));
         let mut samples = vec![0; NOISY_FILM_WORDS as usize * PIXELS];
         let all = frame(3 * BLOCK, 0, true);
-        exposed(&all, NOISY_FILM_WORDS, &mut samples, |slot| (value(slot / all.pixel_slots), 1));
-        for (own, single) in pixels(&films[0], NOISY_FILM_WORDS).into_iter().zip(pixels(&samples, NOISY_FILM_WORDS)) {
+        exposed(&all, NOISY, &mut samples, |slot| (value(slot / all.pixel_slots), 1));
+        for (own, single) in pixels(&films[0], NOISY).into_iter().zip(pixels(&samples, NOISY)) {
             assert_eq!((own.red, own.green, own.blue, own.word), (single.red, single.green, single.blue, single.word));
             let squares = (f64::from(own.squares.1) * 2f64.powi(32) + f64::from(own.squares.0)) / 2f64.powi(42);
             assert!((squares / wanted - 1.0).abs() < 1e-6 && own.squares.2 == 0, "{squares} {wanted}");

@@ -39,6 +39,7 @@ pub fn generate<R: Scalar>(
         source_primitive: Hit::<R>::NOTHING,
         weight: V3::new(weight, weight, weight),
         bounces: 0,
+        unlit: 0,
         density: R::splat(0.0),
         beside: (R::splat(0.0), R::splat(0.0)),
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),

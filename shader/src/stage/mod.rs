@@ -5,6 +5,7 @@
 //! The first wave of a launch traces primary rays, one for every slot. Each further wave traces, for
 //! the slots that still have one, the next secondary ray.
 
+mod aov;
 mod caught;
 mod film;
 mod generate;
@@ -17,14 +18,15 @@ mod shadow;
 mod together;
 mod trace;
 
+pub use aov::{AOV_WORDS, AovSlot, AovSums, Contribution, FirstSurface, Split, expose_aovs, sum_records};
 pub use caught::{CatcherSums, Caught};
 pub use film::{
-    BLOCK, FILM_WORDS, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION, SQUARE_MOST,
-    Sample, brightness, expose, expose_blocks, film_words,
+    BLOCK, FILM_WORDS, FilmWords, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION,
+    SQUARE_MOST, Sample, brightness, expose, expose_blocks, film_words,
 };
 pub use generate::generate;
 pub use path::{Path, RECORDS};
-pub use path_state::{PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
+pub use path_state::{LINKED_GROUPS, PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
 pub use persistent::persistent;
 pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};

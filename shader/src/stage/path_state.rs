@@ -3,7 +3,7 @@
 use super::segment::NOWHERE;
 use super::{Caught, REACHED, Sample, Segment};
 use crate::buffer::{read, write};
-use crate::data::{Frame, Launch};
+use crate::data::{Effects, Frame, Launch};
 use crate::light::Viewpoint;
 use crate::real::{Real, Scalar, V3};
 use crate::scene::LaunchContext;
@@ -13,6 +13,11 @@ use crate::texture::Cone;
 pub const STATE_RECORDS: u32 = 4;
 /// Records of a shadow ray, likewise, with the light that it asks for.
 pub const SHADOW_RECORDS: u32 = 3;
+
+/// Bits of a path's bounces in memory, of which there are at most 65,536; those above are for groups of lamps.
+const BOUNCES: u32 = 17;
+/// Groups of lamps that surfaces may be unlit by: those without a name, and so many less one with one.
+pub const LINKED_GROUPS: u32 = 32 - BOUNCES;
 
 /// A path's next ray, and what of its light counts.
 #[derive(Clone, Copy)]
@@ -32,6 +37,8 @@ pub struct PathState<R: Real> {
     pub density: R,
     /// The column and, in the upper half, the row of its pixel in the image.
     pub pixel: u32,
+    /// A bit for each group of lamps that does not light where it starts ([`Effects::LINKED`]).
+    pub unlit: u32,
     /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width of the path's [`Cone`]
     /// and, where there are many lights, the side of its [`Viewpoint`].
     pub beside: (R, R),
@@ -44,6 +51,8 @@ pub struct ShadowRay<R: Real> {
     pub segment: Segment<R>,
     /// Linear RGB that reaches the pixel.
     pub light: V3<R>,
+    /// What films with arbitrary output variables remember of it, see [`Contribution::tag`](super::Contribution::tag).
+    pub tag: u32,
 }
 
 impl<R: Scalar> PathState<R> {
@@ -54,7 +63,28 @@ impl<R: Scalar> PathState<R> {
         let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, pixel)) =
             (at(0), at(1), at(2), at(3));
         let beside = (rest.y, rest.z);
-        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, beside }
+        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, beside, unlit: 0 }
+    }
+
+    /// As it lies in memory where some surfaces are not lit by all lamps: groups above its bounces.
+    #[inline(always)]
+    pub fn packed(self, effects: Effects) -> Self {
+        let bounces = if effects.has(Effects::LINKED) { self.bounces | self.unlit << BOUNCES } else { self.bounces };
+        PathState { bounces, ..self }
+    }
+
+    /// As it was before.
+    #[inline(always)]
+    pub fn unpacked(self, effects: Effects) -> Self {
+        let unlit = if effects.has(Effects::LINKED) { self.bounces >> BOUNCES } else { 0 };
+        let bounces = if effects.has(Effects::LINKED) { self.bounces & ((1 << BOUNCES) - 1) } else { self.bounces };
+        PathState { bounces, unlit, ..self }
+    }
+
+    /// Does a group of lamps light where it starts?
+    #[inline(always)]
+    pub fn is_lit_by(&self, effects: Effects, group: u32) -> bool {
+        !effects.has(Effects::LINKED) || (self.unlit >> group) & 1 == 0
     }
 
     /// Paths that wait in this slot, and vertices that it has had, where paths branch.
@@ -116,7 +146,7 @@ impl<R: Scalar> ShadowRay<R> {
     pub fn none() -> Self {
         let direction = V3::splat(glam::Vec3::Z);
         let segment = Segment { origin: V3::zero(), direction, limit: R::splat(NOWHERE), source_primitive: 0 };
-        ShadowRay { segment, light: V3::zero() }
+        ShadowRay { segment, light: V3::zero(), tag: 0 }
     }
 
     /// Does it ask for something?
@@ -131,14 +161,14 @@ impl<R: Scalar> ShadowRay<R> {
         let asks = self.asks();
         let limit = if asks { self.segment.limit } else { R::splat(NOWHERE) };
         Segment { limit, ..self.segment }.store(slots, slot, segments);
-        write(segments, 2 * slots + slot, R::store(V3::select(asks, self.light, V3::zero()), 0));
+        write(segments, 2 * slots + slot, R::store(V3::select(asks, self.light, V3::zero()), self.tag));
     }
 
-    /// The light of a slot's ray that nothing was in the way of, else zero.
+    /// The light of a slot's ray that nothing was in the way of, else zero; and its tag.
     #[inline(always)]
-    pub fn arrived(slots: u32, slot: u32, shadows: &[u32], segments: &[R::Record]) -> V3<R> {
-        let light = R::load(read(segments, 2 * slots + slot)).0;
-        if read(shadows, slot) == REACHED { light } else { V3::zero() }
+    pub fn arrived(slots: u32, slot: u32, shadows: &[u32], segments: &[R::Record]) -> (V3<R>, u32) {
+        let (light, tag) = R::load(read(segments, 2 * slots + slot));
+        (if read(shadows, slot) == REACHED { light } else { V3::zero() }, tag)
     }
 }
 
@@ -155,7 +185,7 @@ pub fn sampled<R: Scalar>(
     if caught.waits() {
         return Sample { light: sum, word, caught: caught.answered(read(shadows, slot)) };
     }
-    Sample { light: sum + ShadowRay::<R>::arrived(frame.slots, slot, shadows, segments), word, caught }
+    Sample { light: sum + ShadowRay::<R>::arrived(frame.slots, slot, shadows, segments).0, word, caught }
 }
 
 #[cfg(test)]
@@ -166,7 +196,7 @@ mod tests {
     fn arrives(light: V3<f32>) -> V3<f32> {
         let mut segments = [Default::default(); SHADOW_RECORDS as usize];
         ShadowRay { light, ..ShadowRay::none() }.store(1, 0, &mut segments);
-        ShadowRay::arrived(1, 0, &[REACHED], &segments)
+        ShadowRay::arrived(1, 0, &[REACHED], &segments).0
     }
 
     #[test]

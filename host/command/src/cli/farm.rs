@@ -45,7 +45,7 @@ pub(super) struct Farm {
 
 /// Options of `render` that no part of a picture takes: what the job says itself, what films do not hold, and files that other
 /// machines may not have.
-const NOT_OF_PARTS: [&str; 18] = [
+const NOT_OF_PARTS: [&str; 17] = [
     "fireflies",
     "all_cameras",
     "turntable",
@@ -57,7 +57,6 @@ const NOT_OF_PARTS: [&str; 18] = [
     "checkpoint",
     "resume",
     "settings",
-    "layers",
     "preview",
     "preview_every",
     "repeat",

@@ -13,6 +13,7 @@ use super::progress;
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::{Film, Part};
+use eyerays::layers;
 use eyerays::view::Region;
 
 pub(super) const EXAMPLES: &str = "\
@@ -53,7 +54,9 @@ impl Merge {
             let picture = film.develop()?;
             let encoding = self.look.encoding(&picture)?;
             super::warn(self.look.beyond_white(&picture, &encoding, &destination)?.as_slice(), quiet);
-            output::write_picture(&picture, &destination, &encoding)?;
+            let layers =
+                if output::check_layers(&destination).is_ok() { layers::all_of_film(&film)? } else { Vec::new() };
+            output::write_layers(&picture, &layers, &destination, &encoding)?;
         }
         if !quiet {
             let parts = super::plural(self.parts.len(), "film");

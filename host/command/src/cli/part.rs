@@ -21,6 +21,11 @@ pub(super) struct PartArgs {
 }
 
 impl PartArgs {
+    /// Are there samples that it leaves out?
+    pub fn has_some_samples(&self) -> bool {
+        self.samples_from.is_some() || self.samples_to.is_some()
+    }
+
     /// The part of a view.
     pub fn of(&self, view: &View) -> Result<View> {
         let (all, size) = (view.range(), view.size());

@@ -28,9 +28,9 @@ use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::denoise::Denoiser;
 use eyerays::fireflies::Buckets;
-use eyerays::layers::{self, Layer};
+use eyerays::layers::{self, Aovs, Layer};
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Integrator, Scene, Settings};
+use eyerays::scene::{Integrator, LightGroups, Scene, Settings};
 use eyerays::scene_io;
 
 pub(super) const EXAMPLES: &str = "\
@@ -67,8 +67,9 @@ pub(super) struct Render {
     device: Option<Devices>,
     #[command(flatten)]
     pub look: Look,
-    /// What an .exr file holds beside the light of each pixel, with commas between
-    #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',', conflicts_with = "samples_from")]
+    /// What an .exr file holds beside the light of each pixel, with commas between; a .film keeps what is summed over samples, and merge
+    /// writes it
+    #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',')]
     layers: Vec<Layer>,
     /// Take noise off the finished picture, by the surfaces that it shows; an .exr file keeps the noisy one as a layer [default: own]
     #[arg(long, value_name = "BY", value_parser = choice::<Denoiser>(), num_args = 0..=1, require_equals = true, default_missing_value = "own", conflicts_with_all = ["tile", "samples_from", "samples_to", "repeat"])]
@@ -146,7 +147,11 @@ impl Render {
         };
         let mut read = Read::scene(scene, &[], self.reading.loading(task.effort.integrator()), quiet)?;
         self.view.aim(&mut read.scene).map_err(|error| error.of(read.path))?;
-        self.view.settings(&read.scene, &task.effort)
+        let settings = self.view.settings(&read.scene, &task.effort)?;
+        self.check_layers(&Destination::from(Path::new("part.film")))?;
+        let integrator = settings.transport.integrator;
+        layers::check(self.kept(integrator), integrator, &LightGroups::of(&read.scene))?;
+        Ok(settings)
     }
 
     /// Checks what can be checked without a scene.
@@ -182,22 +187,45 @@ impl Render {
                 "--preview replaces what it wrote, which standard output can't: name a file with --output",
             ));
         }
-        let is_of_pictures =
-            self.preview || self.denoise.is_some() || self.fireflies.is_some() || !self.layers.is_empty();
+        let is_of_pictures = self.preview || self.denoise.is_some() || self.fireflies.is_some();
         if destination.is_film() && is_of_pictures {
             return Err(Error::new(
-                "--preview, --layers, --fireflies and --denoise are for pictures, not for films: drop them, or name an .exr file",
+                "--preview, --fireflies and --denoise are for pictures, not for films: drop them, or name an .exr file",
             ));
         }
         self.look.check(destination)?;
-        if !self.layers.is_empty() {
-            output::check_layers(destination)?;
-        }
+        self.check_layers(destination)?;
         output::check_apart(
             std::slice::from_ref(destination),
             self.settings.iter().map(PathBuf::as_path).chain([scene]),
         )?;
         output::check_writable(destination)
+    }
+
+    /// Checks that layers have a place.
+    fn check_layers(&self, destination: &Destination) -> Result<()> {
+        let of_pictures = self.layers().into_iter().find(|layer| layer.aov().is_none());
+        match of_pictures {
+            Some(layer) if destination.is_film() || self.part.has_some_samples() => Err(Error::new(format!(
+                "--layers: {layer} is rendered beside a whole picture and is no sum of samples, as a film keeps: leave it out, or render all of an .exr file"
+            ))),
+            _ if self.layers.is_empty() || destination.is_film() => Ok(()),
+            _ => output::check_layers(destination),
+        }
+    }
+
+    /// What films keep for the layers of a picture by an integrator. Others than paths render them one by one, and so does what is
+    /// measured.
+    fn kept(&self, integrator: Integrator) -> Aovs {
+        let mut layers = self.layers();
+        if self.denoise.is_some() {
+            layers.extend(denoising::NEEDED);
+        }
+        let is_alone = |layer: &Layer| matches!(layer, Layer::Albedo | Layer::Normal | Layer::Direct | Layer::Indirect);
+        if self.repeat > 1 || integrator != Integrator::Path {
+            layers.retain(|layer| !is_alone(layer));
+        }
+        layers::asked(&layers)
     }
 
     /// The layers beside the picture, each once.
@@ -241,7 +269,9 @@ impl Task<'_> {
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
-        let (loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
+        let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
+        let kept = self.of.kept(loaded.packed.settings().transport.integrator);
+        loaded.packed = loaded.packed.keeping(kept).map_err(|error| error.of(path))?;
         let shots = self.of.sequence.shots(&scene, camera)?;
         let places = self.places(path, &loaded, &scene, shots)?;
         if self.of.preview {

@@ -145,12 +145,14 @@ impl Studio<'_> {
         place.destination.is_film()
             || place.checkpoint.as_ref().is_some_and(Checkpoint::stays)
             || self.of.denoise.is_some()
+            || layers.iter().any(|layer| self.of.repeat == 1 && layer.aov().is_some())
             || [Layer::Error, Layer::Samples].iter().any(|layer| layers.contains(layer))
     }
 
     /// Renders the layers, and takes noise off the picture by them if that is asked for.
     fn layers(&self, session: &mut Session, place: &Place, rendering: &mut Rendering) -> Result<Layers> {
-        let asked = self.of.layers();
+        // A film keeps its own.
+        let asked = if place.destination.is_film() { Vec::new() } else { self.of.layers() };
         let mut needed = asked.clone();
         if self.of.denoise.is_some() {
             // That is what comes of it, whether it is asked for or not.

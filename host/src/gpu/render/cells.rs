@@ -164,7 +164,7 @@ impl Renderer {
     fn receive_first(&mut self, under_way: &mut VecDeque<UnderWay>) -> Result<CellSums> {
         let UnderWay { cells, films } = under_way.pop_front().expect("one is under way");
         let Cells { plan, spare, .. } = self.cells.as_mut().expect("a lot is of them");
-        let (mut rest, words, mut sums) = (&cells[..], plan.film_words, Vec::with_capacity(cells.len()));
+        let (mut rest, words, mut sums) = (&cells[..], plan.film_words.all(), Vec::with_capacity(cells.len()));
         for (count, film, arriving) in films {
             let (some, others) = rest.split_at(count);
             self.queue.receive(arriving, |_, bytes| {

@@ -8,8 +8,8 @@ use rayon::prelude::*;
 
 use super::range::Range;
 use super::{
-    Background, Camera, Disk, Lens, Light, Material, Mesh, Object, Physical, Primitives, Projection, Scene, Sphere,
-    Stereo, Unplaced,
+    Background, Camera, Disk, Lens, Light, LightGroups, Material, Mesh, Object, Physical, Primitives, Projection,
+    Scene, Sphere, Stereo, Unplaced,
 };
 use crate::error::{Error, Result};
 
@@ -42,6 +42,9 @@ impl Scene {
             scene.number("environment's scale", environment.scale, Range::AMOUNT)?;
         }
         self.lights.iter().enumerate().try_for_each(|(number, of)| light(number, of))?;
+        let groups = LightGroups::of(self);
+        groups.check()?;
+        self.materials.iter().try_for_each(|of| groups.check_lit_by(of))?;
         self.cameras.iter().try_for_each(camera)?;
         self.objects.iter().try_for_each(|of| object(of, self))
     }
@@ -119,16 +122,16 @@ fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
 fn light(number: usize, light: &Light) -> Unplaced<()> {
     let owner = Owner(format!("light {number}"));
     match *light {
-        Light::Point { position, colour } => {
+        Light::Point { position, colour, .. } => {
             owner.place("position", position)?;
             owner.colour("color", colour, Range::AMOUNT)
         }
-        Light::Directional { direction, colour } => {
+        Light::Directional { direction, colour, .. } => {
             owner.place("direction", direction)?;
             owner.colour("color", colour, Range::AMOUNT)?;
             if direction == Vec3::ZERO { owner.refuse("has no direction; say which way it shines") } else { Ok(()) }
         }
-        Light::Spot { position, target, colour, outer, inner, falloff: _ } => {
+        Light::Spot { position, target, colour, outer, inner, .. } => {
             owner.place("position", position)?;
             owner.place("target", target)?;
             owner.colour("color", colour, Range::AMOUNT)?;

@@ -18,6 +18,8 @@ pub struct Description {
     pub hierarchy: Option<quality::Bvh>,
     ambient: Vec3,
     background: Background,
+    #[serde(default)]
+    background_group: String,
     settings: Settings,
     objects: Vec<Object>,
     materials: Vec<Material>,
@@ -33,6 +35,7 @@ impl Description {
             hierarchy,
             ambient: scene.ambient,
             background: scene.background,
+            background_group: scene.background_group.clone(),
             settings: scene.settings,
             objects: scene.objects.clone(),
             materials: scene.materials.clone(),
@@ -74,8 +77,18 @@ impl Description {
     /// # Errors
     /// Textures of other texels.
     pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>, texels: &[u8]) -> Unplaced<Scene> {
-        let Description { hierarchy: _, ambient, background, settings, objects, materials, lights, cameras, textures } =
-            self;
+        let Description {
+            hierarchy: _,
+            ambient,
+            background,
+            background_group,
+            settings,
+            objects,
+            materials,
+            lights,
+            cameras,
+            textures,
+        } = self;
         let mut scene = Scene {
             mesh,
             spheres,
@@ -88,6 +101,7 @@ impl Description {
             cameras,
             background,
             environment: None,
+            background_group,
             ambient,
             settings,
         };

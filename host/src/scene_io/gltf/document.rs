@@ -281,6 +281,8 @@ pub struct Light {
     pub intensity: Option<f64>,
     pub range: Option<f64>,
     pub spot: Spot,
+    /// Anything.
+    pub extras: serde_json::Value,
 }
 
 /// Half angles in radians.

@@ -4,6 +4,7 @@
 use std::f64::consts::FRAC_PI_4;
 
 use glam::{DVec3, Vec3};
+use serde_json::Value;
 
 use super::document::{self, pick};
 use super::node::Placed;
@@ -47,9 +48,11 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
             "ranges of lights are left out: light fades with the square of the distance, and never ends",
         );
     }
+    // Of exporters that write what artists add.
+    let group = light.extras.get("group").and_then(Value::as_str).unwrap_or_default().to_owned();
     Ok(Some(match light.kind.as_str() {
-        "point" => Light::Point { position: view.eye, colour },
-        "directional" => Light::Directional { direction: view.direction, colour },
+        "point" => Light::Point { position: view.eye, colour, group },
+        "directional" => Light::Directional { direction: view.direction, colour, group },
         "spot" => {
             let angles = angles(&light.spot);
             let [outer, inner] = angles.ok_or_else(|| format!("{here}.spot: an angle is out of range; repair it"))?;
@@ -59,7 +62,7 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
             }
             let inner = inner.min(outer);
             let falloff = Falloff::Gltf;
-            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner, falloff }
+            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner, falloff, group }
         }
         other => return Err(format!("{here}.type: {other:?} is none of point, directional and spot; repair it")),
     }))

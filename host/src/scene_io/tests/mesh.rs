@@ -29,6 +29,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         lights: Vec::new(),
         cameras: Vec::new(),
         background: Background::Colour(Vec3::ZERO),
+        background_group: String::new(),
         ambient: Vec3::ZERO,
         settings: Settings::default(),
         hierarchy: None,

@@ -6,8 +6,8 @@ use glam::Vec3;
 
 use super::{Folder, TRIANGLE, assert_refused, budget};
 use crate::scene::{
-    Background, Direct, Falloff, Integrator, Light, Material, Primitives, Projection, Sampler, Scene, Settings,
-    Transport,
+    Background, Direct, Falloff, Integrator, Light, LightGroups, Material, Primitives, Projection, Sampler, Scene,
+    Settings, Transport,
 };
 use crate::scene_io::load::Loading;
 
@@ -41,12 +41,18 @@ fn the_documented_example_loads_as_documented() {
     assert_eq!(scene.ambient, Vec3::splat(0.1));
     assert_eq!(
         scene.lights[0],
-        Light::Point { position: Vec3::new(2.0, 4.0, 3.0), colour: Vec3::new(1.0, 0.9, 0.8) * 0.8 }
+        Light::Point {
+            position: Vec3::new(2.0, 4.0, 3.0),
+            colour: Vec3::new(1.0, 0.9, 0.8) * 0.8,
+            group: "key".to_owned()
+        }
     );
     let Light::Spot { outer, inner, .. } = scene.lights[2] else {
         panic!("{:?}", scene.lights[2]);
     };
     assert_eq!((outer, inner), (20.0, 10.0));
+    assert_eq!((&scene.materials[3].group[..], &scene.background_group[..]), ("key", "sky"));
+    assert_eq!(LightGroups::of(&scene).names(), ["key", "sky"]);
     assert_eq!(scene.materials[0].checker.unwrap().size, 0.5);
     assert_eq!(scene.materials[4].ambient(), scene.materials[4].diffuse);
 }

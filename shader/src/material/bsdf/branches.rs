@@ -11,7 +11,7 @@ impl<R: Scalar> Bsdf<'_, R> {
     pub fn eval_base(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> V3<R> {
         let to = self.local(direction);
         let is_lit = R::splat(0.0).lt(to.z) && interaction.receives(direction);
-        if is_lit { self.matt(to) } else { V3::zero() }
+        if is_lit { self.matt(to).0 } else { V3::zero() }
     }
 
     /// The ray that a facet reflects, and that which passes it; a factor of zero is none. The draws choose the facet.
@@ -53,6 +53,6 @@ impl<R: Scalar> Bsdf<'_, R> {
         let direction = self.world(to);
         let is_right = R::splat(0.0).lt(to.z) == reflects && self.agrees(interaction, to, direction);
         let factor = V3::select(is_right, factor.map(|c| c.flush(FAINT)), V3::zero());
-        ClosureSample { direction, factor, density: R::splat(0.0), origin: self.leave(interaction, direction) }
+        ClosureSample::only(direction, factor, self.leave(interaction, direction))
     }
 }

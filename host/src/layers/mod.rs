@@ -1,0 +1,161 @@
+//! A picture in layers: beside its light what the camera sees, for those who denoise pictures or put them together.
+
+mod kept;
+mod studio;
+mod surface;
+
+use crate::choice::choices;
+use crate::cryptomatte::Cryptomatte;
+use crate::device_scene::Feature;
+use crate::error::Result;
+use crate::job::Job;
+use crate::picture::Picture;
+use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
+use crate::scene::{Camera, Sampler, Scene, Settings};
+use crate::view::Region;
+
+pub use eyerays_shader::data::Aovs;
+pub use kept::{all_of_film, asked, check, names, of_film};
+use studio::{Studio, seen};
+
+choices! {
+    /// What a picture may hold beside the light of each pixel.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+    pub enum Layer {
+        /// All light: the picture itself, which is always there
+        Colour = "colour",
+        /// The share of white light that surfaces send on, by their colours and textures
+        Albedo = "albedo",
+        /// Shading normals in world axes, on the viewer's side
+        Normal = "normal",
+        /// How far in front of the camera's plane the middle of the pixel is, in the scene's units; infinite for nothing
+        Depth = "depth",
+        /// Where in the world that is; zeros for nothing
+        Position = "position",
+        /// Its texture coordinates, the second down; zeros without
+        Uv = "uv",
+        /// The number of the mesh there, as check and info count them; 0 for nothing
+        Object = "object",
+        /// The number of the material there, likewise
+        Material = "material",
+        /// What a picture of 0 bounces shows: the background, what shines, and light that was scattered once
+        Direct = "direct",
+        /// All other light
+        Indirect = "indirect",
+        /// What surfaces emit that the camera sees
+        Emission = "emission",
+        /// What the camera sees of the surroundings
+        Environment = "environment",
+        /// Light that the diffuse part of the surface scatters which the camera sees, and no other surface before
+        DiffuseDirect = "diffuse_direct",
+        /// The same of light that others have scattered before
+        DiffuseIndirect = "diffuse_indirect",
+        /// Light that the surface mirrors, sharply or not, likewise
+        GlossyDirect = "glossy_direct",
+        /// Likewise
+        GlossyIndirect = "glossy_indirect",
+        /// Light that comes through the surface, likewise
+        TransmissionDirect = "transmission_direct",
+        /// Likewise
+        TransmissionIndirect = "transmission_indirect",
+        /// The light of each group of lamps by its name, and of those without one: group_NAME and group_rest
+        LightGroups = "light_groups",
+        /// The standard error of the pixel's brightness, estimated from how its samples differ; infinite of fewer than two
+        Error = "error",
+        /// How many samples the pixel has
+        Samples = "samples",
+        /// The picture as it was before it was denoised
+        Noisy = "noisy",
+        /// Cryptomatte of objects by their names, over the pixel's first 64 samples
+        CryptoObject = "crypto_object",
+        /// Cryptomatte of materials, likewise
+        CryptoMaterial = "crypto_material",
+    }
+}
+
+/// The pixels of a layer, row by row from the top left.
+#[derive(Debug, Clone)]
+pub enum Values {
+    /// Light, linear RGB.
+    Light(Picture),
+    /// Shares of light, linear RGB.
+    Colours(Picture),
+    /// Means of vectors.
+    Vectors(Picture),
+    /// Lengths.
+    Lengths(Vec<f32>),
+    /// Numbers, from 1.
+    Numbers(Vec<u32>),
+    /// Two coordinates, and zero.
+    Coordinates(Picture),
+    /// Shares of names.
+    Shares(Cryptomatte),
+    /// Light in parts, each with its name.
+    Parts(Vec<(String, Picture)>),
+}
+
+impl Values {
+    /// How many pixels there are.
+    pub fn pixels(&self) -> usize {
+        match self {
+            Values::Light(picture)
+            | Values::Colours(picture)
+            | Values::Vectors(picture)
+            | Values::Coordinates(picture) => picture.pixels.len(),
+            Values::Lengths(lengths) => lengths.len(),
+            Values::Numbers(numbers) => numbers.len(),
+            Values::Shares(matte) => matte.pixels(),
+            Values::Parts(parts) => parts.first().map_or(0, |(_, picture)| picture.pixels.len()),
+        }
+    }
+}
+
+/// The layers beside a picture of the session's job: those that its film keeps ([`Job::keeping`]), and others rendered, each with as many
+/// samples as the picture got, and with its numbers drawn for the same places. The session goes on with the job that it had.
+///
+/// # Errors
+/// As [`Session::turn`] and [`Session::render`].
+pub fn render(
+    session: &mut Session,
+    (scene, camera): (&Scene, &Camera),
+    rendering: &Rendering,
+    layers: &[Layer],
+) -> Result<Vec<(Layer, Values)>> {
+    let job = session.job().clone();
+    let settings = Settings { spp: rendering.samples, ..*job.settings() };
+    let mut studio = Studio::new(session, camera, rendering.region, settings);
+    let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
+    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
+    session.turn(&job)?;
+    rendered
+}
+
+/// What can be seen before a GPU's driver has compiled the kernels of a picture: the colours of its surfaces at the middle of each
+/// pixel of a part of the image, by this many threads of the CPU, 0 for one a core.
+///
+/// # Errors
+/// As [`Backend::open`] and [`Session::render`].
+pub fn preview(job: &Job, camera: &Camera, window: Region, threads: usize) -> Result<Picture> {
+    at_middles(job, camera, Feature::Albedo, window, threads)
+}
+
+/// How far in front of a camera's plane what the middle of a pixel shows is, in the scene's units; or from the camera, if it goes all
+/// around.
+///
+/// # Errors
+/// There is no such pixel, or as [`preview`].
+pub fn depth(job: &Job, camera: &Camera, (x, y): (u32, u32)) -> Result<Option<f32>> {
+    let pixel = Region { x, y, width: 1, height: 1 };
+    let [depth, low, high] = at_middles(job, camera, Feature::Place, pixel, 1)?.pixels[0];
+    let scale = job.normalisation().scale;
+    Ok((low + high > 0.0).then_some((f64::from(depth) / scale) as f32))
+}
+
+/// A feature at the middle of each pixel of a part of the image, by this many threads of the CPU.
+fn at_middles(job: &Job, camera: &Camera, feature: Feature, window: Region, threads: usize) -> Result<Picture> {
+    let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*job.settings() };
+    let job = job.with(middle)?.showing(Some(feature));
+    let pinhole = Camera { lens: None, ..camera.clone() };
+    Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?, 1, &|_| ())?.picture)
+}

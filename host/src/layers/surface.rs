@@ -1,0 +1,44 @@
+//! What of a scene a pixel shows.
+
+use glam::{DVec3, Vec3};
+
+use crate::scene::Scene;
+
+/// The primitive that a pixel of [`Feature::Place`](crate::device_scene::Feature::Place) shows.
+pub fn primitive([_, low, high]: [f32; 3]) -> Option<usize> {
+    (low as usize + ((high as usize) << 16)).checked_sub(1)
+}
+
+/// The number of a primitive's material, from 0.
+pub fn material(scene: &Scene, primitive: usize) -> u32 {
+    let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
+    if let Some(&material) = scene.mesh.materials.get(primitive) {
+        return material;
+    }
+    let round = primitive - triangles;
+    scene.spheres.get(round).map_or_else(|| scene.disks[round - spheres].material, |sphere| sphere.material)
+}
+
+/// The first texture coordinates of a triangle at a place in world units; zeros where it has none, and of other primitives.
+pub fn texture_coordinates(scene: &Scene, primitive: usize, at: [f32; 3]) -> [f32; 2] {
+    let mesh = &scene.mesh;
+    let Some(corners) = mesh.triangles.get(primitive).filter(|_| !mesh.coordinates[0].is_empty()) else {
+        return [0.0; 2];
+    };
+    let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());
+    let weights = barycentric([a, b, c], Vec3::from(at).as_dvec3());
+    let of = corners.map(|corner| mesh.coordinates[0][corner as usize].as_dvec2());
+    (of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2]).as_vec2().to_array()
+}
+
+/// Weights of a triangle's corners at the place of its plane that is nearest to a point; of one without area those of its first corner.
+fn barycentric([a, b, c]: [DVec3; 3], at: DVec3) -> [f64; 3] {
+    let normal = (b - a).cross(c - a);
+    let square = normal.length_squared();
+    if square == 0.0 {
+        return [1.0, 0.0, 0.0];
+    }
+    let second = (at - a).cross(c - a).dot(normal) / square;
+    let third = (b - a).cross(at - a).dot(normal) / square;
+    [1.0 - second - third, second, third]
+}

@@ -52,6 +52,11 @@ impl CheckpointArgs {
         self.checkpoint.is_some()
     }
 
+    /// Is a film to be kept or gone on with?
+    pub fn is_asked(&self) -> bool {
+        self.is_named() || self.resume
+    }
+
     /// For a picture; none where nothing can be kept beside it. What is there is not replaced unless it is gone on with.
     pub fn beside(&self, destination: &Destination, quiet: bool) -> Result<Option<Checkpoint>> {
         if self.is_named() && destination.is_film() {

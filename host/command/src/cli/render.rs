@@ -218,7 +218,8 @@ impl Render {
     /// measured.
     fn kept(&self, integrator: Integrator) -> Aovs {
         let mut layers = self.layers();
-        if self.denoise.is_some() {
+        // A film that is gone on with may be without them: then they are rendered after the picture.
+        if self.denoise.is_some() && !self.keeping.is_asked() {
             layers.extend(denoising::NEEDED);
         }
         let is_alone = |layer: &Layer| matches!(layer, Layer::Albedo | Layer::Normal | Layer::Direct | Layer::Indirect);

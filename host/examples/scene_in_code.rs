@@ -62,6 +62,7 @@ fn scene() -> Scene {
         spheres: Vec::new(),
         disks: Vec::new(),
         objects: Vec::new(),
+        animations: Vec::new(),
         files: Vec::new(),
         materials: vec![plain, mirror],
         lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE, group: String::new() }],

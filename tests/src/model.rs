@@ -10,6 +10,7 @@ pub fn empty() -> Scene {
         spheres: Vec::new(),
         disks: Vec::new(),
         objects: Vec::new(),
+        animations: Vec::new(),
         files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),

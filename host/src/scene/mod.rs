@@ -1,6 +1,7 @@
 //! A scene in world units, as files describe it and before anything is packed for a device. [`scene_io`](crate::scene_io) reads and
 //! writes it.
 
+mod animation;
 mod camera;
 mod check;
 mod environment;
@@ -26,6 +27,7 @@ mod texture;
 mod transport;
 mod visibility;
 
+pub use animation::Animation;
 pub use camera::Camera;
 pub use environment::Environment;
 pub use falloff::Falloff;
@@ -71,6 +73,8 @@ pub struct Scene {
     pub disks: Vec<Disk>,
     /// Which triangles, spheres and disks came of what, in file order; together all of them.
     pub objects: Vec<Object>,
+    /// How the file that it came from may move; it has the shape of one moment.
+    pub animations: Vec<Animation>,
     /// The meshes, material files and pictures that it was read from, beside the scene file itself.
     pub files: Vec<std::path::PathBuf>,
     /// What the mesh's materials index; never empty.

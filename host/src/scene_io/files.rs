@@ -15,7 +15,7 @@ use super::table::Table;
 use super::{Warning, WarningKind};
 use super::{file, mesh_table, xyzr};
 use crate::error::Result;
-use crate::scene::Sphere;
+use crate::scene::{Animation, Sphere};
 
 /// What a scene file has of which its meshes may have others.
 #[derive(Default, Clone, Copy)]
@@ -41,6 +41,8 @@ pub struct Files<'p> {
     pub warnings: Vec<Warning>,
     /// Every file that was read, material files too.
     pub paths: Vec<PathBuf>,
+    /// How they may move.
+    pub animations: Vec<Animation>,
 }
 
 impl<'p> Files<'p> {
@@ -56,6 +58,7 @@ impl<'p> Files<'p> {
             spheres: HashMap::new(),
             warnings: Vec::new(),
             paths: Vec::new(),
+            animations: Vec::new(),
         }
     }
 
@@ -78,7 +81,11 @@ impl<'p> Files<'p> {
     pub fn mesh(&mut self, path: &Path) -> Result<&Obj> {
         if !self.meshes.contains_key(path) {
             let mut obj = match is_gltf(path) {
-                true => meshes_of(path, gltf::load(path, self.budget, self.images.loading)?, self.has),
+                true => {
+                    let gltf = gltf::load(path, self.budget, self.images.loading.clone())?;
+                    self.animations.extend(gltf.animations.iter().cloned());
+                    meshes_of(path, gltf, self.has)
+                }
                 false => read_mesh(path, self.budget, &mut self.images, self.is_covered)?,
             };
             self.warnings.append(&mut obj.warnings);

@@ -5,7 +5,6 @@ use std::path::Path;
 
 use glam::Vec3;
 
-use super::LightUnit;
 use super::binary;
 use super::budget::Budget;
 use super::document::Surroundings;
@@ -21,6 +20,7 @@ use super::mesh_table::{self, Placed};
 use super::obj::Obj;
 use super::source::Source;
 use super::table::Table;
+use super::{LightUnit, Moment};
 use super::{Warning, WarningKind};
 use super::{camera_table, document};
 use crate::error::{Error, Result};
@@ -44,7 +44,7 @@ pub fn load(path: &Path) -> Result<(Scene, Vec<Warning>)> {
 }
 
 /// How a scene is read.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Loading {
     /// May models name material files, pictures and buffers outside their folders? Those of strangers should not.
     pub allow_outside: bool,
@@ -53,6 +53,8 @@ pub struct Loading {
     pub light_unit: Option<LightUnit>,
     /// Which integrator will draw it, if that is known: under paths the light `Ke` of MTL files shines.
     pub integrator: Option<Integrator>,
+    /// When a glTF file is looked at that moves.
+    pub moment: Moment,
 }
 
 /// As [`load`], in this way.
@@ -107,14 +109,14 @@ fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Ve
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let Gltf { obj, lights, cameras, aspect } = gltf::load(path, budget, loading)?;
+    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading)?;
     let (scene, warnings) = bare(path, obj)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
     let mut settings = of_paths();
     settings.size = aspect.map_or(settings.size, frame::size);
-    let scene = Scene { lights, cameras, background, environment, ambient: Vec3::ZERO, settings, ..scene };
+    let scene = Scene { lights, cameras, background, environment, ambient: Vec3::ZERO, settings, animations, ..scene };
     Ok((framed(path, scene)?, warnings))
 }
 
@@ -143,6 +145,7 @@ fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
         spheres,
         disks,
         objects: if objects.is_empty() { whole } else { objects },
+        animations: Vec::new(),
         files: libraries,
         materials,
         lights: frame::lights(),
@@ -221,6 +224,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         spheres,
         disks,
         objects,
+        animations: files.animations,
         files: files.paths.into_iter().chain(files.images.paths()).collect(),
         materials,
         lights: lights.unwrap_or_else(frame::lights),

@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::plural;
 use crate::error::printable;
-use eyerays::scene::{Camera, Projection, Scene, default_camera};
+use eyerays::scene::{Animation, Camera, Projection, Scene, default_camera};
 
 /// The most meshes and the most materials that are told one by one as text.
 const MOST: usize = 50;
@@ -41,9 +41,11 @@ impl<'a> Outline<'a> {
             |camera| json!({ "eye": camera.eye.to_array(), "target": camera.target.to_array(), "fov": camera.projection.fov() }),
         );
         let materials = self.scene.materials.iter().map(|material| &material.name);
+        let animations = self.scene.animations.iter().map(|of| json!({ "name": of.name, "seconds": of.seconds }));
         json!({
             "bounds": bounds(self.scene.bounds()),
             "default_camera": camera,
+            "animations": animations.collect::<Vec<_>>(),
             "materials": materials.collect::<Vec<_>>(),
             "meshes": meshes.collect::<Vec<_>>(),
         })
@@ -71,6 +73,11 @@ impl fmt::Display for Outline<'_> {
             writeln!(out, "mesh {}: {name}, {primitives}, {}", number + 1, range(object.bounds))?;
         }
         more(out, objects.len())?;
+        let animations = &self.scene.animations;
+        for Animation { name, seconds } in animations.iter().take(MOST) {
+            writeln!(out, "animation: {}, {seconds:.3} s", printable(name))?;
+        }
+        more(out, animations.len())?;
         let materials = &self.scene.materials;
         for (number, material) in materials.iter().enumerate().take(MOST) {
             writeln!(out, "material {}: {}", number + 1, printable(&material.name))?;

@@ -1,6 +1,7 @@
 //! Reading a scene for a command.
 
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
@@ -9,7 +10,7 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use eyerays::scene::{Integrator, Scene};
 use eyerays::scene_io;
-use eyerays::scene_io::{LightUnit, Loading};
+use eyerays::scene_io::{AnimationWish, LightUnit, Loading, Moment};
 
 use super::choice::choice;
 use super::progress;
@@ -17,7 +18,7 @@ use crate::error::Result;
 use crate::output::{self, Destination};
 
 /// How a scene's files are read.
-#[derive(Args, Clone, Copy)]
+#[derive(Args, Clone)]
 pub(super) struct Reading {
     /// Read what models name outside their folders too, for files that you trust
     #[arg(long, help_heading = "View")]
@@ -25,13 +26,37 @@ pub(super) struct Reading {
     /// In what unit a glTF file has its lights [default: that of what wrote it]
     #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>(), help_heading = "View")]
     light_unit: Option<LightUnit>,
+    /// How a glTF file stands so many seconds after the start of an animation [default: 0]
+    #[arg(long, value_name = "S", value_parser = number, allow_hyphen_values = true, help_heading = "View")]
+    time: Option<f64>,
+    /// Which of a glTF file's animations that is, by its name or its number from 0; none is how it stands at rest [default: 0]
+    #[arg(long, value_name = "NAME", value_parser = wish, help_heading = "View")]
+    animation: Option<AnimationWish>,
 }
 
 impl Reading {
     /// For an integrator, if it is known before the scene is.
-    pub fn loading(self, integrator: Option<Integrator>) -> Loading {
-        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator }
+    pub fn loading(&self, integrator: Option<Integrator>) -> Loading {
+        let moment = Moment { animation: self.animation.clone(), seconds: self.time };
+        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator, moment }
     }
+
+    /// The same for a picture of an animation, at other seconds.
+    pub fn at(&self, seconds: f64) -> Reading {
+        Reading { time: Some(seconds), ..self.clone() }
+    }
+}
+
+fn wish(text: &str) -> std::result::Result<AnimationWish, Infallible> {
+    Ok(AnimationWish::of(text))
+}
+
+/// A finite number.
+fn number(text: &str) -> std::result::Result<f64, String> {
+    text.parse()
+        .ok()
+        .filter(|number: &f64| number.is_finite())
+        .ok_or_else(|| "write seconds, for example 1.5".to_owned())
 }
 
 /// What a scene file is called that comes from standard input.

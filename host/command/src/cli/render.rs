@@ -21,7 +21,7 @@ use super::part::PartArgs;
 use super::progress;
 use super::reading::{self, Read, Reading};
 use super::seconds;
-use super::sequence::{self, SequenceArgs, Shot};
+use super::sequence::{self, Instant, SequenceArgs, Shot};
 use super::shot::{Place, Studio, each};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
@@ -46,6 +46,7 @@ Examples:
   eyerays render scenes/room.toml --noise 0.02 -o room.png
   eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film
   eyerays render model.glb --turntable 36 -o 'turn-{frame:04}.png'
+  eyerays render fox.glb --animation Run --frames 0..24 --fps 24 -o 'fox-{frame:04}.png'
   eyerays render scenes/ --all-cameras -o '{name}-{camera}.png'";
 
 #[derive(Args)]
@@ -131,11 +132,16 @@ impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let scenes = sequence::scenes(&self.scenes)?;
         let task = self.task(quiet)?;
-        if scenes.len() > 1 {
+        let instants = self.sequence.instants()?;
+        if scenes.len() > 1 || instants.len() > 1 {
             self.check_many()?;
+        }
+        if scenes.len() > 1 {
             task.check_names(&scenes)?;
         }
-        each(&scenes, |scene| task.pictures(scene))
+        let of_scene = |scene| instants.iter().map(move |&instant| (scene, instant));
+        let pictures: Vec<(&PathBuf, Option<Instant>)> = scenes.iter().flat_map(of_scene).collect();
+        each(&pictures, |&(scene, instant)| task.pictures(scene, instant))
     }
 
     /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is
@@ -254,8 +260,8 @@ impl Task<'_> {
         sequence::check_distinct(&scenes.iter().map(of).collect::<Result<Vec<_>>>()?.concat())
     }
 
-    /// Renders the pictures of a scene.
-    fn pictures(&self, path: &Path) -> Result<ExitCode> {
+    /// Renders the pictures of a scene, at an instant of its animation.
+    fn pictures(&self, path: &Path, instant: Option<Instant>) -> Result<ExitCode> {
         // A wrong name shows before a scene is read, which may take long, unless it is of what only the scene tells.
         if !self.names_cameras() {
             for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
@@ -263,9 +269,16 @@ impl Task<'_> {
             }
         }
         let mut effort = self.effort;
-        let loading = self.of.reading.loading(effort.integrator());
+        let reading = instant.map(|instant| self.of.reading.at(instant.seconds));
+        let loading = reading.as_ref().unwrap_or(&self.of.reading).loading(effort.integrator());
         let read = Read::scene(path, &[], loading, self.quiet)?;
         let path = reading::called(path);
+        if instant.is_some() && read.scene.animations.is_empty() {
+            return Err(Error::file(
+                path,
+                "it has no animation, whose pictures --frames and --frame are; leave them out",
+            ));
+        }
         effort = self.of.noise.effort(effort, &read.scene)?;
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
@@ -273,7 +286,7 @@ impl Task<'_> {
         let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
         let kept = self.of.kept(loaded.packed.settings().transport.integrator);
         loaded.packed = loaded.packed.keeping(kept).map_err(|error| error.of(path))?;
-        let shots = self.of.sequence.shots(&scene, camera)?;
+        let shots = self.of.sequence.shots(&scene, camera, instant)?;
         let places = self.places(path, &loaded, &scene, shots)?;
         if self.of.preview {
             self.preview(&loaded, &places)?;

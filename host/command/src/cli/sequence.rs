@@ -14,7 +14,7 @@ use eyerays::scene::{Camera, Projection, Scene};
 use glam::Vec3;
 
 /// Several pictures of a scene.
-#[derive(Args)]
+#[derive(Args, Default)]
 #[command(next_help_heading = "Pictures")]
 pub(super) struct SequenceArgs {
     /// Render from every camera of the scene
@@ -23,16 +23,30 @@ pub(super) struct SequenceArgs {
     /// Turn the camera around its target, all the way in N pictures
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
     turntable: Option<u32>,
-    /// Of a turntable only the pictures A up to, but not including, B, counted from 0
-    #[arg(long, value_name = "A..B", value_parser = frames, requires = "turntable")]
+    /// The pictures A up to, but not including, B, counted from 0: of a turntable, or of an animation
+    #[arg(long, value_name = "A..B", value_parser = frames)]
     frames: Option<Range<u32>>,
+    /// The picture N of an animation, counted from 0
+    #[arg(long, value_name = "N", conflicts_with = "frames")]
+    frame: Option<u32>,
+    /// Pictures of an animation a second [default: 24]
+    #[arg(long, value_name = "F", value_parser = rate)]
+    fps: Option<f64>,
 }
 
 /// A picture of a scene.
 pub(super) struct Shot {
     pub camera: Camera,
-    /// Its number in a turn.
+    /// Its number in a turn or an animation.
     frame: Option<u32>,
+}
+
+/// A picture of an animation.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Instant {
+    frame: u32,
+    /// After the animation's start.
+    pub seconds: f64,
 }
 
 impl Shot {
@@ -55,17 +69,50 @@ impl SequenceArgs {
         Ok(Some(frames))
     }
 
-    /// The pictures of a scene, from this camera unless all are asked for.
-    pub fn shots(&self, scene: &Scene, camera: Camera) -> Result<Vec<Shot>> {
+    /// The pictures of an animation, or one that says nothing of when. A turntable's stand still unless they are so many a second.
+    ///
+    /// # Errors
+    /// Pictures a second without any picture of an animation, or too many.
+    pub fn instants(&self) -> Result<Vec<Option<Instant>>> {
+        const MOST: usize = 1_000_000;
+        let frames = match (self.frame, &self.frames) {
+            (Some(frame), _) => frame..frame.saturating_add(1),
+            (None, Some(frames)) => frames.clone(),
+            (None, None) if self.fps.is_some() => {
+                return Err(Error::new("--fps: say which pictures of the animation, with --frames A..B or --frame N"));
+            }
+            (None, None) => return Ok(vec![None]),
+        };
+        if self.turntable.is_some() && self.fps.is_none() && self.frame.is_none() {
+            return Ok(vec![None]);
+        }
+        if frames.len() > MOST {
+            return Err(Error::new(format!(
+                "--frames: {} pictures are too many; ask for {MOST} at most",
+                frames.len()
+            )));
+        }
+        self.turn()?;
+        let fps = self.fps.unwrap_or(24.0);
+        Ok(frames.map(|frame| Some(Instant { frame, seconds: f64::from(frame) / fps })).collect())
+    }
+
+    /// The pictures of a scene, from this camera unless all are asked for; of an animation those of an instant.
+    pub fn shots(&self, scene: &Scene, camera: Camera, instant: Option<Instant>) -> Result<Vec<Shot>> {
         let cameras = if self.all_cameras { scene.cameras.clone() } else { vec![camera] };
-        let (frames, count) = (self.turn()?, f64::from(self.turntable.unwrap_or(1)));
+        let count = f64::from(self.turntable.unwrap_or(1));
+        let frames = match instant {
+            Some(Instant { frame, .. }) => Some(frame..frame.saturating_add(1)),
+            None => self.turn()?,
+        };
         Ok(cameras.into_iter().flat_map(|camera| turned(camera, frames.clone(), count)).collect())
     }
 
     /// The name of a picture where none was given.
     fn default_name(&self) -> String {
         let camera = if self.all_cameras { "-{camera}" } else { "" };
-        let frame = if self.turntable.is_some() { "-{frame:04}" } else { "" };
+        let is_one = self.turntable.is_none() && self.frames.is_none() && self.frame.is_none();
+        let frame = if is_one { "" } else { "-{frame:04}" };
         format!("{{name}}{camera}{frame}.png")
     }
 
@@ -183,6 +230,12 @@ pub(super) fn scenes(paths: &[PathBuf]) -> Result<Vec<PathBuf>> {
     Ok(scenes)
 }
 
+/// Pictures a second.
+fn rate(text: &str) -> std::result::Result<f64, String> {
+    let rate = text.parse().ok().filter(|rate: &f64| *rate > 0.0 && rate.is_finite());
+    rate.ok_or_else(|| "write a number above 0, for example 25".to_owned())
+}
+
 /// `A..B`.
 fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
     let ends = text.split_once("..").and_then(|(a, b)| Some(a.trim().parse().ok()?..b.trim().parse().ok()?));
@@ -222,7 +275,7 @@ mod tests {
 
     #[test]
     fn two_pictures_in_one_place_are_refused() {
-        let sequence = SequenceArgs { all_cameras: false, turntable: Some(3), frames: None };
+        let sequence = SequenceArgs { turntable: Some(3), ..SequenceArgs::default() };
         let shots = turned(camera("a"), Some(0..3), 3.0);
         let places = |output: &str| sequence.destinations(Some(output.as_ref()), "s/room.toml".as_ref(), &shots);
         assert!(places("x.png").unwrap_err().message.contains("{frame:04}"));
@@ -242,10 +295,26 @@ mod tests {
     }
 
     #[test]
+    fn pictures_of_an_animation_are_so_many_a_second() {
+        let seconds = |args: &SequenceArgs| {
+            let instants = args.instants().unwrap().into_iter();
+            instants.map(|instant| instant.map(|instant| instant.seconds)).collect::<Vec<_>>()
+        };
+        let args = |fps, frame, frames, turntable| SequenceArgs { fps, frame, frames, turntable, all_cameras: false };
+        assert_eq!(seconds(&args(None, None, None, None)), [None]);
+        assert_eq!(seconds(&args(None, None, Some(3..5), None)), [Some(0.125), Some(4.0 / 24.0)]);
+        assert_eq!(seconds(&args(Some(10.0), Some(7), None, None)), [Some(0.7)]);
+        assert_eq!(seconds(&args(None, None, Some(3..5), Some(8))), [None], "of a turn that stands still");
+        assert_eq!(seconds(&args(Some(2.0), None, Some(3..5), Some(8))), [Some(1.5), Some(2.0)]);
+        assert!(args(Some(2.0), None, None, None).instants().is_err());
+        assert!(args(Some(2.0), None, Some(3..9), Some(8)).instants().is_err());
+    }
+
+    #[test]
     fn frames_are_some_of_the_turn() {
         assert_eq!(frames("3..9"), Ok(3..9));
         assert!(["3", "9..3", "a..b", "3..=9"].iter().all(|text| frames(text).is_err()));
-        let sequence = SequenceArgs { all_cameras: false, turntable: Some(8), frames: Some(3..9) };
+        let sequence = SequenceArgs { turntable: Some(8), frames: Some(3..9), ..SequenceArgs::default() };
         assert!(sequence.turn().unwrap_err().message.contains("0..8"));
     }
 }

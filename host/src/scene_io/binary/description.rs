@@ -94,6 +94,7 @@ impl Description {
             spheres,
             disks,
             objects,
+            animations: Vec::new(),
             files: Vec::new(),
             hierarchy: None,
             materials,

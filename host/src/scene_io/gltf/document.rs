@@ -6,7 +6,7 @@ use std::fmt;
 use std::marker::PhantomData;
 use std::ops::Deref;
 
-use serde::de::{Error, IgnoredAny, SeqAccess, Visitor};
+use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
 use super::shading::{Extensions, Material};
@@ -79,7 +79,7 @@ pub struct Document {
     pub samplers: List<Sampler>,
     pub cameras: List<Camera>,
     pub skins: List<Skin>,
-    pub animations: List<IgnoredAny>,
+    pub animations: List<Animation>,
     pub extensions: DocumentExtensions,
 }
 
@@ -141,6 +141,36 @@ pub struct LightOf {
 pub struct Skin {
     pub joints: Vec<usize>,
     pub inverse_bind_matrices: Option<usize>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Animation {
+    pub name: Option<String>,
+    pub channels: List<Channel>,
+    pub samplers: List<AnimationSampler>,
+}
+
+/// What an animation changes.
+#[derive(Deserialize)]
+pub struct Channel {
+    pub sampler: usize,
+    pub target: Target,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Target {
+    pub node: Option<usize>,
+    pub path: String,
+}
+
+/// Accessors of times and of values.
+#[derive(Deserialize)]
+pub struct AnimationSampler {
+    pub input: usize,
+    pub output: usize,
+    pub interpolation: Option<String>,
 }
 
 #[derive(Deserialize, Default)]

@@ -4,6 +4,7 @@
 //! allocated for them, and no index is followed unchecked.
 
 mod accessor;
+mod animation;
 mod buffer;
 mod camera;
 mod component;
@@ -31,6 +32,7 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 
 use self::accessor::Accessors;
+use self::animation::Pose;
 use self::buffer::Buffers;
 use self::camera::Cameras;
 use self::document::{Asset, Document};
@@ -45,7 +47,7 @@ use super::neighbours::Neighbours;
 use super::obj::Obj;
 use super::{LightUnit, Loading, file};
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Light, Mesh, Object, Unplaced};
+use crate::scene::{Animation, Camera, Light, Mesh, Object, Unplaced};
 
 /// A scene but for its surroundings.
 #[derive(Debug)]
@@ -57,11 +59,13 @@ pub struct Gltf {
     pub lights: Vec<Light>,
     /// Likewise, each with a name of its own.
     pub cameras: Vec<Camera>,
+    /// In the order of the file.
+    pub animations: Vec<Animation>,
     /// Width over height of the picture of the first camera, if it says so.
     pub aspect: Option<f64>,
 }
 
-/// Reads a `.gltf` or `.glb` file and those that it names, which lie in its folder or below. It has the pose that it has at rest.
+/// Reads a `.gltf` or `.glb` file and those that it names, which lie in its folder or below, as it is at a moment.
 /// Its lights are in `unit`, or else in that of what wrote the file.
 ///
 /// # Errors
@@ -94,11 +98,9 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     let chunk = container.chunk.and_then(|range| bytes.get(range));
     let mut notes = Notes::new(path);
     extension::check(&document, &mut notes)?;
-    if !document.animations.is_empty() {
-        notes.left_out("animations", "animations are left out: nothing moves");
-    }
-    let nodes = node::walk(&document)?;
     let buffers = Buffers::read(&document, chunk, neighbours)?;
+    let pose = Pose::of(&document, &Accessors::new(&document, &buffers), &loading.moment, &mut notes)?;
+    let nodes = node::walk(&document, &pose)?;
     let (mesh, objects) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
@@ -117,7 +119,8 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     let (materials, pictures) = materials(&document, &buffers, &mesh, neighbours, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, materials, warnings: notes.finish(), libraries, objects };
-    Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all })
+    let animations = animation::list(&document, &Accessors::new(&document, &buffers));
+    Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all, animations })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
@@ -191,7 +194,7 @@ fn merged(
     let mut by_mesh: BTreeMap<(usize, Option<usize>), Vec<&Placed>> = BTreeMap::new();
     for placed in nodes {
         if let Some(mesh) = placed.node.mesh {
-            let own = placed.node.weights.as_ref().map(|_| placed.number);
+            let own = placed.weights.map(|_| placed.number);
             by_mesh.entry((mesh, own)).or_default().push(placed);
         }
     }

@@ -13,7 +13,7 @@ use crate::scene::Unplaced;
 
 /// The weights of a mesh at a node: its own, or else the mesh's.
 pub fn weights<'d>(placed: &Placed<'d>, mesh: &'d document::Mesh) -> &'d [f64] {
-    placed.node.weights.as_deref().unwrap_or(&mesh.weights)
+    placed.weights.unwrap_or(&mesh.weights)
 }
 
 impl Primitive {

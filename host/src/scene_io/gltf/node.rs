@@ -2,6 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 
+use super::animation::{Change, Pose};
 use super::document::{Document, Node, pick};
 use crate::scene::Unplaced;
 
@@ -10,15 +11,17 @@ pub struct Placed<'d> {
     /// Its place in the file's list.
     pub number: usize,
     pub node: &'d Node,
+    /// Of its morph targets, if it says so: at this moment.
+    pub weights: Option<&'d [f64]>,
     /// From its own units to the world's; may hold what is not finite.
     pub world: DMat4,
 }
 
-/// All nodes of the scene that the file shows first, parents before their children.
+/// All nodes of the scene that the file shows first in a pose, parents before their children.
 ///
 /// # Errors
 /// A node or a scene that does not exist, one with two parents or that is its own ancestor, or a transform of the wrong length.
-pub fn walk(document: &Document) -> Unplaced<Vec<Placed<'_>>> {
+pub fn walk<'d>(document: &'d Document, pose: &'d Pose) -> Unplaced<Vec<Placed<'d>>> {
     let has_parent = parents(document)?;
     let mut placed = Vec::new();
     let mut is_seen = vec![false; document.nodes.len()];
@@ -30,8 +33,10 @@ pub fn walk(document: &Document) -> Unplaced<Vec<Placed<'_>>> {
         if std::mem::replace(is_seen.get_mut(number).unwrap_or(&mut true), true) {
             return Err(format!("nodes[{number}]: it is reached twice; name it once, and no node as its own ancestor"));
         }
-        let world = above * local(node).map_err(|fault| format!("nodes[{number}].{fault}"))?;
-        placed.push(Placed { number, node, world });
+        let change = pose.change(number);
+        let world = above * local(node, change).map_err(|fault| format!("nodes[{number}].{fault}"))?;
+        let weights = change.and_then(|change| change.weights.as_deref()).or(node.weights.as_deref());
+        placed.push(Placed { number, node, weights, world });
         open.extend(node.children.iter().rev().map(|&child| (child, world)));
     }
     Ok(placed)
@@ -65,15 +70,18 @@ fn roots(document: &Document, has_parent: &[bool]) -> Unplaced<Vec<(usize, DMat4
     Ok(nodes.iter().copied().map(here).collect())
 }
 
-/// The transform of a node, by its matrix or by translation, rotation and scale. The error begins with the key.
-fn local(node: &Node) -> Unplaced<DMat4> {
-    if let Some(matrix) = &node.matrix {
+/// The transform of a node, by its matrix or by translation, rotation and scale, which an animation changes. The error begins with the key.
+fn local(node: &Node, change: Option<&Change>) -> Unplaced<DMat4> {
+    let still = Change::default();
+    let change = change.unwrap_or(&still);
+    if let (Some(matrix), false) = (&node.matrix, change.moves()) {
         return Ok(DMat4::from_cols_array(&numbers("matrix", matrix)?));
     }
     let given = |key, list: &Option<Vec<f64>>| list.as_ref().map(|list| numbers::<3>(key, list)).transpose();
-    let translation = given("translation", &node.translation)?.map_or(DVec3::ZERO, DVec3::from);
-    let scale = given("scale", &node.scale)?.map_or(DVec3::ONE, DVec3::from);
+    let translation = change.translation.or(given("translation", &node.translation)?).map_or(DVec3::ZERO, DVec3::from);
+    let scale = change.scale.or(given("scale", &node.scale)?).map_or(DVec3::ONE, DVec3::from);
     let rotation = node.rotation.as_ref().map(|list| numbers::<4>("rotation", list)).transpose()?;
+    let rotation = change.rotation.or(rotation);
     Ok(from_parts(translation, rotation.map_or(DVec4::W, DVec4::from), scale))
 }
 

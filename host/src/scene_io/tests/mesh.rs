@@ -24,6 +24,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         spheres: Vec::new(),
         disks: Vec::new(),
         objects: Vec::new(),
+        animations: Vec::new(),
         files: Vec::new(),
         materials: Vec::new(),
         lights: Vec::new(),

@@ -17,7 +17,7 @@ fn what_is_left_out_is_said_once() {
     model.json["animations"] = json!([{}, {}]);
     model.json["extensionsUsed"] = json!(["KHR_materials_clearcoat", "KHR_materials_ior"]);
     let warnings = model.load().obj.warnings;
-    let wanted = ["KHR_materials_clearcoat", "animations", "points and lines", "morph targets"];
+    let wanted = ["KHR_materials_clearcoat", "its animation \"0\" stands", "points and lines", "morph targets"];
     assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");
     for (warning, wanted) in warnings.iter().zip(wanted) {
         assert!(warning.message.contains(wanted), "{warning}");

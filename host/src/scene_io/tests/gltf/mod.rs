@@ -1,5 +1,6 @@
 //! Scenes in glTF: what comes out of them.
 
+mod animation;
 mod damaged;
 mod hostile;
 mod left_out;

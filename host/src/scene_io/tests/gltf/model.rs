@@ -6,9 +6,9 @@ use serde_json::{Value, json};
 
 use crate::error::Result;
 use crate::scene::Mesh;
-use crate::scene_io::Loading;
 use crate::scene_io::gltf::{self, Gltf};
 use crate::scene_io::tests::budget;
+use crate::scene_io::{Loading, Moment};
 
 /// A file that is put together: its JSON, and its bytes, which become the first buffer.
 pub struct Model {
@@ -128,7 +128,13 @@ impl Model {
 
 /// Reads a file that names no others.
 pub fn parse(bytes: &[u8]) -> Result<Gltf> {
-    gltf::parse(Path::new("/nowhere/a.glb"), bytes, budget(1 << 34), Loading::default())
+    parse_at(bytes, Moment::default())
+}
+
+/// The same at a moment.
+pub fn parse_at(bytes: &[u8], moment: Moment) -> Result<Gltf> {
+    let loading = Loading { moment, ..Loading::default() };
+    gltf::parse(Path::new("/nowhere/a.glb"), bytes, budget(1 << 34), loading)
 }
 
 pub fn floats(numbers: &[f32]) -> Vec<u8> {

@@ -71,6 +71,13 @@ pub enum Error {
         /// And in the other.
         other: String,
     },
+    /// Films of one picture that keep other layers.
+    OtherLayers {
+        /// The names of those of one, or "none".
+        one: String,
+        /// And of the other.
+        other: String,
+    },
     /// A film that is cut off or damaged, which no reading brings back.
     BrokenFilm(&'static str),
     /// A picture that ends by its noise, of an integrator that has none.
@@ -266,6 +273,9 @@ impl Error {
             }
             Error::OtherFilm { what, one, other } => {
                 format!("a film of another picture: {what} is {one} in one and {other} in the other")
+            }
+            Error::OtherLayers { one, other } => {
+                format!("a film that keeps other layers: {one} in one and {other} in the other; ask for the same")
             }
             Error::BrokenFilm(what) => format!("the film is {what}; render this part again"),
             Error::NoNoise { integrator } => {

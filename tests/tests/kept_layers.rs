@@ -120,7 +120,7 @@ fn film(rendering: &Rendering) -> &Film {
 
 /// The light of a layer, each part of several.
 fn light(posed: &Posed, film: &Film, layer: Layer) -> Vec<(String, Picture)> {
-    match layers::of_film(film, &layers::names(&posed.packed), layer).unwrap() {
+    match layers::of_film(film, (&layers::names(&posed.packed), &film.develop().unwrap()), layer).unwrap() {
         Some(Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture)) => {
             vec![(String::new(), picture)]
         }

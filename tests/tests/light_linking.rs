@@ -71,7 +71,9 @@ fn of_group(scene: &Scene, settings: Settings, name: &str) -> Picture {
     let view = View::new(&job, &scene.cameras[0]).unwrap();
     let backend = Backend::new(&Choice { device: DeviceWish::Cpu, ..Choice::default() }).unwrap();
     let film = backend.open(&job).unwrap().expose(&view, &|_| ()).unwrap().film.unwrap();
-    let Some(Values::Parts(parts)) = layers::of_film(&film, &layers::names(&job), Layer::LightGroups).unwrap() else {
+    let Some(Values::Parts(parts)) =
+        layers::of_film(&film, (&layers::names(&job), &film.develop().unwrap()), Layer::LightGroups).unwrap()
+    else {
         panic!("it was asked for")
     };
     let name = format!("group_{name}");

@@ -82,10 +82,10 @@ corners = [[-4, -1, 4], [4, -1, 4], [4, -1, -4], [-4, -1, -4]]
 shape = "sphere"
 "#;
 
-const KEPT: [&str; 6] = ["albedo", "normal", "direct", "diffuse_direct", "group_key", "group_rest"];
+const KEPT: [&str; 7] = ["albedo", "normal", "direct", "indirect", "diffuse_direct", "group_key", "group_rest"];
 
 fn kept<'a>(more: &[&'a str]) -> Vec<&'a str> {
-    let layers = "albedo,normal,direct,diffuse_direct,light_groups";
+    let layers = "albedo,normal,direct,indirect,diffuse_direct,light_groups";
     [&["render", "studio.toml", "--device", "cpu", "--layers", layers], more].concat()
 }
 
@@ -108,7 +108,7 @@ fn layers_are_merged_and_gone_on_with_like_the_light() {
         }
     }
     let other = ["render", "studio.toml", "--device", "cpu", "--layers", "albedo", "--resume", "-o", "on.film"];
-    place.refuse(&other, &["on.film", "layers"]);
+    place.refuse(&other, &["on.film: a film that keeps other layers: albedo in one and ", "ask for the same"]);
 }
 
 #[test]
@@ -124,7 +124,41 @@ fn a_film_keeps_no_layer_that_is_no_sum_of_samples() {
     fs::write(place.path("plain.toml"), plain).unwrap();
     let groups = ["render", "plain.toml", "--device", "cpu", "--layers", "light_groups", "-o", "a.exr"];
     place.refuse(&groups, &["plain.toml: no lamp of the scene is in a group"]);
-    let odd = STUDIO.replace("group = \"key\"", "group = \"a.b\"");
-    fs::write(place.path("odd.toml"), odd).unwrap();
-    place.refuse(&["check", "odd.toml"], &["a group of lamps is called \"a.b\""]);
+    let measured = ["render", "studio.toml", "--device", "cpu", "--repeat", "2", "--layers", "emission", "-o", "a.exr"];
+    place.refuse(&measured, &["--repeat", "the layer emission"]);
+    let farm = ["farm", "studio.toml", "--parts", "2", "-o", "job", "--picture", "a.png", "--", "--layers", "emission"];
+    place.refuse(&farm, &["png"]);
+}
+
+/// Channels of files are called so.
+#[test]
+fn names_of_groups_that_no_file_could_hold_are_refused() {
+    let long = "x".repeat(65);
+    for name in ["a.b", "a,b", " a", "rest", "\u{65e5}\u{672c}", "a\\u0000b", "a\\nb", &long] {
+        let place = Place::new(&[("odd.toml", &STUDIO.replace("\"key\"", &format!("\"{name}\"")))]);
+        place.refuse(&["check", "odd.toml"], &["a group of lamps is called ", "64 characters"]);
+    }
+    let place = Place::new(&[("good.toml", &STUDIO.replace("\"key\"", "\"L\u{e4}mpchen 1\""))]);
+    place.succeed(&["render", "good.toml", "--device", "cpu", "--layers", "light_groups", "-o", "a.exr"]);
+    place.succeed(&["diff", "a.exr", "a.exr", "--layer", "group_L\u{e4}mpchen 1"]);
+    let lit = STUDIO.replace("shape = \"sphere\"", "shape = \"sphere\"\nlit_by = [3]");
+    fs::write(place.path("lit.toml"), lit).unwrap();
+    place.refuse(&["check", "lit.toml"], &["a list of names in quotes, not an integer"]);
+}
+
+/// Without what a few samples make too bright, the picture is still direct and indirect light.
+#[test]
+fn indirect_light_is_what_the_finished_picture_has_beside_direct_light() {
+    let place = Place::new(&[("studio.toml", STUDIO)]);
+    let kept = ["--spp", "32", "--fireflies=9", "--layers", "direct,indirect", "-o", "a.exr"];
+    place.succeed(&[&["render", "studio.toml", "--device", "cpu"], &kept[..]].concat());
+    let read = |layer: &str| eyerays::image::read_layer(&place.path("a.exr"), layer).unwrap().pixels;
+    for ((all, direct), indirect) in read("colour").iter().zip(read("direct")).zip(read("indirect")) {
+        for i in 0..3 {
+            assert!(
+                (all[i] - direct[i] - indirect[i]).abs() <= 1e-6 * all[i].max(1.0),
+                "{all:?} {direct:?} {indirect:?}"
+            );
+        }
+    }
 }

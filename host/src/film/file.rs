@@ -2,6 +2,7 @@
 //! the sums, rows together. Films of pictures that end by their noise have a version of their own, since other programs would take the
 //! squares of their blocks for those of samples.
 
+use std::collections::HashSet;
 use std::io::{self, ErrorKind, Read, Write};
 use std::ops::Range;
 
@@ -13,6 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Cells, Coverage, Film, Identity, Part};
 use crate::error::{Error, Result};
+use crate::layers;
 use crate::noise::{Target, whole_blocks};
 use crate::picture::Picture;
 use crate::scene::Settings;
@@ -36,6 +38,12 @@ const MOST_AOVS: u32 = 512;
 
 fn is_none(count: &u32) -> bool {
     *count == 0
+}
+
+/// Are these names of layers, each once?
+fn can_be_named(names: &[String]) -> bool {
+    let is_known = |name: &String| layers::can_be_named(name);
+    names.iter().all(is_known) && names.iter().collect::<HashSet<_>>().len() == names.len()
 }
 
 /// What a film is beside its sums.
@@ -149,8 +157,8 @@ impl Header {
         let is_within = |inner: Region, outer: Region| inner.pixels() > 0 && outer.around(inner) == outer;
         let kept = [0, Launch::CLEAR, Launch::CATCHER, Launch::CLEAR | Launch::CATCHER].map(Launch);
         let is_known = kept.iter().any(|&kept| [false, true].iter().any(|&noisy| film_words(kept, noisy) == words));
-        let names = identity.layers().len() as u32;
-        let is_named = aovs <= MOST_AOVS && (names == 0 || names == aovs);
+        let names = identity.layers();
+        let is_named = aovs <= MOST_AOVS && (names.is_empty() || names.len() == aovs as usize && can_be_named(&names));
         if !is_within(window, image) || !is_known || !is_named || parts.len() > MOST_PARTS {
             return Err(damaged());
         }

@@ -98,6 +98,9 @@ impl Identity {
         for name in names {
             let [a, b] = [self, other].map(|identity| identity.0.get(name).map_or("none", |value| short(value)));
             if self.0.get(name) != other.0.get(name) {
+                if name == LAYERS {
+                    return Err(Error::OtherLayers { one: a.to_owned(), other: b.to_owned() });
+                }
                 return Err(Error::OtherFilm { what: name.clone(), one: a.to_owned(), other: b.to_owned() });
             }
         }

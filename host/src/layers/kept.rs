@@ -1,13 +1,17 @@
 //! Layers that films keep: arbitrary output variables, which are rendered beside the light.
 
 use eyerays_shader::data::Aovs;
+use eyerays_shader::stage::AOV_WORDS;
 
 use super::{Layer, Values};
 use crate::choice::Named;
 use crate::error::{Error, Result};
 use crate::film::Film;
 use crate::job::Job;
+use crate::memory::Room;
+use crate::picture::Picture;
 use crate::scene::{Integrator, LightGroups};
+use crate::view::View;
 
 /// What the light of a group is called: this, and its name.
 const GROUP: &str = "group_";
@@ -72,21 +76,48 @@ pub fn names(job: &Job) -> Vec<String> {
     names
 }
 
-/// All layers that a film keeps, by the names that its identity has.
+/// May a film call a variable so?
+pub(crate) fn can_be_named(name: &str) -> bool {
+    match name.strip_prefix(GROUP) {
+        Some(group) => group == LightGroups::REST || LightGroups::can_be(group),
+        None => Layer::from_name(name).is_ok_and(|layer| layer.aov().is_some() && layer != Layer::Indirect),
+    }
+}
+
+/// Refuses a view whose film takes more memory than there is, with its layers as they are written.
+///
+/// # Errors
+/// One that says how much that is.
+pub fn check_room(job: &Job, view: &View) -> Result<()> {
+    let (pixels, layers) = (view.region().pixels(), u64::from(job.aov_count()));
+    if layers == 0 {
+        return Ok(());
+    }
+    // Sums, and a picture of each with its channels.
+    let bytes = pixels * (layers * (4 * u64::from(AOV_WORDS) + 24) + 4 * u64::from(view.noisy_film_words().light));
+    Room::now().check(bytes).map_err(|why| {
+        Error::new(format!(
+            "{layers} layers of {pixels} pixels may {why}; keep fewer, or render tiles of a smaller size"
+        ))
+    })
+}
+
+/// All layers that a film keeps, by the names that its identity has; the picture is that of all its light.
 ///
 /// # Errors
 /// If there is no memory for them.
-pub fn all_of_film(film: &Film) -> Result<Vec<(Layer, Values)>> {
+pub fn all_of_film(film: &Film, picture: &Picture) -> Result<Vec<(Layer, Values)>> {
     let names = film.identity.layers();
-    let of = |&layer: &Layer| of_film(film, &names, layer).map(|values| Some((layer, values?))).transpose();
-    Layer::VARIANTS.iter().filter(|&&layer| layer != Layer::Indirect).filter_map(of).collect()
+    let of = |&layer: &Layer| of_film(film, (&names, picture), layer).map(|values| Some((layer, values?))).transpose();
+    Layer::VARIANTS.iter().filter_map(of).collect()
 }
 
-/// A layer of a film, if it keeps it; the names are those of its variables. What rounding leaves of indirect light below zero is none.
+/// A layer of a film, if it keeps it; the names are those of its variables. Indirect light is what a picture has beside direct light; what
+/// rounding leaves of it below zero is none.
 ///
 /// # Errors
 /// If there is no memory for it.
-pub fn of_film(film: &Film, names: &[String], layer: Layer) -> Result<Option<Values>> {
+pub fn of_film(film: &Film, (names, picture): (&[String], &Picture), layer: Layer) -> Result<Option<Values>> {
     let kept = if names.len() == film.aovs() as usize { names } else { &[] };
     if layer == Layer::LightGroups {
         let groups = kept.iter().zip(0..).filter(|(name, _)| name.starts_with(GROUP));
@@ -96,11 +127,11 @@ pub fn of_film(film: &Film, names: &[String], layer: Layer) -> Result<Option<Val
     }
     let name = if layer == Layer::Indirect { Layer::Direct.name() } else { layer.name() };
     let Some((_, number)) = kept.iter().zip(0..).find(|(own, _)| *own == name) else { return Ok(None) };
-    let picture = film.aov(number)?;
+    let own = film.aov(number)?;
     Ok(Some(match layer {
-        Layer::Albedo => Values::Colours(picture),
-        Layer::Normal => Values::Vectors(picture),
-        Layer::Indirect => Values::Light(film.develop()?.without(&picture)?),
-        _ => Values::Light(picture),
+        Layer::Albedo => Values::Colours(own),
+        Layer::Normal => Values::Vectors(own),
+        Layer::Indirect => Values::Light(picture.without(&own)?),
+        _ => Values::Light(own),
     }))
 }

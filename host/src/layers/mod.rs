@@ -15,7 +15,8 @@ use crate::scene::{Camera, Sampler, Scene, Settings};
 use crate::view::Region;
 
 pub use eyerays_shader::data::Aovs;
-pub use kept::{all_of_film, asked, check, names, of_film};
+pub(crate) use kept::can_be_named;
+pub use kept::{all_of_film, asked, check, check_room, names, of_film};
 use studio::{Studio, seen};
 
 choices! {

@@ -55,7 +55,7 @@ impl<'a> Studio<'a> {
         let no_film = || Error::new(format!("the layer {layer} is told by the film: render with one (expose)"));
         let film = rendering.film.as_ref().ok_or_else(no_film);
         if let Some(film) = &rendering.film
-            && let Some(values) = of_film(film, &self.kept, layer)?
+            && let Some(values) = of_film(film, (&self.kept, picture), layer)?
         {
             return Ok(values);
         }

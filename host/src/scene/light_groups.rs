@@ -2,6 +2,8 @@
 
 use eyerays_shader::stage::LINKED_GROUPS;
 
+use glam::Vec3;
+
 use super::{Material, Scene, Unplaced};
 
 /// Names of groups of lamps, each once, in the order of the lights, the materials that emit, and the surroundings.
@@ -18,7 +20,8 @@ impl LightGroups {
     pub fn of(scene: &Scene) -> Self {
         let mut names = Vec::new();
         let lights = scene.lights.iter().map(|light| light.group());
-        let materials = scene.materials.iter().map(|material| &material.group[..]);
+        let shining = scene.materials.iter().filter(|material| material.emission != Vec3::ZERO);
+        let materials = shining.map(|material| &material.group[..]);
         for name in lights.chain(materials).chain([&scene.background_group[..]]) {
             if !name.is_empty() && !names.iter().any(|known| known == name) {
                 names.push(name.to_owned());
@@ -36,14 +39,22 @@ impl LightGroups {
                 Self::MOST
             ));
         }
-        let is_odd = |name: &&String| name.contains(['.', ',']) || **name == Self::REST || name.trim() != **name;
-        match self.0.iter().find(is_odd) {
-            Some(name) => Err(format!(
-                "a group of lamps is called {name:?}; a name has no point, comma or space around it, and {:?} is that of lamps without one",
-                Self::REST
-            )),
+        match self.0.iter().find(|name| !Self::can_be(name)) {
+            Some(name) => Err(format!("a group of lamps is called {name:?}; {}", Self::RULE)),
             None => Ok(()),
         }
+    }
+
+    /// What names may be.
+    pub(crate) const RULE: &str = "a name has 1 to 64 characters of Latin-1 that print, no point or comma among them and no space around them, and is not \"rest\", which is that of lamps without one";
+
+    /// May a group be called so? Channels of OpenEXR files are.
+    pub fn can_be(name: &str) -> bool {
+        let prints = |c: char| matches!(c, ' '..='~' | '\u{a1}'..='\u{ff}') && c != '.' && c != ',';
+        (1..=64).contains(&name.chars().count())
+            && name.chars().all(prints)
+            && name.trim() == name
+            && name != Self::REST
     }
 
     /// Refuses a material that is lit by a group that there is not, and more groups than kernels tell apart where some light is left out.

@@ -102,12 +102,12 @@ impl<'s> Table<'s> {
 
     /// A list of names.
     pub fn names(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
+        const WANTED: &str = "a list of names in quotes";
         self.map(key, |table, value| {
-            let not = || table.mismatch(key, "a list of names in quotes", &value);
-            let DeValue::Array(items) = value.get_ref() else { return Err(not()) };
-            let name = |item: &Spanned<DeValue<'_>>| match item.get_ref() {
+            let DeValue::Array(items) = value.get_ref() else { return Err(table.mismatch(key, WANTED, &value)) };
+            let name = |item: &Value<'_>| match item.get_ref() {
                 DeValue::String(text) => Ok(text.clone().into_owned()),
-                _ => Err(not()),
+                _ => Err(table.mismatch(key, WANTED, item)),
             };
             items.iter().map(name).collect()
         })

@@ -11,7 +11,7 @@ use super::render::Render;
 use super::{Cli, Command, console, reading};
 use crate::error::{Error, Result};
 use crate::farm::{Folder, Job, Parts};
-use crate::output::Destination;
+use crate::output::{self, Destination};
 
 pub(super) const EXAMPLES: &str = "\
 Examples:
@@ -72,7 +72,11 @@ impl Farm {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let (scene, stem, picture) = self.names()?;
         let folder = Folder::new(&self.output)?;
-        let settings = self.render()?.checked(quiet)?;
+        let render = self.render()?;
+        if !render.layers().is_empty() {
+            output::check_layers(&Destination::File(picture.clone().into()))?;
+        }
+        let settings = render.checked(quiet)?;
         let parts = Parts::new(self.parts, settings.samples_a_pixel(), settings.size)?;
         let job = Job { name: Job::name(&stem), scene, options: self.options.clone(), picture, parts };
         folder.write(&job)?;

@@ -54,8 +54,11 @@ impl Merge {
             let picture = film.develop()?;
             let encoding = self.look.encoding(&picture)?;
             super::warn(self.look.beyond_white(&picture, &encoding, &destination)?.as_slice(), quiet);
-            let layers =
-                if output::check_layers(&destination).is_ok() { layers::all_of_film(&film)? } else { Vec::new() };
+            let layers = if output::check_layers(&destination).is_ok() {
+                layers::all_of_film(&film, &picture)?
+            } else {
+                Vec::new()
+            };
             output::write_layers(&picture, &layers, &destination, &encoding)?;
         }
         if !quiet {

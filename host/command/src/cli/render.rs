@@ -68,8 +68,8 @@ pub(super) struct Render {
     device: Option<Devices>,
     #[command(flatten)]
     pub look: Look,
-    /// What an .exr file holds beside the light of each pixel, with commas between; a .film keeps what is summed over samples, and merge
-    /// writes it
+    /// What an .exr file holds beside the light of each pixel, with commas between; those of light but for direct and indirect are of paths. A .film keeps what is summed over
+    /// samples, and merge writes it
     #[arg(long, value_name = "LAYERS", value_parser = choice::<Layer>(), value_delimiter = ',')]
     layers: Vec<Layer>,
     /// Take noise off the finished picture, by the surfaces that it shows; an .exr file keeps the noisy one as a layer [default: own]
@@ -156,7 +156,8 @@ impl Render {
         let settings = self.view.settings(&read.scene, &task.effort)?;
         self.check_layers(&Destination::from(Path::new("part.film")))?;
         let integrator = settings.transport.integrator;
-        layers::check(self.kept(integrator), integrator, &LightGroups::of(&read.scene))?;
+        let kept = layers::check(self.kept(integrator), integrator, &LightGroups::of(&read.scene));
+        kept.map_err(|error| error.of(read.path))?;
         Ok(settings)
     }
 
@@ -211,9 +212,15 @@ impl Render {
     /// Checks that layers have a place.
     fn check_layers(&self, destination: &Destination) -> Result<()> {
         let of_pictures = self.layers().into_iter().find(|layer| layer.aov().is_none());
+        let is_light = |layer: &Layer| layer.aov().is_some() && !rendered_alone(layer);
+        if let Some(layer) = self.layers().iter().find(|layer| self.repeat > 1 && is_light(layer)) {
+            return Err(Error::new(format!(
+                "--repeat measures and keeps no film, which the layer {layer} is told by: drop one"
+            )));
+        }
         match of_pictures {
             Some(layer) if destination.is_film() || self.part.has_some_samples() => Err(Error::new(format!(
-                "--layers: {layer} is rendered beside a whole picture and is no sum of samples, as a film keeps: leave it out, or render all of an .exr file"
+                "--layers: {layer} is of a whole picture and no sum of samples, as layers of a film are: leave it out, or render all of an .exr file"
             ))),
             _ if self.layers.is_empty() || destination.is_film() => Ok(()),
             _ => output::check_layers(destination),
@@ -228,9 +235,8 @@ impl Render {
         if self.denoise.is_some() && !self.keeping.is_asked() {
             layers.extend(denoising::NEEDED);
         }
-        let is_alone = |layer: &Layer| matches!(layer, Layer::Albedo | Layer::Normal | Layer::Direct | Layer::Indirect);
         if self.repeat > 1 || integrator != Integrator::Path {
-            layers.retain(|layer| !is_alone(layer));
+            layers.retain(|layer| !rendered_alone(layer));
         }
         layers::asked(&layers)
     }
@@ -340,6 +346,7 @@ impl Task<'_> {
             }
             let checkpoint = self.of.keeping.beside(&destination, self.quiet)?;
             let view = self.of.part.of(&view)?;
+            layers::check_room(&loaded.packed, &view)?;
             self.of.noise.check(&view)?;
             Ok(Place { camera: shot.camera, view, destination, checkpoint })
         });
@@ -356,6 +363,11 @@ impl Task<'_> {
         }
         Ok(())
     }
+}
+
+/// Layers that can be rendered without the picture's film.
+fn rendered_alone(layer: &Layer) -> bool {
+    matches!(layer, Layer::Albedo | Layer::Normal | Layer::Direct | Layer::Indirect)
 }
 
 fn buckets(text: &str) -> std::result::Result<Buckets, String> {

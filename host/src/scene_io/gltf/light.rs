@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::document::{self, pick};
 use super::node::Placed;
 use super::notes::Notes;
-use crate::scene::{Falloff, Light, Unplaced, normal};
+use crate::scene::{Falloff, Light, LightGroups, Unplaced, normal};
 use crate::scene_io::LightUnit;
 
 /// The widest half angle of a spot in degrees: 90 make no cone.
@@ -48,8 +48,7 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
             "ranges of lights are left out: light fades with the square of the distance, and never ends",
         );
     }
-    // Of exporters that write what artists add.
-    let group = light.extras.get("group").and_then(Value::as_str).unwrap_or_default().to_owned();
+    let group = group(light, number, notes);
     Ok(Some(match light.kind.as_str() {
         "point" => Light::Point { position: view.eye, colour, group },
         "directional" => Light::Directional { direction: view.direction, colour, group },
@@ -66,6 +65,20 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
         }
         other => return Err(format!("{here}.type: {other:?} is none of point, directional and spot; repair it")),
     }))
+}
+
+/// The group that its writer gave it, as exporters keep what artists add.
+fn group(light: &document::Light, number: usize, notes: &mut Notes) -> String {
+    match light.extras.get("group").and_then(Value::as_str) {
+        Some(name) if LightGroups::can_be(name) => name.to_owned(),
+        Some(name) => {
+            let rule = LightGroups::RULE;
+            let text = format!("the group {name:?} of light {number}'s extras is left out, and others like it: {rule}");
+            notes.left_out("groups", &text);
+            String::new()
+        }
+        None => String::new(),
+    }
 }
 
 fn colour(light: &document::Light, unit: LightUnit) -> Option<Vec3> {

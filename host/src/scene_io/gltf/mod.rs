@@ -26,7 +26,7 @@ mod uri;
 mod vertices;
 mod whole;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use serde::Deserialize;
@@ -47,7 +47,7 @@ use super::neighbours::Neighbours;
 use super::obj::Obj;
 use super::{LightUnit, Loading, file};
 use crate::error::{Error, Result};
-use crate::scene::{Animation, Camera, Light, Mesh, Object, Unplaced};
+use crate::scene::{Animation, Camera, Light, LightGroups, Mesh, Object, Unplaced};
 
 /// A scene but for its surroundings.
 #[derive(Debug)]
@@ -108,6 +108,12 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     for placed in &nodes {
         lights.extend(light::read(placed, &document.extensions.lights.lights, unit.unwrap_or(by_writer), &mut notes)?);
         cameras.add(placed, &document, &mut notes)?;
+    }
+    let groups: HashSet<&str> = lights.iter().map(Light::group).filter(|name| !name.is_empty()).collect();
+    if groups.len() > LightGroups::MOST {
+        let text = format!("its lights are in no groups, as {} are more than {}", groups.len(), LightGroups::MOST);
+        notes.left_out("groups", &text);
+        lights = lights.into_iter().map(|light| light.in_group("")).collect();
     }
     if unit.is_none() && by_writer == LightUnit::Blender && !lights.is_empty() {
         notes.changed(

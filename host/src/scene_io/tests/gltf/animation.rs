@@ -173,7 +173,7 @@ fn animations_that_make_no_sense_are_one_line_each() {
     let refusal = |change: &dyn Fn(&mut Model)| {
         let mut model = moving("translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
         change(&mut model);
-        let error = parse(&model.glb()).err().expect("refused").to_string();
+        let error = parse(&model.glb()).expect_err("refused").to_string();
         assert!(!error.contains('\n'), "{error}");
         error
     };
@@ -223,6 +223,6 @@ fn animations_that_make_no_sense_are_one_line_each() {
     assert!(warnings.iter().any(|warning| warning.contains("\"colour\" are left out")), "{warnings:?}");
     // Numbers that are none put a node nowhere.
     let model = moving("translation", "LINEAR", &[0.0, 1.0], &[f32::NAN; 6]);
-    let error = parse(&model.glb()).err().expect("refused").to_string();
+    let error = parse(&model.glb()).expect_err("refused").to_string();
     assert!(error.contains("nodes[0] takes it out of single precision"), "{error}");
 }

@@ -168,3 +168,23 @@ fn whole_numbers_may_have_a_point() {
     assert_eq!(parse(floats.as_bytes()).unwrap().obj.mesh, model.mesh());
     assert!(parse(text.replace("\"count\":3", "\"count\":3.5").as_bytes()).is_err());
 }
+
+/// Of whatever else exporters keep there nothing is asked.
+#[test]
+fn a_light_is_in_the_group_that_its_extras_name() {
+    for (extras, group, warnings) in [
+        (json!({ "group": "key", "other": [1, 2] }), "key", 0),
+        (json!({ "group": "a.b" }), "", 1),
+        (json!({ "group": "rest" }), "", 1),
+        (json!({ "group": 7 }), "", 0),
+        (json!("text"), "", 0),
+        (json!(null), "", 0),
+    ] {
+        let mut model = Model::triangle();
+        let light = json!({ "type": "point", "extras": extras });
+        model.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+        model.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+        let scene = model.load();
+        assert_eq!((scene.lights[0].group(), scene.obj.warnings.len()), (group, warnings), "{extras}");
+    }
+}

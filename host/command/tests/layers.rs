@@ -108,7 +108,10 @@ fn layers_are_merged_and_gone_on_with_like_the_light() {
         }
     }
     let other = ["render", "studio.toml", "--device", "cpu", "--layers", "albedo", "--resume", "-o", "on.film"];
-    place.refuse(&other, &["on.film: a film that keeps other layers: albedo in one and ", "ask for the same"]);
+    place.refuse(
+        &other,
+        &["on.film: a film that keeps other layers: albedo,normal,direct,", " albedo in the other; ask for the same"],
+    );
 }
 
 #[test]
@@ -127,7 +130,7 @@ fn a_film_keeps_no_layer_that_is_no_sum_of_samples() {
     let measured = ["render", "studio.toml", "--device", "cpu", "--repeat", "2", "--layers", "emission", "-o", "a.exr"];
     place.refuse(&measured, &["--repeat", "the layer emission"]);
     let farm = ["farm", "studio.toml", "--parts", "2", "-o", "job", "--picture", "a.png", "--", "--layers", "emission"];
-    place.refuse(&farm, &["png"]);
+    place.refuse(&farm, &["PNG"]);
 }
 
 /// Channels of files are called so.

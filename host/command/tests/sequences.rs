@@ -103,3 +103,56 @@ fn reproducible_pictures_are_equal_files() {
         assert!(fs::read(place.path(first)).unwrap() == fs::read(place.path(second)).unwrap(), "{first}");
     }
 }
+
+/// A triangle that an animation moves a unit a second to the right, for two seconds.
+fn moving() -> Place {
+    let numbers: [f32; 17] = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0];
+    let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+    let json = r#"{ "asset": { "version": "2.0" }, "scenes": [{ "nodes": [0] }], "nodes": [{ "mesh": 0 }],
+        "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 } }] }],
+        "buffers": [{ "uri": "a.bin", "byteLength": 68 }],
+        "bufferViews": [{ "buffer": 0, "byteOffset": 0, "byteLength": 36 },
+            { "buffer": 0, "byteOffset": 36, "byteLength": 8 }, { "buffer": 0, "byteOffset": 44, "byteLength": 24 }],
+        "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" },
+            { "bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR" },
+            { "bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3" }],
+        "animations": [{ "name": "slide", "samplers": [{ "input": 1, "output": 2 }],
+            "channels": [{ "sampler": 0, "target": { "node": 0, "path": "translation" } }] }] }"#;
+    let placed = "[[mesh]]\nfile = \"a.gltf\"\n";
+    let place = Place::new(&[("a.gltf", json), ("placed.toml", placed)]);
+    std::fs::write(place.path("a.bin"), bytes).unwrap();
+    place
+}
+
+#[test]
+fn pictures_of_an_animation_are_those_of_its_moments() {
+    let place = moving();
+    let small = ["--device", "cpu", "--size", "16x16", "--spp", "1", "--eye", "1,0,5", "--target", "1,0,0", "--quiet"];
+    place.succeed(&[&["render", "a.gltf", "--frames", "1..4", "--fps", "2", "-o", "{frame}.png"], &small[..]].concat());
+    for (frame, seconds) in [("1.png", "0.5"), ("2.png", "1"), ("3.png", "1.5")] {
+        place.succeed(&[&["render", "a.gltf", "--time", seconds, "-o", "single.png"], &small[..]].concat());
+        place.succeed(&["diff", frame, "single.png"]);
+    }
+    assert_eq!(place.run(&["diff", "1.png", "3.png"]).code, Some(1));
+    let info = |arguments: &[&str]| place.succeed(&[&["info", "--json"], arguments].concat()).json();
+    assert_eq!(info(&["a.gltf"])["animations"], serde_json::json!([{ "name": "slide", "seconds": 2.0 }]));
+    for (arguments, least) in [
+        (&["--time", "0.25"][..], 0.25),
+        (&["--time", "9"], 2.0),
+        (&["--time", "-1", "--animation", "slide"], 0.0),
+        (&["--time", "1", "--animation", "none"], 0.0),
+    ] {
+        for scene in ["a.gltf", "placed.toml"] {
+            assert_eq!(info(&[&[scene], arguments].concat())["bounds"][0][0], least, "{scene} {arguments:?}");
+        }
+    }
+    assert!(place.run(&["check", "a.gltf"]).stderr.contains("its animation \"slide\" stands at its start"));
+    place.refuse(
+        &["check", "a.gltf", "--animation", "run"],
+        &["a.gltf: animations: there is no \"run\"; name one of slide"],
+    );
+    place.refuse(&["render", "a.gltf", "--fps", "5", "-o", "x.png"], &["--fps", "--frames A..B or --frame N"]);
+    std::fs::write(place.path("still.toml"), program::SCENE).unwrap();
+    let still = ["render", "still.toml", "--frames", "0..2", "-o", "{frame}.png"];
+    place.refuse(&[&still[..], &["--device", "cpu"]].concat(), &["still.toml: it has no animation"]);
+}

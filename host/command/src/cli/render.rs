@@ -139,9 +139,7 @@ impl Render {
         if scenes.len() > 1 {
             task.check_names(&scenes)?;
         }
-        let of_scene = |scene| instants.iter().map(move |&instant| (scene, instant));
-        let pictures: Vec<(&PathBuf, Option<Instant>)> = scenes.iter().flat_map(of_scene).collect();
-        each(&pictures, |&(scene, instant)| task.pictures(scene, instant))
+        each(&scenes, |scene| task.animation(scene, &instants))
     }
 
     /// The first scene's settings with these options over them, once the options are found to fit each other and the scene. Nothing is
@@ -264,6 +262,17 @@ impl Task<'_> {
         }
         let of = |path: &PathBuf| self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()]);
         sequence::check_distinct(&scenes.iter().map(of).collect::<Result<Vec<_>>>()?.concat())
+    }
+
+    /// Renders a scene at instants of its animation, until one fails or a signal ends it: what is wrong with one is mostly with all.
+    fn animation(&self, path: &Path, instants: &[Option<Instant>]) -> Result<ExitCode> {
+        for &instant in instants {
+            let code = self.pictures(path, instant)?;
+            if code != ExitCode::SUCCESS {
+                return Ok(code);
+            }
+        }
+        Ok(ExitCode::SUCCESS)
     }
 
     /// Renders the pictures of a scene, at an instant of its animation.

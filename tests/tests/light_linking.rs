@@ -134,6 +134,9 @@ fn a_group_that_no_lamp_is_in_lights_nothing_and_is_refused() {
     many.lights.extend((0..15).map(|number| lamp(Vec3::Y).in_group(&format!("lamp {number}"))));
     let error = many.check().unwrap_err().to_string();
     assert!(error.contains("18 groups of lamps; where materials have lit_by there are at most 14"), "{error}");
+    many.lights.extend((0..300).map(|number| lamp(Vec3::Y).in_group(&format!("more {number}"))));
+    let error = many.check().unwrap_err().to_string();
+    assert!(error.contains("more than 255 groups"), "{error}");
     let scene = linked(room(0.0), &["fill"], &[0]);
     let settings = Settings { transport: Transport::default(), ..paths(1) };
     let mut plain = scene.clone();

@@ -23,7 +23,8 @@ impl LightGroups {
         let shining = scene.materials.iter().filter(|material| material.emission != Vec3::ZERO);
         let materials = shining.map(|material| &material.group[..]);
         for name in lights.chain(materials).chain([&scene.background_group[..]]) {
-            if !name.is_empty() && !names.iter().any(|known| known == name) {
+            // More are refused; a file may have a million.
+            if names.len() <= Self::MOST && !name.is_empty() && !names.iter().any(|known| known == name) {
                 names.push(name.to_owned());
             }
         }
@@ -33,11 +34,7 @@ impl LightGroups {
     /// Refuses more than there may be, and a group of the name that stands for none.
     pub(super) fn check(&self) -> Unplaced<()> {
         if self.0.len() > Self::MOST {
-            return Err(format!(
-                "the scene has {} groups of lamps; at most {} are kept apart",
-                self.0.len(),
-                Self::MOST
-            ));
+            return Err(format!("the scene has more than {} groups of lamps; put more of them together", Self::MOST));
         }
         match self.0.iter().find(|name| !Self::can_be(name)) {
             Some(name) => Err(format!("a group of lamps is called {name:?}; {}", Self::RULE)),

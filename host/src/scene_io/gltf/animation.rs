@@ -12,7 +12,7 @@ use crate::math;
 use crate::scene::{self, Unplaced};
 use crate::scene_io::{AnimationWish, Moment};
 
-/// The most keys of all curves of an animation, however often a file names them.
+/// The most keys of all curves of an animation, and weights of a moment, however often a file names them.
 const MOST_KEYS: usize = 1 << 26;
 
 /// What an animation makes of nodes, by their numbers.
@@ -216,12 +216,15 @@ impl<'f> Curve<'f> {
         let parts = if interpolation == Interpolation::Cubic { 3 } else { 1 };
         let (count, of_keys) = (values.count, times.len() * parts);
         // Of weights a key has as many as there are targets.
+        let weights = count / of_keys;
+        let left = keys.left.checked_sub(weights);
+        keys.left = left.ok_or_else(|| format!("{here}: the weights of animations are too many; use fewer"))?;
         let fits = if width == 1 { count > 0 && count % of_keys == 0 } else { count == of_keys };
         if !fits {
             let fault = format!("{here}: its sampler has {count} values for {} keys", times.len());
             return Err(format!("{fault}; write the animation again"));
         }
-        Ok(Curve { elements: count / of_keys, times, values, interpolation })
+        Ok(Curve { elements: weights, times, values, interpolation })
     }
 
     /// The numbers of a key: of its values, or with cubic splines of part 0 the tangents before them, and of part 2 those behind.

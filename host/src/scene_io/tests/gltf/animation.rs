@@ -225,4 +225,12 @@ fn animations_that_make_no_sense_are_one_line_each() {
     let model = moving("translation", "LINEAR", &[0.0, 1.0], &[f32::NAN; 6]);
     let error = parse(&model.glb()).expect_err("refused").to_string();
     assert!(error.contains("nodes[0] takes it out of single precision"), "{error}");
+    // Zeros that take no bytes of the file.
+    let mut model = moving("weights", "LINEAR", &[0.0], &[0.0]);
+    let accessors = model.json["accessors"].as_array_mut().unwrap();
+    accessors.push(json!({ "componentType": F32, "count": 4_000_000_000u64, "type": "SCALAR" }));
+    let output = accessors.len() - 1;
+    model.json["animations"][0]["samplers"][0]["output"] = json!(output);
+    let error = parse(&model.glb()).expect_err("refused").to_string();
+    assert!(error.contains("the weights of animations are too many"), "{error}");
 }

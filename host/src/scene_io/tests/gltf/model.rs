@@ -69,6 +69,19 @@ impl Model {
             { "mesh": 0, "children": [1], "rotation": [0, 0, 0, 1], "scale": [1, -2, 1] },
             { "mesh": 0, "camera": 0, "translation": [0, 0, 3], "extensions": { "KHR_lights_punctual": { "light": 0 } } },
         ]);
+        let times = model.accessor("SCALAR", F32, 2, &floats(&[0.0, 1.0]));
+        let turns = model.accessor("VEC4", F32, 2, &floats(&[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]));
+        let places = model.accessor("VEC3", F32, 6, &floats(&[[0.0, 0.5, 1.0]; 6].concat()));
+        let target = |node: usize, path: &str| json!({ "node": node, "path": path });
+        model.json["animations"] = json!([{
+            "samplers": [
+                { "input": times, "output": turns },
+                { "input": times, "output": places, "interpolation": "CUBICSPLINE" },
+            ],
+            "channels": [
+                { "sampler": 0, "target": target(0, "rotation") }, { "sampler": 1, "target": target(1, "translation") },
+            ],
+        }]);
         model
     }
 

@@ -134,6 +134,14 @@ fn pictures_of_an_animation_are_those_of_its_moments() {
         place.succeed(&["diff", frame, "single.png"]);
     }
     assert_eq!(place.run(&["diff", "1.png", "3.png"]).code, Some(1));
+    // A camera that nobody placed stands where it does as the animation begins, and what is left out is said once.
+    let odd = std::fs::read_to_string(place.path("a.gltf")).unwrap();
+    let odd = odd.replacen("{", "{ \"extensionsUsed\": [\"EXT_none\"],", 1);
+    std::fs::write(place.path("odd.gltf"), odd).unwrap();
+    let frames = ["render", "odd.gltf", "--frames", "0..3", "--fps", "4", "-o", "f{frame}.png"];
+    let said = place.succeed(&[&frames[..], &["--device", "cpu", "--size", "32x32", "--spp", "1"]].concat());
+    assert_eq!(said.stderr.matches("EXT_none").count(), 1, "{}", said.stderr);
+    assert_eq!(place.run(&["diff", "f0.png", "f2.png"]).code, Some(1), "framed anew, it stands still");
     let info = |arguments: &[&str]| place.succeed(&[&["info", "--json"], arguments].concat()).json();
     assert_eq!(info(&["a.gltf"])["animations"], serde_json::json!([{ "name": "slide", "seconds": 2.0 }]));
     for (arguments, least) in [

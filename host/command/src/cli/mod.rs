@@ -1,5 +1,6 @@
 //! The command line.
 
+mod animation;
 mod bench;
 mod camera;
 mod check;

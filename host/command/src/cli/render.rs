@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use clap::Args;
 
+use super::animation::{Animation, Moving};
 use super::checkpoint::CheckpointArgs;
 use super::choice::choice;
 use super::denoising;
@@ -266,8 +267,9 @@ impl Task<'_> {
 
     /// Renders a scene at instants of its animation, until one fails or a signal ends it: what is wrong with one is mostly with all.
     fn animation(&self, path: &Path, instants: &[Option<Instant>]) -> Result<ExitCode> {
-        for &instant in instants {
-            let code = self.pictures(path, instant)?;
+        let animation = Animation::new(path, (&self.of.reading, self.effort.integrator()), instants)?;
+        for moving in animation.pictures(instants) {
+            let code = self.pictures(path, (&animation, moving))?;
             if code != ExitCode::SUCCESS {
                 return Ok(code);
             }
@@ -276,7 +278,7 @@ impl Task<'_> {
     }
 
     /// Renders the pictures of a scene, at an instant of its animation.
-    fn pictures(&self, path: &Path, instant: Option<Instant>) -> Result<ExitCode> {
+    fn pictures(&self, path: &Path, (animation, moving): (&Animation<'_>, Moving<'_>)) -> Result<ExitCode> {
         // A wrong name shows before a scene is read, which may take long, unless it is of what only the scene tells.
         if !self.names_cameras() {
             for place in self.of.sequence.destinations(self.of.output.as_deref(), path, &[Shot::any()])? {
@@ -284,16 +286,8 @@ impl Task<'_> {
             }
         }
         let mut effort = self.effort;
-        let reading = instant.map(|instant| self.of.reading.at(instant.seconds));
-        let loading = reading.as_ref().unwrap_or(&self.of.reading).loading(effort.integrator());
-        let read = Read::scene(path, &[], loading, self.quiet)?;
+        let read = animation.read(moving, self.quiet)?;
         let path = reading::called(path);
-        if instant.is_some() && read.scene.animations.is_empty() {
-            return Err(Error::file(
-                path,
-                "it has no animation, whose pictures --frames and --frame are; leave them out",
-            ));
-        }
         effort = self.of.noise.effort(effort, &read.scene)?;
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
@@ -301,7 +295,7 @@ impl Task<'_> {
         let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
         let kept = self.of.kept(loaded.packed.settings().transport.integrator);
         loaded.packed = loaded.packed.keeping(kept).map_err(|error| error.of(path))?;
-        let shots = self.of.sequence.shots(&scene, camera, instant)?;
+        let shots = self.of.sequence.shots(&scene, camera, moving.instant)?;
         let places = self.places(path, &loaded, &scene, shots)?;
         if self.of.preview {
             self.preview(&loaded, &places)?;

@@ -1,0 +1,76 @@
+//! Pictures of an animation: a scene, read again for each of them.
+
+use std::path::Path;
+
+use super::reading::{self, Read, Reading};
+use super::sequence::Instant;
+use crate::error::{Error, Result};
+use eyerays::scene::{Camera, Integrator, Scene, default_camera};
+
+/// A picture of an animation, or of a scene that stands still.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<'a> {
+    pub instant: Option<Instant>,
+    /// That of a scene without one, which sees it as its animation begins: framed anew, each picture would be of another size.
+    camera: Option<&'a Camera>,
+    /// Warnings are given once.
+    is_first: bool,
+}
+
+/// The scenes of all pictures of an animation.
+pub(super) struct Animation<'a> {
+    path: &'a Path,
+    reading: &'a Reading,
+    integrator: Option<Integrator>,
+    camera: Option<Camera>,
+}
+
+impl<'a> Animation<'a> {
+    /// Of a scene that is seen at some instants.
+    ///
+    /// # Errors
+    /// It can't be read, not more than once, or nothing of it moves.
+    pub fn new(
+        path: &'a Path,
+        (reading, integrator): (&'a Reading, Option<Integrator>),
+        instants: &[Option<Instant>],
+    ) -> Result<Animation<'a>> {
+        let still = Animation { path, reading, integrator, camera: None };
+        if instants.iter().all(Option::is_none) {
+            return Ok(still);
+        }
+        if reading::is_standard_input(path) {
+            return Err(Error::new("--frames and --frame read a scene for each picture: name its file"));
+        }
+        let start = Read::scene(path, &[], reading.at(0.0).loading(integrator), true)?.scene;
+        if start.animations.is_empty() {
+            let fault = "it has no animation, whose pictures --frames and --frame are; leave them out";
+            return Err(Error::file(path, fault));
+        }
+        let (width, height) = start.settings.size;
+        let framed = default_camera(&start, f64::from(width) / f64::from(height));
+        Ok(Animation { camera: framed.filter(|camera| start.cameras == [camera.clone()]), ..still })
+    }
+
+    /// Its pictures.
+    pub fn pictures<'s>(&'s self, instants: &'s [Option<Instant>]) -> impl Iterator<Item = Moving<'s>> {
+        let first = instants.first().copied();
+        instants.iter().map(move |&instant| Moving {
+            instant,
+            camera: self.camera.as_ref(),
+            is_first: Some(instant) == first,
+        })
+    }
+
+    /// The scene as a picture shows it.
+    ///
+    /// # Errors
+    /// It can't be read.
+    pub fn read(&self, moving: Moving<'_>, quiet: bool) -> Result<Read<'a>> {
+        let at = moving.instant.map(|instant| self.reading.at(instant.seconds));
+        let loading = at.as_ref().unwrap_or(self.reading).loading(self.integrator);
+        let read = Read::scene(self.path, &[], loading, quiet || !moving.is_first)?;
+        let cameras = moving.camera.map_or_else(|| read.scene.cameras.clone(), |camera| vec![camera.clone()]);
+        Ok(Read { scene: Scene { cameras, ..read.scene }, ..read })
+    }
+}

@@ -165,3 +165,18 @@ fn indirect_light_is_what_the_finished_picture_has_beside_direct_light() {
         }
     }
 }
+
+/// Those that are no sums of samples are rendered once a merged film is gone on with, of which nothing is missing.
+#[test]
+fn a_merged_film_gets_all_other_layers_by_its_scene() {
+    let place = Place::new(&[("studio.toml", STUDIO)]);
+    let render = ["render", "studio.toml", "--device", "cpu", "--layers"];
+    let all = "albedo,depth,position,object,crypto_object,crypto_material";
+    place.succeed(&[&render[..], &[all, "-o", "whole.exr", "--reproducible"]].concat());
+    place.succeed(&[&render[..], &["albedo", "--samples-to", "3", "-o", "a.film"]].concat());
+    place.succeed(&[&render[..], &["albedo", "--samples-from", "3", "-o", "b.film"]].concat());
+    place.succeed(&["merge", "b.film", "a.film", "-o", "all.film"]);
+    let on = [all, "--checkpoint", "all.film", "--resume", "-o", "merged.exr", "--reproducible"];
+    place.succeed(&[&render[..], &on].concat());
+    assert_eq!(fs::read(place.path("whole.exr")).unwrap(), fs::read(place.path("merged.exr")).unwrap());
+}

@@ -150,12 +150,10 @@ impl Lighting {
     pub(super) fn new(
         lights: (&[Light], &[LightRecord]),
         lamps: &Lamps,
-        (groups, background): (&LightGroups, u32),
+        groups: (&LightGroups, u32),
         normalisation: &Normalisation,
     ) -> Self {
-        let group = |light: &Light| groups.number(light.group());
-        let groups = lights.0.iter().map(group).collect();
-        let choices = choices(lights, lamps, Groups { lights: groups, background }, normalisation);
+        let choices = choices(lights, lamps, groups, normalisation);
         let total: f64 = choices.iter().map(|choice| choice.power).sum();
         let with_density = |&(emission, flux): &(Emission, f64)| {
             let density = if total > 0.0 { (flux / total) as f32 } else { 0.0 };
@@ -211,21 +209,15 @@ struct Choice {
     group: u32,
 }
 
-/// The groups of what is no lamp.
-struct Groups {
-    lights: Vec<u32>,
-    background: u32,
-}
-
-/// All of a scene: its lights, its lamps, and its environment.
+/// All of a scene: its lights, its lamps, and its environment, which is in the group `background`.
 fn choices(
     lights: (&[Light], &[LightRecord]),
     lamps: &Lamps,
-    groups: Groups,
+    (groups, background): (&LightGroups, u32),
     normalisation: &Normalisation,
 ) -> Vec<Choice> {
-    let of_light = |((light, record), &group): ((&Light, &LightRecord), &u32)| {
-        let record = scaled(light, record, normalisation);
+    let of_light = |(light, record): (&Light, &LightRecord)| {
+        let (record, group) = (scaled(light, record, normalisation), groups.number(light.group()));
         Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record), record, group }
     };
     let of_lamp =
@@ -234,17 +226,9 @@ fn choices(
     let is_only = lights.0.is_empty() && lamps.is_empty();
     let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
     // That on a scene within a sphere of radius 1.
-    let group = groups.background;
-    let far = far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None, group });
-    lights
-        .0
-        .iter()
-        .zip(lights.1)
-        .zip(&groups.lights)
-        .map(of_light)
-        .chain(lamps.lamps.iter().map(of_lamp))
-        .chain(far)
-        .collect()
+    let far =
+        far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None, group: background });
+    lights.0.iter().zip(lights.1).map(of_light).chain(lamps.lamps.iter().map(of_lamp)).chain(far).collect()
 }
 
 /// The probability of the environment, if it is among some choices.

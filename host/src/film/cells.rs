@@ -6,7 +6,7 @@ use eyerays_shader::stage::{BLOCK, PixelSums, Row};
 use rayon::prelude::*;
 
 use super::develop::{Mean, mean_light};
-use super::{Coverage, Film, Layout};
+use super::{Coverage, Film, Layout, words_of_row};
 use crate::error::{Error, Result};
 use crate::noise::{CellSums, Target, decides_at, next, whole_blocks};
 use crate::view::{Region, View};
@@ -92,7 +92,7 @@ impl Film {
         let mut bands = vec![Vec::new(); window.height.div_ceil(Target::CELL) as usize];
         of.iter().zip(&added.sums).for_each(|(cell, sums)| bands[band(cell) as usize].push((*cell, sums)));
         // Rows of cells on all threads: a device waits meanwhile.
-        let rows = self.sums.par_chunks_mut((Target::CELL * window.width) as usize * words.all() as usize);
+        let rows = self.sums.par_chunks_mut(words_of_row(words, Target::CELL * window.width));
         rows.zip(bands).for_each(|(own, cells)| {
             for (cell, sums) in cells {
                 let region = Region { y: cell.y, height: cell.height, ..window };

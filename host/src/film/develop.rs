@@ -6,7 +6,7 @@ use eyerays_shader::stage::{
 };
 use rayon::prelude::*;
 
-use super::Film;
+use super::{Film, words_of_row};
 use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::rays::Rays;
@@ -49,7 +49,7 @@ impl Developer {
             self.opaque(first, words, sums, &counts);
         }
         let pixels = self.picture.pixels.par_chunks_mut(width as usize).skip(first as usize);
-        let rows = pixels.zip(sums.par_chunks(words.all() as usize * width as usize));
+        let rows = pixels.zip(sums.par_chunks(words_of_row(words, width)));
         let told = rows.enumerate().map(|(y, (pixels, sums))| {
             let (row, mut told) = (Row::new(0, width, words), Told::default());
             for ((pixel, x), &count) in pixels.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
@@ -80,7 +80,7 @@ impl Developer {
         let width = self.picture.width;
         let alpha = self.picture.alpha.get_or_insert_with(|| vec![0.0; self.picture.pixels.len()]);
         let rows = alpha.par_chunks_mut(width as usize).skip(first as usize);
-        rows.zip(sums.par_chunks(words.all() as usize * width as usize)).enumerate().for_each(|(y, (alpha, sums))| {
+        rows.zip(sums.par_chunks(words_of_row(words, width))).enumerate().for_each(|(y, (alpha, sums))| {
             let row = Row::new(0, width, words);
             for ((share, x), &count) in alpha.iter_mut().zip(0..).zip(counts(y as u32).as_ref()) {
                 *share = opacity(&PixelSums::load(sums, row, x), count) as f32;
@@ -123,7 +123,7 @@ impl Film {
     /// samples. Infinite with fewer than two samples, and where no noise is told.
     pub fn errors(&self) -> Vec<f32> {
         let (width, words, samples_a_square) = (self.window.width, self.words, self.samples_a_square());
-        let rows = self.sums.par_chunks(words.all() as usize * width as usize).zip(0..self.window.height);
+        let rows = self.sums.par_chunks(words_of_row(words, width)).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let counts = self.counts(y);
             let row = Row::new(0, width, words);
@@ -147,7 +147,7 @@ impl Film {
         if !Row::new(0, width, words).knows_catchers() {
             return None;
         }
-        let rows = self.sums.par_chunks(words.all() as usize * width as usize).zip(0..self.window.height);
+        let rows = self.sums.par_chunks(words_of_row(words, width)).zip(0..self.window.height);
         let errors = rows.flat_map_iter(|(sums, y)| {
             let of = move |(count, x)| {
                 let catcher = PixelSums::load(sums, Row::new(0, width, words), x).catcher;
@@ -170,7 +170,7 @@ impl Film {
             return Err(Error::new(format!("the film keeps {} layers of a pixel, counted from 0", words.aovs)));
         }
         let mut picture = Picture::new(width, height)?;
-        let rows = self.sums.par_chunks(words.all() as usize * width as usize);
+        let rows = self.sums.par_chunks(words_of_row(words, width));
         picture.pixels.par_chunks_mut(width as usize).zip(rows).enumerate().for_each(|(y, (pixels, sums))| {
             let row = Row::new(0, width, words);
             for ((pixel, x), count) in pixels.iter_mut().zip(0..).zip(self.counts(y as u32)) {
@@ -189,7 +189,7 @@ impl Film {
     /// What was traced for it.
     pub fn rays(&self) -> Rays {
         let (width, words) = (self.window.width, self.words);
-        let rows = self.sums.par_chunks(words.all() as usize * width as usize);
+        let rows = self.sums.par_chunks(words_of_row(words, width));
         let counted = rows.map(|sums| {
             let of = |x| PixelSums::load(sums, Row::new(0, width, words), x).word;
             let add = |(shadow, lost), word| {

@@ -186,6 +186,11 @@ impl Film {
     }
 }
 
+/// Words of a row of so many pixels.
+fn words_of_row(words: FilmWords, width: u32) -> usize {
+    words.all() as usize * width as usize
+}
+
 /// How sums lie in memory: row by row of a region, in a row one word of all its pixels after another.
 #[derive(Clone, Copy)]
 pub(crate) struct Layout {
@@ -213,7 +218,7 @@ impl Layout {
 
     /// Words of a row of both.
     fn lengths(self, region: Region) -> (usize, usize) {
-        (self.words.all() as usize * self.region.width as usize, self.words.all() as usize * region.width as usize)
+        (words_of_row(self.words, self.region.width), words_of_row(self.words, region.width))
     }
 
     fn add_row(self, own: &mut [u32], region: Region, added: &[u32]) {

@@ -11,13 +11,14 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
-use crate::scene::{Camera, Sampler, Scene, Settings};
+use crate::scene::{Camera, Scene, Settings};
 use crate::view::Region;
 
 pub use eyerays_shader::data::Aovs;
 pub(crate) use kept::can_be_named;
 pub use kept::{all_of_film, asked, check, check_room, names, of_film};
-use studio::{Studio, seen};
+use studio::{Studio, middles, seen};
+use surface::Place;
 
 choices! {
     /// What a picture may hold beside the light of each pixel.
@@ -147,16 +148,15 @@ pub fn preview(job: &Job, camera: &Camera, window: Region, threads: usize) -> Re
 /// There is no such pixel, or as [`preview`].
 pub fn depth(job: &Job, camera: &Camera, (x, y): (u32, u32)) -> Result<Option<f32>> {
     let pixel = Region { x, y, width: 1, height: 1 };
-    let [depth, low, high] = at_middles(job, camera, Feature::Place, pixel, 1)?.pixels[0];
-    let scale = job.normalisation().scale;
-    Ok((low + high > 0.0).then_some((f64::from(depth) / scale) as f32))
+    let seen = at_middles(job, camera, Feature::Place, pixel, 1)?.pixels[0];
+    let place = Place::of(seen, job.normalisation().scale);
+    Ok(place.primitive.map(|_| place.depth))
 }
 
 /// A feature at the middle of each pixel of a part of the image, by this many threads of the CPU.
 fn at_middles(job: &Job, camera: &Camera, feature: Feature, window: Region, threads: usize) -> Result<Picture> {
     let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
-    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*job.settings() };
+    let (middle, pinhole) = middles(job.settings(), camera);
     let job = job.with(middle)?.showing(Some(feature));
-    let pinhole = Camera { lens: None, ..camera.clone() };
     Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?, 1, &|_| ())?.picture)
 }

@@ -3,7 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::surface::{material, primitive, texture_coordinates};
+use super::surface::{Place, material, primitive, texture_coordinates};
 use super::{Layer, Values, names, of_film};
 use crate::cryptomatte::{Counter, Cryptomatte};
 use crate::device_scene::Feature;
@@ -34,15 +34,6 @@ pub(super) struct Studio<'a> {
 
 /// Samples of a pixel that count for its Cryptomattes: each is a picture of its own.
 const COUNTED: u32 = 64;
-
-/// What is seen at the middle of a pixel, if anything is.
-#[derive(Clone, Copy)]
-struct Place {
-    /// In the scene's units.
-    depth: f32,
-    /// The primitive's number.
-    primitive: Option<usize>,
-}
 
 impl<'a> Studio<'a> {
     pub fn new(session: &'a mut Session, camera: &'a Camera, window: Region, settings: Settings) -> Self {
@@ -78,8 +69,8 @@ impl<'a> Studio<'a> {
             | Layer::LightGroups => return Err(not_kept(layer)),
             Layer::Position => Values::Vectors(self.positions()?.clone()),
             Layer::Uv => {
+                // Which takes their places, too.
                 self.positions()?;
-                self.places()?;
                 let (positions, places) = (self.positions.as_ref(), self.places.as_ref());
                 coordinates(scene, positions.expect("just made"), places.expect("just made"))?
             }
@@ -109,13 +100,8 @@ impl<'a> Studio<'a> {
     fn places(&mut self) -> Result<&[Place]> {
         if self.places.is_none() {
             let scale = self.session.job().normalisation().scale;
-            let place = |pixel: [f32; 3]| {
-                let primitive = primitive(pixel);
-                let depth = if primitive.is_some() { (f64::from(pixel[0]) / scale) as f32 } else { f32::INFINITY };
-                Place { depth, primitive }
-            };
             let seen = self.at_middles(Feature::Place)?;
-            self.places = Some(seen.pixels.into_iter().map(place).collect());
+            self.places = Some(seen.pixels.into_iter().map(|pixel| Place::of(pixel, scale)).collect());
         }
         Ok(self.places.as_deref().expect("they were just made"))
     }
@@ -164,8 +150,7 @@ impl<'a> Studio<'a> {
 
     /// A feature at the middle of each pixel.
     fn at_middles(&mut self, feature: Feature) -> Result<Picture> {
-        let middle = Settings { spp: 1, sampler: Sampler::Regular, ..self.settings };
-        let pinhole = Camera { lens: None, ..self.camera.clone() };
+        let (middle, pinhole) = middles(&self.settings, self.camera);
         self.picture_by(&pinhole, Some(feature), middle)
     }
 
@@ -193,6 +178,12 @@ fn coordinates(scene: &Scene, positions: &Picture, places: &[Place]) -> Result<V
 /// What only a film that was asked for it has.
 fn not_kept(layer: Layer) -> Error {
     Error::new(format!("the layer {layer} is kept by films that were asked for it: render them by Job::keeping"))
+}
+
+/// Settings and a camera that see the middle of each pixel once.
+pub(super) fn middles(settings: &Settings, camera: &Camera) -> (Settings, Camera) {
+    let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*settings };
+    (middle, Camera { lens: None, ..camera.clone() })
 }
 
 /// A part of the image that a camera has of a job.

@@ -9,6 +9,24 @@ pub fn primitive([_, low, high]: [f32; 3]) -> Option<usize> {
     (low as usize + ((high as usize) << 16)).checked_sub(1)
 }
 
+/// What is seen at the middle of a pixel, if anything is.
+#[derive(Clone, Copy)]
+pub struct Place {
+    /// In the scene's units; infinite for nothing.
+    pub depth: f32,
+    /// The primitive's number.
+    pub primitive: Option<usize>,
+}
+
+impl Place {
+    /// What a pixel of [`Feature::Place`](crate::device_scene::Feature::Place) shows, of a scene that was normalised by a scale.
+    pub fn of(pixel: [f32; 3], scale: f64) -> Place {
+        let primitive = primitive(pixel);
+        let depth = if primitive.is_some() { (f64::from(pixel[0]) / scale) as f32 } else { f32::INFINITY };
+        Place { depth, primitive }
+    }
+}
+
 /// The number of a primitive's material, from 0.
 pub fn material(scene: &Scene, primitive: usize) -> u32 {
     let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());

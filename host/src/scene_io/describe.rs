@@ -261,7 +261,7 @@ fn material(text: &mut Text, of: &Material) {
     text.other("two_sided", of.two_sided, false);
     group(text, &of.group);
     if let Some(lit_by) = &of.lit_by {
-        let names: Vec<String> = lit_by.iter().map(|name| quoted(name).to_string()).collect();
+        let names: Vec<String> = lit_by.iter().map(|name| quoted(name)).collect();
         text.key("lit_by", format!("[{}]", names.join(", ")));
     }
     visibility(text, of.visibility);

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::reading::{self, Read, Reading};
 use super::sequence::Instant;
 use crate::error::{Error, Result};
-use eyerays::scene::{Camera, Integrator, Scene, default_camera};
+use eyerays::scene::{Camera, Integrator, default_camera};
 
 /// A picture of an animation, or of a scene that stands still.
 #[derive(Clone, Copy)]
@@ -69,8 +69,10 @@ impl<'a> Animation<'a> {
     pub fn read(&self, moving: Moving<'_>, quiet: bool) -> Result<Read<'a>> {
         let at = moving.instant.map(|instant| self.reading.at(instant.seconds));
         let loading = at.as_ref().unwrap_or(self.reading).loading(self.integrator);
-        let read = Read::scene(self.path, &[], loading, quiet || !moving.is_first)?;
-        let cameras = moving.camera.map_or_else(|| read.scene.cameras.clone(), |camera| vec![camera.clone()]);
-        Ok(Read { scene: Scene { cameras, ..read.scene }, ..read })
+        let mut read = Read::scene(self.path, &[], loading, quiet || !moving.is_first)?;
+        if let Some(camera) = moving.camera {
+            read.scene.cameras = vec![camera.clone()];
+        }
+        Ok(read)
     }
 }

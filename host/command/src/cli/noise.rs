@@ -18,7 +18,8 @@ const MOST: u32 = 4096;
 #[derive(Args, Clone, Copy)]
 pub(super) struct NoiseArgs {
     /// Stop where the noise is low enough: in each cell of 16x16 pixels a standard error of X of what is seen, for example 0.02, which
-    /// depends on --exposure and --tone, not on --white-balance; with at least 64 and at most --spp samples [default of it: 4096]. For integrators that sample
+    /// depends on --exposure and --tone, not on --white-balance; with at least 64 and at most --spp samples [default of it: 4096].
+    /// For integrators that sample
     #[arg(long, value_name = "X", conflicts_with_all = ["repeat", "samples", "samples_from", "samples_to"])]
     noise: Option<f64>,
 }

@@ -17,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 use eyerays::film::{Film, Identity};
 use eyerays::fireflies::Buckets;
+use eyerays::job::Job;
 use eyerays::layers::{self, Layer, Values};
 use eyerays::render::{Backend, Choice, Precision, Rendering, Session};
 use eyerays::scene::{Camera, Scene};
@@ -84,7 +85,7 @@ impl Studio<'_> {
             Some(checkpoint) => checkpoint.film(identity, view, self.quiet)?,
             None => None,
         };
-        if repeat > 1 && self.keeps_film(place) {
+        if repeat > 1 && self.keeps_film(place, session.job()) {
             return Err(Error::new("--repeat measures and keeps no film: drop it, or what needs one"));
         }
         let is_silent = self.quiet || self.of.json;
@@ -118,7 +119,7 @@ impl Studio<'_> {
             })
         } else {
             let bar = progress::pixels(view.region().pixels() * u64::from(repeat), is_silent);
-            let rendering = match self.keeps_film(place) {
+            let rendering = match self.keeps_film(place, session.job()) {
                 true => session.expose(view, &|pixels| bar.inc(pixels)),
                 false => session.render(view, repeat, &|pixels| bar.inc(pixels)),
             };
@@ -140,12 +141,12 @@ impl Studio<'_> {
         Ok(rendering)
     }
 
-    fn keeps_film(&self, place: &Place) -> bool {
+    fn keeps_film(&self, place: &Place, job: &Job) -> bool {
         let layers = self.of.layers();
         place.destination.is_film()
             || place.checkpoint.as_ref().is_some_and(Checkpoint::stays)
             || self.of.denoise.is_some()
-            || layers.iter().any(|layer| self.of.repeat == 1 && layer.aov().is_some())
+            || job.aovs().any()
             || [Layer::Error, Layer::Samples].iter().any(|layer| layers.contains(layer))
     }
 

@@ -4,7 +4,7 @@ use eyerays_shader::data::{BOX_PADDING, Bounds as Record, CwbvhNode, NodePair, N
 use rayon::prelude::*;
 
 use crate::{
-    BuildError, MAX_DEPTH, Quality, References,
+    BuildError, Limits, Quality, References,
     bounds::Bounds,
     depth, layout, search,
     validate::{self, validate},
@@ -56,6 +56,15 @@ impl Bvh {
 ///
 /// [`BuildError::TooManyPrimitives`], or a defect of the builder that its validation found.
 pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildError> {
+    build_within(references, quality, Limits::default())
+}
+
+/// The same with paths of no more pairs than a limit.
+///
+/// # Errors
+///
+/// As [`build`].
+pub fn build_within(references: &References, quality: Quality, limits: Limits) -> Result<Bvh, BuildError> {
     let References { list, pairs } = references;
     let count = check_count(list.len())?;
     let own = |reference: u32| Bounds::read(&list[reference as usize].bounds);
@@ -66,7 +75,7 @@ pub fn build(references: &References, quality: Quality) -> Result<Bvh, BuildErro
             0.0 => (pairs.clone(), (0..count).into_par_iter().collect()),
             share => search::improve(pairs, own, share),
         };
-        let tree = depth::limit(tree, &mut order, own, MAX_DEPTH);
+        let tree = depth::limit(tree, &mut order, own, limits);
         (layout::pairs(&tree, |slot| own(order[slot as usize])), order)
     };
     validate::order(&order, list.len())?;

@@ -18,16 +18,38 @@ pub const MAX_DEPTH: u32 = STACK as u32 - 1;
 // The root itself can always be split at medians.
 const _: () = assert!((NodeRef::MAX_INDEX).ilog2() < MAX_DEPTH);
 
-/// A tree without paths longer than `most` pairs: subtrees that are too deep are built anew by splits at medians. Nodes near
+/// What a hierarchy may be at most.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Pairs on a path.
+    depth: u32,
+    /// References of a leaf where subtrees are built anew.
+    leaf: u32,
+}
+
+impl Limits {
+    /// Those of two hierarchies of which one begins in the leaves of the other: one stack serves both, and a leaf leads to one.
+    pub const OF_LEVELS: Limits = Limits { depth: MAX_DEPTH / 2, leaf: 1 };
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Limits { depth: MAX_DEPTH, leaf: MAX_LEAF }
+    }
+}
+
+const _: () = assert!((NodeRef::MAX_INDEX).ilog2() < Limits::OF_LEVELS.depth);
+
+/// A tree without paths longer than a limit: subtrees that are too deep are built anew by splits at medians. Nodes near
 /// the root and shallow subtrees stay as they are. `order` is what is at each slot, by its number, and sorted within such
 /// subtrees; `own` tells the box of a number.
 ///
-/// `most` must be enough for median splits of the whole tree.
+/// The limit must be enough for median splits of the whole tree.
 pub(crate) fn limit(
     tree: Vec<Children>,
     order: &mut [u32],
     own: impl Fn(u32) -> Bounds + Copy,
-    most: u32,
+    Limits { depth: most, leaf }: Limits,
 ) -> Vec<Children> {
     if height(&tree) <= most {
         return tree;
@@ -39,7 +61,7 @@ pub(crate) fn limit(
     let limited = Piece::grow((Subtree::Node(NodeRef::ROOT), 0), |(subtree, level), piece| {
         let [left, right] = match subtree.children(&tree, &below, level, most) {
             Ok(children) => children,
-            Err((first, count)) if count <= MAX_LEAF => return Grown::Leaf(piece.leaf(first..first + count)),
+            Err((first, count)) if count <= leaf => return Grown::Leaf(piece.leaf(first..first + count)),
             Err((first, count)) => {
                 let slots = first as usize..(first + count) as usize;
                 let half = median::split(&mut order[slots], |&number| own(number), |&number| number) as u32;
@@ -121,7 +143,7 @@ mod tests {
     fn limited(slots: u32, most: u32) -> Vec<Children> {
         let mut order: Vec<u32> = (0..slots).collect();
         let own = |number: u32| Bounds::new([number as f32; 3], [number as f32 + 1.0; 3]);
-        let tree = limit(chain(slots), &mut order, own, most);
+        let tree = limit(chain(slots), &mut order, own, Limits { depth: most, ..Limits::default() });
         order.sort();
         assert_eq!(order, (0..slots).collect::<Vec<_>>());
         tree

@@ -27,8 +27,8 @@ mod tree;
 mod validate;
 mod wide;
 
-pub use build::{Bvh, build};
-pub use depth::MAX_DEPTH;
+pub use build::{Bvh, build, build_within};
+pub use depth::{Limits, MAX_DEPTH};
 pub use error::BuildError;
 pub use quality::Quality;
 pub use reference::{Reference, References, split};

@@ -76,7 +76,7 @@ pub(crate) fn check_coordinates(primitives: &[Primitive]) -> Result<(), BuildErr
             return coordinates.as_flattened().iter().all(|c| c.abs() <= 1.0);
         }
         let Bounds { min, max } = Bounds::of(p);
-        p.radius() > 0.0 && (0..3).all(|i| -MOST <= min[i] && max[i] <= MOST)
+        (p.radius() > 0.0 || p.is_instance()) && (0..3).all(|i| -MOST <= min[i] && max[i] <= MOST)
     };
     match primitives.par_iter().find_first(|p| !normalised(p)) {
         Some(p) => Err(BuildError::Coordinate { primitive: p.number() }),

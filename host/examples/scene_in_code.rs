@@ -61,6 +61,8 @@ fn scene() -> Scene {
         },
         spheres: Vec::new(),
         disks: Vec::new(),
+        shared: Vec::new(),
+        instances: Vec::new(),
         objects: Vec::new(),
         animations: Vec::new(),
         files: Vec::new(),

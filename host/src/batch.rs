@@ -23,7 +23,7 @@ pub struct Ray {
 pub struct Hit {
     /// The distance from the ray's origin, in the scene's units.
     pub distance: f64,
-    /// The primitive's number in the scene: its triangles' first, then its spheres', then its disks'.
+    /// The primitive's number in the scene: its triangles' first, then those of copies of meshes, then its spheres', then its disks'.
     pub primitive: u32,
     /// Where on it: barycentric weights of a triangle's second and third vertex, octahedral coordinates of a sphere's normal,
     /// or a disk's coordinates along two tangents, in radii.
@@ -80,14 +80,18 @@ impl Batch {
     pub fn hits(&self, packed: &Job, answers: &Answers) -> Vec<Option<Hit>> {
         match answers {
             Answers::Closest(records) => {
-                records.iter().zip(&self.moved).map(|(&record, &moved)| self.hit(packed, record, moved)).collect()
+                let copies = records.get(self.moved.len()..).unwrap_or_default();
+                let hit = |(ray, &moved): (usize, &f64)| self.hit(packed, (records[ray], copies.get(ray)), moved);
+                self.moved.iter().enumerate().map(hit).collect()
             }
             Answers::Occlusion(_) => vec![None; self.moved.len()],
         }
     }
 
-    fn hit(&self, packed: &Job, record: UVec4, moved: f64) -> Option<Hit> {
-        let primitive = packed.primitives().get(record.w as usize)?.number();
+    fn hit(&self, packed: &Job, (record, copy): (UVec4, Option<&UVec4>), moved: f64) -> Option<Hit> {
+        let number = packed.primitives().get(record.w as usize)?.number();
+        let copy = copy.and_then(|copy| packed.instances().get(copy.w as usize));
+        let primitive = copy.map_or(number, |copy| copy.number(number));
         let [t, u, v] = [record.x, record.y, record.z].map(f32::from_bits);
         Some(Hit { distance: moved + f64::from(t) / self.scale, primitive, coordinates: [u, v] })
     }

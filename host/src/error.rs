@@ -304,7 +304,9 @@ impl Error {
             }
             Error::TooLarge { device, what, bytes, limit } => match what {
                 Content::Scene(name) => {
-                    format!("the scene's {name} take {bytes} bytes, but \"{device}\" has buffers of at most {limit}")
+                    format!(
+                        "the scene's {name} would take {bytes} bytes, but \"{device}\" has buffers of at most {limit}"
+                    )
                 }
                 Content::WholeScene => {
                     format!("the scene takes {bytes} bytes, but \"{device}\" has {limit} bytes of memory")

@@ -146,7 +146,6 @@ impl Job {
     /// What kernels are compiled for that follow the camera's rays by a traversal.
     pub fn specialisation(&self, traversal: &Traversal) -> Specialisation {
         let filter = if self.effects().has(Effects::TEXTURED) { self.settings.filter.bits() } else { 0 };
-        let split = if self.bounds().is_empty() { 0 } else { Layout::SPLIT };
         Specialisation {
             effects: self.effects(),
             launch: Launch(
@@ -156,7 +155,7 @@ impl Job {
                     | filter
                     | self.camera_bits(),
             ),
-            layout: Layout(traversal.layout.bits() | split),
+            layout: Layout(traversal.layout.bits()),
             order: traversal.order.bits(),
             tuning: traversal.tuning,
             aovs: self.aovs,
@@ -212,6 +211,8 @@ impl Job {
         let reach = (f64::from(ao_distance) * self.normalisation().scale).min(f32::MAX.into()) as f32;
         let [horizon, zenith] = self.background();
         Frame {
+            origin: self.origin(),
+            pairs: self.nodes().len() as u32,
             lamps: pack(flushed((least + greatest) * 0.5), 0),
             lamps_half: pack(flushed((greatest - least) * 0.5), 0),
             horizon,

@@ -101,7 +101,8 @@ pub enum Question {
 /// The answers to a [`Question`], by ray.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Answers {
-    /// The bits of (t, u, v), and the slot of the triangle or [`StreamRay::NOWHERE`].
+    /// The bits of (t, u, v), and the slot of the triangle or [`StreamRay::NOWHERE`]. In a scene with copies of meshes as many words
+    /// follow, whose integer is the copy or [`StreamRay::NOWHERE`].
     Closest(Vec<UVec4>),
     /// [`eyerays_shader::stage::REACHED`] or [`eyerays_shader::stage::SHADOWED`].
     Occlusion(Vec<u32>),

@@ -5,7 +5,7 @@ use std::marker::PhantomData;
 use eyerays_shader::data::Effects;
 use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{self, FACES_AWAY, Segment, ShadowInputs};
+use eyerays_shader::stage::{self, FACES_AWAY, Found, Segment, ShadowInputs};
 use eyerays_shader::traverse::{
     self, Bvh8Method, Cut, Hybrid, IfIf, Interleaved, Leaf, Packet, Primitives, Sequential, Speculative, StackMax,
     Together, Triangles, WhileWhile,
@@ -18,7 +18,7 @@ use crate::way::Way;
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.
 pub enum Query<'a, R: Scalar> {
     /// Their closest hits, of paths or a stream's rays.
-    Trace(&'a [R::Record], &'a mut [R::Record]),
+    Trace(&'a [R::Record], &'a mut [Found<R>]),
     /// Whether something is on their way to a light, or before the ends of a stream's rays.
     Shadow(ShadowInputs<'a, R>, u32, &'a mut [u32]),
 }
@@ -35,7 +35,7 @@ macro_rules! follows {
 
 /// Follows the rays of slots by a method, with the instructions of an [`Isa`].
 pub fn follow<R: Scalar>(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, R>) {
-    let follows = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK) {
+    let follows = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK | Effects::INSTANCED) {
         among::<R, Primitives>(way)
     } else {
         among::<R, Triangles>(way)
@@ -149,7 +149,7 @@ impl<R: Scalar, L: Leaf, M: Together> Task<R> for Neighbours<'_, R, L, M> {
                 for (slots, hits) in slots.chunks(most).zip(hits.chunks_mut(most)) {
                     segments.clear();
                     segments.extend(slots.iter().map(|&slot| stage::traced::<R>(&geometry, slot, paths)));
-                    stage::trace_together::<R, V::Packet, M, L>(&geometry, &segments, |i, record| hits[i] = record);
+                    stage::trace_together::<R, V::Packet, M, L>(&geometry, &segments, |i, found| hits[i] = found);
                 }
             }
             Query::Shadow(asking, light, answers) => {

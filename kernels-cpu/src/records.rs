@@ -6,7 +6,7 @@ use eyerays_shader::real::Scalar;
 pub struct Records<R: Scalar> {
     /// Paths by level, record and slot; empty without secondary rays.
     pub paths: Vec<R::Record>,
-    /// (t, u, v) and triangle by slot.
+    /// What rays have found by slot, see [`Found`](eyerays_shader::stage::Found).
     pub hits: Vec<R::Record>,
     /// Answers of the shadow stage by light and slot.
     pub shadows: Vec<u32>,

@@ -12,7 +12,8 @@ pub struct Ray<R: Real> {
     pub origin: V3<R>,
     /// Where it goes, without components below 2^-60.
     pub direction: V3<R>,
-    /// One over the direction; a component below 2^-60, or that is NaN, counts as 2^-60, so that no infinity arises.
+    /// One over the direction; a component that is zero counts as 2^-40 of the greatest, so that no infinity arises: over the whole scene
+    /// that is less than any rounding.
     pub inverse: V3<R>,
     /// The origin times the inverse.
     pub offset: V3<R>,
@@ -71,10 +72,13 @@ impl<R: Real> Ray<R> {
     pub(crate) fn prepared(source_primitive: R::Index, origin: V3<R>, direction: V3<R>, from_afar: bool) -> Self {
         // NaN counts as zero too, since its reciprocal differs between devices.
         let d = direction.map(|c| R::select(R::splat(TINY).le(c.abs()), c, R::splat(0.0)));
+        // What goes nowhere goes somewhere, slowly: all tests of it must agree.
+        let d = V3::new(R::select(d.abs().greatest().eq(R::splat(0.0)), R::splat(TINY), d.x), d.y, d.z);
         let size = d.abs();
         let x_major = size.y.le(size.x) & size.z.le(size.x);
         let y_major = !x_major & size.z.le(size.y);
-        let inverse = V3::new(inverted(d.x), inverted(d.y), inverted(d.z));
+        let least = size.greatest() * R::splat(SMALL);
+        let inverse = d.map(|c| R::select(c.eq(R::splat(0.0)), least, c).reciprocal());
         let mut shear = Shear { x: d.x, y: d.y, x_major, y_major };
         let (cycled, along) = (shear.cycle(d), shear.cycle(inverse).z);
         shear.x = (cycled.x * along).flush(TINY);
@@ -106,13 +110,6 @@ impl<R: Real> Ray<R> {
     }
 }
 
-/// One over a direction's component, which is zero or at least 2^-60.
-#[inline(always)]
-fn inverted<R: Real>(component: R) -> R {
-    let least = R::select(component.lt(R::splat(0.0)), R::splat(-TINY), R::splat(TINY));
-    R::select(component.eq(R::splat(0.0)), least, component).reciprocal()
-}
-
 /// The step that takes a ray along its direction close to the cube [-1, 1]: none if it starts inside.
 #[inline(always)]
 fn approach<R: Real>(inverse: V3<R>, offset: V3<R>, direction: V3<R>) -> V3<R> {
@@ -128,8 +125,8 @@ fn approach<R: Real>(inverse: V3<R>, offset: V3<R>, direction: V3<R>) -> V3<R> {
 const SHORT: f32 = 1.0 / 64.0;
 const SHORT_SHARE: f32 = 1.0 / (1 << 20) as f32;
 
-/// Far outside of a scene within [-1, 1], without overflow when squared.
-const BEYOND: f32 = 1.0 / SMALL;
+/// Far outside of a scene within [-1, 1], without overflow when multiplied with an inverse, which is at most 2^100.
+const BEYOND: f32 = (1 << 24) as f32;
 
 /// A coordinate of a ray's origin; where it is NaN or infinite, one beyond the scene, from where the ray leads away, so
 /// that it hits no box on any device.
@@ -164,6 +161,8 @@ pub struct Hit<R: Real> {
     pub primitive_index: R::Index,
     /// The primitive's number in the scene, which decides ties.
     pub primitive: R::Index,
+    /// The copy of a mesh that it is in; [`Hit::NOTHING`] for none.
+    pub instance: R::Index,
 }
 
 impl<R: Real> Hit<R> {
@@ -181,6 +180,7 @@ impl<R: Real> Hit<R> {
             scale: R::splat(1.0),
             primitive_index: nothing,
             primitive: nothing,
+            instance: nothing,
         }
     }
 

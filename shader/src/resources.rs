@@ -43,7 +43,7 @@ macro_rules! resources {
             11 next NEXT: Write u32, "next queue";
             12 counters COUNTERS: Write u32, "counters";
             13 wide WIDE: Read CwbvhNode, "wide hierarchy";
-            14 bounds BOUNDS: Read Bounds, "bounds";
+            14 optics OPTICS: Read u32, "optics";
             15 film FILM: Write u32, "film";
             16 arguments ARGUMENTS: Write u32, "arguments";
             17 segments SEGMENTS: Write UVec4, "shadow rays";
@@ -61,7 +61,7 @@ macro_rules! resources {
             29 albedos ALBEDOS: Read u32, "albedos of facets";
             30 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
             31 cells CELLS: Read u32, "table of cells";
-            32 optics OPTICS: Read u32, "optics";
+            32 instances INSTANCES: Read Instance, "instances";
         }
     };
 }

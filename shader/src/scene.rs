@@ -4,9 +4,11 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    Bounds, CentredPair, CompactPair, CwbvhNode, Frame, Layout, Maps, Material, Normals, Primitive, Specialisation,
-    numbers,
+    CentredPair, CompactPair, CwbvhNode, Effects, Frame, Instance, Layout, Maps, Material, NodeRef, Normals, Primitive,
+    Specialisation, numbers, pack,
 };
+use crate::ray::Hit;
+use crate::real::{Real, TINY};
 use crate::texture::Textures;
 use crate::traverse::Cutout;
 use glam::{UVec4, Vec3};
@@ -20,6 +22,8 @@ pub struct LaunchContext<'a> {
     pub spec: Specialisation,
     /// Primitives in leaf order: [`Primitive`]s, or their indices and vertices ([`Layout::INDEXED`]).
     pub primitives: &'a [UVec4],
+    /// Copies of meshes ([`Effects::INSTANCED`]).
+    pub instances: &'a [Instance],
 }
 
 impl LaunchContext<'_> {
@@ -39,6 +43,29 @@ impl LaunchContext<'_> {
             Primitive { a: word(3 * index), b: word(3 * index + 1), c: word(3 * index + 2) }
         }
     }
+
+    /// The primitive at an index of a copy of a mesh, or of none.
+    #[inline(always)]
+    pub fn placed(&self, index: u32, instance: u32) -> Primitive {
+        let own = self.primitive(index);
+        if self.spec.effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
+            return placed(own, read(self.instances, instance), self.frame.origin);
+        }
+        own
+    }
+}
+
+/// A triangle of a mesh where a copy has it.
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn placed(Primitive { a, b, c }: Primitive, of: Instance, origin: UVec4) -> Primitive {
+    let (transform, origin) = (of.transform(), numbers(origin));
+    let place = |of: UVec4| {
+        let place = transform.place(numbers(of)) - origin;
+        Vec3::new(place.x.flush(TINY), place.y.flush(TINY), place.z.flush(TINY))
+    };
+    Primitive { a: pack(place(a), of.number(a.w)), b: pack(place(b), b.w), c: pack(place(c), c.w | of.flags()) }
 }
 
 /// A launch and what its rays meet.
@@ -53,13 +80,33 @@ pub struct TraceContext<'a> {
     /// The same for a CPU. Empty unless the method is `wide`.
     #[cfg(not(target_arch = "spirv"))]
     pub bvh8: Bvh8View<'a>,
-    /// Bounds in leaf order ([`Layout::SPLIT`]).
-    pub bounds: &'a [Bounds],
     /// Where primitives are not opaque.
     pub cutout: Cutout<'a>,
 }
 
 impl TraceContext<'_> {
+    /// The child pair that a reference leads to where the copy has it that the reference was found in, and the copy that it is in
+    /// itself: it may lead to one.
+    #[inline(always)]
+    pub fn opened(&self, node: NodeRef, instance: u32) -> (CentredPair, u32) {
+        let is_instanced = self.base.spec.effects.has(Effects::INSTANCED);
+        let (mut number, mut instance) = (node.index(), instance);
+        let mut of = Instance::NONE;
+        if is_instanced {
+            let leads = number >= self.base.frame.pairs;
+            instance = if leads { number - self.base.frame.pairs } else { instance };
+            if instance != Hit::<f32>::NOTHING {
+                of = read(self.base.instances, instance);
+                number = if leads { of.root() } else { number };
+            }
+        }
+        let pair = self.pair(number);
+        if is_instanced && instance != Hit::<f32>::NOTHING {
+            return (moved(pair, of, self.base.frame.origin), instance);
+        }
+        (pair, if is_instanced { instance } else { Hit::<f32>::NOTHING })
+    }
+
     /// The child pair of this number.
     #[inline(always)]
     pub fn pair(&self, number: u32) -> CentredPair {
@@ -78,17 +125,21 @@ impl TraceContext<'_> {
     pub fn primitive(&self, index: u32) -> Primitive {
         self.base.primitive(index)
     }
+}
 
-    /// The box (least, greatest corner) that a ray must meet for a hit to count: that of the part of a triangle that is at
-    /// the index, or else the primitive's own.
-    #[inline(always)]
-    pub fn bounds(&self, index: u32, own: impl FnOnce() -> (Vec3, Vec3)) -> (Vec3, Vec3) {
-        if self.base.spec.layout.has(Layout::SPLIT) {
-            let bounds = read(self.bounds, index);
-            (numbers(bounds.least), numbers(bounds.greatest))
-        } else {
-            own()
-        }
+/// A pair of nodes of a mesh where a copy has it.
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn moved(pair: CentredPair, of: Instance, origin: UVec4) -> CentredPair {
+    let (transform, origin, margin) = (of.transform(), numbers(origin), Vec3::splat(of.margin()));
+    let centre = |of: UVec4| pack(transform.place(numbers(of)) - origin, of.w);
+    let half = |of: UVec4| pack(transform.around(numbers(of)) + margin, 0);
+    CentredPair {
+        left_centre: centre(pair.left_centre),
+        left_half: half(pair.left_half),
+        right_centre: centre(pair.right_centre),
+        right_half: half(pair.right_half),
     }
 }
 
@@ -106,4 +157,32 @@ pub struct ShadingData<'a> {
     pub maps: &'a [Maps],
     /// What they are covered with.
     pub textures: Textures<'a>,
+    /// Copies of meshes ([`Effects::INSTANCED`]).
+    pub instances: &'a [Instance],
+}
+
+impl ShadingData<'_> {
+    /// The vertex normals of a triangle, where the copy has it that it may be in.
+    #[inline(always)]
+    pub fn normals(&self, effects: Effects, (index, instance): (u32, u32)) -> Normals {
+        let own = read(self.normals, index);
+        if effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
+            let transform = read(self.instances, instance).transform();
+            let turned = |n: UVec4| pack(transform.normal(numbers(n)), n.w);
+            return Normals { a: turned(own.a), b: turned(own.b), c: turned(own.c) };
+        }
+        own
+    }
+
+    /// Likewise its tangents. Those of a mesh that is mirrored are so in its own cube.
+    #[inline(always)]
+    pub fn tangents(&self, effects: Effects, (index, instance): (u32, u32)) -> Normals {
+        let own = read(self.tangents, index);
+        if effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
+            let transform = read(self.instances, instance).transform();
+            let turned = |t: UVec4| pack(transform.direction(numbers(t)), t.w);
+            return Normals { a: turned(own.a), b: turned(own.b), c: turned(own.c) };
+        }
+        own
+    }
 }

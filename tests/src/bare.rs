@@ -29,16 +29,15 @@ impl Bare {
         let spec = Specialisation { effects: self.effects, ..Specialisation::default() };
         let primitives = bytemuck::cast_slice(&self.primitives);
         let context = TraceContext {
-            base: LaunchContext { frame: &self.frame, spec, primitives },
+            base: LaunchContext { frame: &self.frame, spec, primitives, instances: &[] },
             nodes: &[],
             wide: &[],
             bvh8: Bvh8View::default(),
-            bounds: &[],
             cutout: Default::default(),
         };
         let mut hit = Hit::none(R::splat(limit));
         for index in 0..self.primitives.len() as u32 {
-            Primitives::intersect::<Q, R>(&context, index, ray, &mut hit);
+            Primitives::intersect::<Q, R>(&context, (index, u32::MAX), ray, &mut hit);
         }
         hit
     }

@@ -28,7 +28,7 @@ pub fn brute_force(packed: &Job, stream: &Stream) -> Vec<Found> {
         let packet = Ray::leaving(source_primitive, vector(&|r| r.origin), vector(&|r| r.direction));
         let mut hit = Hit::none(F32xN(std::array::from_fn(|i| ray(i).limit)));
         for slot in 0..packed.primitives().len() as u32 {
-            Primitives::intersect::<Closest, F32xN<LANES>>(&geometry, slot, &packet, &mut hit);
+            Primitives::intersect::<Closest, F32xN<LANES>>(&geometry, (slot, u32::MAX), &packet, &mut hit);
         }
         (0..LANES.min(stream.len() - start)).map(move |i| {
             let hit = hit.lane::<f32>(i);
@@ -48,7 +48,7 @@ pub fn brute_force_of<R: Scalar>(packed: &Job, stream: &Stream) -> Vec<Found> {
         let ray = Ray::<R>::leaving(R::index(source_primitive), V3::splat(origin), V3::splat(direction));
         let mut hit = Hit::none(R::splat(limit));
         for slot in 0..packed.primitives().len() as u32 {
-            Primitives::intersect::<Closest, R>(&geometry, slot, &ray, &mut hit);
+            Primitives::intersect::<Closest, R>(&geometry, (slot, u32::MAX), &ray, &mut hit);
         }
         let (u, v) = hit.coordinates();
         [hit.t.to_f32().to_bits(), u.to_f32().to_bits(), v.to_f32().to_bits(), hit.primitive]

@@ -9,6 +9,8 @@ pub fn empty() -> Scene {
         mesh: Mesh::default(),
         spheres: Vec::new(),
         disks: Vec::new(),
+        shared: Vec::new(),
+        instances: Vec::new(),
         objects: Vec::new(),
         animations: Vec::new(),
         files: Vec::new(),

@@ -93,6 +93,7 @@ fn part(scene: &Scene, primitive: usize) -> u32 {
         Primitives::Triangles(range) => range.contains(&primitive),
         Primitives::Spheres(range) => primitive.checked_sub(triangles).is_some_and(|own| range.contains(&own)),
         Primitives::Disks(range) => primitive.checked_sub(triangles + spheres).is_some_and(|own| range.contains(&own)),
+        Primitives::Instances(_) => panic!("there are none"),
     };
     1 + scene.objects.iter().position(|part| holds(&part.primitives)).expect("all primitives are of parts") as u32
 }

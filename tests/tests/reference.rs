@@ -14,7 +14,7 @@ use eyerays_shader::material::{Seen, Surface, refract};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::Scalar;
 use eyerays_shader::scene::{ShadingData, TraceContext};
-use eyerays_shader::stage::{Path, REACHED};
+use eyerays_shader::stage::{Found, Path, REACHED};
 use eyerays_shader::texture::{Cone, Covering};
 use eyerays_tests::{Posed, differences, pack, shipped};
 
@@ -56,17 +56,17 @@ impl Log<'_> {
     fn tell<R: Scalar>(&self, geometry: &TraceContext<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
         let path = Path::<R>::current(&geometry.base, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
-        let (hit, primitive_index) = R::load(records.hits[slot as usize]);
-        if primitive_index == Hit::<R>::NOTHING {
-            return story.events.push(primitive_index);
+        let Found { index, instance, coordinates, .. } = Found::<R>::load(&geometry.base, slot, &records.hits);
+        if index == Hit::<R>::NOTHING {
+            return story.events.push(index);
         }
         let packed = self.packed;
         let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), ..ShadingData::default() };
-        let triangle = &geometry.primitive(primitive_index);
-        let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, (hit.y, hit.z), path.direction);
+        let triangle = &geometry.primitive(index);
+        let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, coordinates, path.direction);
         let (effects, direction) = (geometry.base.spec.effects, path.direction);
         let narrow = Cone::none();
-        let seen = Seen { index: primitive_index, primitive: *triangle, interaction: contact, direction, cone: narrow };
+        let seen = Seen { index, instance, primitive: *triangle, interaction: contact, direction, cone: narrow };
         let surface = Surface::new(effects, &looks, &seen, &Covering::none());
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());

@@ -1,6 +1,7 @@
 //! The tree from the root down.
 
-use eyerays_shader::data::{MAX_LEAF, NodeRef, Primitive};
+use eyerays_shader::data::{BOX_PADDING, MAX_LEAF, NodeRef, Primitive};
+use glam::Vec3A;
 
 use super::{
     bins::{Bins, Grid, Split, area},
@@ -10,7 +11,7 @@ use super::{
 };
 use crate::{
     Reference,
-    bounds::Bounds,
+    bounds::{Bounds, half_area},
     branch::{Branch, Items, Piece},
     median,
 };
@@ -124,7 +125,8 @@ impl Grower<'_> {
             *part = part.own(&self.triangles[part.triangle() as usize]);
             room.fill(Part::NONE);
             piece.items += 1;
-            return Subtree { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds() };
+            let joins = !self.triangles[part.triangle() as usize].is_instance();
+            return Subtree { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds(), joins };
         }
         let (number, is_root) = (piece.pairs.len(), node.level == 0);
         piece.pairs.push([NodeRef::ROOT; 2]);
@@ -134,7 +136,7 @@ impl Grower<'_> {
             return leaf;
         }
         piece.pairs[number] = [left.child, right.child];
-        Subtree { child: NodeRef::inner(number as u32), bounds: left.bounds.union(right.bounds) }
+        Subtree { child: NodeRef::inner(number as u32), bounds: left.bounds.union(right.bounds), joins: false }
     }
 
     /// Splits a node in two, neither of which is empty.
@@ -249,18 +251,22 @@ impl Grower<'_> {
 struct Subtree {
     child: NodeRef,
     bounds: Bounds,
+    /// May it be part of a larger leaf? A copy of a mesh is one of its own.
+    joins: bool,
 }
 
 impl Subtree {
     /// A leaf of all in two, if these are leaves and it costs no more: a pair costs a ray as much as a triangle, as
     /// [`Statistics`](crate::Statistics) counts. With a pair as three, Sibenik's diffuse rays visit 4 % fewer pairs and two
-    /// thirds more triangles.
+    /// thirds more triangles. Areas are those without the padding, which would make leaves of small flat triangles: Conference's shadow rays
+    /// test 9 % more of them with twice the padding, and a GPU follows 6 % fewer a second.
     fn leaf(left: &Subtree, right: &Subtree) -> Option<Self> {
         let (bounds, all) = (left.bounds.union(right.bounds), left.child.count() + right.child.count());
-        let cost = |leaf: &Subtree| leaf.bounds.half_area() * leaf.child.count() as f32;
-        let are_leaves = left.child.is_leaf() && right.child.is_leaf() && all <= MAX_LEAF;
-        let pays = are_leaves && bounds.half_area() * (all as f32 - 1.0) <= cost(left) + cost(right);
-        pays.then(|| Subtree { child: NodeRef::leaf(left.child.index(), all), bounds })
+        let area = |bounds: Bounds| half_area((bounds.extent() - 2.0 * BOX_PADDING).max(Vec3A::ZERO));
+        let cost = |leaf: &Subtree| area(leaf.bounds) * leaf.child.count() as f32;
+        let are_leaves = left.joins && right.joins && all <= MAX_LEAF;
+        let pays = are_leaves && area(bounds) * (all as f32 - 1.0) <= cost(left) + cost(right);
+        pays.then(|| Subtree { child: NodeRef::leaf(left.child.index(), all), bounds, joins: true })
     }
 }
 
@@ -312,7 +318,7 @@ mod tests {
     use super::*;
 
     fn leaf(first: u32, x: f32) -> Subtree {
-        Subtree { child: NodeRef::leaf(first, 1), bounds: Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]) }
+        Subtree { joins: true, child: NodeRef::leaf(first, 1), bounds: Bounds::new([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0]) }
     }
 
     #[test]

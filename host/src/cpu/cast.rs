@@ -6,8 +6,7 @@ use eyerays_kernels_cpu::{Isa, Number, Query};
 use eyerays_shader::data::numbers;
 use eyerays_shader::real::V3;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::ShadowInputs;
-use glam::UVec4;
+use eyerays_shader::stage::{Found, ShadowInputs};
 use rayon::prelude::*;
 
 use super::pool::pool;
@@ -49,23 +48,25 @@ pub fn cast_by(
 ) -> Result<(Answers, Duration)> {
     let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let geometry = laid.stream(&frame);
-    let mut answers = match question {
-        Question::Closest => Answers::Closest(vec![UVec4::ZERO; stream.len()]),
-        Question::Occlusion => Answers::Occlusion(vec![0; stream.len()]),
-    };
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
     let asking = ShadowInputs { lights: &[], paths: stream.words(), hits: &[] };
-    let time = pool(threads)?.install(|| {
-        let start = Instant::now();
-        match &mut answers {
-            Answers::Closest(hits) => trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), hits),
-            Answers::Occlusion(shadows) => tasks(&slots, shadows, |slots, shadows| {
-                f32::follow(isa, traversal.method.way(), &geometry, slots, Query::Shadow(asking, 0, shadows));
-            }),
+    pool(threads)?.install(|| match question {
+        Question::Closest => {
+            let mut hits = vec![Found::nothing(); stream.len()];
+            let start = Instant::now();
+            trace::<f32>(isa, traversal.method, &geometry, &slots, stream.words(), &mut hits);
+            let time = start.elapsed();
+            Ok((Answers::Closest(records::<f32>(&geometry, &hits)), time))
         }
-        start.elapsed()
-    });
-    Ok((answers, time))
+        Question::Occlusion => {
+            let mut shadows = vec![0; stream.len()];
+            let start = Instant::now();
+            tasks(&slots, &mut shadows, |slots, shadows| {
+                f32::follow(isa, traversal.method.way(), &geometry, slots, Query::Shadow(asking, 0, shadows));
+            });
+            Ok((Answers::Occlusion(shadows), start.elapsed()))
+        }
+    })
 }
 
 /// The closest hits of a stream's rays in the arithmetic `R`, as [`cast`] finds them in exact precision: (t, u,
@@ -80,10 +81,20 @@ where
     let (laid, frame) = (SceneView::new(packed, traversal), packed.stream_frame(stream.len()));
     let slots: Vec<u32> = (0..stream.len() as u32).collect();
     let rays: Vec<R::Record> = stream.words().iter().map(|&word| R::store(V3::splat(numbers(word)), word.w)).collect();
-    let mut hits = vec![R::Record::default(); stream.len()];
+    let mut hits = vec![Found::<R>::nothing(); stream.len()];
     let (method, geometry) = (traversal.method, laid.stream(&frame));
     pool(threads)?.install(|| trace::<R>(Isa::best(), method, &geometry, &slots, &rays, &mut hits));
-    Ok(hits)
+    Ok(records(&geometry, &hits))
+}
+
+/// Hits as they lie in memory.
+fn records<R: Number>(geometry: &TraceContext<'_>, hits: &[Found<R>]) -> Vec<R::Record> {
+    let rows = Found::<R>::records(geometry.base.spec.effects) as usize;
+    let mut records = vec![R::Record::default(); rows * hits.len()];
+    for (slot, hit) in hits.iter().enumerate() {
+        hit.store(&geometry.base, slot as u32, &mut records);
+    }
+    records
 }
 
 fn trace<R>(
@@ -92,7 +103,7 @@ fn trace<R>(
     geometry: &TraceContext<'_>,
     slots: &[u32],
     rays: &[R::Record],
-    hits: &mut [R::Record],
+    hits: &mut [Found<R>],
 ) where
     R: Number,
 {

@@ -8,7 +8,7 @@ use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{BLOCK, FilmWords, ShadowInputs};
+use eyerays_shader::stage::{BLOCK, FilmWords, Found, ShadowInputs};
 
 use crate::device_scene::SceneView;
 use crate::error::Result;
@@ -171,11 +171,11 @@ impl<R: Number> Executor for Launch<'_, R> {
 
 impl<R: Number> Launch<'_, R> {
     fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
-        let mut hits = vec![R::store(V3::zero(), 0); self.queue.len()];
+        let mut hits = vec![Found::nothing(); self.queue.len()];
         let query = Query::Trace(&self.records.paths, &mut hits);
         R::follow(self.planned.isa, method.way(), scene, &self.queue, query);
         for (&slot, hit) in self.queue.iter().zip(hits) {
-            self.records.hits[slot as usize] = hit;
+            hit.store(&scene.base, slot, &mut self.records.hits);
         }
     }
 

@@ -19,8 +19,13 @@ pub enum Feature {
 impl Feature {
     /// What of a scene's effects matters to it.
     pub(super) fn asked(self, effects: Effects) -> Effects {
-        const SHAPE: u32 =
-            Effects::SPHERE | Effects::DISK | Effects::CUTOUT | Effects::TEXTURED | Effects::COLOURED | SEEN;
+        const SHAPE: u32 = Effects::SPHERE
+            | Effects::DISK
+            | Effects::INSTANCED
+            | Effects::CUTOUT
+            | Effects::TEXTURED
+            | Effects::COLOURED
+            | SEEN;
         const SEEN: u32 = Effects::HIDDEN | Effects::HOLDOUT;
         let matters = match self {
             Feature::Albedo => SHAPE | Effects::CHECKER | Effects::PHYSICAL,

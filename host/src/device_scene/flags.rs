@@ -30,14 +30,31 @@ fn visibility_flags(Visibility { camera, shadow, reflection, matte }: Visibility
         | matte
 }
 
+/// The flags that a material alone gives.
+fn of_material(m: &Material) -> u32 {
+    let flag = |flag, holds: bool| if holds { flag } else { 0 };
+    flag(Primitive::TRANSPARENT, is_transparent(m))
+        | flag(Primitive::CUTOUT, is_cutout(m))
+        | flag(Primitive::TWO_SIDED, m.two_sided)
+}
+
+/// The flags of primitives of each material, whichever object they are of.
+pub(super) fn by_material(scene: &Scene) -> Vec<u32> {
+    scene.materials.iter().map(|m| of_material(m) | visibility_flags(m.visibility)).collect()
+}
+
+/// The flags that an object adds, by the number of a primitive of it.
+pub(super) fn by_object(scene: &Scene) -> impl Fn(u64) -> u32 + Sync + use<> {
+    let flags: Vec<u32> = scene.objects.iter().map(|object| visibility_flags(object.visibility)).collect();
+    let numbers = flags.iter().any(|&flags| flags != 0).then(|| ObjectNumbers::of(scene));
+    move |primitive| {
+        let object = numbers.as_ref().and_then(|numbers| numbers.find(primitive as usize));
+        object.map_or(0, |number| flags[number as usize])
+    }
+}
+
 /// The flags of each primitive, by its number and material.
 pub(super) fn by_primitive(scene: &Scene) -> impl Fn(usize, u32) -> u32 + Sync + use<> {
-    let of_material = |m: &Material| {
-        let flag = |flag, holds: bool| if holds { flag } else { 0 };
-        flag(Primitive::TRANSPARENT, is_transparent(m))
-            | flag(Primitive::CUTOUT, is_cutout(m))
-            | flag(Primitive::TWO_SIDED, m.two_sided)
-    };
     let flags: Vec<u32> = scene.materials.iter().map(of_material).collect();
     let seen: Vec<Visibility> = scene.materials.iter().map(|material| material.visibility).collect();
     let of_objects: Vec<Visibility> = scene.objects.iter().map(|object| object.visibility).collect();

@@ -1,9 +1,9 @@
 //! What launches are told of a scene.
 
-use eyerays_shader::data::Frame;
+use eyerays_shader::data::{Frame, pack};
 use glam::{UVec4, Vec3};
 
-use super::{DeviceScene, records};
+use super::{DeviceScene, copies, records};
 use crate::scene::Background;
 
 /// A corner beyond every scene.
@@ -20,9 +20,20 @@ impl DeviceScene {
         if is_black { self.lamps.bounds } else { Some([-EVERYWHERE, EVERYWHERE]) }
     }
 
+    /// What [`Frame::origin`] is.
+    pub(crate) fn origin(&self) -> UVec4 {
+        pack(copies::origin(&self.normalisation), 0)
+    }
+
     /// The record of a launch that follows `count` rays of a stream.
     pub fn stream_frame(&self, count: usize) -> Frame {
-        Frame { slots: count as u32, vertices: self.primitives.len() as u32, ..Frame::default() }
+        Frame {
+            slots: count as u32,
+            vertices: self.primitives.len() as u32,
+            origin: self.origin(),
+            pairs: self.nodes.len() as u32,
+            ..Frame::default()
+        }
     }
 
     /// Light of the background at the horizon and below, and straight up: linear RGB.

@@ -1,10 +1,10 @@
 //! The hierarchy of a scene, and what lies in its order.
 
-use eyerays_bvh::{BuildError, Bvh, Quality};
+use eyerays_bvh::{BuildError, Bvh, Limits, Quality};
 use eyerays_shader::data::{CentredPair, NodePair, Primitive};
 use rayon::prelude::*;
 
-use super::normalised;
+use super::{normalisation, records};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
@@ -18,7 +18,10 @@ const SPLIT_BUDGET: f32 = 0.3;
 /// As [`DeviceScene::new`](super::DeviceScene::new).
 pub fn hierarchy(scene: &Scene, quality: Quality) -> Result<Bvh> {
     scene.check()?;
-    kept_or_built(scene, &normalised(scene).1, quality)
+    if !scene.instances.is_empty() {
+        return Err(Error::new("a hierarchy of copies of meshes is not kept: flatten the scene"));
+    }
+    kept_or_built(scene, &records::primitives(scene, &normalisation(scene), &[]), quality)
 }
 
 pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Quality) -> Result<Bvh> {
@@ -29,8 +32,13 @@ pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Qu
             Error::new(format!("{fault}; write its file again with eyerays convert"))
         });
     }
+    built(primitives, quality, Limits::default())
+}
+
+/// A new hierarchy.
+pub(super) fn built(primitives: &[Primitive], quality: Quality, limits: Limits) -> Result<Bvh> {
     let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
-    eyerays_bvh::build(&references, quality).map_err(refused)
+    eyerays_bvh::build_within(&references, quality, limits).map_err(refused)
 }
 
 /// The pairs as kernels test them, in the same memory.

@@ -5,11 +5,12 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, CwbvhNode, Effects, Light as LightRecord, Material as MaterialRecord, Normals,
-    Physical as PhysicalRecord, Primitive,
+    Bounds, CentredPair, CwbvhNode, Effects, Instance as InstanceRecord, Light as LightRecord,
+    Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive,
 };
 
 mod alias;
+mod copies;
 mod environment;
 mod feature;
 mod flags;
@@ -22,20 +23,25 @@ mod normalisation;
 mod records;
 mod tangents;
 mod textures;
+mod two_levels;
 mod view;
 mod words;
 
+pub use copies::fitted;
+pub(crate) use copies::unfit_triangles;
 pub use feature::Feature;
 pub use hierarchy::hierarchy;
 pub use lighting::Lighting;
 pub use normalisation::Normalisation;
 pub(crate) use normalisation::flushed;
+pub(crate) use tangents::made_tangents;
 pub use textures::Textures;
 pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
-use hierarchy::{centred, gathered, kept_or_built, refused};
+use hierarchy::{centred, gathered};
 use lighting::Lamps;
+use two_levels::Levels;
 
 use crate::error::{Error, Result};
 use crate::memory::Room;
@@ -49,6 +55,9 @@ pub struct DeviceScene {
     nodes: Vec<CentredPair>,
     wide: Vec<CwbvhNode>,
     primitives: Vec<Primitive>,
+    instances: Vec<InstanceRecord>,
+    /// Pairs and slots of what stands in the world; those of shared meshes follow.
+    top: (usize, usize),
     bounds: Vec<Bounds>,
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
@@ -103,17 +112,14 @@ impl DeviceScene {
     pub(crate) fn of_checked(scene: &Scene, quality: Quality, is_wide: bool) -> Result<DeviceScene> {
         let emissive = scene.emissive().map(str::to_owned);
         let effects = records::effects(scene);
-        let (normalisation, primitives) = normalised(scene);
+        let normalisation = normalisation(scene);
         let start = Instant::now();
-        let mut bvh = kept_or_built(scene, &primitives, quality)?;
-        if is_wide {
-            bvh.widen().map_err(refused)?;
-        }
+        let Levels { bvh, top, primitives, instances, statistics } =
+            Levels::new(scene, &normalisation, quality, is_wide)?;
         let is_split = bvh.order.len() > primitives.len();
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
         let material = |m| records::material(m, groups.unlit(m), scene.ambient, normalisation.scale);
-        let statistics = Statistics::of(&bvh, &primitives);
         // One thing after the other, so that no more lies in memory than must.
         let nodes = centred(bvh.nodes);
         let primitives = gathered(primitives, &bvh.order);
@@ -133,6 +139,8 @@ impl DeviceScene {
         Ok(DeviceScene {
             statistics,
             primitives,
+            instances,
+            top,
             normals,
             nodes,
             wide: bvh.wide,
@@ -182,12 +190,25 @@ impl DeviceScene {
 
     /// The same hierarchy with nodes of eight children as a CPU loads them: made when it is first asked for.
     pub fn bvh8(&self) -> &Bvh8 {
-        self.bvh8.get_or_init(|| Bvh8::of(&self.nodes, &self.primitives, &self.bounds))
+        self.bvh8.get_or_init(|| {
+            let (pairs, slots) = self.top;
+            let (primitives, bounds) = (&self.primitives[..slots], self.bounds.get(..slots).unwrap_or_default());
+            if self.instances.is_empty() {
+                return Bvh8::of(&self.nodes, primitives, bounds);
+            }
+            Bvh8::of(&two_levels::leaves(&self.nodes, pairs, primitives), primitives, bounds)
+        })
     }
 
-    /// Primitives in leaf order, in the normalised scene; a split triangle has several places.
+    /// Primitives in leaf order, in the normalised scene; a split triangle has several places. Those of shared meshes come last, each in
+    /// its own cube.
     pub fn primitives(&self) -> &[Primitive] {
         &self.primitives
+    }
+
+    /// Copies of meshes.
+    pub fn instances(&self) -> &[InstanceRecord] {
+        &self.instances
     }
 
     /// Bounds in leaf order; empty unless triangles are split.
@@ -281,11 +302,12 @@ impl DeviceScene {
     }
 
     /// What it holds of each kind, in bytes, with what a CPU makes of it.
-    pub fn bytes(&self) -> [(&'static str, usize); 8] {
+    pub fn bytes(&self) -> [(&'static str, usize); 9] {
         [
             ("node pairs", size_of_val(&self.nodes[..])),
             ("wide nodes", size_of_val(&self.wide[..])),
             ("primitives", size_of_val(&self.primitives[..])),
+            ("copies", size_of_val(&self.instances[..])),
             ("own boxes", size_of_val(&self.bounds[..])),
             ("normals", size_of_val(&self.normals[..])),
             ("textures", self.textures.bytes()),
@@ -323,12 +345,10 @@ impl DeviceScene {
     }
 }
 
-fn normalised(scene: &Scene) -> (Normalisation, Vec<Primitive>) {
+fn normalisation(scene: &Scene) -> Normalisation {
     // The cells of a checkerboard are counted from the world's origin.
     let moves = !records::effects(scene).has(Effects::CHECKER);
-    let normalisation = Normalisation::of(scene.extremes(), moves);
-    let primitives = records::primitives(scene, &normalisation);
-    (normalisation, primitives)
+    Normalisation::of(scene.extremes(), moves)
 }
 
 fn lights(lights: &[Light], normalisation: &Normalisation) -> Result<Vec<LightRecord>> {

@@ -2,7 +2,8 @@
 
 use bytemuck::Zeroable;
 use eyerays_shader::data::{
-    Effects, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive, pack,
+    Effects, Instance, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord,
+    Primitive, pack,
 };
 use eyerays_shader::material::conductor_mean;
 use eyerays_shader::real::SMALL;
@@ -55,7 +56,8 @@ const GEOMETRY: u32 = Effects::SMOOTH
     | Effects::TANGENTS
     | Effects::ENVIRONMENT
     | Effects::HIDDEN
-    | Effects::HOLDOUT;
+    | Effects::HOLDOUT
+    | Effects::INSTANCED;
 
 /// The effects that a scene has, if rays may bounce.
 pub(super) fn effects(scene: &Scene) -> Effects {
@@ -88,8 +90,8 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::ANISOTROPIC, physical(&|p| p.anisotropy > 0.0));
     ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
     ask(Effects::COLOURED, !scene.mesh.colours.is_empty());
-    let has_axes = |m: &Material| m.maps.normal.is_some() || m.physical.is_some_and(|p| p.anisotropy > 0.0);
-    ask(Effects::TANGENTS, used(&has_axes));
+    ask(Effects::TANGENTS, used(&Material::has_axes));
+    ask(Effects::INSTANCED, !scene.instances.is_empty());
     ask(Effects::CUTOUT, used(&is_cutout));
     ask(Effects::ENVIRONMENT, scene.environment.is_some());
     let hides = |of: Visibility| Visibility { matte: Matte::Shown, ..of } != Visibility::default();
@@ -115,29 +117,41 @@ fn absorbs(p: &Physical) -> bool {
     p.is_transparent() && p.wall == Wall::Body && p.absorption.is_some()
 }
 
-/// Its primitives in the normalised scene, by their numbers: triangles, spheres, disks.
-pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation) -> Vec<Primitive> {
+/// Its primitives: triangles, those of shared meshes each in its own cube and with its number there; spheres and disks.
+pub(super) fn primitives(scene: &Scene, normalisation: &Normalisation, cubes: &[Normalisation]) -> Vec<Primitive> {
     let mesh = &scene.mesh;
     let flags = flags::by_primitive(scene);
+    let of_material = flags::by_material(scene);
+    let own = scene.own_triangles();
     // Kernels see nothing smaller: differences to a centre that are less count as zero.
     let length = |radius: f32| ((f64::from(radius) * normalisation.scale) as f32).max(SMALL);
     let mut records = Vec::with_capacity(mesh.triangles.len() + scene.spheres.len() + scene.disks.len());
-    records.par_extend(mesh.triangles.par_iter().zip(&mesh.materials).enumerate().map(
-        |(number, (corners, &material))| {
-            let vertices = corners.map(|v| normalisation.place(mesh.positions[v as usize]));
-            Primitive::triangle(vertices, number as u32, material, flags(number, material))
-        },
-    ));
-    let first = records.len();
+    let triangle = |corners: [u32; 3], placed: &Normalisation, number: usize, material: u32, flags: u32| {
+        let vertices = corners.map(|v| placed.place(mesh.positions[v as usize]));
+        Primitive::triangle(vertices, number as u32, material, flags)
+    };
+    let triangles = mesh.triangles.par_iter().zip(&mesh.materials);
+    records.par_extend(triangles.take(own).enumerate().map(|(number, (&corners, &material))| {
+        triangle(corners, normalisation, number, material, flags(number, material))
+    }));
+    for (shared, cube) in scene.shared.iter().zip(cubes) {
+        let range = shared.triangles.clone();
+        let triangles = mesh.triangles[range.clone()].par_iter().zip(&mesh.materials[range]);
+        records.par_extend(triangles.enumerate().map(|(number, (&corners, &material))| {
+            triangle(corners, cube, number, material, of_material[material as usize])
+        }));
+    }
+    let first = (own as u64 + scene.copied_triangles()) as usize;
+    let number_of = |number: usize| (number as u64 % u64::from(Instance::NUMBERS)) as u32;
     records.par_extend(scene.spheres.par_iter().enumerate().map(|(number, sphere)| {
         let (centre, material, number) = (normalisation.place(sphere.center), sphere.material, first + number);
-        Primitive::sphere(centre, length(sphere.radius), number as u32, material, flags(number, material))
+        Primitive::sphere(centre, length(sphere.radius), number_of(number), material, flags(number, material))
     }));
-    let first = records.len();
+    let first = first + scene.spheres.len();
     records.par_extend(scene.disks.par_iter().enumerate().map(|(number, disk)| {
         let (centre, material) = (normalisation.place(disk.center), disk.material);
         let (normal, number) = (unit(disk.normal), first + number);
-        Primitive::disk(centre, normal, length(disk.radius), number as u32, material, flags(number, material))
+        Primitive::disk(centre, normal, length(disk.radius), number_of(number), material, flags(number, material))
     }));
     records
 }

@@ -1,5 +1,7 @@
 //! Tangents of triangles, where a normal map or anisotropy asks for them (Mikkelsen, Simulation of Wrinkled Surfaces Revisited, 2008).
 
+use std::ops::Range;
+
 use bevy_mikktspace::{Geometry, Ops, TangentSpace, generate_tangents};
 use eyerays_shader::data::{Normals, pack};
 use glam::{Vec2, Vec3, Vec4};
@@ -12,31 +14,40 @@ use crate::scene::{Material, Mesh, Scene};
 /// coordinates that their normal map lies by, those of the first set if they have none.
 pub(super) fn tangents(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let mesh = &scene.mesh;
-    let own = |vertex: u32| mesh.tangents.get(vertex as usize).copied().unwrap_or(Vec4::ZERO);
-    let made = made(scene, |corners| corners.iter().all(|&vertex| own(vertex) == Vec4::ZERO));
+    // Those of a mesh that stands in several places are its own.
+    let shared = scene.shared.iter().map(|shared| shared.triangles.clone());
+    let parts = std::iter::once(0..scene.own_triangles()).chain(shared);
+    let made: Vec<_> = parts.flat_map(|part| made(mesh, &scene.materials, part)).collect();
     by_slot(scene, order, |triangle, corners| {
         let found = made.binary_search_by_key(&triangle, |(number, _)| *number);
-        let [a, b, c] = found.map_or_else(|_| corners.map(own), |place| made[place].1);
+        let [a, b, c] = found.map_or_else(|_| corners.map(|vertex| own(mesh, vertex)), |place| made[place].1);
         let record = |tangent: Vec4, word| pack(flushed(tangent.truncate()), word);
         let sign = if a.w < 0.0 { -1.0f32 } else { 1.0 };
         Normals { a: record(a, sign.to_bits()), b: record(b, 0), c: record(c, 0) }
     })
 }
 
-/// Those of triangles that lack them, each with its number.
-fn made(scene: &Scene, lacks: impl Fn(&[u32; 3]) -> bool) -> Vec<(usize, [Vec4; 3])> {
-    let mesh = &scene.mesh;
+/// The tangents that triangles of a mesh lack, each with the triangle's number.
+pub fn made_tangents(mesh: &Mesh, materials: &[Material]) -> Vec<(usize, [Vec4; 3])> {
+    made(mesh, materials, 0..mesh.triangles.len())
+}
+
+fn own(mesh: &Mesh, vertex: u32) -> Vec4 {
+    mesh.tangents.get(vertex as usize).copied().unwrap_or(Vec4::ZERO)
+}
+
+fn made(mesh: &Mesh, materials: &[Material], triangles: Range<usize>) -> Vec<(usize, [Vec4; 3])> {
     let set_of = |material: &Material| material.maps.normal.as_ref().map_or(0, |map| map.placement.set as usize);
-    let sets: Vec<usize> = scene.materials.iter().map(set_of).collect();
+    let sets: Vec<usize> = materials.iter().map(set_of).collect();
     let set_of = |triangle: usize| sets[mesh.materials[triangle] as usize];
+    let lacks = |triangle: usize| mesh.triangles[triangle].iter().all(|&vertex| own(mesh, vertex) == Vec4::ZERO);
     let mut made = Vec::new();
     for set in [0, 1] {
         if mesh.coordinates[set].is_empty() {
             continue;
         }
-        let faces =
-            mesh.triangles.iter().enumerate().filter(|(number, corners)| set_of(*number) == set && lacks(corners));
-        let tangents = faces.map(|(number, _)| (number, [Vec4::ZERO; 3])).collect();
+        let faces = triangles.clone().filter(|&number| set_of(number) == set && lacks(number));
+        let tangents = faces.map(|number| (number, [Vec4::ZERO; 3])).collect();
         let mut corners = Corners { mesh, coordinates: &mesh.coordinates[set], tangents };
         // It fails where no triangle has an area, and then there is nothing to be had.
         let _ = generate_tangents(&mut corners);

@@ -57,6 +57,7 @@ impl SceneView {
             materials: packed.materials(),
             tangents: &packed.textures().tangents,
             maps: &packed.textures().maps,
+            instances: packed.instances(),
             textures: self.textures(),
         }
     }
@@ -106,11 +107,15 @@ impl SceneView {
     /// The scene for a launch by a kernel that is compiled for `spec`.
     pub fn context<'g>(&'g self, frame: &'g Frame, spec: Specialisation) -> TraceContext<'g> {
         TraceContext {
-            base: LaunchContext { frame, spec, primitives: self.primitives.words(&self.job) },
+            base: LaunchContext {
+                frame,
+                spec,
+                primitives: self.primitives.words(&self.job),
+                instances: self.job.instances(),
+            },
             nodes: self.nodes.words(&self.job),
             wide: self.job.wide(),
             bvh8: self.bvh8(),
-            bounds: self.job.bounds(),
             cutout: Cutout { opacities: &self.job.textures().opacities, textures: self.textures() },
         }
     }

@@ -8,6 +8,7 @@ use std::time::Duration;
 use eyerays_shader::data::Launch;
 use eyerays_shader::launch::{ROW, WORKGROUP};
 use eyerays_shader::resources::binding;
+use eyerays_shader::stage::Found;
 use glam::UVec4;
 
 use super::device::Gpu;
@@ -27,8 +28,6 @@ use crate::stream::{Answers, Question, Stream};
 /// What a kernel is compiled for: exact or fast, how, and what for.
 type Key = (bool, Traversal, Question);
 
-/// Bytes of a ray and of either answer, by binding.
-const RAY_BYTES: [(u32, u64); 3] = [(binding::PATHS, 32), (binding::HITS, 16), (binding::SHADOWS, 4)];
 /// Dispatches of a submission.
 const BATCH: u32 = 8;
 /// Dispatches without a pause between them raise a GPU's clocks in so long.
@@ -61,6 +60,11 @@ impl<'a> Caster<'a> {
         Ok(Caster { gpu, packed, layout, scene, kernels: RefCell::default(), timer: Timer::new(gpu, BATCH) })
     }
 
+    /// Records of a hit.
+    fn rows(&self) -> u64 {
+        u64::from(Found::<f32>::records(self.packed.effects()))
+    }
+
     /// Uploads a stream.
     ///
     /// # Errors
@@ -76,7 +80,9 @@ impl<'a> Caster<'a> {
                 limit,
             });
         }
-        let buffers = LaunchBuffers::new(self.gpu, &RAY_BYTES, count as u32)?;
+        // Of a ray and of either answer.
+        let bytes = [(binding::PATHS, 32), (binding::HITS, 16 * self.rows()), (binding::SHADOWS, 4)];
+        let buffers = LaunchBuffers::new(self.gpu, &bytes, count as u32)?;
         let frame = self.packed.stream_frame(stream.len());
         self.gpu.queue.write_buffer(buffers.of(binding::FRAME), 0, bytemuck::bytes_of(&frame));
         self.gpu.queue.write_buffer(buffers.of(binding::PATHS), 0, bytemuck::cast_slice(stream.words()));
@@ -144,7 +150,7 @@ impl<'a> Caster<'a> {
         let count = u64::from(cast.count);
         Ok(match question {
             Question::Closest => {
-                let bytes = readback::read(self.gpu, cast.buffers.of(binding::HITS), 16 * count)?;
+                let bytes = readback::read(self.gpu, cast.buffers.of(binding::HITS), 16 * count * self.rows())?;
                 let words: Vec<u32> = readback::words(&bytes).collect();
                 Answers::Closest(words.chunks_exact(4).map(UVec4::from_slice).collect())
             }

@@ -38,7 +38,7 @@ impl<'a> SceneRecords<'a> {
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(nodes.words(packed)))),
             (binding::WIDE, bytemuck::cast_slice(wide)),
             (binding::PRIMITIVES, bytemuck::cast_slice(self.primitives.words(packed))),
-            (binding::BOUNDS, bytemuck::cast_slice(packed.bounds())),
+            (binding::INSTANCES, bytemuck::cast_slice(packed.instances())),
             (binding::NORMALS, bytemuck::cast_slice(normals)),
             (binding::MATERIALS, bytemuck::cast_slice(packed.materials())),
             (binding::LIGHTS, bytemuck::cast_slice(packed.lights())),
@@ -176,7 +176,7 @@ mod tests {
         };
         let refused = |lengths| buffers(lengths).expect_err("accepted").message();
         assert_eq!(buffers([100, 50]), Ok(()));
-        let over = "the scene's hierarchy take 101 bytes, but \"small\" has buffers of at most 100";
+        let over = "the scene's hierarchy would take 101 bytes, but \"small\" has buffers of at most 100";
         assert_eq!(refused([101, 0]), over);
         assert_eq!(refused([100, 51]), "the scene takes 151 bytes, but \"small\" has 150 bytes of memory");
     }

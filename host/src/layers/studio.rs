@@ -3,7 +3,7 @@
 use glam::Vec3;
 use rayon::prelude::*;
 
-use super::surface::{Place, material, primitive, texture_coordinates};
+use super::surface::{Finder, Place, primitive};
 use super::{Layer, Values, names, of_film};
 use crate::cryptomatte::{Counter, Cryptomatte};
 use crate::device_scene::Feature;
@@ -79,7 +79,10 @@ impl<'a> Studio<'a> {
                 let objects = ObjectNumbers::of(scene);
                 self.numbers(|primitive| objects.find(primitive).map_or(0, |number| number + 1))?
             }
-            Layer::Material => self.numbers(|primitive| material(scene, primitive) + 1)?,
+            Layer::Material => {
+                let finder = Finder::of(scene);
+                self.numbers(|primitive| finder.material(primitive) + 1)?
+            }
             Layer::CryptoObject => Values::Shares(self.mattes(scene)?[0].clone()),
             Layer::CryptoMaterial => Values::Shares(self.mattes(scene)?[1].clone()),
         })
@@ -110,7 +113,7 @@ impl<'a> Studio<'a> {
     fn mattes(&mut self, scene: &Scene) -> Result<&[Cryptomatte; 2]> {
         if self.mattes.is_none() {
             let pixels = self.window.pixels() as usize;
-            let numbers = ObjectNumbers::of(scene);
+            let (numbers, finder) = (ObjectNumbers::of(scene), Finder::of(scene));
             let mut objects =
                 Counter::new("CryptoObject", scene.objects.iter().map(|object| object.name.as_str()), pixels);
             let mut materials =
@@ -124,7 +127,7 @@ impl<'a> Studio<'a> {
                 let primitive = |pixel: &[f32; 3]| primitive(*pixel);
                 let seen = seen.pixels.par_iter().map(primitive);
                 objects.add(seen.clone().map(|seen| Some(numbers.find(seen?)? as usize)));
-                materials.add(seen.map(|seen| Some(material(scene, seen?) as usize)));
+                materials.add(seen.map(|seen| Some(finder.material(seen?) as usize)));
             }
             self.mattes = Some([objects, materials].map(Counter::done));
         }
@@ -167,8 +170,9 @@ impl<'a> Studio<'a> {
 
 /// The texture coordinates of places.
 fn coordinates(scene: &Scene, positions: &Picture, places: &[Place]) -> Result<Values> {
+    let finder = Finder::of(scene);
     let of = |(position, place): (&[f32; 3], &Place)| {
-        let [u, v] = place.primitive.map_or([0.0; 2], |primitive| texture_coordinates(scene, primitive, *position));
+        let [u, v] = place.primitive.map_or([0.0; 2], |primitive| finder.texture_coordinates(primitive, *position));
         [u, v, 0.0]
     };
     let pixels = positions.pixels.iter().zip(places).map(of).collect();

@@ -27,26 +27,69 @@ impl Place {
     }
 }
 
-/// The number of a primitive's material, from 0.
-pub fn material(scene: &Scene, primitive: usize) -> u32 {
-    let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
-    if let Some(&material) = scene.mesh.materials.get(primitive) {
-        return material;
-    }
-    let round = primitive - triangles;
-    scene.spheres.get(round).map_or_else(|| scene.disks[round - spheres].material, |sphere| sphere.material)
+/// Finds what the numbers of primitives stand for.
+pub struct Finder<'s> {
+    scene: &'s Scene,
+    /// The first numbers of copies, and the number after the last.
+    firsts: Vec<u64>,
 }
 
-/// The first texture coordinates of a triangle at a place in world units; zeros where it has none, and of other primitives.
-pub fn texture_coordinates(scene: &Scene, primitive: usize, at: [f32; 3]) -> [f32; 2] {
-    let mesh = &scene.mesh;
-    let Some(corners) = mesh.triangles.get(primitive).filter(|_| !mesh.coordinates[0].is_empty()) else {
-        return [0.0; 2];
-    };
-    let [a, b, c] = corners.map(|corner| mesh.positions[corner as usize].as_dvec3());
-    let weights = barycentric([a, b, c], Vec3::from(at).as_dvec3());
-    let of = corners.map(|corner| mesh.coordinates[0][corner as usize].as_dvec2());
-    (of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2]).as_vec2().to_array()
+/// What a number stands for.
+enum Primitive {
+    /// A triangle of the mesh, and the copy that it is in.
+    Triangle(usize, Option<usize>),
+    /// A sphere or a disk behind them.
+    Round(usize),
+}
+
+impl<'s> Finder<'s> {
+    /// Of a scene.
+    pub fn of(scene: &'s Scene) -> Self {
+        Finder { scene, firsts: scene.first_numbers() }
+    }
+
+    fn find(&self, primitive: usize) -> Primitive {
+        if primitive < self.scene.own_triangles() {
+            return Primitive::Triangle(primitive, None);
+        }
+        let after = self.firsts.partition_point(|&first| first <= primitive as u64);
+        match self.scene.instances.get(after - 1) {
+            Some(copy) => {
+                let first = self.scene.shared[copy.mesh as usize].triangles.start;
+                Primitive::Triangle(first + primitive - self.firsts[after - 1] as usize, Some(after - 1))
+            }
+            None => Primitive::Round(primitive - self.firsts[after - 1] as usize),
+        }
+    }
+
+    /// The number of a primitive's material, from 0.
+    pub fn material(&self, primitive: usize) -> u32 {
+        let scene = self.scene;
+        match self.find(primitive) {
+            Primitive::Triangle(triangle, _) => scene.mesh.materials[triangle],
+            Primitive::Round(round) => {
+                let disk = || scene.disks[round - scene.spheres.len()].material;
+                scene.spheres.get(round).map_or_else(disk, |sphere| sphere.material)
+            }
+        }
+    }
+
+    /// The first texture coordinates of a triangle at a place in world units; zeros where it has none, and of other primitives.
+    pub fn texture_coordinates(&self, primitive: usize, at: [f32; 3]) -> [f32; 2] {
+        let mesh = &self.scene.mesh;
+        let (false, Primitive::Triangle(triangle, copy)) = (mesh.coordinates[0].is_empty(), self.find(primitive))
+        else {
+            return [0.0; 2];
+        };
+        let corners = mesh.triangles[triangle];
+        let place = |corner: u32| {
+            let own = mesh.positions[corner as usize];
+            copy.map_or(own, |copy| self.scene.instances[copy].transform().place(own)).as_dvec3()
+        };
+        let weights = barycentric(corners.map(place), Vec3::from(at).as_dvec3());
+        let of = corners.map(|corner| mesh.coordinates[0][corner as usize].as_dvec2());
+        (of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2]).as_vec2().to_array()
+    }
 }
 
 /// Weights of a triangle's corners at the place of its plane that is nearest to a point; of one without area those of its first corner.

@@ -2,9 +2,9 @@
 
 mod run;
 
-use eyerays_shader::data::{Aovs, Launch, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Launch, Specialisation};
 use eyerays_shader::resources::binding;
-use eyerays_shader::stage::{FilmWords, film_words, sum_records};
+use eyerays_shader::stage::{FilmWords, Found, film_words, sum_records};
 
 pub use run::{Executor, run};
 
@@ -137,7 +137,8 @@ impl Plan {
         let last = vec![plain(stages.last, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, sums, has_further);
+        let records = Records { sums, hits: Found::<f32>::records(spec.effects) };
+        let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, records, has_further);
         let film_words = FilmWords { light: film_words(spec.launch, stages.tells_noise), aovs };
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
     }
@@ -171,7 +172,9 @@ impl Plan {
 
     /// Does some step walk the hierarchy of pairs of nodes?
     pub fn walks_pairs(&self) -> bool {
-        self.methods().any(|method| method != Method::Wide)
+        // The hierarchies of meshes that are copied are of pairs, whatever the method.
+        let has_copies = self.steps().any(|step| step.spec.effects.has(Effects::INSTANCED));
+        has_copies || self.methods().any(|method| method != Method::Wide)
     }
 
     /// Does some step walk the hierarchy of nodes of eight children?
@@ -184,14 +187,20 @@ impl Plan {
     }
 }
 
+/// Records of a slot.
+struct Records {
+    sums: u32,
+    hits: u32,
+}
+
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
-fn slot_bytes(needs: &Needs, sums: u32, has_queue: bool) -> Vec<(u32, u64)> {
+fn slot_bytes(needs: &Needs, Records { sums, hits }: Records, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, stages, .. } = *needs;
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
     let all = [
         (binding::PATHS, records(paths * stages.path_records)),
-        (binding::HITS, Plan::RECORD_BYTES),
+        (binding::HITS, records(hits)),
         (binding::SHADOWS, 4 * u64::from(shadow_rays)),
         (binding::SEGMENTS, records(stages.shadow_records)),
         (binding::SUMS, records(sums)),
@@ -203,7 +212,6 @@ fn slot_bytes(needs: &Needs, sums: u32, has_queue: bool) -> Vec<(u32, u64)> {
 
 #[cfg(test)]
 mod tests {
-    use eyerays_shader::data::Effects;
     use eyerays_shader::stage::NOISY_FILM_WORDS;
 
     use super::*;

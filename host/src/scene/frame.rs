@@ -74,10 +74,10 @@ fn sphere(scene: &Scene) -> (DVec3, f64) {
     let [low, high] = scene.bounds().map(Vec3::as_dvec3);
     let center = (low + high) / 2.0;
     let reach = |place: Vec3, radius: f32| place.as_dvec3().distance(center) + f64::from(radius);
-    let vertices = scene.mesh.positions.iter().map(|&position| reach(position, 0.0));
+    let vertices = scene.mesh.positions[..scene.own_vertices()].iter().map(|&position| reach(position, 0.0));
     let spheres = scene.spheres.iter().map(|sphere| reach(sphere.center, sphere.radius));
     let disks = scene.disks.iter().map(|disk| reach(disk.center, disk.radius));
-    let radius = vertices.chain(spheres).chain(disks).fold(0.0, f64::max);
+    let radius = vertices.chain(spheres).chain(disks).fold(scene.copies_reach(center), f64::max);
     // The eye must differ from the target once both are rounded to single precision: this is some sixteen of its steps.
     let least = center.abs().max_element() * 1e-6;
     let radius = radius.max(least);

@@ -4,12 +4,14 @@
 mod animation;
 mod camera;
 mod check;
+mod copies;
 mod environment;
 pub(crate) mod extent;
 mod falloff;
 mod filter;
 pub(crate) mod frame;
 pub(crate) mod hierarchy;
+mod instance;
 mod lens;
 mod light_groups;
 mod matrices;
@@ -34,6 +36,7 @@ pub use falloff::Falloff;
 pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
 pub use hierarchy::Hierarchy;
+pub use instance::{Instance, SharedMesh};
 pub use lens::{Focus, Lens};
 pub use light_groups::LightGroups;
 pub use object::{Object, ObjectNumbers};
@@ -65,9 +68,13 @@ pub const MAX_PRIMITIVES: usize = NodeRef::MAX_INDEX as usize;
 /// All that a picture is made from. Everything in it is finite and in range: a [`Job`](crate::job::Job) refuses the rest.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
-    /// Every surface of triangles, merged and transformed to world units.
+    /// Every surface of triangles, merged: first what stands where it is, in world units, then what [`Scene::shared`] says.
     pub mesh: Mesh,
-    /// Whole spheres. Where primitives are numbered, they follow the mesh's triangles.
+    /// Meshes that stand in several places: the last vertices and triangles of [`Scene::mesh`], one after the other.
+    pub shared: Vec<SharedMesh>,
+    /// Where they stand. Where primitives are numbered, the triangles of copies follow those that stand where they are.
+    pub instances: Vec<Instance>,
+    /// Whole spheres. Where primitives are numbered, they follow all triangles.
     pub spheres: Vec<Sphere>,
     /// Disks, which follow the spheres.
     pub disks: Vec<Disk>,
@@ -99,9 +106,9 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// How many triangles, spheres and disks there are.
-    pub fn primitives(&self) -> usize {
-        self.mesh.triangles.len() + self.spheres.len() + self.disks.len()
+    /// How many triangles, spheres and disks are seen: those of copies as often as they are copied.
+    pub fn primitives(&self) -> u64 {
+        (self.own_triangles() + self.spheres.len() + self.disks.len()) as u64 + self.copied_triangles()
     }
 
     /// The first material that emits, by its name.
@@ -113,6 +120,7 @@ impl Scene {
     pub fn bytes(&self) -> usize {
         let Mesh { positions, normals, triangles, materials, coordinates, tangents, colours } = &self.mesh;
         let mesh = [
+            size_of_val(&self.instances[..]),
             size_of_val(&coordinates[0][..]),
             size_of_val(&coordinates[1][..]),
             size_of_val(&tangents[..]),
@@ -261,6 +269,13 @@ pub enum Light {
         #[serde(default)]
         group: String,
     },
+}
+
+impl Material {
+    /// Do its surfaces need tangents?
+    pub(crate) fn has_axes(&self) -> bool {
+        self.maps.normal.is_some() || self.physical.is_some_and(|p| p.anisotropy > 0.0)
+    }
 }
 
 impl Light {

@@ -20,15 +20,17 @@ pub struct Object {
     pub visibility: Visibility,
 }
 
-/// Finds the object of a primitive by the primitive's number in the scene: triangles, then spheres, then disks.
+/// Finds the object of a primitive by the primitive's number in the scene: triangles, then those of copies, then spheres, then disks.
 pub struct ObjectNumbers(Vec<(usize, u32)>);
 
 impl ObjectNumbers {
     /// Those of a scene's objects.
     pub fn of(scene: &Scene) -> Self {
-        let (triangles, spheres) = (scene.mesh.triangles.len(), scene.spheres.len());
+        let firsts = scene.first_numbers();
+        let (triangles, spheres) = (firsts[scene.instances.len()] as usize, scene.spheres.len());
         let end = |primitives: &Primitives| match primitives {
             Primitives::Triangles(range) => range.end,
+            Primitives::Instances(range) => firsts[range.end] as usize,
             Primitives::Spheres(range) => triangles + range.end,
             Primitives::Disks(range) => triangles + spheres + range.end,
         };

@@ -41,21 +41,35 @@ pub enum Primitives {
     Spheres(Range<usize>),
     /// In [`super::Scene::disks`].
     Disks(Range<usize>),
+    /// In [`super::Scene::instances`].
+    Instances(Range<usize>),
 }
 
 impl Primitives {
     /// How many there are.
     pub fn count(&self) -> usize {
-        let (Primitives::Triangles(range) | Primitives::Spheres(range) | Primitives::Disks(range)) = self;
+        let (Primitives::Triangles(range)
+        | Primitives::Spheres(range)
+        | Primitives::Disks(range)
+        | Primitives::Instances(range)) = self;
         range.len()
     }
 
-    /// What one of them is called: `triangle`, `sphere` or `disk`.
+    /// Those of a scene's instances that it is made of.
+    pub fn instances<'s>(&self, all: &'s [super::Instance]) -> &'s [super::Instance] {
+        match self {
+            Primitives::Instances(range) => &all[range.clone()],
+            _ => &[],
+        }
+    }
+
+    /// What one of them is called: `triangle`, `sphere`, `disk` or `instance`.
     pub fn noun(&self) -> &'static str {
         match self {
             Primitives::Triangles(_) => "triangle",
             Primitives::Spheres(_) => "sphere",
             Primitives::Disks(_) => "disk",
+            Primitives::Instances(_) => "instance",
         }
     }
 }

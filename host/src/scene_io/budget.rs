@@ -2,7 +2,7 @@
 
 use super::geometry::Geometry;
 use crate::memory::Room;
-use crate::scene::{MAX_PRIMITIVES, Unplaced};
+use crate::scene::{MAX_PRIMITIVES, Mesh, Unplaced};
 
 /// What is left for geometry, beside that which is placed.
 #[derive(Debug, Clone, Copy)]
@@ -77,13 +77,16 @@ impl Budget {
         self.room.check((PRIMITIVE * primitives as u64).saturating_add(vertices))
     }
 
+    /// Counts a mesh.
+    pub fn take_mesh(&mut self, mesh: &Mesh) {
+        self.triangles += mesh.triangles.len();
+        self.vertices += mesh.positions.len();
+    }
+
     /// Counts what is placed.
     pub fn take(&mut self, geometry: &Geometry) {
         match geometry {
-            Geometry::Mesh(mesh) => {
-                self.triangles += mesh.triangles.len();
-                self.vertices += mesh.positions.len();
-            }
+            Geometry::Mesh(mesh) => self.take_mesh(mesh),
             Geometry::Spheres(spheres) => self.round += spheres.len(),
             Geometry::Disks(disks) => self.round += disks.len(),
         }

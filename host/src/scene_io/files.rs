@@ -1,6 +1,6 @@
 //! The files that the `[[mesh]]` tables of a scene name.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
 use glam::Vec3;
@@ -43,6 +43,8 @@ pub struct Files<'p> {
     pub paths: Vec<PathBuf>,
     /// How they may move.
     pub animations: Vec<Animation>,
+    /// What several tables are of, if it is placed.
+    pub repeated: HashSet<String>,
 }
 
 impl<'p> Files<'p> {
@@ -59,6 +61,7 @@ impl<'p> Files<'p> {
             warnings: Vec::new(),
             paths: Vec::new(),
             animations: Vec::new(),
+            repeated: HashSet::new(),
         }
     }
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use glam::{DVec3, Vec3};
 
 use crate::image::byte_to_linear;
-use crate::scene::{Light, Map, Material, Scene, Texels};
+use crate::scene::{Instance, Light, Map, Material, Scene, SharedMesh, Texels};
 
 /// The least that white surfaces must send on the mean, where 1 is a screen's white: six stops below it.
 const LEAST: f64 = 1.0 / 64.0;
@@ -26,14 +26,26 @@ fn of_surfaces(scene: &Scene) -> f64 {
         return 0.0;
     }
     let mesh = &scene.mesh;
-    let (mut light, mut all) = (0.0, 0.0);
-    for (corners, &material) in mesh.triangles.iter().zip(&mesh.materials) {
+    let area = |corners: &[u32; 3]| {
         let [a, b, c] = corners.map(|vertex| mesh.positions[vertex as usize].as_dvec3());
-        let area = (b - a).cross(c - a).length();
-        light += area * shining[material as usize];
-        all += area;
+        (b - a).cross(c - a).length()
+    };
+    let (mut light, mut all) = (0.0, 0.0);
+    for (corners, &material) in mesh.triangles.iter().zip(&mesh.materials).take(scene.own_triangles()) {
+        light += area(corners) * shining[material as usize];
+        all += area(corners);
     }
+    // Copies do not shine.
+    let of_mesh = |shared: &SharedMesh| mesh.triangles[shared.triangles.clone()].iter().map(area).sum();
+    let areas: Vec<f64> = scene.shared.iter().map(of_mesh).collect();
+    all += scene.instances.iter().map(|copy| areas[copy.mesh as usize] * square(copy)).sum::<f64>();
     if all > 0.0 { light / all } else { 0.0 }
+}
+
+/// What areas are multiplied with, in the mean of three directions.
+fn square(Instance { rows, .. }: &Instance) -> f64 {
+    let [x, y, z] = rows.map(Vec3::as_dvec3);
+    (x.cross(y).length() + y.cross(z).length() + z.cross(x).length()) / 3.0
 }
 
 /// The irradiance in the middle by lights without extent, over pi.

@@ -1,5 +1,6 @@
 //! From a path to a scene.
 
+use std::collections::HashMap;
 use std::io::Read;
 use std::path::Path;
 
@@ -7,6 +8,7 @@ use glam::Vec3;
 
 use super::binary;
 use super::budget::Budget;
+use super::copies::Instancing;
 use super::document::Surroundings;
 use super::file;
 use super::files::{Files, Own, is, is_gltf, read_mesh};
@@ -55,6 +57,8 @@ pub struct Loading {
     pub integrator: Option<Integrator>,
     /// When a glTF file is looked at that moves.
     pub moment: Moment,
+    /// Are meshes that stand in several places held once?
+    pub instancing: Instancing,
 }
 
 /// As [`load`], in this way.
@@ -79,7 +83,7 @@ pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scen
 pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
-        Ok((binary::load(path, budget)?, Vec::new()))
+        Ok((settled(path, binary::load(path, budget)?, budget, &loading)?, Vec::new()))
     } else if is(path, "toml") {
         load_toml(path, budget, loading)
     } else if is(path, "obj") || is(path, "ply") {
@@ -95,8 +99,8 @@ pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Resu
 }
 
 fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let mut images = Images::within(file::folder(path), budget, loading);
-    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?)?;
+    let mut images = Images::within(file::folder(path), budget, loading.clone());
+    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?, budget, &loading)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
         // Whitted's model draws nothing that shines, and paths no ambient light.
@@ -109,8 +113,8 @@ fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Ve
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading)?;
-    let (scene, warnings) = bare(path, obj)?;
+    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading.clone())?;
+    let (scene, warnings) = bare(path, obj, budget, &loading)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
@@ -132,19 +136,25 @@ fn of_paths() -> Settings {
 }
 
 /// A scene of one mesh without a camera, and the warnings of it.
-fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
-    let Obj { mesh, materials, warnings, libraries, objects } = obj;
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Scene, Vec<Warning>)> {
+    let Obj { mesh, copies, materials, warnings, libraries, objects } = obj;
+    let name = match &*objects {
+        [only] => only.name.clone(),
+        _ => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+    };
     let (geometry, visibility) = (Geometry::Mesh(mesh), Visibility::default());
-    let placed = Placed { name, geometry, materials, material: None, objects: Vec::new(), visibility, lit_by: None };
+    let placed =
+        Placed { name, geometry, copies, repeated: None, materials, material: None, objects, visibility, lit_by: None };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
-    let Merged { mesh, spheres, disks, objects: whole, materials } = merge.finish();
+    let Merged { mesh, spheres, disks, shared, instances, objects, materials } = merge.finish();
     let scene = Scene {
         mesh,
         spheres,
         disks,
-        objects: if objects.is_empty() { whole } else { objects },
+        shared,
+        instances,
+        objects,
         animations: Vec::new(),
         files: libraries,
         materials,
@@ -157,7 +167,13 @@ fn bare(path: &Path, obj: Obj) -> Result<(Scene, Vec<Warning>)> {
         settings: Settings::default(),
         hierarchy: None,
     };
-    Ok((scene, warnings))
+    Ok((settled(path, scene, budget, loading)?, warnings))
+}
+
+/// A scene with the bounds of its copies, which are held as is asked.
+fn settled(path: &Path, mut scene: Scene, budget: Budget, loading: &Loading) -> Result<Scene> {
+    scene.measure_copies();
+    loading.instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))
 }
 
 /// Gives a scene without a camera one that sees all of it.
@@ -198,6 +214,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
     let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
+    let instancing = loading.instancing;
     let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));
     let mut files = Files::new(file::folder(path), budget, Loading { integrator, ..loading });
     files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
@@ -215,14 +232,17 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         return Err(Error::file(path, fault));
     }
     files.is_covered = overrides.values().any(Override::has_maps);
-    let Merged { mesh, spheres, disks, objects, materials } = merge(meshes, &overrides, &mut files)?.finish();
+    let Merged { mesh, spheres, disks, shared, instances, objects, materials } =
+        merge(meshes, &overrides, &mut files)?.finish();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
     let names_lights = lights.is_some();
-    let mut scene = Scene {
+    let scene = Scene {
         mesh,
         spheres,
         disks,
+        shared,
+        instances,
         objects,
         animations: files.animations,
         files: files.paths.into_iter().chain(files.images.paths()).collect(),
@@ -236,6 +256,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         settings,
         hierarchy: None,
     };
+    let mut scene = settled(path, scene, budget, &Loading { instancing, ..Loading::default() })?;
     if !names_lights {
         frame::without_spare_lamps(&mut scene, settings.transport.integrator);
     }
@@ -265,8 +286,12 @@ fn overrides(tables: Vec<Table>, images: &mut Images) -> Result<Overrides> {
 
 fn merge(tables: Vec<Table>, overrides: &Overrides, files: &mut Files) -> Result<Merge> {
     let mut merge = Merge::default();
-    for mut table in tables {
-        let placed = mesh_table::read(&mut table, files)?;
+    let mut counts: HashMap<String, usize> = HashMap::new();
+    let texts: Vec<String> = tables.iter().map(mesh_table::of_what).collect();
+    texts.iter().for_each(|text| *counts.entry(text.clone()).or_default() += 1);
+    for (mut table, text) in tables.into_iter().zip(texts) {
+        let repeated = (counts[&text] > 1).then_some(text);
+        let placed = mesh_table::read(&mut table, repeated, files)?;
         let key = if placed.material.is_some() { "material" } else { "file" };
         let fault = merge.add(placed, overrides).err();
         if let Some(fault) = fault {

@@ -6,11 +6,12 @@ use std::collections::{BTreeMap, HashMap, TryReserveError};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::Warning;
+use super::copies::Copies;
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
 use super::mesh_table::Placed;
 use super::suggest::suggest;
-use crate::scene::{Disk, Material, Mesh, Object, Primitives, Sphere, Unplaced};
+use crate::scene::{Disk, Instance, Material, Mesh, Object, Primitives, SharedMesh, Sphere, Unplaced};
 
 /// A `[[material]]` table, and whether any surface has it.
 pub struct Override {
@@ -50,6 +51,9 @@ pub struct Merge {
     mesh: Mesh,
     spheres: Vec<Sphere>,
     disks: Vec<Disk>,
+    copies: Copies,
+    /// The numbers of the first meshes of what is repeated.
+    repeated: HashMap<String, usize>,
     objects: Vec<Object>,
     materials: Vec<Material>,
     by_name: HashMap<String, Vec<u32>>,
@@ -70,6 +74,8 @@ pub struct Merged {
     pub mesh: Mesh,
     pub spheres: Vec<Sphere>,
     pub disks: Vec<Disk>,
+    pub shared: Vec<SharedMesh>,
+    pub instances: Vec<Instance>,
     pub objects: Vec<Object>,
     pub materials: Vec<Material>,
 }
@@ -84,13 +90,22 @@ impl Merge {
         self.reserve(&placed.geometry).map_err(full)?;
         let all = placed.material.as_deref();
         let all = all.map(|name| self.named(name, &placed, overrides)).transpose()?;
-        self.objects.extend(placed.objects(self.next(&placed.geometry)));
-        let Placed { mut geometry, materials, lit_by, .. } = placed;
+        self.objects.extend(placed.objects(self.next(&placed.geometry), self.copies.places.len()));
+        let Placed { mut geometry, mut copies, repeated, materials, lit_by, .. } = placed;
         let mut numbers = vec![all; materials.len()];
-        geometry.renumber(|local| {
+        let mut number = |local: u32| {
             let (name, fields) = &materials[local as usize];
             *numbers[local as usize].get_or_insert_with(|| self.number(name, (fields.clone(), &lit_by), overrides))
-        });
+        };
+        geometry.renumber(&mut number);
+        let of_copies = copies.meshes.iter_mut().flat_map(|mesh| &mut mesh.materials);
+        of_copies.for_each(|material| *material = number(*material));
+        let next = self.copies.meshes.len();
+        let first = repeated.map_or(next, |what| *self.repeated.entry(what).or_insert(next));
+        if first == next {
+            self.copies.meshes.extend(copies.meshes);
+        }
+        self.copies.place(first, copies.places);
         match geometry {
             Geometry::Mesh(mesh) => self.append(mesh),
             Geometry::Spheres(spheres) => self.spheres.extend(spheres),
@@ -148,6 +163,16 @@ impl Merge {
 
     /// All of it, with the materials that it uses, each once.
     pub fn finish(mut self) -> Merged {
+        let (meshes, instances) = std::mem::take(&mut self.copies).finish();
+        let mut shared = Vec::new();
+        for mesh in meshes {
+            let (vertex, triangle) = (self.mesh.positions.len(), self.mesh.triangles.len());
+            self.append(mesh);
+            shared.push(SharedMesh {
+                vertices: vertex..self.mesh.positions.len(),
+                triangles: triangle..self.mesh.triangles.len(),
+            });
+        }
         if self.mesh.normals.iter().all(|&normal| normal == Vec3::ZERO) {
             self.mesh.normals = Vec::new();
         }
@@ -160,7 +185,7 @@ impl Merge {
             }
         }
         let Merge { mesh, spheres, disks, objects, materials, .. } = self;
-        Merged { mesh, spheres, disks, objects, materials }
+        Merged { mesh, spheres, disks, shared, instances, objects, materials }
     }
 
     fn named(&mut self, name: &str, placed: &Placed, overrides: &Overrides) -> Unplaced<u32> {

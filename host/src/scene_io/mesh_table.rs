@@ -1,5 +1,6 @@
 //! A `[[mesh]]` of a TOML scene: a file or a shape, and where it goes.
 
+use super::copies::Copies;
 use super::files::{Files, is, is_gltf};
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
@@ -9,13 +10,17 @@ use super::table::Table;
 use super::transform::Transform;
 use super::visible;
 use crate::error::Result;
-use crate::scene::{Object, Primitives, Visibility, extent, normal};
+use crate::scene::{Mesh, Object, Primitives, Visibility, extent, normal};
 
 /// Geometry in place, and the materials that it numbers.
 pub struct Placed {
     /// The file as the scene names it, or the shape's word.
     pub name: String,
     pub geometry: Geometry,
+    /// What of it stands in several places.
+    pub copies: Copies,
+    /// What it is, where other tables are the same elsewhere: the meshes of its copies are those of the first of them.
+    pub repeated: Option<String>,
     pub materials: Vec<(String, Fields)>,
     /// This one instead of them all.
     pub material: Option<String>,
@@ -27,17 +32,25 @@ pub struct Placed {
 }
 
 impl Placed {
-    /// The objects that stand there: those of a file that has several, or all of it as one.
-    pub fn objects(&self, primitives: Primitives) -> Vec<Object> {
+    /// The objects that stand there: those of a file that has several, or all of it as one. Their own primitives will be `primitives`,
+    /// and so many places of other copies lie before theirs, whose bounds are measured when all is read.
+    pub fn objects(&self, primitives: Primitives, copies: usize) -> Vec<Object> {
         let visibility = self.visibility;
         if let (Geometry::Mesh(mesh), Primitives::Triangles(all), [_, _, ..]) =
             (&self.geometry, &primitives, &*self.objects)
         {
             let of_file = self.objects.iter().filter_map(|object| {
-                let Primitives::Triangles(own) = &object.primitives else { return None };
-                let corners = mesh.triangles.get(own.clone())?.iter().flatten();
-                let bounds = extent::of(corners.map(|&vertex| mesh.positions[vertex as usize]));
-                let primitives = Primitives::Triangles(all.start + own.start..all.start + own.end);
+                let (primitives, bounds) = match &object.primitives {
+                    Primitives::Triangles(own) => {
+                        let corners = mesh.triangles.get(own.clone())?.iter().flatten();
+                        let bounds = extent::of(corners.map(|&vertex| mesh.positions[vertex as usize]));
+                        (Primitives::Triangles(all.start + own.start..all.start + own.end), bounds)
+                    }
+                    Primitives::Instances(own) => {
+                        (Primitives::Instances(copies + own.start..copies + own.end), Default::default())
+                    }
+                    _ => return None,
+                };
                 Some(Object { name: object.name.clone(), primitives, bounds, visibility })
             });
             return of_file.collect();
@@ -46,43 +59,63 @@ impl Placed {
             Some(material) => format!("{} ({material})", self.name),
             None => self.name.clone(),
         };
-        vec![Object { name, primitives, bounds: self.geometry.bounds(), visibility }]
+        let copied = Primitives::Instances(copies..copies + self.copies.places.len());
+        let there = [(primitives, self.geometry.bounds()), (copied, Default::default())];
+        let there = there.into_iter().filter(|(primitives, _)| primitives.count() > 0);
+        there.map(|(primitives, bounds)| Object { name: name.clone(), primitives, bounds, visibility }).collect()
     }
 }
 
-/// Reads a `[[mesh]]` table, but for refusing unknown keys.
+/// What a `[[mesh]]` table is of, wherever it goes: tables of the same are equal texts.
+pub fn of_what(table: &Table) -> String {
+    table.text_without(&["scale", "rotate", "translate"])
+}
+
+/// Reads a `[[mesh]]` table, but for refusing unknown keys. `repeated` is what it is of if others are, too.
 ///
 /// # Errors
 /// A file that cannot be read, no file and no shape or both, a number out of range, or a transform that
 /// leads out of single precision.
-pub fn read(table: &mut Table, files: &mut Files) -> Result<Placed> {
+pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> Result<Placed> {
     let material = table.name("material")?;
     let smooth = table.flag("smooth")?;
     let wish = Wish { smooth, transform: Transform::read(table)? };
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
-    let Source { name, mut geometry, materials, objects } = source(table, &wish, files)?;
+    let Source { name, mut geometry, mut copies, materials, mut objects } = source(table, &wish, files)?;
+    let shade = |mesh: &mut Mesh| match smooth {
+        Some(true) => normal::smooth(mesh),
+        Some(false) => mesh.normals.clear(),
+        None => {}
+    };
     if let Geometry::Mesh(mesh) = &mut geometry {
-        match smooth {
-            Some(true) => normal::smooth(mesh),
-            Some(false) => mesh.normals.clear(),
-            None => {}
-        }
+        shade(mesh);
+    }
+    copies.meshes.iter_mut().for_each(shade);
+    let repeated = repeated.filter(|_| matches!(geometry, Geometry::Mesh(_)));
+    if let (Some(_), Geometry::Mesh(mesh)) = (&repeated, &mut geometry) {
+        copies = Copies::with(std::mem::take(mesh), copies);
+        objects.clear();
     }
     if let Some(transform) = &wish.transform {
         geometry.apply(transform);
+        copies.apply(&transform.matrix());
     }
-    if let Some(fault) = geometry.fault() {
+    if let Some(fault) = geometry.fault().or_else(|| copies.fault()) {
         return Err(table.fault(fault));
     }
     files.budget.take(&geometry);
-    Ok(Placed { name, geometry, materials, material, objects, visibility, lit_by })
+    if repeated.as_ref().is_none_or(|what| files.repeated.insert(what.clone())) {
+        copies.meshes.iter().for_each(|mesh| files.budget.take_mesh(mesh));
+    }
+    Ok(Placed { name, geometry, copies, repeated, materials, material, objects, visibility, lit_by })
 }
 
 /// A file or a shape as it is.
 struct Source {
     name: String,
     geometry: Geometry,
+    copies: Copies,
     materials: Vec<(String, Fields)>,
     objects: Vec<Object>,
 }
@@ -90,7 +123,7 @@ struct Source {
 impl Source {
     /// Of what names no material.
     fn plain(name: impl Into<String>, geometry: Geometry) -> Source {
-        Source { name: name.into(), geometry, materials: plain(), objects: Vec::new() }
+        Source { name: name.into(), geometry, copies: Copies::default(), materials: plain(), objects: Vec::new() }
     }
 }
 
@@ -121,10 +154,10 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
     }
-    let Obj { mesh, materials, objects, .. } = files.mesh(&path)?;
+    let Obj { mesh, copies, materials, objects, .. } = files.mesh(&path)?;
     budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
     let geometry = Geometry::Mesh(mesh.clone());
-    Ok(Source { name, geometry, materials: materials.clone(), objects: objects.clone() })
+    Ok(Source { name, geometry, copies: copies.clone(), materials: materials.clone(), objects: objects.clone() })
 }
 
 /// The materials of what names none.

@@ -9,6 +9,7 @@
 mod binary;
 mod budget;
 mod camera_table;
+mod copies;
 mod describe;
 mod document;
 mod file;
@@ -45,6 +46,7 @@ mod xyzr;
 mod tests;
 
 pub use binary::{ENDING, fingerprint, write};
+pub use copies::Instancing;
 pub use describe::describe;
 pub use light_unit::LightUnit;
 pub use load::{Loading, load, load_as, read_as, read_table};

@@ -39,6 +39,11 @@ impl<'s> Source<'s> {
         Ok(Table::new(self.clone(), "the file", 0, table.into_inner()))
     }
 
+    /// Part of the text.
+    pub fn part(&self, span: std::ops::Range<usize>) -> &'s str {
+        self.text.get(span).unwrap_or_default()
+    }
+
     /// A fault at byte `at`.
     pub fn fault(&self, at: usize, message: impl Into<String>) -> Error {
         let at = at.min(self.text.len());

@@ -79,6 +79,16 @@ impl<'s> Table<'s> {
         self.source.fault(entry.at, format!("unknown key {:?} in {}; {remedy}", entry.key, self.name))
     }
 
+    /// What it says, but for some keys: tables that say the same have equal texts. Takes nothing.
+    pub fn text_without(&self, keys: &[&str]) -> String {
+        let others = self.entries.iter().filter(|entry| !keys.contains(&entry.key.as_str()));
+        let said = others.filter_map(|entry| Some((entry, entry.value.as_ref()?)));
+        let mut said: Vec<String> =
+            said.map(|(entry, value)| format!("{} = {}\n", entry.key, self.source.part(value.span()))).collect();
+        said.sort_unstable();
+        said.concat()
+    }
+
     /// Is the key there? Does not take it.
     pub fn has(&self, key: &str) -> bool {
         self.entries.iter().any(|entry| entry.key == key)

@@ -1,6 +1,7 @@
 //! Where a mesh goes: scaled, then turned about x, y and z, then moved.
 
-use glam::{DMat3, DVec3, Vec3};
+use eyerays_shader::geometry;
+use glam::{DMat3, DMat4, DVec3, Vec3};
 
 use super::table::Table;
 use crate::error::Result;
@@ -62,6 +63,11 @@ impl Transform {
         (self.linear * position.as_dvec3() + self.translate).as_vec3()
     }
 
+    /// Both parts as one.
+    pub fn matrix(&self) -> DMat4 {
+        DMat4::from_translation(self.translate) * DMat4::from_mat3(self.linear)
+    }
+
     /// A length in a transform that keeps spheres.
     pub fn length(&self, length: f32) -> f32 {
         (f64::from(length) * self.scale.x.abs()) as f32
@@ -74,24 +80,10 @@ impl Transform {
 
     /// Moves a mesh. A mirror turns the triangles around, so that their fronts stay outside.
     pub fn apply(&self, mesh: &mut Mesh) {
-        for position in &mut mesh.positions {
-            *position = self.place(*position);
-        }
-        let DMat3 { x_axis: x, y_axis: y, z_axis: z } = self.linear;
-        // The cofactors are the inverse's transpose but for the length and the determinant's sign.
-        let mirrored = x.cross(y).dot(z) < 0.0;
-        let sign = if mirrored { -1.0 } else { 1.0 };
-        let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
-        for normal in &mut mesh.normals {
-            *normal = unit(cofactors * normal.as_dvec3() * sign);
-        }
-        for tangent in &mut mesh.tangents {
-            let along = unit(self.linear * tangent.truncate().as_dvec3());
-            *tangent = along.extend(tangent.w * sign as f32);
-        }
-        if mirrored {
-            mesh.triangles.iter_mut().for_each(|[_, b, c]| std::mem::swap(b, c));
-        }
+        let rows = self.linear.transpose();
+        let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec3());
+        let transform = geometry::Transform::new(rows, self.translate.as_vec3());
+        mesh.moved(&transform);
     }
 }
 

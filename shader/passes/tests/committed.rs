@@ -27,9 +27,9 @@ fn specialisations() -> Vec<Specialisation> {
     vec![
         effects(0),
         all,
-        layout(stream, Layout::SPLIT),
+        stream,
         wave,
-        layout(wave, Layout::SPLIT | Layout::INDEXED),
+        layout(wave, Layout::INDEXED),
         layout(effects(0), Layout::COMPACT),
         path,
         path.with_launch(Launch::SUBGROUPS),
@@ -94,8 +94,6 @@ fn an_effect_costs_instructions_only_where_it_is_asked_for() {
     }
     let spot = Effects::LIT | Effects::SPOT;
     assert!(count("exact::shade", effects(spot | Effects::RAMP)) > count("exact::shade", effects(spot)));
-    let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
-    assert_ne!(trace(split), trace(effects(0)));
     // Only what is not opaque everywhere is asked where rays meet it.
     assert!(trace(effects(Effects::CUTOUT)) > trace(effects(0)));
     for effect in [Effects::PHYSICAL, Effects::TEXTURED, Effects::COLOURED, Effects::ENVIRONMENT, Effects::TANGENTS] {
@@ -230,11 +228,9 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
     let bindings =
         |entry: &str, spec: Specialisation| kernels.cut(entry, &spec.constants()).unwrap().bindings().to_vec();
-    let split = Specialisation { layout: Layout(Layout::SPLIT), ..effects(0) };
     assert_eq!(bindings("exact::advance", effects(0)), [COUNTERS, ARGUMENTS]);
     assert_eq!(bindings("exact::gather", effects(0)), [FRAME, SUMS, FILM]);
     assert_eq!(bindings("exact::if_if::trace", effects(0)), [FRAME, NODES, PRIMITIVES, HITS]);
-    assert_eq!(bindings("exact::if_if::trace", split), [FRAME, NODES, PRIMITIVES, HITS, BOUNDS]);
     let further = [FRAME, NODES, PRIMITIVES, PATHS, HITS, QUEUE, COUNTERS];
     assert_eq!(bindings("exact::if_if::trace", effects(0).with_launch(Launch::SECONDARY)), further);
     for (launch, wanted) in [(0, &[FRAME, PATHS][..]), (Launch::ROUND, &[FRAME, PATHS])] {
@@ -279,9 +275,8 @@ fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
             reached.dedup();
             let mut named = named.to_vec();
             named.sort_unstable();
-            // A method walks one of the hierarchies, and the stages of all share a list.
-            let other = if entry.contains("::wide::") { "nodes" } else { "wide" };
-            named.retain(|resource| *resource != other);
+            // The stages of all methods share a list. Only `wide` walks that hierarchy, and inside instances the binary one.
+            named.retain(|resource| *resource != "wide" || entry.contains("::wide::"));
             assert_eq!(reached, named, "{entry}");
         }
     }

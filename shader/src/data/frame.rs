@@ -2,7 +2,7 @@
 
 use super::{Camera, Launch};
 use bytemuck::{Pod, Zeroable};
-use glam::{UVec2, UVec4};
+use glam::UVec4;
 
 /// What a launch renders: samples of every pixel of a region. Its uniform buffer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
@@ -18,6 +18,8 @@ pub struct Frame {
     pub lamps: UVec4,
     /// Half its size; below zero if they find none, and very large where the background is light.
     pub lamps_half: UVec4,
+    /// The place that became zero when the scene was normalised, as the rows of [`Instance`](super::Instance)s give places.
+    pub origin: UVec4,
     /// The image's width in pixels.
     pub width: u32,
     /// The image's height in pixels.
@@ -87,8 +89,10 @@ pub struct Frame {
     pub aovs: u32,
     /// The group of lamps that the surroundings are in; 0 for none.
     pub group: u32,
+    /// How many pairs of nodes there are: what refers to one behind them refers to a copy of a mesh.
+    pub pairs: u32,
     /// Nothing: records are whole words of 16 bytes.
-    pub unused: UVec2,
+    pub unused: u32,
 }
 
 impl Frame {

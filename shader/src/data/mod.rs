@@ -11,6 +11,7 @@ mod compact;
 mod cwbvh;
 mod emitter;
 mod frame;
+mod instance;
 mod light_node;
 mod node;
 mod physical;
@@ -26,6 +27,7 @@ pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
 pub use emitter::{Emission, Emitter};
 pub use frame::Frame;
+pub use instance::Instance;
 pub use light_node::LightNode;
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use physical::Physical;
@@ -53,5 +55,5 @@ pub fn numbers(q: UVec4) -> Vec3 {
 pub const MAX_LEAF: u32 = 5;
 /// Entries of a traversal stack; `eyerays-bvh` builds no tree that needs more.
 pub const STACK: usize = 64;
-/// Half a box's padding in the normalised scene; see `geometry::triangle` for the bound it covers.
-pub const BOX_PADDING: f32 = 1.0 / (1 << 20) as f32;
+/// How much wider than a primitive its box is on every side, in the normalised scene; see `geometry::edge_on` for the bound it covers.
+pub const BOX_PADDING: f32 = 1.0 / (1 << 19) as f32;

@@ -1,4 +1,4 @@
-//! What leaves hold: triangles, spheres and disks, and the boxes of their parts.
+//! What leaves hold: triangles, spheres, disks and copies of meshes, and the boxes of their parts.
 
 use super::{BOX_PADDING, numbers, pack};
 use crate::real::Real;
@@ -15,16 +15,17 @@ pub struct Bounds {
     pub greatest: UVec4,
 }
 
-/// A primitive in leaf order: a triangle, or by its flags a sphere or a disk. All kinds take as many words, so that one index
+/// A primitive in leaf order: a triangle, or by its flags a sphere, a disk or a copy of a mesh. All kinds take as many words, so that one index
 /// finds any of them.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Primitive {
-    /// A triangle's first vertex or the centre, and the primitive's number in the scene (which decides ties).
+    /// A triangle's first vertex, the centre or a copy's least corner, and the primitive's number in the scene (which decides ties) or
+    /// that of the [`Instance`](super::Instance).
     pub a: UVec4,
-    /// A triangle's second vertex, a disk's unit normal or zeros, and the material's index.
+    /// A triangle's second vertex, a disk's unit normal, a copy's greatest corner or zeros, and the material's index.
     pub b: UVec4,
-    /// A triangle's third vertex, or the radius and zeros; and the flags.
+    /// A triangle's third vertex, or the radius (0 of a copy) and zeros; and the flags.
     pub c: UVec4,
 }
 
@@ -35,6 +36,8 @@ impl Primitive {
     pub const SPHERE: u32 = 1;
     /// The kind of a disk.
     pub const DISK: u32 = 2;
+    /// The kind of a copy of a mesh.
+    pub const INSTANCE: u32 = 3;
     /// The flag of a primitive that casts no shadow (thesis 3.2: opaque objects do).
     pub const TRANSPARENT: u32 = 4;
     /// The flag of a primitive that is not opaque everywhere.
@@ -74,6 +77,11 @@ impl Primitive {
         Primitive { a: pack(centre, number), b: pack(normal, material), c: radius }
     }
 
+    /// A record of a copy of a mesh that lies between these corners of the normalised scene.
+    pub fn instance(least: Vec3, greatest: Vec3, number: u32) -> Self {
+        Primitive { a: pack(least, number), b: pack(greatest, 0), c: pack(Vec3::ZERO, Self::INSTANCE) }
+    }
+
     /// A triangle's vertices in the normalised scene.
     #[inline(always)]
     pub fn vertices(&self) -> [Vec3; 3] {
@@ -108,6 +116,12 @@ impl Primitive {
     #[inline(always)]
     pub fn is_disk(&self) -> bool {
         self.c.w & Self::KIND == Self::DISK
+    }
+
+    /// Is it a copy of a mesh?
+    #[inline(always)]
+    pub fn is_instance(&self) -> bool {
+        self.c.w & Self::KIND == Self::INSTANCE
     }
 
     /// Is it a triangle?
@@ -159,6 +173,7 @@ impl Primitive {
         match self.c.w & Self::KIND {
             Self::SPHERE => self.sphere_bounds(),
             Self::DISK => self.disk_bounds(),
+            Self::INSTANCE => (numbers(self.a), numbers(self.b)),
             _ => self.triangle_bounds(),
         }
     }

@@ -94,6 +94,8 @@ bits! {
         HOLDOUT = 29;
         /// Some surfaces are not lit by lamps of all groups, and the integrator traces paths.
         LINKED = 30;
+        /// Some primitives are copies of meshes.
+        INSTANCED = 31;
     }
 }
 
@@ -176,8 +178,6 @@ bits! {
         INDEXED = 0;
         /// Pairs of nodes are [`CompactPair`](super::CompactPair)s.
         COMPACT = 1;
-        /// Triangles are split: a slot holds a part, whose bounds are given.
-        SPLIT = 2;
     }
 }
 

@@ -75,15 +75,15 @@ macro_rules! shading {
         entry! {
             /// Shades the slots of a wave.
             shade<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame primitives normals materials lights paths hits shadows sums queue next counters
+            [frame primitives instances normals materials lights paths hits shadows sums queue next counters
              maps textures texels coordinates colours tangents environment] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let launch = LaunchContext { frame, spec, primitives };
+                let launch = LaunchContext { frame, spec, primitives, instances };
                 let textures = Textures { textures, texels, coordinates, colours };
-                let shading = ShadingData { normals, materials, tangents, maps, textures };
+                let shading = ShadingData { normals, materials, tangents, maps, textures, instances };
                 let wave = Wave { paths, hits, shadows, lights, environment, sums };
                 let goes_on = integrator::shade::<$R>(&launch, &shading, slot, wave);
                 enqueue(spec, goes_on, slot, next, counters);
@@ -93,7 +93,7 @@ macro_rules! shading {
         entry! {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame primitives normals materials paths hits shadows segments sums queue next counters emitters emissions
+            [frame primitives instances normals materials paths hits shadows segments sums queue next counters emitters emissions
              physicals maps textures texels coordinates colours tangents environment albedos light_nodes] {
                 // One kernel for all waves, since it is the one that drivers take longest to compile.
                 let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
@@ -102,9 +102,9 @@ macro_rules! shading {
                     return;
                 }
                 let slot = if starts { id.x } else { read(queue, id.x) };
-                let launch = LaunchContext { frame, spec, primitives };
+                let launch = LaunchContext { frame, spec, primitives, instances };
                 let textures = Textures { textures, texels, coordinates, colours };
-                let shading = ShadingData { normals, materials, tangents, maps, textures };
+                let shading = ShadingData { normals, materials, tangents, maps, textures, instances };
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
                 let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting };
                 let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
@@ -167,31 +167,31 @@ macro_rules! tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes primitives paths hits queue counters wide bounds
+            [frame nodes primitives instances paths hits queue counters wide
              opacities textures texels coordinates colours] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let base = LaunchContext { frame, spec, primitives };
+                let base = LaunchContext { frame, spec, primitives, instances };
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
-                let scene = TraceContext { base, nodes, wide, bounds, cutout };
-                write(hits, slot, stage::trace::<$R, $method, Primitives>(&scene, slot, paths));
+                let scene = TraceContext { base, nodes, wide, cutout };
+                stage::trace::<$R, $method, Primitives>(&scene, slot, paths).store(&base, slot, hits);
             }
         }
 
         entry! {
             /// Traces the shadow rays of a wave: one row of threads a light.
             shadow<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes primitives lights paths hits shadows queue counters wide bounds
+            [frame nodes primitives instances lights paths hits shadows queue counters wide
              opacities textures texels coordinates colours] {
                 let slot = slot(spec, frame, thread(spec, id), queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let base = LaunchContext { frame, spec, primitives };
+                let base = LaunchContext { frame, spec, primitives, instances };
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
-                let scene = TraceContext { base, nodes, wide, bounds, cutout };
+                let scene = TraceContext { base, nodes, wide, cutout };
                 let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
                 let answer = stage::shadow::<$R, $method, Primitives>(&scene, ShadowInputs { lights, paths, hits }, slot, light);
                 write(shadows, light * frame.slots + slot, answer);
@@ -206,11 +206,11 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the rays of a wave.
             trace<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes primitives paths hits queue counters wide bounds
+            [frame nodes primitives instances paths hits queue counters wide
              opacities textures texels coordinates colours] {
-                let base = LaunchContext { frame, spec, primitives };
+                let base = LaunchContext { frame, spec, primitives, instances };
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
-                let scene = TraceContext { base, nodes, wide, bounds, cutout };
+                let scene = TraceContext { base, nodes, wide, cutout };
                 let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
                 stage::persistent::<$R, $method, Primitives, Closest, Subgroup>(
                     &scene,
@@ -221,7 +221,7 @@ macro_rules! persistent_tracing {
                         (ray, limit, true)
                     },
                     move |number, _, ray, hit| {
-                        write(hits, queued(spec, number, queue), stage::found(&scene, ray, hit));
+                        stage::Found::of(&scene, ray, hit).store(&base, queued(spec, number, queue), hits);
                     },
                 );
             }
@@ -230,11 +230,11 @@ macro_rules! persistent_tracing {
         entry! {
             /// Traces the shadow rays of a wave, light after light.
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
-            [frame nodes primitives lights paths hits shadows queue counters wide bounds
+            [frame nodes primitives instances lights paths hits shadows queue counters wide
              opacities textures texels coordinates colours] {
-                let base = LaunchContext { frame, spec, primitives };
+                let base = LaunchContext { frame, spec, primitives, instances };
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
-                let scene = TraceContext { base, nodes, wide, bounds, cutout };
+                let scene = TraceContext { base, nodes, wide, cutout };
                 let inputs = ShadowInputs { lights, paths: &*paths, hits: &*hits };
                 let (count, queue) = (slots(spec, frame, counters), &*queue);
                 // A launch without slots takes no number; the guard spares the division's panic.

@@ -197,7 +197,8 @@ mod tests {
     fn meets<R: Scalar>(vertices: [Vec3; 3], origin: V3<R>, direction: V3<R>) -> bool {
         let ray = Ray::new(origin, direction);
         let [a, b, c] = vertices.map(|p| ray.seen(p));
-        intersect_watertight(a, b, c, ray.slopes(), ray.along()).inside
+        let x = intersect_watertight(a, b, c, ray.slopes(), ray.along());
+        x.distance(x.inside, x.scale(x.inside), || [a, b, c], (ray.slopes(), ray.along())).0
     }
 
     /// Rays from a point on `vertices` towards `d` and towards directions that graze the surface more.

@@ -1,12 +1,14 @@
 //! What rays meet: boxes, and primitives, each a file with its intersection; and the place where a surface was met.
 
 mod disk;
+mod edge_on;
 mod interaction;
 mod moller_trumbore;
 mod slab;
 mod sphere;
 #[cfg(test)]
 mod tests;
+mod transform;
 mod triangle;
 
 pub use disk::{Crossing, intersect_disk};
@@ -16,4 +18,5 @@ pub use moller_trumbore::intersect_moller_trumbore;
 pub use slab::{Span, slab};
 pub use sphere::{Chord, intersect_sphere};
 pub(crate) use sphere::{octahedral, unit_of};
-pub use triangle::{Candidate, intersect_watertight, sheared, straddles_origin};
+pub use transform::Transform;
+pub use triangle::{Candidate, intersect_watertight, sheared};

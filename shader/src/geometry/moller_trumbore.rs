@@ -5,6 +5,8 @@
 //! allowed: there is no guarantee that it could break.
 
 use super::Candidate;
+use super::edge_on::strays;
+use super::triangle::sheared;
 use crate::real::{Real, V3};
 
 /// As [`intersect_watertight`](super::intersect_watertight), with another scale of depth and weights.
@@ -22,7 +24,9 @@ pub fn intersect_moller_trumbore<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, (x, y): 
     let depth = third.dot(around) * along;
     let within = (zero.le(u) & zero.le(v) & (u + v).le(area)) | (u.le(zero) & v.le(zero) & area.le(u + v));
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
-    Candidate { inside: within & ahead, front: zero.lt(area * along), depth, u, v, area }
+    let seen = [sheared(a, (x, y)), sheared(b, (x, y)), sheared(c, (x, y))];
+    let strays = strays(seen, [area - u - v, u, v], area);
+    Candidate { inside: within & (ahead | strays), strays, front: zero.lt(area * along), depth, u, v, area }
 }
 
 #[cfg(test)]

@@ -12,9 +12,7 @@
 //! it is forbidden in every precision.
 //!
 //! A triangle that is seen edge-on is a line, and an edge function of zero does not tell which part of its line the ray
-//! is at: with two of them zero by rounding, it may be far beside the triangle's ends. So where one is zero a hit
-//! counts only if the vertices lie around the ray on both axes ([`straddles_origin`]), as they do wherever it is
-//! inside.
+//! is at: see [`super::edge_on`], which finds where it is, and says why a hit lies in its triangle's box.
 //!
 //! A device may take subnormal numbers for zero. Coordinates of at most 4 and multiples of 2^-83 make such a sheared
 //! vertex less than 2^-126, and its products less than 2^-124. An edge function above [`SLIGHT`] = 2^-96 has a
@@ -22,10 +20,9 @@
 //! as zero. So all devices agree, and values are flushed to zero only in candidates.
 //!
 //! The error of the sheared points: with coordinates in [-1, 1], a difference to the origin
-//! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all, which
-//! [`BOX_PADDING`](crate::data::BOX_PADDING) = 2^-20 covers, so a triangle's own box does not reject
-//! what the test accepts.
+//! errs by 2^-23, the shear by 2^-23 of it thrice: below 16 * 2^-24 in all.
 
+use super::edge_on::strays;
 use crate::real::{FAINT, Mask, Real, V3};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
@@ -33,9 +30,11 @@ use crate::real::{Lanes, Scalar};
 /// Where a ray crosses a triangle's plane, before the division. Only `inside` is valid where the ray misses the triangle.
 #[derive(Clone, Copy)]
 pub struct Candidate<R: Real> {
-    /// Does it cross inside the triangle, in front of the origin? Where it is [`Candidate::in_line`],
-    /// [`straddles_origin`] must agree.
+    /// Does it cross inside the triangle, in front of the origin? Where it [strays](Candidate::strays),
+    /// [`Candidate::distance`] must agree.
     pub inside: R::Mask,
+    /// Is the point of these weights not on the ray, since the triangle is seen nearly edge-on?
+    pub strays: R::Mask,
     /// Is the front (counter-clockwise) side towards the ray? For back-face culling.
     pub front: R::Mask,
     /// Scaled distance along the ray's major axis.
@@ -73,7 +72,7 @@ pub fn intersect_watertight<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)
     let around = above | (wa.le(slight) & wb.le(slight) & wc.le(slight));
     // A ray misses most triangles that it is tested against.
     if !around.any() {
-        return Candidate { inside: around, front: around, depth: wa, u: wb, v: wc, area: wa };
+        return Candidate { inside: around, strays: around, front: around, depth: wa, u: wb, v: wc, area: wa };
     }
     let enlarged = |w: R| w.flush_if_exact(SLIGHT) * R::splat(ENLARGED);
     let (wa, wb, wc) = (enlarged(wa), enlarged(wb), enlarged(wc));
@@ -82,18 +81,8 @@ pub fn intersect_watertight<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)
     let depth = (term(wa, a.z) + term(wb, b.z) + term(wc, c.z)) * along;
     let ahead = (zero.lt(depth) & zero.lt(area)) | (depth.lt(zero) & area.lt(zero));
     let front = zero.lt(area * along);
-    Candidate { inside: around & ahead, front, depth, u: wb, v: wc, area }
-}
-
-/// Do a triangle's vertices, as [`intersect_watertight`] takes them, lie around the ray on both axes? They do wherever
-/// it is inside.
-#[cfg_attr(target_arch = "spirv", inline(never))]
-#[cfg_attr(not(target_arch = "spirv"), inline(always))]
-pub fn straddles_origin<R: Real>(a: V3<R>, b: V3<R>, c: V3<R>, shear: (R, R)) -> R::Mask {
-    let (a, b, c, slight) = (sheared(a, shear), sheared(b, shear), sheared(c, shear), R::splat(SLIGHT));
-    let below = a.0.lesser(b.0).lesser(c.0).le(slight) & a.1.lesser(b.1).lesser(c.1).le(slight);
-    let above = (-slight).le(a.0.greater(b.0).greater(c.0)) & (-slight).le(a.1.greater(b.1).greater(c.1));
-    below & above
+    let strays = strays([(ax, ay), (bx, by), (cx, cy)], [wa, wb, wc], area);
+    Candidate { inside: around & (ahead | strays), strays, front, depth, u: wb, v: wc, area }
 }
 
 /// A vertex, relative to the ray's origin and its axes cycled, in the plane across the ray.
@@ -110,9 +99,10 @@ impl<R: Real> Candidate<R> {
     where
         R: Lanes<S>,
     {
-        let front = (R::bits(self.front) >> i) & 1 == 1;
+        let holds = |mask| (R::bits(mask) >> i) & 1 == 1;
+        let (strays, front) = (holds(self.strays), holds(self.front));
         let (depth, area) = (self.depth.lane(i), self.area.lane(i));
-        Candidate { inside: true, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
+        Candidate { inside: true, strays, front, depth, u: self.u.lane(i), v: self.v.lane(i), area }
     }
 }
 
@@ -123,15 +113,7 @@ impl<R: Real> Candidate<R> {
     /// Is it inside, and may it lie before `limit`? A cheap test, so that few are divided.
     #[inline(always)]
     pub fn nearer(&self, limit: R) -> R::Mask {
-        self.inside & self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT))
-    }
-
-    /// Is some edge function zero (or nearly, of the first vertex), so that only [`straddles_origin`] tells whether it is
-    /// inside?
-    #[inline(always)]
-    pub fn in_line(&self) -> R::Mask {
-        let zero = R::splat(0.0);
-        self.u.eq(zero) | self.v.eq(zero) | self.area.eq(self.u + self.v)
+        self.inside & (self.strays | self.depth.abs().le(self.area.abs() * limit * R::splat(ABOUT)))
     }
 }
 
@@ -150,8 +132,8 @@ mod tests {
         let [a, b, c] = t.map(|p| ray.seen(p.into()));
         let shear = ray.slopes();
         let x = intersect_watertight(a, b, c, shear, ray.along());
-        let inside = x.inside && (!x.in_line() || straddles_origin(a, b, c, shear));
-        inside.then(|| (x.depth / x.area, x.u / x.area, x.v / x.area, x.front))
+        let (inside, t) = x.distance(x.inside, x.scale(x.inside), || [a, b, c], (shear, ray.along()));
+        inside.then(|| (t, x.u / x.area, x.v / x.area, x.front))
     }
 
     const FLAT: [[f32; 3]; 3] = [[0.0, 0.0, 0.0], [0.5, 0.0, 0.0], [0.0, 0.5, 0.0]];
@@ -193,18 +175,6 @@ mod tests {
                     assert!(hit(triangle, [x, y, z], [0.0, 0.0, -z]).is_some(), "{x} {y} from {z}");
                 }
             }
-        }
-    }
-
-    #[test]
-    fn straddling_the_ray_on_one_axis_alone_is_not_enough() {
-        for (swapped, side) in [(false, 1.0), (true, 1.0), (false, -1.0), (true, -1.0)] {
-            let at = |along: f32, off: f32| match swapped {
-                false => V::new(along, side * off, 0.5),
-                true => V::new(side * off, along, 0.5),
-            };
-            let straddles = |off| straddles_origin(at(-1.0, off), at(1.0, 2.0), at(0.5, 3.0), (0.0, 0.0));
-            assert!(straddles(-1.0) && straddles(0.0) && !straddles(1.0), "{swapped} {side}");
         }
     }
 

@@ -7,11 +7,12 @@ use crate::data::{Effects, Launch, Physical, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
 use crate::material::{Albedos, Seen, transmittance};
-use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::{self, AFTER_LENS, Key};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{AovSlot, CLEARED, Caught, Contribution, FirstSurface, NON_FINITE, PathState, Segment, ShadowRay};
+use crate::stage::{
+    AovSlot, CLEARED, Caught, Contribution, FirstSurface, Found, NON_FINITE, PathState, Segment, ShadowRay,
+};
 use glam::UVec4;
 
 use super::path::weight;
@@ -21,7 +22,7 @@ use super::{distributed, feature, occlusion, path};
 pub struct Exchange<'a, R: Scalar> {
     /// [`PathState`]s by record and slot.
     pub paths: &'a mut [R::Record],
-    /// (t, u, v) and primitive index by slot.
+    /// [`Found`] by slot.
     pub hits: &'a [R::Record],
     /// Whether the shadow ray of the vertex before arrived, by slot.
     pub shadows: &'a [u32],
@@ -50,10 +51,8 @@ pub struct ScatterContext<'a> {
 #[derive(Clone, Copy)]
 pub(super) struct Vertex<R: Real> {
     pub path: PathState<R>,
-    pub primitive_index: u32,
-    pub coordinates: (R, R),
-    /// How far the path came.
-    pub distance: R,
+    /// What it came to.
+    pub found: Found<R>,
     pub draws: Draws,
     /// Did the path start on a shadow catcher, as its first vertex? Of the light of that, catchers tell no more than what is shadowed.
     pub after_catcher: bool,
@@ -63,11 +62,11 @@ impl<R: Scalar> Vertex<R> {
     /// What is hit.
     #[inline(always)]
     pub fn met(&self, launch: &LaunchContext<'_>) -> Seen<R> {
-        let (index, direction) = (self.primitive_index, self.path.direction);
-        let primitive = launch.primitive(index);
-        let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, self.coordinates, direction);
-        let cone = self.path.cone(launch, self.distance, self.draws.sample);
-        Seen { index, primitive, interaction, direction, cone }
+        let (Found { t, coordinates, index, instance }, direction) = (self.found, self.path.direction);
+        let primitive = launch.placed(index, instance);
+        let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, coordinates, direction);
+        let cone = self.path.cone(launch, t, self.draws.sample);
+        Seen { index, instance, primitive, interaction, direction, cone }
     }
 
     /// With what of the path has come through the body whose inside it hits.
@@ -77,7 +76,7 @@ impl<R: Scalar> Vertex<R> {
             return *self;
         }
         let material = read(physicals, seen.material());
-        let left = transmittance(&material, self.distance);
+        let left = transmittance(&material, self.found.t);
         let weight = self.path.weight.times(left).map(|c| c.flush(FAINT));
         Vertex { path: PathState { weight, ..self.path }, ..*self }
     }
@@ -233,9 +232,9 @@ pub fn scatter<R: Scalar>(
         (sum + arrived, word, caught.answered(read(shadows, slot)))
     };
     let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
-    let (hit, primitive_index) = R::load(read(hits, slot));
+    let found = Found::<R>::load(launch, slot, hits);
     // The ray of a slot outside the image hits nothing.
-    let scattered = if primitive_index == Hit::<R>::NOTHING {
+    let scattered = if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
         let is_dark = is_clear || after_catcher;
@@ -245,18 +244,17 @@ pub fn scatter<R: Scalar>(
             outputs: Outputs::of(Contribution::<R>::SURROUNDINGS, launch.frame.group),
             ..Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
         }
-    } else if is_hole(launch, &path, primitive_index) {
+    } else if is_hole(launch, &path, &found) {
         word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
         Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
-        if after_catcher && launch.primitive(primitive_index).has(Primitive::CATCHER) {
+        if after_catcher && launch.placed(found.index, found.instance).has(Primitive::CATCHER) {
             caught = caught.open();
         }
         let sample = camera::sample(launch.frame, slot);
         let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
-        let coordinates = (hit.y, hit.z);
-        let vertex = Vertex { path, primitive_index, coordinates, distance: hit.x, draws, after_catcher };
+        let vertex = Vertex { path, found, draws, after_catcher };
         if bits.has(Launch::FEATURE) {
             feature::at(launch, context, &vertex)
         } else if bits.has(Launch::OCCLUSION) {
@@ -282,10 +280,10 @@ pub fn scatter<R: Scalar>(
 
 /// Does the camera's ray meet what cuts a hole into the picture?
 #[inline(always)]
-fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive_index: u32) -> bool {
+fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, found: &Found<R>) -> bool {
     launch.spec.effects.has(Effects::HOLDOUT)
         && path.bounces == 0
-        && launch.primitive(primitive_index).has(Primitive::HOLDOUT)
+        && launch.placed(found.index, found.instance).has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.

@@ -7,17 +7,16 @@ use crate::data::{Effects, Launch, Light, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::LightSample;
 use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
-use crate::ray::Hit;
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{CLEARED, FACES_AWAY, NON_FINITE, Path, REACHED};
+use crate::stage::{CLEARED, FACES_AWAY, Found, NON_FINITE, Path, REACHED};
 use crate::texture::Cone;
 
 /// The records that the stages of a wave exchange.
 pub struct Wave<'a, R: Scalar> {
     /// Paths by level, record and slot.
     pub paths: &'a mut [R::Record],
-    /// (t, u, v) and primitive index by slot.
+    /// [`Found`] by slot.
     pub hits: &'a [R::Record],
     /// What [`crate::stage::shadow`] returned, by light and slot.
     pub shadows: &'a [u32],
@@ -46,8 +45,8 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     }
     let effects = launch.spec.effects;
     let path = Path::<R>::current(launch, slot, paths);
-    let (hit, primitive_index) = R::load(read(hits, slot));
-    if primitive_index == Hit::<R>::NOTHING {
+    let found = Found::<R>::load(launch, slot, hits);
+    if found.is_nothing() {
         if is_first && launch.spec.launch.has(Launch::CLEAR) {
             add(launch, sums, slot, &path, V3::zero(), CLEARED);
             return pop(launch, slot, &path, paths);
@@ -55,17 +54,18 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
         add(launch, sums, slot, &path, background(effects, launch.frame, environment, path.direction, is_first), 0);
         return pop(launch, slot, &path, paths);
     }
-    let primitive = launch.primitive(primitive_index);
+    let primitive = launch.placed(found.index, found.instance);
     if is_first && effects.has(Effects::HOLDOUT) && primitive.has(Primitive::HOLDOUT) {
         let word = if launch.spec.launch.has(Launch::CLEAR) { CLEARED } else { 0 };
         add(launch, sums, slot, &path, V3::zero(), word);
         return pop(launch, slot, &path, paths);
     }
-    let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
+    let interaction = SurfaceInteraction::new(effects, &primitive, found.coordinates, path.direction);
     let sample = camera::sample(launch.frame, slot);
-    let start = if is_first { Cone::confused(launch, hit.x, sample) } else { Cone::none() };
-    let cone = start.after(launch, hit.x, sample);
-    let seen = Seen { index: primitive_index, primitive, interaction, direction: path.direction, cone };
+    let start = if is_first { Cone::confused(launch, found.t, sample) } else { Cone::none() };
+    let cone = start.after(launch, found.t, sample);
+    let seen =
+        Seen { index: found.index, instance: found.instance, primitive, interaction, direction: path.direction, cone };
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(effects, shading, &seen, &covering);
     let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);

@@ -69,6 +69,8 @@ pub struct Surface<R: Real> {
 pub struct Seen<R: Real> {
     /// The primitive's index in leaf order.
     pub index: u32,
+    /// The copy of a mesh that it is in, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
+    pub instance: u32,
     /// The primitive.
     pub primitive: Primitive,
     /// The place on it.
@@ -92,7 +94,7 @@ impl<R: Scalar> Seen<R> {
     #[inline(always)]
     pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, emits_only: bool) -> Covering<R> {
         let (effects, launched) = (launch.spec.effects, launch.spec.launch);
-        let Seen { index, primitive, interaction, direction, cone } = *self;
+        let Seen { index, primitive, interaction, direction, cone, .. } = *self;
         let place = Place { index, weights: interaction.coordinates, count: launch.frame.vertices };
         let mut footprint = R::splat(0.0);
         if effects.has(Effects::TEXTURED) && launched.has(Launch::MIPMAPPED) {
@@ -108,17 +110,17 @@ impl<R: Scalar> Surface<R> {
     /// The surface of what a ray has met, with what covers it.
     #[inline(always)]
     pub fn new(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
-        let Seen { index, primitive, interaction, direction, .. } = *seen;
+        let Seen { index, instance, primitive, interaction, direction, .. } = *seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal = if effects.has(Effects::SMOOTH) {
-            interpolated(shading, index, direction, &interaction)
+            interpolated(&shading.normals(effects, (index, instance)), direction, &interaction)
         } else {
             interaction.normal
         };
         let normal = if effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED) {
-            mapped(shading, seen, normal, covering.normal)
+            mapped(effects, shading, seen, (normal, covering.normal))
         } else {
             normal
         };
@@ -163,14 +165,8 @@ pub fn mirrored<R: Scalar>(direction: V3<R>, interaction: &SurfaceInteraction<R>
 /// The vertex normals' weighted sum, flipped to the viewer's side of the triangle. If the sum is zero,
 /// or faces away from the viewer, the triangle's own normal replaces it.
 #[inline(always)]
-fn interpolated<R: Scalar>(
-    shading: &ShadingData<'_>,
-    primitive_index: u32,
-    direction: V3<R>,
-    interaction: &SurfaceInteraction<R>,
-) -> V3<R> {
+fn interpolated<R: Scalar>(normals: &Normals, direction: V3<R>, interaction: &SurfaceInteraction<R>) -> V3<R> {
     let (u, v) = interaction.coordinates;
-    let normals = read(shading.normals, primitive_index);
     let normal = |record| V3::<R>::splat(numbers(record));
     let sum = normal(normals.a) * (R::splat(1.0) - u - v) + normal(normals.b) * u + normal(normals.c) * v;
     let (unit, length) = sum.map(|c| c.flush(SMALL)).direction_and_length();
@@ -181,9 +177,9 @@ fn interpolated<R: Scalar>(
 
 /// The tangent at a place, at right angles to a normal, and the sign of the bitangent; a zero vector if there is none.
 #[inline(always)]
-fn tangent<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> (V3<R>, R) {
+fn tangent<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> (V3<R>, R) {
     let (u, v) = seen.interaction.coordinates;
-    let Normals { a, b, c } = read(shading.tangents, seen.index);
+    let Normals { a, b, c } = shading.tangents(effects, (seen.index, seen.instance));
     let of = |record| V3::<R>::splat(numbers(record));
     let sum = of(a) * (R::splat(1.0) - u - v) + of(b) * u + of(c) * v;
     let across = sum - normal * normal.dot(sum);
@@ -203,7 +199,7 @@ pub fn axes<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<
     if !effects.has(Effects::TANGENTS) {
         return [x, y, normal];
     }
-    let (along, sign) = tangent(shading, seen, normal);
+    let (along, sign) = tangent(effects, shading, seen, normal);
     let none = along.greatest().eq(R::splat(0.0)) && (-along).greatest().eq(R::splat(0.0));
     let side = R::select(seen.interaction.front, sign, -sign);
     let across = normal.cross(along).map(|c| c.flush(TINY)) * side;
@@ -213,11 +209,16 @@ pub fn axes<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<
 /// A normal by a map's, which is in the frame of the front's tangent, bitangent and normal. Where the map's leads away from the
 /// viewer it is bent back until it is seen.
 #[inline(always)]
-fn mapped<R: Scalar>(shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>, map: V3<R>) -> V3<R> {
+fn mapped<R: Scalar>(
+    effects: Effects,
+    shading: &ShadingData<'_>,
+    seen: &Seen<R>,
+    (normal, map): (V3<R>, V3<R>),
+) -> V3<R> {
     /// The least cosine to the viewer.
     const LEAST: f32 = 1.0 / 64.0;
     let (zero, front) = (R::splat(0.0), seen.interaction.front);
-    let (along, sign) = tangent(shading, seen, normal);
+    let (along, sign) = tangent(effects, shading, seen, normal);
     let own = V3::select(front, normal, -normal);
     let across = own.cross(along).map(|c| c.flush(TINY)) * sign;
     let part = |axis: V3<R>, length: R| (axis * length.flush(SMALL)).map(|c| c.flush(SMALL));
@@ -286,9 +287,8 @@ mod tests {
     /// The shading normal where vertices have these.
     fn smooth_of(normals: [Vec3; 3], weights: (f32, f32), from: Vec3, own: Vec3) -> V3<f32> {
         let [a, b, c] = normals.map(|n| pack(n, 0));
-        let shading = ShadingData { normals: &[Normals { a, b, c }], materials: &[], ..ShadingData::default() };
         let interaction = SurfaceInteraction { coordinates: weights, ..contact(own, [0.0; 3]) };
-        interpolated(&shading, 0, V3::splat(from), &interaction)
+        interpolated(&Normals { a, b, c }, V3::splat(from), &interaction)
     }
 
     /// Of a triangle whose vertices' normals lean towards x, y and away from x.

@@ -1,7 +1,6 @@
 //! Where triangles stand for a curved surface, light reaches what lies behind their own planes.
 
 use super::Seen;
-use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::real::{SMALL, Scalar, V3};
@@ -12,11 +11,11 @@ use crate::scene::ShadingData;
 /// Ray Tracing Gems II, 2021), along the triangle's own normal. Concave surfaces and what lets light pass stay as they are.
 #[inline(always)]
 pub fn lifted<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>) -> SurfaceInteraction<R> {
-    let Seen { index, primitive, interaction, .. } = *seen;
+    let Seen { index, instance, primitive, interaction, .. } = *seen;
     if !effects.has(Effects::SMOOTH) || primitive.is_transparent() || interaction.is_curved {
         return interaction;
     }
-    let normals = read(shading.normals, index);
+    let normals = shading.normals(effects, (index, instance));
     let (u, v) = interaction.coordinates;
     let [a, b, c] = primitive.vertices();
     let over = |vertex, normal, weight: R| above(&interaction, V3::splat(vertex), V3::splat(numbers(normal))) * weight;
@@ -56,7 +55,7 @@ mod tests {
         let interaction = SurfaceInteraction::new(Effects(0), &primitive, coordinates, direction);
         let [a, b, c] = normals.map(|n| pack(n, 0));
         let shading = ShadingData { normals: &[Normals { a, b, c }], ..ShadingData::default() };
-        let seen = Seen { index: 0, primitive, interaction, direction, cone: Cone::none() };
+        let seen = Seen { index: 0, instance: u32::MAX, primitive, interaction, direction, cone: Cone::none() };
         lifted(Effects(Effects::SMOOTH), &shading, &seen)
     }
 

@@ -208,7 +208,7 @@ fn halves<R: Real>(x: R) -> (R, R) {
 }
 
 /// A number of a single lane, as shading uses it.
-pub trait Scalar: Real<Mask = bool, Index = u32> {
+pub trait Scalar: Real<Mask = bool, Index = u32> + Send + Sync {
     /// Vectors that test the boxes of a node of eight children.
     #[cfg(not(target_arch = "spirv"))]
     type Eight: Lanes<Self>;

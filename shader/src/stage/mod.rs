@@ -8,6 +8,7 @@
 mod aov;
 mod caught;
 mod film;
+mod found;
 mod generate;
 mod path;
 mod path_state;
@@ -24,6 +25,7 @@ pub use film::{
     BLOCK, FILM_WORDS, FilmWords, LIGHT_FRACTION, LIGHT_MOST, NOISY_FILM_WORDS, PixelSums, Row, SQUARE_FRACTION,
     SQUARE_MOST, Sample, brightness, expose, expose_blocks, film_words,
 };
+pub use found::Found;
 pub use generate::generate;
 pub use path::{Path, RECORDS};
 pub use path_state::{LINKED_GROUPS, PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
@@ -32,7 +34,7 @@ pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};
 #[cfg(not(target_arch = "spirv"))]
 pub use together::{most, shadow_together, trace_together};
-pub use trace::{found, ray, trace, traced};
+pub use trace::{ray, trace, traced};
 
 /// In the integer of a sum or a film record: some contribution was not finite (infinite or NaN) and was left out.
 pub const NON_FINITE: u32 = 1 << 31;

@@ -1,6 +1,6 @@
 //! Whether a light reaches what a slot's ray hit (thesis algorithm 3.2), or a ray of a stream its end.
 
-use super::{Path, Segment};
+use super::{Found, Path, Segment};
 use crate::buffer::read;
 use crate::data::{Launch, Light};
 use crate::geometry::SurfaceInteraction;
@@ -24,7 +24,7 @@ pub struct ShadowInputs<'a, R: Scalar> {
     pub lights: &'a [Light],
     /// Paths by level, record and slot, or the stream's rays.
     pub paths: &'a [R::Record],
-    /// (t, u, v) and primitive index by slot.
+    /// [`Found`] by slot.
     pub hits: &'a [R::Record],
 }
 
@@ -40,19 +40,19 @@ pub fn shadow_ray<R: Scalar>(
         return (Segment::load(context, slot, asking.paths), true);
     }
     let path = Path::<R>::current(&context.base, slot, asking.paths);
-    let (hit, primitive_index) = R::load(read(asking.hits, slot));
-    if primitive_index == Hit::<R>::NOTHING {
+    let found = Found::<R>::load(&context.base, slot, asking.hits);
+    if found.is_nothing() {
         let nowhere = Segment {
             origin: path.origin,
             direction: path.direction,
-            limit: hit.x,
+            limit: found.t,
             source_primitive: path.source_primitive,
         };
         return (nowhere, false);
     }
-    let primitive = context.primitive(primitive_index);
+    let primitive = context.base.placed(found.index, found.instance);
     let effects = context.base.spec.effects;
-    let interaction = SurfaceInteraction::new(effects, &primitive, (hit.y, hit.z), path.direction);
+    let interaction = SurfaceInteraction::new(effects, &primitive, found.coordinates, path.direction);
     let light = read(asking.lights, index);
     let (origin, direction, limit) = ray_to_light(effects, &light, &interaction);
     let source_primitive = interaction.source_primitive(direction);

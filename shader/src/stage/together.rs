@@ -3,7 +3,7 @@
 use core::array::from_fn;
 
 use super::segment::NOWHERE;
-use super::{Segment, shadow, trace};
+use super::{Found, Segment, shadow, trace};
 use crate::ray::{Hit, Ray};
 use crate::real::{Lanes, Scalar, V3};
 use crate::scene::TraceContext;
@@ -18,12 +18,12 @@ pub const fn most<S: Scalar, P: Lanes<S>>() -> usize {
     VALUES * P::COUNT as usize
 }
 
-/// The closest hits of at most [`most`] rays; `keep` is told the record of each.
+/// The closest hits of at most [`most`] rays; `keep` is told each.
 #[inline(always)]
 pub fn trace_together<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf>(
     context: &TraceContext<'_>,
     segments: &[Segment<S>],
-    mut keep: impl FnMut(usize, S::Record),
+    mut keep: impl FnMut(usize, Found<S>),
 ) {
     let hits = follow::<S, P, M, L, Closest>(context, segments);
     let lanes = P::COUNT as usize;
@@ -31,8 +31,9 @@ pub fn trace_together<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf>(
         let (u, v) = hit.coordinates();
         let mut i = 0;
         while i < lanes && value * lanes + i < segments.len() {
-            let place = V3::new(hit.t.lane(i), u.lane(i), v.lane(i));
-            keep(value * lanes + i, trace::record(place, P::index_of(hit.primitive_index, i)));
+            let (index, instance) = (P::index_of(hit.primitive_index, i), P::index_of(hit.instance, i));
+            let coordinates = (u.lane(i), v.lane(i));
+            keep(value * lanes + i, Found { t: hit.t.lane(i), coordinates, index, instance });
             i += 1;
         }
     }

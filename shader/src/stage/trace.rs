@@ -1,12 +1,12 @@
 //! The closest hit of a slot's ray, primary, secondary or of a stream.
 
 use super::segment::NOWHERE;
-use super::{Path, Segment};
+use super::{Found, Path, Segment};
 use crate::data::Launch;
 use crate::ray::{Hit, Ray};
-use crate::real::{Scalar, V3};
+use crate::real::Scalar;
 use crate::scene::TraceContext;
-use crate::traverse::{Closest, Leaf, Method, leaf};
+use crate::traverse::{Closest, Leaf, Method};
 
 /// A slot's ray.
 #[inline(always)]
@@ -44,28 +44,11 @@ pub fn ray<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]
     (Ray::prepared(source_primitive, segment.origin, segment.direction, from_afar), segment.limit)
 }
 
-/// What is kept of a ray's hit: (t, u, v) and the primitive index, or [`Hit::NOTHING`].
+/// Traces a slot's ray.
 #[inline(always)]
-pub fn found<R: Scalar>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &Hit<R>) -> R::Record {
-    let (u, v) = leaf::coordinates(context, ray, hit);
-    record(V3::new(hit.t, u, v), hit.primitive_index)
-}
-
-/// (t, u, v) and the primitive index, as they lie in memory.
-#[inline(always)]
-pub(super) fn record<R: Scalar>(place: V3<R>, primitive_index: u32) -> R::Record {
-    R::store(place, primitive_index)
-}
-
-/// Traces a slot's ray; returns what [`found`] does.
-#[inline(always)]
-pub fn trace<R: Scalar, M: Method<R>, L: Leaf>(
-    context: &TraceContext<'_>,
-    slot: u32,
-    paths: &[R::Record],
-) -> R::Record {
+pub fn trace<R: Scalar, M: Method<R>, L: Leaf>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Found<R> {
     let (ray, limit) = ray::<R>(context, slot, paths);
     let mut hit = Hit::none(limit);
     M::traverse::<Closest, L>(context, &ray, &mut hit);
-    found(context, &ray, &hit)
+    Found::of(context, &ray, &hit)
 }

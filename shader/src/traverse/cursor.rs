@@ -1,7 +1,9 @@
 //! The state of a traversal over node pairs.
 
 use super::resumable::Progress;
-use crate::data::{CentredPair, NodeRef, STACK};
+use crate::data::{CentredPair, Effects, NodeRef, STACK};
+use crate::ray::Hit;
+use crate::scene::TraceContext;
 
 /// Nodes still to visit. Kept beside its [`Cursor`], since rust-gpu allows no pointer in a struct that
 /// lives across a loop: that the two belong together is the promise of who calls. A packet's stack is replicated in every lane, so its hits are right even where a
@@ -13,20 +15,36 @@ pub type Stack = super::stack::Stack<NodeRef, STACK>;
 pub struct Cursor {
     /// The node to visit next; [`NodeRef::NONE`] if nothing is left to visit.
     pub node: NodeRef,
+    /// The copy of a mesh that it is in; [`Hit::NOTHING`] for none.
+    pub instance: u32,
     depth: u32,
+    /// How many nodes on the stack are in no copy.
+    outside: u32,
 }
 
 impl Cursor {
     /// At the root.
     #[inline(always)]
     pub fn new() -> Self {
-        Self::at(NodeRef::ROOT)
+        Self::at(NodeRef::ROOT, Hit::<f32>::NOTHING)
     }
 
-    /// At a node, with an empty stack.
+    /// At a node of a copy of a mesh or of none, with an empty stack.
     #[inline(always)]
-    pub fn at(node: NodeRef) -> Self {
-        Cursor { node, depth: 0 }
+    pub fn at(node: NodeRef, instance: u32) -> Self {
+        Cursor { node, instance, depth: 0, outside: 0 }
+    }
+
+    /// The child pair of the current node, which is inner. What is on the stack when it leads to a copy is outside of that.
+    #[inline(always)]
+    pub fn open(&mut self, context: &TraceContext<'_>) -> CentredPair {
+        let (pair, instance) = context.opened(self.node, self.instance);
+        if context.base.spec.effects.has(Effects::INSTANCED) {
+            let enters = self.instance == Hit::<f32>::NOTHING && instance != Hit::<f32>::NOTHING;
+            self.outside = if enters { self.depth } else { self.outside };
+            self.instance = instance;
+        }
+        pair
     }
 
     /// How many nodes are on the stack.
@@ -38,7 +56,7 @@ impl Cursor {
     /// Ends the traversal.
     #[inline(always)]
     pub fn finish(&mut self) {
-        *self = Self::at(NodeRef::NONE);
+        *self = Self::at(NodeRef::NONE, Hit::<f32>::NOTHING);
     }
 
     /// Goes to the nearer child that is hit and pushes the other if it is hit too; pops if none is hit.
@@ -103,6 +121,8 @@ impl Cursor {
             self.depth -= 1;
             // SAFETY: every index below the depth has been set, in this stack by the caller's promise.
             self.node = unsafe { stack.get(self.depth) };
+            // Without copies it never is in one, which a compiler knows.
+            self.instance = if self.depth < self.outside { Hit::<f32>::NOTHING } else { self.instance };
         }
     }
 }
@@ -115,7 +135,7 @@ impl Progress for Cursor {
 
     #[inline(always)]
     fn finished() -> Self {
-        Self::at(NodeRef::NONE)
+        Self::at(NodeRef::NONE, Hit::<f32>::NOTHING)
     }
 
     #[inline(always)]

@@ -12,6 +12,7 @@
 
 use super::Query;
 use super::leaf::{Leaf, occluded};
+use super::nested;
 use super::resumable::{Progress, Resumable, stepwise};
 use crate::buffer::read;
 use crate::data::{CwbvhNode, STACK, numbers};
@@ -152,7 +153,7 @@ impl<R: Scalar> Resumable<R> for CwbvhMethod {
         }
         if cursor.primitives.waiting != 0 {
             let index = cursor.primitives.take();
-            L::intersect::<Q, R>(context, index, ray, hit);
+            nested::intersect::<Q, L, R>(context, index, ray, hit);
             if Q::ANY && occluded(hit) {
                 *cursor = Groups::finished();
             }

@@ -10,7 +10,7 @@ use super::packet::{goes, visit_leaf};
 use super::resumable::{Progress, finish};
 use super::step::children;
 use super::{IfIf, Method, Query};
-use crate::data::{NodeRef, STACK};
+use crate::data::{Effects, NodeRef, STACK};
 use crate::ray::{Hit, Ray};
 use crate::real::{Mask, Real};
 use crate::scene::TraceContext;
@@ -76,8 +76,38 @@ pub struct Hybrid<W, S, T>(PhantomData<(W, S, T)>);
 /// Nodes to visit ray by ray after the packet, and by which rays.
 struct DeferredStack<R: Real> {
     nodes: Stack,
+    /// The copies of meshes that they are in.
+    instances: super::stack::Stack<u32, STACK>,
     rays: [R::Mask; STACK],
     count: u32,
+}
+
+impl<R: Real> DeferredStack<R> {
+    /// Adds a node of a copy of a mesh or of none, for some rays.
+    #[inline(always)]
+    fn put(&mut self, context: &TraceContext<'_>, (node, instance): (NodeRef, u32), rays: R::Mask) {
+        self.nodes.put(self.count, node);
+        if context.base.spec.effects.has(Effects::INSTANCED) {
+            self.instances.put(self.count, instance);
+        }
+        self.rays[self.count as usize & (STACK - 1)] = rays;
+        self.count += 1;
+    }
+
+    /// The node at an index, and the copy that it is in.
+    ///
+    /// # Safety
+    /// It has been put there.
+    #[inline(always)]
+    unsafe fn node(&self, context: &TraceContext<'_>, index: u32) -> (NodeRef, u32) {
+        // SAFETY: the caller's.
+        let node = unsafe { self.nodes.get(index) };
+        if context.base.spec.effects.has(Effects::INSTANCED) {
+            // SAFETY: likewise.
+            return (node, unsafe { self.instances.get(index) });
+        }
+        (node, Hit::<f32>::NOTHING)
+    }
 }
 
 impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T> {
@@ -85,11 +115,16 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
     fn traverse<Q: Query, L: Leaf>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &mut Hit<R>) {
         let mut stack = Stack::new();
         let mut cursor = Cursor::new();
-        let mut deferred = DeferredStack::<R> { nodes: Stack::new(), rays: [everyone::<R>(); STACK], count: 0 };
+        let mut deferred = DeferredStack::<R> {
+            nodes: Stack::new(),
+            instances: super::stack::Stack::new(),
+            rays: [everyone::<R>(); STACK],
+            count: 0,
+        };
         while !cursor.is_done() {
             if S::full(context, cursor.depth()) {
                 if T::REJOINS {
-                    alone::<Q, L, R>(context, cursor.node, everyone::<R>(), ray, hit);
+                    alone::<Q, L, R>(context, (cursor.node, cursor.instance), everyone::<R>(), ray, hit);
                     // SAFETY: it pushes to no other stack.
                     unsafe { cursor.pop(&stack) };
                 } else {
@@ -101,12 +136,24 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
                 // SAFETY: likewise.
                 unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
-                let pair = context.pair(cursor.node.index());
+                let pair = cursor.open(context);
+                let instance = cursor.instance;
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
-                let left = together::<Q, L, R, W, S, T>(context, pair.left(), wanted.left, ray, (hit, &mut deferred));
-                let right =
-                    together::<Q, L, R, W, S, T>(context, pair.right(), wanted.right, ray, (hit, &mut deferred));
+                let left = together::<Q, L, R, W, S, T>(
+                    context,
+                    (pair.left(), instance),
+                    wanted.left,
+                    ray,
+                    (hit, &mut deferred),
+                );
+                let right = together::<Q, L, R, W, S, T>(
+                    context,
+                    (pair.right(), instance),
+                    wanted.right,
+                    ray,
+                    (hit, &mut deferred),
+                );
                 let right_first = W::any(wanted.left & wanted.right & wanted.right_first);
                 // SAFETY: likewise.
                 unsafe { cursor.descend(&pair, left, right, right_first, &mut stack) };
@@ -115,7 +162,7 @@ impl<R: RayLanes, W: Warp, S: SplitPolicy, T: Turn> Method<R> for Hybrid<W, S, T
         while deferred.count > 0 {
             deferred.count -= 1;
             // SAFETY: every index below the count has been set.
-            let node = unsafe { deferred.nodes.get(deferred.count) };
+            let node = unsafe { deferred.node(context, deferred.count) };
             alone::<Q, L, R>(context, node, deferred.rays[deferred.count as usize & (STACK - 1)], ray, hit);
         }
     }
@@ -141,7 +188,7 @@ fn everyone<R: Real>() -> R::Mask {
 #[inline(always)]
 fn together<Q: Query, L: Leaf, R: RayLanes, W: Warp, S: SplitPolicy, T: Turn>(
     context: &TraceContext<'_>,
-    node: NodeRef,
+    node: (NodeRef, u32),
     rays: R::Mask,
     ray: &Ray<R>,
     (hit, deferred): (&mut Hit<R>, &mut DeferredStack<R>),
@@ -155,9 +202,7 @@ fn together<Q: Query, L: Leaf, R: RayLanes, W: Warp, S: SplitPolicy, T: Turn>(
     if T::REJOINS || deferred.count == STACK as u32 {
         alone::<Q, L, R>(context, node, rays, ray, hit);
     } else {
-        deferred.nodes.put(deferred.count, node);
-        deferred.rays[deferred.count as usize & (STACK - 1)] = rays;
-        deferred.count += 1;
+        deferred.put(context, node, rays);
     }
     false
 }
@@ -166,7 +211,7 @@ fn together<Q: Query, L: Leaf, R: RayLanes, W: Warp, S: SplitPolicy, T: Turn>(
 #[inline(always)]
 fn alone<Q: Query, L: Leaf, R: RayLanes>(
     context: &TraceContext<'_>,
-    node: NodeRef,
+    (node, instance): (NodeRef, u32),
     rays: R::Mask,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
@@ -175,7 +220,7 @@ fn alone<Q: Query, L: Leaf, R: RayLanes>(
     R::each_lane(ray, hit, rays, |ray, hit| {
         let mut stack = Stack::new();
         // SAFETY: a cursor at a node has pushed nothing.
-        unsafe { finish::<Q, L, R::Lane, IfIf>(context, ray, hit, Cursor::at(node), &mut stack) };
+        unsafe { finish::<Q, L, R::Lane, IfIf>(context, ray, hit, Cursor::at(node, instance), &mut stack) };
     });
     Q::on_parted(false);
 }

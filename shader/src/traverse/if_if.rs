@@ -39,7 +39,7 @@ impl<R: Scalar> Resumable<R> for IfIf {
             unsafe { pair::<Q, R>(context, ray, hit, cursor, stack) };
         }
         if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
-            L::intersect::<Q, R>(context, cursor.node.index(), ray, hit);
+            L::intersect::<Q, R>(context, (cursor.node.index(), cursor.instance), ray, hit);
             cursor.node = cursor.node.rest();
             if Q::ANY && occluded(hit) {
                 cursor.finish();

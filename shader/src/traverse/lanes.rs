@@ -112,6 +112,7 @@ impl<R: Real> Hit<R> {
             scale: self.scale.lane(i),
             primitive_index: R::index_of(self.primitive_index, i),
             primitive: R::index_of(self.primitive, i),
+            instance: R::index_of(self.instance, i),
         }
     }
 
@@ -126,5 +127,6 @@ impl<R: Real> Hit<R> {
         self.scale.set_lane(i, hit.scale);
         R::set_index(&mut self.primitive_index, i, hit.primitive_index);
         R::set_index(&mut self.primitive, i, hit.primitive);
+        R::set_index(&mut self.instance, i, hit.instance);
     }
 }

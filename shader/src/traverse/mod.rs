@@ -1,8 +1,8 @@
 //! Traversal methods. Each is one small file built from the shared steps of [`step`].
 //!
-//! Every method finds the same hit: the least (t, primitive) among the primitives whose own box the ray
-//! hits, with t no less than the entry to that box. A node's box is wider than its contents by more than
-//! the error of both tests, so it is entered no later, and no order of visits can cull the closest hit.
+//! Every method finds the same hit: the least (t, primitive). A hit lies in the own box of its primitive
+//! ([`geometry::edge_on`](crate::geometry)), and a node's box is wider than its contents by more than the error of its test, so it is
+//! entered no later than any hit below it, and no order of visits can cull the closest.
 
 #[cfg(not(target_arch = "spirv"))]
 mod bvh8;
@@ -12,6 +12,7 @@ mod hybrid;
 mod if_if;
 pub mod lanes;
 pub mod leaf;
+mod nested;
 mod packet;
 pub mod resumable;
 mod speculative;

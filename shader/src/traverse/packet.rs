@@ -28,7 +28,7 @@ impl<R: Real, W: Warp> Method<R> for Packet<W> {
                 // SAFETY: it pushes to no other stack.
                 unsafe { visit_leaf::<Q, L, R, W>(context, ray, hit, &mut cursor, &stack) };
             } else {
-                let pair = context.pair(cursor.node.index());
+                let pair = cursor.open(context);
                 Q::on_boxes(2);
                 let wanted = children(&pair, ray, hit);
                 let (left, right) = (goes::<Q, R, W>(wanted.left), goes::<Q, R, W>(wanted.right));
@@ -72,7 +72,7 @@ pub(super) unsafe fn visit_leaf<Q: Query, L: Leaf, R: Real, W: Warp>(
     cursor: &mut Cursor,
     stack: &Stack,
 ) {
-    leaf::<Q, L, R>(context, cursor.node, ray, hit);
+    leaf::<Q, L, R>(context, (cursor.node, cursor.instance), ray, hit);
     if Q::ANY && !W::any(!occluded(hit)) {
         cursor.finish();
     } else {

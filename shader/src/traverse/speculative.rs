@@ -24,21 +24,21 @@ impl<R: Scalar, W: Warp> Method<R> for Speculative<W> {
         let mut cursor = Cursor::new();
         while !cursor.is_done() {
             // An inner node means that there is none.
-            let mut aside = NodeRef::ROOT;
-            while !(cursor.is_done() || cursor.node.is_leaf() && aside.is_leaf()) {
+            let mut aside = (NodeRef::ROOT, cursor.instance);
+            while !(cursor.is_done() || cursor.node.is_leaf() && aside.0.is_leaf()) {
                 if cursor.node.is_leaf() {
-                    aside = cursor.node;
+                    aside = (cursor.node, cursor.instance);
                     // SAFETY: it pushes to no other stack.
                     unsafe { cursor.pop(&stack) };
                 } else {
                     // SAFETY: likewise.
                     unsafe { pair::<Q, R>(context, ray, hit, &mut cursor, &mut stack) };
                 }
-                if !W::any(!aside.is_leaf()) {
+                if !W::any(!aside.0.is_leaf()) {
                     break;
                 }
             }
-            if aside.is_leaf() && leaf::<Q, L, R>(context, aside, ray, hit) {
+            if aside.0.is_leaf() && leaf::<Q, L, R>(context, aside, ray, hit) {
                 cursor.finish();
             }
         }

@@ -56,23 +56,23 @@ pub(super) unsafe fn pair<Q: Query, R: Scalar>(
     cursor: &mut Cursor,
     stack: &mut Stack,
 ) {
-    let pair = context.pair(cursor.node.index());
+    let pair = cursor.open(context);
     Q::on_boxes(2);
     let wanted = children(&pair, ray, hit);
     // SAFETY: the caller's.
     unsafe { cursor.descend(&pair, wanted.left, wanted.right, wanted.right_first, stack) };
 }
 
-/// Tests all that a leaf holds. Returns whether this is an any-hit query all of whose rays have found something.
+/// Tests all that a leaf holds, in a copy of a mesh or in none. Returns whether this is an any-hit query all of whose rays have found something.
 #[inline(always)]
 pub fn leaf<Q: Query, L: Leaf, R: Real>(
     context: &TraceContext<'_>,
-    mut leaf: NodeRef,
+    (mut leaf, instance): (NodeRef, u32),
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) -> bool {
     while leaf.is_leaf() {
-        L::intersect::<Q, R>(context, leaf.index(), ray, hit);
+        L::intersect::<Q, R>(context, (leaf.index(), instance), ray, hit);
         leaf = leaf.rest();
     }
     Q::ANY && !(!occluded(hit)).any()

@@ -54,7 +54,7 @@ impl<R: Scalar, W: Warp> Resumable<R> for WhileWhile<W> {
             }
         }
         if cursor.node.is_leaf() && cursor.node != NodeRef::NONE {
-            if leaf::<Q, L, R>(context, cursor.node, ray, hit) {
+            if leaf::<Q, L, R>(context, (cursor.node, cursor.instance), ray, hit) {
                 cursor.finish();
             } else {
                 // SAFETY: the caller's.

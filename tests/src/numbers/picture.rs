@@ -30,7 +30,7 @@ fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut context = scene.context(&frame, spec);
     while !queue.is_empty() {
         for &slot in &queue {
-            hits[slot as usize] = stage::trace::<R, IfIf, Primitives>(&context, slot, &paths);
+            stage::trace::<R, IfIf, Primitives>(&context, slot, &paths).store(&context.base, slot, &mut hits);
             for light in 0..frame.lights {
                 let inputs = ShadowInputs { lights: posed.lights(), paths: &paths, hits: &hits };
                 let answer = stage::shadow::<R, IfIf, Primitives>(&context, inputs, slot, light);
@@ -66,7 +66,7 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     while !queue.is_empty() {
         let streams = scene.context(&frame, spec.with_launch(Launch::STREAM));
         for &slot in &queue {
-            hits[slot as usize] = stage::trace::<R, IfIf, Primitives>(&streams, slot, &paths);
+            stage::trace::<R, IfIf, Primitives>(&streams, slot, &paths).store(&streams.base, slot, &mut hits);
         }
         let (base, wave) = (scene.context(&frame, spec).base, queue.clone());
         queue.retain(|&slot| {

@@ -52,7 +52,7 @@ fn is_stout([a, b, c]: [DVec3; 3]) -> bool {
 fn meets<R: Scalar>(packed: &Job, ray: Ray<R>) -> bool {
     let (laid, frame) = (SceneView::new(packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
-    Primitives::intersect::<Closest, R>(&laid.stream(&frame), 0, &ray, &mut hit);
+    Primitives::intersect::<Closest, R>(&laid.stream(&frame), (0, u32::MAX), &ray, &mut hit);
     hit.primitive_index != StreamRay::NOWHERE
 }
 
@@ -70,7 +70,7 @@ fn leave<R: Scalar>(random: &mut Random, count: usize, returned: &mut Returned) 
     let (origin, direction) = (V3::<R>::splat(origin), V3::<R>::splat(direction));
     let (laid, frame) = (SceneView::new(&packed, Default::default()), packed.stream_frame(1));
     let mut hit = Hit::none(R::splat(f32::MAX));
-    Primitives::intersect::<Closest, R>(&laid.stream(&frame), 0, &Ray::new(origin, direction), &mut hit);
+    Primitives::intersect::<Closest, R>(&laid.stream(&frame), (0, u32::MAX), &Ray::new(origin, direction), &mut hit);
     if hit.primitive_index == StreamRay::NOWHERE {
         return;
     }

@@ -5,7 +5,7 @@ use eyerays::method::Traversal;
 use eyerays::stream::{Stream, StreamRay};
 use eyerays_shader::ray::Hit;
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::stage;
+use eyerays_shader::stage::{self, Found};
 use eyerays_shader::traverse::{self, CwbvhMethod, IfIf, Primitives};
 use eyerays_tests::numbers::{Counting, Flushing, picture, subnormals};
 use eyerays_tests::{Posed, SHIPPED, count, pack, settings, shipped};
@@ -27,8 +27,12 @@ fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<U
     let geometry = laid.stream(&frame);
     // Parts of a split triangle are hit alike, so the slot is no part of the answer.
     let primitive = |slot: u32| case.packed.primitives().get(slot as usize).map_or(slot, |t| t.number());
-    let hit = |slot| stage::trace::<R, M, Primitives>(&geometry, slot, stream.words());
-    (0..stream.len() as u32).map(hit).map(|hit| UVec4 { w: primitive(hit.w), ..hit }).collect()
+    let hit = |slot| {
+        let Found { t, coordinates: (u, v), index, .. } =
+            stage::trace::<R, M, Primitives>(&geometry, slot, stream.words());
+        R::store(V3::new(t, u, v), primitive(index))
+    };
+    (0..stream.len() as u32).map(hit).collect()
 }
 
 /// One test for pictures and streams, since the counts are of the whole process.

@@ -31,7 +31,7 @@ impl Truth {
             let segment = Segment::<f32>::load(&geometry, i, stream.words());
             let (ray, mut hit) = (segment.ray(), Hit::none(segment.limit));
             for slot in 0..packed.primitives().len() as u32 {
-                Primitives::intersect::<Occlusion, f32>(&geometry, slot, &ray, &mut hit);
+                Primitives::intersect::<Occlusion, f32>(&geometry, (slot, u32::MAX), &ray, &mut hit);
             }
             leaf::occluded(&hit)
         };

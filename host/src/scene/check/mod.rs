@@ -1,6 +1,7 @@
 //! Whether a scene holds together and is in range, whoever made it.
 
 mod covering;
+mod instances;
 mod settings;
 
 use glam::Vec3;
@@ -206,6 +207,7 @@ fn object(object: &Object, scene: &Scene) -> Unplaced<()> {
         Primitives::Triangles(range) => (range, scene.mesh.triangles.len()),
         Primitives::Spheres(range) => (range, scene.spheres.len()),
         Primitives::Disks(range) => (range, scene.disks.len()),
+        Primitives::Instances(range) => (range, scene.instances.len()),
     };
     let owner = Owner(format!("the object {:?}", object.name));
     object.visibility.check(&owner.0)?;
@@ -220,6 +222,7 @@ fn object(object: &Object, scene: &Scene) -> Unplaced<()> {
 fn geometry(scene: &Scene) -> Result<()> {
     let materials = scene.materials.len();
     mesh(&scene.mesh, materials)?;
+    instances::check(scene)?;
     let spheres = scene.spheres.par_iter().enumerate();
     first(spheres.find_map_first(|(number, sphere)| {
         let Sphere { center, radius, material } = *sphere;

@@ -6,7 +6,9 @@ use serde::{Deserialize, Serialize};
 use super::header::AGAIN;
 use super::textures::Pictures;
 use crate::quality;
-use crate::scene::{Background, Camera, Disk, Light, Material, Mesh, Object, Scene, Settings, Sphere, Unplaced};
+use crate::scene::{
+    Background, Camera, Disk, Light, Material, Mesh, Object, Scene, Settings, SharedMesh, Sphere, Unplaced,
+};
 use crate::scene_io::budget::Budget;
 use crate::scene_io::source;
 
@@ -22,6 +24,8 @@ pub struct Description {
     background_group: String,
     settings: Settings,
     objects: Vec<Object>,
+    #[serde(default)]
+    shared: Vec<SharedMesh>,
     materials: Vec<Material>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
@@ -38,6 +42,7 @@ impl Description {
             background_group: scene.background_group.clone(),
             settings: scene.settings,
             objects: scene.objects.clone(),
+            shared: scene.shared.clone(),
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
             cameras: scene.cameras.clone(),
@@ -84,6 +89,7 @@ impl Description {
             background_group,
             settings,
             objects,
+            shared,
             materials,
             lights,
             cameras,
@@ -93,6 +99,8 @@ impl Description {
             mesh,
             spheres,
             disks,
+            shared,
+            instances: Vec::new(),
             objects,
             animations: Vec::new(),
             files: Vec::new(),

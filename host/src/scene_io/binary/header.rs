@@ -8,18 +8,18 @@ use glam::{Vec2, Vec3, Vec4};
 use rayon::prelude::*;
 use sha2::{Digest, Sha256};
 
-use crate::scene::{Disk, Sphere, Unplaced};
+use crate::scene::{Disk, Instance, Sphere, Unplaced};
 
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.
 const BLOCK: usize = 1 << 20;
 /// Sections of a file.
-pub const SECTIONS: usize = 15;
+pub const SECTIONS: usize = 16;
 
 /// The first bytes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -50,6 +50,8 @@ pub struct Counts {
     pub triangles: u64,
     pub spheres: u64,
     pub disks: u64,
+    /// Copies of meshes.
+    pub instances: u64,
     /// Bytes of the texels of all textures.
     pub texels: u64,
     /// Of the hierarchy; all zero without one.
@@ -74,6 +76,7 @@ impl Counts {
             (self.triangles, number),
             (self.spheres, size_of::<Sphere>()),
             (self.disks, size_of::<Disk>()),
+            (self.instances, size_of::<Instance>()),
             (self.texels, 1),
             (self.pairs, size_of::<NodePair>()),
             (self.slots, number),

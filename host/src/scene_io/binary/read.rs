@@ -39,7 +39,7 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     let copies = budget.check_bytes(2 * bytes.len() as u64);
     copies.map_err(|why| format!("its {} bytes {why}; end other programs or use a smaller scene", bytes.len()))?;
     let [description, positions, normals, first, second, tangents, colours, rest @ ..] = all;
-    let [triangles, materials, spheres, disks, texels, ..] = rest;
+    let [triangles, materials, spheres, disks, instances, texels, ..] = rest;
     let mesh = Mesh {
         positions: records(positions),
         normals: records(normals),
@@ -54,7 +54,7 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     let [.., pairs, order, bounds] = all;
     let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, [pairs, order, bounds]));
     let scene = description.scene(mesh, records(spheres), records(disks), texels).map_err(again)?;
-    let scene = Scene { hierarchy: kept, ..scene };
+    let scene = Scene { hierarchy: kept, instances: records(instances), ..scene };
     if scene.cameras.is_empty() {
         return Err(again("it has no camera".into()));
     }

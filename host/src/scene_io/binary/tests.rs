@@ -191,7 +191,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b.truncate(100)).starts_with("its 100 bytes are less than a header"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
-    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 5 is what is read"));
+    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 6 is what is read"));
     assert!(refused(|b| b[160] = 1).starts_with("its byte 160, which belongs to no section, is not zero"));
     assert!(refused(|b| b[12] = 1).starts_with("its header has other than zeros in its spare bytes"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));
@@ -228,7 +228,7 @@ fn a_scene_out_of_range_is_not_written_nor_read_under_a_right_hash() {
     let refused = write(&scene, None, &mut Vec::new()).expect_err("written").message();
     assert_eq!(refused, "the camera \"front\" looks at its own eye; move its target");
     let mut bytes = binary(&text("src/scene_io/example.toml"));
-    let (_, [.., disks, _, _, _, _]) = Header::read(&bytes).unwrap();
+    let (_, [.., disks, _, _, _, _, _]) = Header::read(&bytes).unwrap();
     bytes[disks.end - 4..disks.end].copy_from_slice(&u32::MAX.to_le_bytes());
     sign(&mut bytes);
     let refused = remedied(read(&bytes));

@@ -1,18 +1,20 @@
 //! The meshes of all nodes as one, in world units.
 
-use glam::{DMat3, DMat4, DVec3, Vec2, Vec3, Vec4};
+use eyerays_shader::geometry;
+use glam::{DMat4, Vec2, Vec3, Vec4};
 
 use super::accessor::Accessors;
 use super::document::{self, Document, pick};
-use super::instance::Copies;
+use super::instance;
 use super::morph;
 use super::node::Placed;
 use super::notes::Notes;
 use super::primitive::{Mode, Plan, Primitive, Shape};
 use super::skin::{Pose, Skins};
 use crate::scene;
-use crate::scene::{MAX_PRIMITIVES, Mesh, Primitives, Unplaced, extent, normal};
+use crate::scene::{MAX_PRIMITIVES, Mesh, Primitives, Unplaced, extent};
 use crate::scene_io::budget::Budget;
+use crate::scene_io::copies::Copies;
 
 /// All that is placed so far.
 pub struct Merge<'f> {
@@ -21,11 +23,17 @@ pub struct Merge<'f> {
     skins: Skins<'f>,
     budget: Budget,
     mesh: Mesh,
+    copies: Copies,
     objects: Vec<scene::Object>,
     /// Of what was placed or looked at, so that what draws nothing is not free.
     triangles: usize,
     vertices: usize,
+    /// Copies of meshes.
+    places: usize,
 }
+
+/// What a copy of a mesh takes of memory from its file to the picture, in bytes.
+const PLACE: u64 = 512;
 
 /// A primitive that was read, for all its places.
 struct Part {
@@ -53,9 +61,11 @@ impl<'f> Merge<'f> {
             skins,
             budget,
             mesh: Mesh::default(),
+            copies: Copies::default(),
             objects: Vec::new(),
             triangles: 0,
             vertices: 0,
+            places: 0,
         }
     }
 
@@ -74,7 +84,14 @@ impl<'f> Merge<'f> {
         };
         let mut copies = 0usize;
         for placed in nodes {
-            copies = copies.saturating_add(Copies::of(placed, &self.accessors)?.count);
+            copies = copies.saturating_add(instance::Copies::of(placed, &self.accessors)?.count);
+        }
+        // What joints move has another shape in each place.
+        let is_shared = copies > 1 && !shape.is_skinned;
+        if is_shared {
+            self.places = self.places.saturating_add(copies);
+            let fits = self.budget.check_bytes((self.places as u64).saturating_mul(PLACE));
+            fits.map_err(|why| format!("{owner}: {} copies of a mesh {why}; use fewer", self.places))?;
         }
         let mut primitives = Vec::new();
         for (part, of) in mesh.primitives.iter().enumerate() {
@@ -84,14 +101,50 @@ impl<'f> Merge<'f> {
             let material = self.material(of, &here)?;
             let plan = Plan::new(of, positions, mode, &self.accessors, &here)?;
             // It is read even if it has no place.
-            self.count(&plan, copies.max(1)).map_err(|fault| format!("{here}: {fault}"))?;
+            self.count(&plan, if is_shared { 1 } else { copies.max(1) }).map_err(|fault| format!("{here}: {fault}"))?;
             let primitive = plan.read(of, &shape, &self.accessors, &here)?;
             primitives.push(Part { primitive, material, here });
         }
         if primitives.is_empty() {
             return Ok(());
         }
+        if is_shared {
+            return self.share(&primitives, nodes, mesh.name.as_deref());
+        }
         nodes.iter().try_for_each(|placed| self.place_all(&primitives, placed, mesh.name.as_deref()))
+    }
+
+    /// Puts a mesh where several nodes have it, or one in several places: once, and where it stands.
+    fn share(&mut self, primitives: &[Part], nodes: &[&Placed], of_mesh: Option<&str>) -> Unplaced<()> {
+        let own = std::mem::take(&mut self.mesh);
+        let here = Place { world: DMat4::IDENTITY, pose: None, node: nodes[0].number };
+        for part in primitives {
+            self.place(part, &here).map_err(|fault| format!("{}: {fault}", part.here))?;
+        }
+        let mesh = std::mem::replace(&mut self.mesh, own);
+        if mesh.triangles.is_empty() {
+            return Ok(());
+        }
+        let [least, greatest] = mesh.bounds().map(Vec3::abs);
+        let (number, reach) = (self.copies.meshes.len(), least.max(greatest));
+        self.copies.meshes.push(mesh);
+        for placed in nodes {
+            let copies = instance::Copies::of(placed, &self.accessors)?;
+            let first = self.copies.places.len();
+            for world in copies.worlds() {
+                let farthest = Transform::new(world).reach(reach);
+                if !farthest.is_finite() {
+                    return Err(format!("nodes[{}] takes it out of single precision; make it smaller", placed.number));
+                }
+                self.copies.places.push((number, world));
+            }
+            let primitives = Primitives::Instances(first..self.copies.places.len());
+            if primitives.count() > 0 {
+                let (bounds, visibility) = (Default::default(), scene::Visibility::default());
+                self.objects.push(scene::Object { name: name(placed, of_mesh), primitives, bounds, visibility });
+            }
+        }
+        Ok(())
     }
 
     /// The number that a primitive's material has in the scene, whose first is for what names none.
@@ -105,7 +158,7 @@ impl<'f> Merge<'f> {
     fn place_all(&mut self, primitives: &[Part], placed: &Placed, of_mesh: Option<&str>) -> Unplaced<()> {
         let (triangle, vertex) = (self.mesh.triangles.len(), self.mesh.positions.len());
         let pose = self.skins.pose(placed, &self.accessors, &self.budget)?;
-        let copies = Copies::of(placed, &self.accessors)?;
+        let copies = instance::Copies::of(placed, &self.accessors)?;
         for world in copies.worlds() {
             let at = Place { world, pose: pose.as_deref(), node: placed.number };
             for part in primitives {
@@ -175,15 +228,15 @@ impl<'f> Merge<'f> {
         let first = u32::try_from(before).map_err(|_| "there are too many vertices; use fewer")?;
         self.mesh.triangles.extend(of.triangles.iter().map(|triangle| {
             let [a, b, c] = triangle.map(|vertex| first + vertex);
-            if transform(triangle[0] as usize).is_mirror { [a, c, b] } else { [a, b, c] }
+            if transform(triangle[0] as usize).is_mirror() { [a, c, b] } else { [a, b, c] }
         }));
         self.mesh.materials.resize(self.mesh.triangles.len(), *material);
         Ok(())
     }
 
     /// All of it, and what each node has of it.
-    pub fn finish(self) -> (Mesh, Vec<scene::Object>) {
-        (self.mesh, self.objects)
+    pub fn finish(self) -> (Mesh, Copies, Vec<scene::Object>) {
+        (self.mesh, self.copies, self.objects)
     }
 }
 
@@ -219,38 +272,42 @@ fn put<T: Copy>(all: &mut Vec<T>, more: impl ExactSizeIterator<Item = T>, (befor
 
 /// Where a node puts what it has.
 #[derive(Clone, Copy)]
-struct Transform {
-    world: DMat4,
-    /// What normals are multiplied with: the inverse transpose, times a positive number.
-    normals: DMat3,
-    is_mirror: bool,
-}
+struct Transform(geometry::Transform);
 
 impl Transform {
     fn new(world: DMat4) -> Self {
-        let [a, b, c] = [world.x_axis, world.y_axis, world.z_axis].map(|axis| axis.truncate());
-        let cofactors = DMat3::from_cols(b.cross(c), c.cross(a), a.cross(b));
-        let is_mirror = a.dot(b.cross(c)) < 0.0;
-        // Of a matrix without an inverse, too, these are the normals.
-        Transform { world, normals: if is_mirror { -cofactors } else { cofactors }, is_mirror }
+        let rows = world.transpose();
+        let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().as_vec3());
+        Transform(geometry::Transform::new(rows, world.w_axis.truncate().as_vec3()))
+    }
+
+    fn is_mirror(&self) -> bool {
+        self.0.side < 0.0
     }
 
     fn position(&self, position: Vec3) -> Vec3 {
-        self.world.transform_point3(position.as_dvec3()).as_vec3()
+        self.0.place(position)
+    }
+
+    /// How far what reaches so far from the origin of its own units may be from the world's.
+    fn reach(&self, reach: Vec3) -> Vec3 {
+        let geometry::Transform { x, y, z, translation, .. } = self.0;
+        self.0.place(Vec3::ZERO).abs()
+            + Vec3::new(x.abs().dot(reach), y.abs().dot(reach), z.abs().dot(reach))
+            + translation.abs()
     }
 
     fn normal(&self, of: Vec3) -> Vec3 {
-        normal::unit(self.normals * of.as_dvec3())
+        self.0.normal(of)
     }
 
     /// The bitangent's sign turns where the node mirrors. Without a direction all is zero, which is none.
     fn tangent(&self, tangent: Vec4) -> Vec4 {
-        let direction: DVec3 = self.world.transform_vector3(tangent.truncate().as_dvec3());
-        let unit = normal::unit(direction);
+        let unit = self.0.direction(tangent.truncate());
         if unit == Vec3::ZERO {
             return Vec4::ZERO;
         }
-        let is_turned = (tangent.w < 0.0) != self.is_mirror;
+        let is_turned = (tangent.w < 0.0) != self.is_mirror();
         unit.extend(if is_turned { -1.0 } else { 1.0 })
     }
 }

@@ -42,6 +42,7 @@ use self::notes::Notes;
 use self::picture::Pictures;
 use self::skin::Skins;
 use super::budget::Budget;
+use super::copies::Copies;
 use super::material::{DEFAULT, Fields};
 use super::neighbours::Neighbours;
 use super::obj::Obj;
@@ -101,7 +102,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     let buffers = Buffers::read(&document, chunk, neighbours)?;
     let pose = Pose::of(&document, &Accessors::new(&document, &buffers), &loading.moment, &mut notes)?;
     let nodes = node::walk(&document, &pose)?;
-    let (mesh, objects) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let (mesh, copies, objects) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
@@ -122,9 +123,9 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
              --light-unit gltf takes them as they are",
         );
     }
-    let (materials, pictures) = materials(&document, &buffers, &mesh, neighbours, &mut notes)?;
+    let (materials, pictures) = materials(&document, &buffers, (&mesh, &copies), neighbours, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
-    let obj = Obj { mesh, materials, warnings: notes.finish(), libraries, objects };
+    let obj = Obj { mesh, copies, materials, warnings: notes.finish(), libraries, objects };
     let animations = animation::list(&document, &Accessors::new(&document, &buffers));
     Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all, animations })
 }
@@ -195,7 +196,7 @@ fn merged(
     nodes: &[Placed],
     budget: Budget,
     notes: &mut Notes,
-) -> Unplaced<(Mesh, Vec<Object>)> {
+) -> Unplaced<(Mesh, Copies, Vec<Object>)> {
     // A mesh has another shape at each node that has weights of its own.
     let mut by_mesh: BTreeMap<(usize, Option<usize>), Vec<&Placed>> = BTreeMap::new();
     for placed in nodes {
@@ -209,11 +210,11 @@ fn merged(
     for ((mesh, _), nodes) in by_mesh {
         merge.add(mesh, &nodes, notes)?;
     }
-    let (mesh, objects) = merge.finish();
-    if mesh.triangles.is_empty() {
+    let (mesh, copies, objects) = merge.finish();
+    if mesh.triangles.is_empty() && copies.places.is_empty() {
         return Err(nothing(document));
     }
-    Ok((mesh, objects))
+    Ok((mesh, copies, objects))
 }
 
 /// Why nothing is drawn, and what to do.
@@ -240,13 +241,13 @@ type Materials = (Vec<(String, Fields)>, Vec<PathBuf>);
 fn materials(
     document: &Document,
     buffers: &Buffers,
-    mesh: &Mesh,
+    (mesh, copies): (&Mesh, &Copies),
     neighbours: &Neighbours,
     notes: &mut Notes,
 ) -> Unplaced<Materials> {
     let mut pictures = Pictures::new(document, buffers, neighbours);
     let mut is_used = vec![false; document.materials.len() + 1];
-    for &material in &mesh.materials {
+    for &material in copies.meshes.iter().chain([mesh]).flat_map(|mesh| &mesh.materials) {
         if let Some(is_used) = is_used.get_mut(material as usize) {
             *is_used = true;
         }

@@ -23,6 +23,7 @@ use self::library::Libraries;
 use self::vertices::{Attributes, Corners};
 use super::Warning;
 use super::budget::Budget;
+use super::copies::Copies;
 use super::file;
 use super::lines::MOST_LINE;
 #[cfg(test)]
@@ -37,6 +38,8 @@ use crate::scene::{Mesh, Object};
 #[derive(Debug, Default)]
 pub struct Obj {
     pub mesh: Mesh,
+    /// Meshes of it that stand in several places.
+    pub copies: Copies,
     pub materials: Vec<(String, Fields)>,
     pub warnings: Vec<Warning>,
     /// The material files that were read.
@@ -224,6 +227,7 @@ impl<'p> Found<'p> {
         let [missing, nameless] = of_libraries.faults;
         let warnings = [latin, missing, nameless].into_iter().chain(others).flatten();
         Ok(Obj {
+            copies: Copies::default(),
             mesh: corners.mesh(attributes, materials),
             materials: libraries.materials,
             warnings: of_libraries.warnings.into_iter().chain(warnings).collect(),

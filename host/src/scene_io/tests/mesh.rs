@@ -23,6 +23,8 @@ fn of_mesh(mesh: Mesh) -> Scene {
         mesh,
         spheres: Vec::new(),
         disks: Vec::new(),
+        shared: Vec::new(),
+        instances: Vec::new(),
         objects: Vec::new(),
         animations: Vec::new(),
         files: Vec::new(),

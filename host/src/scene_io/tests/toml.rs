@@ -282,7 +282,8 @@ fn materials_of_one_name_in_two_files_stay_apart_and_a_file_twice_is_one() {
         ("b.mtl", b"newmtl m\nKd 0 1 0\n"),
     ]);
     let (scene, _) = folder.load("scene.toml").unwrap();
-    assert_eq!(scene.mesh.materials, [0, 1, 0]);
+    // What is repeated comes last.
+    assert_eq!(scene.mesh.materials, [1, 0, 0]);
     assert_eq!(scene.materials[1].diffuse, Vec3::Y);
     assert_eq!(scene.mesh.triangles[2], [6, 7, 8]);
 }
@@ -329,10 +330,11 @@ fn a_hundred_thousand_of_everything_take_seconds() {
 #[test]
 fn spheres_and_files_placed_again_are_counted_before_they_are_made() {
     let sphere = "[[mesh]]\nshape = \"sphere\"\nsubdivisions = 8\n";
-    let file = "[[mesh]]\nfile = \"a.obj\"\n";
+    // The same again takes no triangles.
+    let files: String = (0..9).map(|file| format!("[[mesh]]\nfile = \"./{}a.obj\"\n", "./".repeat(file))).collect();
     let folder = Folder::new(&[
         ("spheres.toml", sphere.repeat(500).as_bytes()),
-        ("files.toml", file.repeat(9).as_bytes()),
+        ("files.toml", files.as_bytes()),
         ("a.obj", TRIANGLE),
     ]);
     let refuse = |name: &str, bytes| {

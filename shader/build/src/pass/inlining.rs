@@ -64,8 +64,8 @@ mod tests {
 
     #[test]
     fn requires_whole_segments() {
-        let protected = ["a::real::soft::div".into(), "a::straddles_origin::<f32>".into()];
-        assert!(require(&protected, &["soft::div", "straddles_origin"]).is_ok());
+        let protected = ["a::real::soft::div".into(), "a::edge_on::<f32>".into()];
+        assert!(require(&protected, &["soft::div", "edge_on"]).is_ok());
         assert!(require(&protected, &["oft::div"]).is_err());
         assert!(require(&protected, &["soft"]).is_err());
     }

@@ -40,7 +40,7 @@ pub fn intersect<Q: Query, R: Real>(
         geometry::coordinates(V3::splat(disk.normal()), crossing.place)
     };
     let met = Meeting { inside, t: crossing.t, u, v, scale: R::splat(disk.radius()).reciprocal() };
-    accept::<Q, R>(met, context.bounds(index, || disk.disk_bounds()), Identity { index, number }, ray, hit);
+    accept::<Q, R>(met, Identity::alone(index, disk), hit);
 }
 
 #[inline(always)]

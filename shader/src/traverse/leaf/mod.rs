@@ -17,19 +17,18 @@ pub use primitives::{Primitives, coordinates};
 use super::Query;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8Ref;
-use crate::geometry::slab;
+use crate::data::Primitive;
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::{Lanes, Scalar};
-use crate::real::{Mask, Real, V3};
+use crate::real::{Mask, Real};
 use crate::scene::TraceContext;
-use glam::Vec3;
 
-/// What leaves hold, and how rays meet it. A leaf's box must contain the own box of all that it holds, and a hit must lie in
-/// the own box of what was hit, see `accept`.
+/// What leaves hold, and how rays meet it. A leaf's box must contain the own box of all that it holds, in which a hit must lie, see
+/// `accept`.
 pub trait Leaf {
-    /// Tests what is at an index in leaf order, and takes the hit if it is the best so far.
-    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>);
+    /// Tests what is at an index in leaf order in a copy of a mesh, or in none, and takes the hit if it is the best so far.
+    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, place: (u32, u32), ray: &Ray<R>, hit: &mut Hit<R>);
 
     /// Tests a leaf of the hierarchy that a CPU loads, with as many of its contents at once as there are lanes.
     #[cfg(not(target_arch = "spirv"))]
@@ -50,7 +49,7 @@ pub fn occluded<R: Real>(hit: &Hit<R>) -> R::Mask {
     hit.t.lt(R::splat(0.0))
 }
 
-/// Where a ray meets a primitive, before its own box is asked.
+/// Where a ray meets a primitive.
 struct Meeting<R: Real> {
     /// In which lanes?
     inside: R::Mask,
@@ -62,29 +61,37 @@ struct Meeting<R: Real> {
     scale: R,
 }
 
-/// A primitive by its index in leaf order and its number in the scene.
+/// A primitive by its index in leaf order, its number in the scene, and the copy of a mesh that it is in.
 #[derive(Clone, Copy)]
 struct Identity {
     index: u32,
     number: u32,
+    instance: u32,
 }
 
-/// Moves the hit behind the entry to the primitive's own box, and takes the lesser (t, primitive).
+impl Identity {
+    /// One that is in no copy.
+    #[inline(always)]
+    fn alone(index: u32, primitive: &Primitive) -> Self {
+        Self::within(index, Hit::<f32>::NOTHING, primitive)
+    }
+
+    /// One that is in a copy, if it is in one.
+    #[inline(always)]
+    fn within(index: u32, instance: u32, primitive: &Primitive) -> Self {
+        Identity { index, number: primitive.number(), instance }
+    }
+}
+
+/// Takes the lesser (t, primitive).
 ///
-/// That box lies in every box that leads here, so no hit that is accepted can have been culled. A part of a split
-/// triangle may find a hit in another part, which has the same t there.
+/// A hit lies in the padded box of what was hit, so in every box that leads here: no order of visits can have culled it. A part of a
+/// split triangle may find a hit in another part, which has the same t there.
 #[inline(always)]
-fn accept<Q: Query, R: Real>(
-    met: Meeting<R>,
-    own: (Vec3, Vec3),
-    Identity { index, number }: Identity,
-    ray: &Ray<R>,
-    hit: &mut Hit<R>,
-) {
-    let own = slab(V3::splat(own.0), V3::splat(own.1), ray);
-    let inside = met.inside & own.near.le(own.far);
-    // A bound of zero may have either sign; of zeros `max` takes the second.
-    let t = met.t.max(own.near.max(R::splat(0.0)));
+fn accept<Q: Query, R: Real>(met: Meeting<R>, of: Identity, hit: &mut Hit<R>) {
+    let Identity { index, number, instance } = of;
+    // Of what a ray starts in, rounding may put the end behind it.
+    let (inside, t) = (met.inside, met.t.max(R::splat(0.0)));
     if Q::ANY {
         hit.t = R::select(inside & t.lt(hit.t), R::splat(FOUND), hit.t);
         return;
@@ -100,5 +107,6 @@ fn accept<Q: Query, R: Real>(
         }
         hit.primitive_index = R::select_index(better, R::index(index), hit.primitive_index);
         hit.primitive = R::select_index(better, R::index(number), hit.primitive);
+        hit.instance = R::select_index(better, R::index(instance), hit.instance);
     }
 }

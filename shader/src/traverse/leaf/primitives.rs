@@ -1,6 +1,6 @@
-//! Triangles alone, or with spheres and disks in any mixture.
+//! Triangles alone, or with spheres, disks and copies of meshes in any mixture.
 
-use super::{Leaf, disk, hidden, sphere, triangle};
+use super::{Identity, Leaf, disk, hidden, sphere, triangle};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{Bvh8Ref, LeafKind};
 use crate::data::{Effects, Primitive};
@@ -10,6 +10,8 @@ use crate::real::Lanes;
 use crate::real::{Real, Scalar};
 use crate::scene::TraceContext;
 use crate::traverse::Query;
+#[cfg(not(target_arch = "spirv"))]
+use crate::traverse::nested;
 
 /// Of any kind.
 pub struct Primitives;
@@ -21,9 +23,14 @@ pub struct Triangles;
 
 impl Leaf for Primitives {
     #[inline(always)]
-    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn intersect<Q: Query, R: Real>(
+        context: &TraceContext<'_>,
+        (index, instance): (u32, u32),
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+    ) {
         Q::on_primitive();
-        let primitive = context.primitive(index);
+        let primitive = context.base.placed(index, instance);
         let effects = context.base.spec.effects;
         if hidden::is_unmet::<Q, R>(effects, &primitive, ray) {
             return;
@@ -33,7 +40,8 @@ impl Leaf for Primitives {
         } else if effects.has(Effects::DISK) && primitive.is_disk() {
             disk::intersect::<Q, R>(context, &primitive, index, ray, hit);
         } else {
-            triangle::intersect::<Q, R>(context, &primitive, index, ray, hit);
+            let identity = Identity::within(index, instance, &primitive);
+            triangle::intersect::<Q, R>(context, &primitive, identity, ray, hit);
         }
     }
 
@@ -53,7 +61,7 @@ impl Leaf for Primitives {
             LeafKind::Spheres => sphere::intersect_four::<Q, R, F>(context, &blocks.spheres[leaf.index()], ray, hit),
             LeafKind::Mixed => {
                 for &index in blocks.mixed[leaf.index()].indices() {
-                    Self::intersect::<Q, R>(context, index, ray, hit);
+                    nested::intersect::<Q, Self, R>(context, index, ray, hit);
                 }
             }
         }
@@ -63,9 +71,15 @@ impl Leaf for Primitives {
 #[cfg(not(target_arch = "spirv"))]
 impl Leaf for Triangles {
     #[inline(always)]
-    fn intersect<Q: Query, R: Real>(context: &TraceContext<'_>, index: u32, ray: &Ray<R>, hit: &mut Hit<R>) {
+    fn intersect<Q: Query, R: Real>(
+        context: &TraceContext<'_>,
+        (index, _): (u32, u32),
+        ray: &Ray<R>,
+        hit: &mut Hit<R>,
+    ) {
         Q::on_primitive();
-        triangle::intersect::<Q, R>(context, &context.primitive(index), index, ray, hit);
+        let triangle = context.primitive(index);
+        triangle::intersect::<Q, R>(context, &triangle, Identity::alone(index, &triangle), ray, hit);
     }
 
     #[inline(always)]
@@ -98,7 +112,7 @@ pub fn coordinates<R: Scalar>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &Hi
     if hit.primitive_index == Hit::<R>::NOTHING {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let primitive = context.primitive(hit.primitive_index);
+    let primitive = context.base.placed(hit.primitive_index, hit.instance);
     let effects = context.base.spec.effects;
     if effects.has(Effects::SPHERE) && primitive.is_sphere() {
         sphere::coordinates(&primitive, ray)

@@ -104,7 +104,7 @@ fn accept_chord<Q: Query, R: Real>(
         if Q::ANY || cfg!(target_arch = "spirv") { (zero, zero, one) } else { octahedral(place(chord, end.far, ray)) };
     let scale = size_or_one(inside, size).reciprocal();
     let met = Meeting { inside, t: end.t, u, v, scale };
-    accept::<Q, R>(met, context.bounds(index, || sphere.sphere_bounds()), Identity { index, number }, ray, hit);
+    accept::<Q, R>(met, Identity::alone(index, sphere), hit);
 }
 
 /// Tests up to four spheres, as many at once as there are lanes.

@@ -18,16 +18,15 @@ fn hit<Q: Query, R: Scalar>(primitives: &[Primitive], effects: u32, ray: &Ray<R>
     let effects = Effects(effects | Effects::SPHERE | Effects::DISK);
     let spec = Specialisation { effects, ..Specialisation::default() };
     let context = TraceContext {
-        base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(primitives) },
+        base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(primitives), instances: &[] },
         nodes: &[],
         wide: &[],
         bvh8: Bvh8View::default(),
-        bounds: &[],
         cutout: Default::default(),
     };
     let mut hit = Hit::none(R::splat(f32::MAX));
     for index in 0..primitives.len() as u32 {
-        Primitives::intersect::<Q, R>(&context, index, ray, &mut hit);
+        Primitives::intersect::<Q, R>(&context, (index, u32::MAX), ray, &mut hit);
     }
     hit
 }

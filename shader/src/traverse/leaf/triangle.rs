@@ -5,7 +5,7 @@ use super::{Identity, Meeting, accept, hidden};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Triangle4};
 use crate::data::{Effects, Launch, Primitive};
-use crate::geometry::{Candidate, intersect_moller_trumbore, intersect_watertight, straddles_origin};
+use crate::geometry::{Candidate, intersect_moller_trumbore, intersect_watertight};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
 use crate::real::Lanes;
@@ -18,13 +18,13 @@ use crate::traverse::Query;
 pub fn intersect<Q: Query, R: Real>(
     context: &TraceContext<'_>,
     triangle: &Primitive,
-    index: u32,
+    identity: Identity,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
     let candidate = single(context, triangle, ray);
     if candidate.nearer(hit.t).any() && counts::<Q>(context.base.spec.effects, triangle) {
-        accept_candidate::<Q, R>(context, triangle, index, &candidate, ray, hit);
+        accept_candidate::<Q, R>(context, triangle, identity, &candidate, ray, hit);
     }
 }
 
@@ -70,7 +70,8 @@ pub fn intersect_four<Q: Query, R: Scalar, F: Lanes<R>>(
             let index = triangles.primitive_indices[(first + lane) & 3];
             let triangle = context.primitive(index);
             if counts::<Q>(context.base.spec.effects, &triangle) {
-                accept_candidate::<Q, R>(context, &triangle, index, &candidate.lane(lane), ray, hit);
+                let identity = Identity::alone(index, &triangle);
+                accept_candidate::<Q, R>(context, &triangle, identity, &candidate.lane(lane), ray, hit);
             }
         }
         first += F::COUNT as usize;
@@ -111,33 +112,32 @@ fn vertex<R: Scalar, F: Lanes<R>>(
 #[cfg(not(target_arch = "spirv"))]
 const AXES: [[usize; 3]; 3] = [[1, 2, 0], [2, 0, 1], [0, 1, 2]];
 
-/// Rejects misses of triangles seen edge-on, divides, and hands on the rest.
+/// Divides, finds where triangles that are seen edge-on are met, and hands on what is.
 #[inline(always)]
 fn accept_candidate<Q: Query, R: Real>(
     context: &TraceContext<'_>,
     triangle: &Primitive,
-    index: u32,
+    identity: Identity,
     candidate: &Candidate<R>,
     ray: &Ray<R>,
     hit: &mut Hit<R>,
 ) {
-    let (number, effects) = (triangle.number(), context.base.spec.effects);
+    let (number, effects) = (identity.number, context.base.spec.effects);
     let mut inside = candidate.inside & !R::equals(number, ray.source_primitive);
     if effects.has(Effects::CULLING) && !Q::ANY && triangle.is_culled() {
         inside = inside & candidate.front;
     }
     inside = hidden::met::<Q, R>(effects, triangle, ray, inside);
-    // This is rare, so transforming the vertices again costs less than keeping them since the intersection.
-    if (inside & candidate.in_line()).any() {
+    let scale = candidate.scale(inside);
+    let vertices = || {
         let [a, b, c] = triangle.vertices();
-        inside = inside & straddles_origin(ray.seen(a), ray.seen(b), ray.seen(c), ray.slopes());
-    }
-    // Lanes outside divide by one, so that none divides by zero.
-    let scale = R::select(inside, candidate.area, R::splat(1.0)).reciprocal();
+        [ray.seen(a), ray.seen(b), ray.seen(c)]
+    };
+    let (mut inside, t) = candidate.distance(inside, scale, vertices, (ray.slopes(), ray.along()));
     if effects.has(Effects::CUTOUT) && triangle.is_cutout() && inside.any() {
         let weights = (candidate.u * scale, candidate.v * scale);
-        inside = context.cutout.kept(&context.base, (triangle, index), weights, ray, inside);
+        inside = context.cutout.kept(&context.base, (triangle, identity.index), weights, ray, inside);
     }
-    let met = Meeting { inside, t: candidate.depth * scale, u: candidate.u, v: candidate.v, scale };
-    accept::<Q, R>(met, context.bounds(index, || triangle.triangle_bounds()), Identity { index, number }, ray, hit);
+    let met = Meeting { inside, t, u: candidate.u, v: candidate.v, scale };
+    accept::<Q, R>(met, identity, hit);
 }

@@ -4,7 +4,7 @@ mod world;
 
 use core::cell::{Cell, RefCell};
 
-use glam::{UVec4, Vec3};
+use glam::Vec3;
 use proptest::prelude::*;
 
 use self::world::{World, grid, ray, soup};
@@ -18,7 +18,7 @@ use super::{
 use crate::data::{Effects, Primitive};
 use crate::ray::{Hit, Ray};
 use crate::real::{F32xN, Fast, Lanes, Scalar, V3};
-use crate::stage::{SHADOWED, Segment, persistent, shadow_together, trace_together};
+use crate::stage::{Found, SHADOWED, Segment, persistent, shadow_together, trace_together};
 use crate::warp::Alone;
 
 /// So many cases, or as many as an interpreter that watches every access has time for.
@@ -112,7 +112,7 @@ fn check_together<P: Lanes<f32> + RayLanes>(world: &World, rays: &[End], count: 
             source_primitive: Hit::<f32>::NOTHING,
         })
         .collect();
-    let (mut hits, mut answers) = (vec![UVec4::ZERO; count], vec![u32::MAX; count]);
+    let (mut hits, mut answers) = (vec![Found::nothing(); count], vec![u32::MAX; count]);
     let context = world.context();
     trace_together::<f32, P, Packet<Alone>, Primitives>(&context, &segments, |i, hit| hits[i] = hit);
     shadow_together::<f32, P, Packet<Alone>, Primitives>(&context, &segments, |i, answer| answers[i] = answer);
@@ -121,9 +121,8 @@ fn check_together<P: Lanes<f32> + RayLanes>(world: &World, rays: &[End], count: 
         let want = world.trace::<Packet<Alone>, Closest, f32>(&alone, 0.5);
         let primitive = |slot: u32| world.triangles.get(slot as usize).map(Primitive::number);
         let weights = want.coordinates();
-        let got = crate::data::numbers(hits[i]);
-        assert_eq!((got.x, got.y, got.z), (want.t, weights.0, weights.1), "ray {i} of {count}");
-        assert_eq!(primitive(hits[i].w), primitive(want.primitive_index), "ray {i} of {count}");
+        assert_eq!((hits[i].t, hits[i].coordinates), (want.t, weights), "ray {i} of {count}");
+        assert_eq!(primitive(hits[i].index), primitive(want.primitive_index), "ray {i} of {count}");
         let want = occluded(&world.trace::<Packet<Alone>, Occlusion, f32>(&alone, 0.5));
         assert_eq!(answers[i] == SHADOWED, want, "ray {i} of {count}");
     }

@@ -124,11 +124,10 @@ impl World {
     pub fn context(&self) -> TraceContext<'_> {
         let spec = Specialisation { effects: self.effects, tuning: Tuning::new(2, 60), ..Specialisation::default() };
         TraceContext {
-            base: LaunchContext { frame: &self.frame, spec, primitives: &self.words },
+            base: LaunchContext { frame: &self.frame, spec, primitives: &self.words, instances: &[] },
             nodes: bytemuck::cast_slice(&self.nodes),
             wide: &self.wide,
             bvh8: Bvh8View { nodes: &self.bvh8.0, triangles: &self.bvh8.1, ..Bvh8View::default() },
-            bounds: &[],
             cutout: Default::default(),
         }
     }
@@ -142,7 +141,7 @@ impl World {
     pub fn brute_force<Q: Query, R: Scalar>(&self, ray: &Ray<R>, limit: f32) -> Hit<R> {
         let mut hit = Hit::none(R::splat(limit));
         for slot in (0..self.triangles.len() as u32).rev() {
-            Primitives::intersect::<Q, R>(&self.context(), slot, ray, &mut hit);
+            Primitives::intersect::<Q, R>(&self.context(), (slot, u32::MAX), ray, &mut hit);
         }
         hit
     }

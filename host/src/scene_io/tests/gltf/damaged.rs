@@ -3,7 +3,9 @@
 use glam::Vec3;
 
 use super::model::{Model, parse};
+use crate::scene::Mesh;
 use crate::scene_io::gltf::Gltf;
+use crate::scene_io::obj::Obj;
 
 /// Numbers of Marsaglia's xorshift, so that each run changes the same files.
 struct Dice(u64);
@@ -81,7 +83,7 @@ fn other_number(bytes: &mut Vec<u8>, dice: &mut Dice) {
 fn ten_thousand_damaged_files_are_refused_or_whole() {
     let model = Model::everything();
     let seeds = [model.gltf(), model.glb()];
-    seeds.iter().for_each(|seed| assert_eq!(parse(seed).unwrap().obj.mesh.triangles.len(), 6));
+    seeds.iter().for_each(|seed| assert_eq!(parse(seed).unwrap().obj.copies.meshes[0].triangles.len(), 3));
     let mut dice = Dice(0x2545_f491_4f6c_dd1d);
     let mut read = 0;
     for number in 0..10_000 {
@@ -99,9 +101,19 @@ fn ten_thousand_damaged_files_are_refused_or_whole() {
 }
 
 fn assert_whole(scene: &Gltf) {
-    let mesh = &scene.obj.mesh;
+    let Obj { mesh, copies, .. } = &scene.obj;
+    assert!(!mesh.triangles.is_empty() || !copies.places.is_empty());
+    assert!(copies.places.iter().all(|(mesh, _)| *mesh < copies.meshes.len()) && copies.fault().is_none());
+    copies.meshes.iter().chain([mesh]).for_each(|mesh| assert_mesh(scene, mesh));
+    for (name, fields) in &scene.obj.materials {
+        let maps = fields.maps.all().count();
+        assert!(maps <= 2 && fields.clone().finish(name).opacity <= 1.0);
+    }
+}
+
+fn assert_mesh(scene: &Gltf, mesh: &Mesh) {
     let vertices = mesh.positions.len();
-    assert!(!mesh.triangles.is_empty() && mesh.triangles.len() == mesh.materials.len());
+    assert_eq!(mesh.triangles.len(), mesh.materials.len());
     let [first, second] = &mesh.coordinates;
     let lengths = [mesh.normals.len(), mesh.tangents.len(), mesh.colours.len(), first.len(), second.len()];
     assert!(lengths.iter().all(|&length| length == 0 || length == vertices), "{lengths:?} of {vertices}");
@@ -110,8 +122,4 @@ fn assert_whole(scene: &Gltf) {
     assert!(mesh.positions.iter().all(|position| position.is_finite()));
     let unit = |n: &Vec3| *n == Vec3::ZERO || (n.length() - 1.0).abs() < 1e-5;
     assert!(mesh.normals.iter().all(unit));
-    for (name, fields) in &scene.obj.materials {
-        let maps = fields.maps.all().count();
-        assert!(maps <= 2 && fields.clone().finish(name).opacity <= 1.0);
-    }
 }

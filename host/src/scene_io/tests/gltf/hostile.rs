@@ -6,8 +6,9 @@ use glam::Vec3;
 use serde_json::{Value, json};
 
 use super::model::{F32, Model, U16, data, floats, parse, picture, shorts};
+use crate::scene_io::load::load_within;
 use crate::scene_io::tests::{Folder, budget};
-use crate::scene_io::{Loading, gltf};
+use crate::scene_io::{Instancing, Loading, gltf};
 
 /// Asserts why a file is refused.
 fn assert_refused(bytes: &[u8], why: &str) {
@@ -133,7 +134,12 @@ fn too_many_triangles_are_refused_before_they_are_made() {
     let nodes = 20_000;
     model.json["nodes"] = (0..nodes).map(|_| json!({ "mesh": 0 })).collect();
     model.json["scenes"][0]["nodes"] = (0..nodes).collect();
-    assert_refused(&model.glb(), "meshes[0].primitives[0]: 200000000 triangles with");
+    // Which are held once; but not if each is to have triangles of its own.
+    assert_eq!(parse(&model.glb()).unwrap().obj.copies.places.len(), nodes);
+    let folder = Folder::new(&[("a.glb", &model.glb())]);
+    let apart = Loading { instancing: Instancing::Never, ..Loading::default() };
+    let error = load_within(&folder.path("a.glb"), budget(1 << 34), apart).unwrap_err().to_string();
+    assert!(error.contains("a.glb: 200000000 triangles with") && error.contains("use fewer"), "{error}");
     let mut text = br#"{"nodes":["#.to_vec();
     text.extend(b"{},".repeat(1_000_001));
     text.extend(b"{}]}");

@@ -313,8 +313,12 @@ fn every_node_with_a_mesh_is_a_part_of_its_name() {
     let Gltf { obj, .. } = model.load();
     let parts = &obj.objects;
     let told: Vec<_> = parts.iter().map(|part| (part.name.as_str(), part.primitives.clone())).collect();
-    assert_eq!(told, [("left", Primitives::Triangles(0..2)), ("tile", Primitives::Triangles(2..4))]);
-    assert_eq!(parts[1].bounds, [2.0 * Vec3::X, 3.0 * Vec3::X + Vec3::Y]);
+    assert_eq!(told, [("left", Primitives::Instances(0..1)), ("tile", Primitives::Instances(1..2))]);
+    let folder = Folder::new(&[("a.glb", &model.glb())]);
+    let scene = folder.load("a.glb").unwrap().0;
+    let told: Vec<_> = scene.objects.iter().map(|part| part.primitives.clone()).collect();
+    assert_eq!(told, [0..2, 2..4].map(Primitives::Triangles), "few are flattened");
+    assert_eq!(scene.objects[1].bounds, [2.0 * Vec3::X, 3.0 * Vec3::X + Vec3::Y]);
     let corner = |triangle: usize| obj.mesh.positions[obj.mesh.triangles[triangle][0] as usize].x;
     assert_eq!([0, 1, 2, 3].map(corner), [0.0, 0.0, 2.0, 2.0]);
 }

@@ -128,9 +128,19 @@ impl Model {
         [&b"glTF"[..], &word(2), &length, &of_json, b"JSON", &json, &of_bytes, b"BIN\0", &bytes].concat()
     }
 
+    /// What it holds, with what stands in several places in each of them.
     pub fn load(&self) -> Gltf {
-        let scene = parse(&self.gltf()).unwrap();
-        assert_eq!(parse(&self.glb()).unwrap().obj.mesh, scene.obj.mesh, "the binary file differs");
+        let mut scene = parse(&self.gltf()).unwrap();
+        let binary = parse(&self.glb()).unwrap();
+        assert_eq!(
+            (binary.obj.mesh, &binary.obj.copies),
+            (scene.obj.mesh.clone(), &scene.obj.copies),
+            "the binary file differs"
+        );
+        let (meshes, instances) = std::mem::take(&mut scene.obj.copies).finish();
+        for instance in instances {
+            scene.obj.mesh.append_moved(&meshes[instance.mesh as usize], &instance.transform());
+        }
         scene
     }
 

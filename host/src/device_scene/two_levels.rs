@@ -1,0 +1,139 @@
+//! The hierarchies of a scene as one: that of what stands in the world, and behind it those of meshes that stand in several places,
+//! to whose starts copies lead.
+
+use eyerays_bvh::{Bvh, Limits, Quality, Statistics};
+use eyerays_shader::data::{CentredPair, Instance as Record, NodePair, NodeRef, Primitive};
+use rayon::prelude::*;
+
+use super::copies::{self, Bottom};
+use super::hierarchy::{built, kept_or_built, refused};
+use super::normalisation::Normalisation;
+use super::{flags, records};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+
+/// Hierarchies, and what their leaves hold.
+pub(super) struct Levels {
+    /// All of them: pairs, order and own boxes. In that of the world, pairs lead to copies where it has leaves of one. Only that has wide
+    /// nodes.
+    pub bvh: Bvh,
+    /// Pairs and slots of that of the world.
+    pub top: (usize, usize),
+    /// Triangles, spheres, disks and copies: what the order numbers.
+    pub primitives: Vec<Primitive>,
+    /// Copies of meshes.
+    pub instances: Vec<Record>,
+    /// Of that of the world.
+    pub statistics: Statistics,
+}
+
+impl Levels {
+    /// Builds those of a scene that was checked, or takes the one that it brings along; `is_wide` with nodes of eight children, too.
+    ///
+    /// # Errors
+    /// What builders refuse.
+    pub fn new(scene: &Scene, normalisation: &Normalisation, quality: Quality, is_wide: bool) -> Result<Self> {
+        let cubes: Vec<Normalisation> = scene.shared.iter().map(|shared| copies::cube(scene, shared)).collect();
+        let mut primitives = records::primitives(scene, normalisation, &cubes);
+        if scene.shared.is_empty() {
+            let mut bvh = kept_or_built(scene, &primitives, quality)?;
+            widen(&mut bvh, is_wide)?;
+            let statistics = Statistics::of(&bvh, &primitives);
+            let top = (bvh.nodes.len(), bvh.order.len());
+            return Ok(Levels { bvh, top, primitives, instances: Vec::new(), statistics });
+        }
+        let meshes = scene.shared.par_iter();
+        let bottoms: Vec<Bottom> =
+            meshes.map(|shared| Bottom::new(&primitives[shared.triangles.clone()], quality)).collect::<Result<_>>()?;
+        let (firsts, by_object) = (scene.first_numbers(), flags::by_object(scene));
+        let flags = |number: usize| by_object(firsts[number]);
+        let (mut instances, boxes) = copies::records(scene, normalisation, (&cubes, &bottoms), flags);
+        let own: Vec<u32> = in_the_world(scene, primitives.len(), boxes.len()).collect();
+        primitives.extend(boxes);
+        let above: Vec<Primitive> = own.par_iter().map(|&primitive| primitives[primitive as usize]).collect();
+        let mut bvh = built(&above, quality, Limits::OF_LEVELS)?;
+        widen(&mut bvh, is_wide)?;
+        let statistics = Statistics::of(&bvh, &above);
+        bvh.order.par_iter_mut().for_each(|primitive| *primitive = own[*primitive as usize]);
+        let top = (bvh.nodes.len(), bvh.order.len());
+        instances.par_iter_mut().for_each(|instance| instance.mesh.x += top.0 as u32);
+        for (Bottom { bvh: bottom, .. }, shared) in bottoms.into_iter().zip(&scene.shared) {
+            append(&mut bvh, bottom, shared.triangles.start as u32)?;
+        }
+        lead(&mut bvh, top.0, &primitives)?;
+        Ok(Levels { bvh, top, primitives, instances, statistics })
+    }
+}
+
+/// Makes leaves of a copy lead to it: a number behind those of all pairs stands for it.
+fn lead(bvh: &mut Bvh, top: usize, primitives: &[Primitive]) -> Result<()> {
+    let pairs = bvh.nodes.len() as u64;
+    let most = u64::from(NodeRef::MAX_INDEX);
+    let last = pairs + primitives.iter().rev().take_while(|primitive| primitive.is_instance()).count() as u64;
+    if last > most {
+        return Err(Error::new(format!("pairs of nodes and copies of meshes are {last}, more than {most}; use fewer")));
+    }
+    let order = &bvh.order;
+    let lead = |child: NodeRef| {
+        let copy = child.is_leaf().then(|| &primitives[order[child.index() as usize] as usize]);
+        copy.filter(|copy| copy.is_instance()).map_or(child, |copy| NodeRef::inner(pairs as u32 + copy.number()))
+    };
+    bvh.nodes[..top].par_iter_mut().for_each(|pair| {
+        pair.left_min.w = lead(pair.left()).0;
+        pair.right_min.w = lead(pair.right()).0;
+    });
+    Ok(())
+}
+
+fn widen(bvh: &mut Bvh, is_wide: bool) -> Result<()> {
+    if is_wide { bvh.widen().map_err(refused) } else { Ok(()) }
+}
+
+/// The numbers in the list of all primitives of those that stand in the world; its last are copies.
+fn in_the_world(scene: &Scene, count: usize, copies: usize) -> impl Iterator<Item = u32> {
+    let triangles = 0..scene.own_triangles() as u32;
+    triangles.chain(scene.mesh.triangles.len() as u32..(count + copies) as u32)
+}
+
+/// Adds a hierarchy behind others, whose primitives start at `first` in the list of all.
+fn append(all: &mut Bvh, more: Bvh, first: u32) -> Result<()> {
+    let (pairs, slots) = (all.nodes.len(), all.order.len());
+    let most = NodeRef::MAX_INDEX as usize;
+    if pairs + more.nodes.len() > most || slots + more.order.len() > most {
+        return Err(Error::new(format!(
+            "the meshes have more than {most} triangles in all; use fewer or simpler ones"
+        )));
+    }
+    let moved = |child: NodeRef| {
+        if child.is_leaf() {
+            NodeRef::leaf(slots as u32 + child.index(), child.count())
+        } else {
+            NodeRef::inner(pairs as u32 + child.index())
+        }
+    };
+    all.nodes.par_extend(more.nodes.into_par_iter().map(|mut pair: NodePair| {
+        pair.left_min.w = moved(pair.left()).0;
+        pair.right_min.w = moved(pair.right()).0;
+        pair
+    }));
+    all.order.extend(more.order.iter().map(|&primitive| first + primitive));
+    all.bounds.extend(more.bounds);
+    Ok(())
+}
+
+/// The first pairs as they were before they led to copies.
+pub(super) fn leaves(pairs: &[CentredPair], top: usize, primitives: &[Primitive]) -> Vec<CentredPair> {
+    let copies = primitives.iter().enumerate().filter(|(_, primitive)| primitive.is_instance());
+    let mut slots: Vec<(u32, u32)> = copies.map(|(slot, copy)| (copy.number(), slot as u32)).collect();
+    slots.par_sort_unstable();
+    let leaf = |child: NodeRef| match (child.index() as usize).checked_sub(pairs.len()) {
+        Some(copy) if !child.is_leaf() => NodeRef::leaf(slots[copy].1, 1),
+        _ => child,
+    };
+    let mut pairs = pairs[..top].to_vec();
+    pairs.par_iter_mut().for_each(|pair| {
+        pair.left_centre.w = leaf(pair.left()).0;
+        pair.right_centre.w = leaf(pair.right()).0;
+    });
+    pairs
+}

@@ -246,7 +246,8 @@ fn meshes_larger_than_the_buffers_of_a_device() {
     if buffer >= size {
         return eprintln!("skipped: buffers of {buffer} bytes hold the mesh");
     }
-    let render = ["render", "scene.toml", "-o", "out.png", "--device", "gpu", "--bvh", "fast", "--size", "8x8"];
+    let render = "render scene.toml -o out.png --device gpu --bvh fast --size 8x8 --instances never";
+    let render: Vec<&str> = render.split(' ').collect();
     place.refuse(&render, &["primitives", &size.to_string(), &buffer.to_string(), "--device cpu"]);
 }
 

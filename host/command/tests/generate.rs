@@ -53,6 +53,20 @@ fn spheres_are_a_list_and_a_scene_that_shows_it() {
 }
 
 #[test]
+fn plants_replace_plants_and_nothing_else() {
+    let own = b"glTF\x02\0\0\0\x20\0\0\0\x14\0\0\0JSON{\"asset\":{\"generator\":\"a program\"}}";
+    let place = Place::new(&[]);
+    fs::write(place.path("own.glb"), own).unwrap();
+    for plants in ["68", "70", "69"] {
+        place.succeed(&["generate", "ecosystem", "--plants", plants, "-q", "-o", "plants.toml"]);
+        assert!(fs::read_to_string(place.path("plants.toml")).unwrap().contains(&format!("--plants {plants} ")));
+    }
+    place.refuse(&["generate", "ecosystem", "--plants", "68", "-o", "own.toml"], &["own.glb", "not written by"]);
+    assert_eq!(fs::read(place.path("own.glb")).unwrap(), own);
+    assert_eq!(place.names(), ["own.glb", "plants.glb", "plants.toml"]);
+}
+
+#[test]
 fn spheres_are_counted_and_meshes_cut_into_triangles() {
     let place = Place::new(&[("own.xyzr", "0 0 0 1\n")]);
     place.refuse(&["generate", "spheres", "--triangles", "6000"], &["--count"]);

@@ -260,11 +260,10 @@ mod tests {
         let frame = Frame { slots: stream.len() as u32, ..Frame::default() };
         let spec = Specialisation { tuning: traversal.tuning, ..Specialisation::default() }.with_launch(Launch::STREAM);
         let scene = TraceContext {
-            base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(&triangles) },
+            base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(&triangles), instances: &[] },
             nodes: bytemuck::cast_slice(&nodes),
             wide: &[],
             bvh8: Default::default(),
-            bounds: &[],
             cutout: Default::default(),
         };
         in_scene(&scene, traversal.method, 1, stream, question).unwrap()

@@ -249,7 +249,7 @@ impl Bench {
     fn subjects(&self, outputs: &[Destination], quiet: bool) -> Result<Vec<Subject>> {
         let mut subjects: Vec<Subject> = Vec::new();
         for path in &self.scenes {
-            let scene = Read::scene(path, outputs, self.reading.loading(None), quiet)?.unbuilt();
+            let scene = Read::scene(path, outputs, self.reading.flat()?, quiet)?.unbuilt();
             let cameras = self.cameras(&scene).map_err(|e| e.of(path))?;
             subjects.push(Subject { name: self.name(path), file: path.clone(), scene, cameras });
         }

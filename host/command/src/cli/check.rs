@@ -57,8 +57,13 @@ impl Check {
 
 /// How many there are of every kind of primitive that the scene has.
 fn primitives(scene: &Scene) -> String {
-    let counts =
-        [(scene.mesh.triangles.len(), "triangle"), (scene.spheres.len(), "sphere"), (scene.disks.len(), "disk")];
+    let triangles = scene.own_triangles() + scene.copied_triangles() as usize;
+    let counts = [
+        (triangles, "triangle"),
+        (scene.spheres.len(), "sphere"),
+        (scene.disks.len(), "disk"),
+        (scene.instances.len(), "instance"),
+    ];
     let there = counts.into_iter().filter(|(count, _)| *count > 0);
     there.map(|(count, noun)| plural(count, noun)).collect::<Vec<_>>().join(", ")
 }

@@ -77,7 +77,7 @@ impl Convert {
             console::say(format_args!(
                 "{}: {}, {bytes} bytes",
                 path.display(),
-                plural(scene.primitives(), "primitive")
+                plural(scene.primitives() as usize, "primitive")
             ));
         }
         Ok(ExitCode::SUCCESS)
@@ -86,7 +86,9 @@ impl Convert {
     fn write_binary(&self, scene: &Scene, path: &Path, quiet: bool) -> Result<()> {
         let quality = self.bvh.unwrap_or_default();
         let build = || device_scene::hierarchy(scene, quality.quality()).map_err(|e| e.of(&self.scene));
-        let bvh = if self.no_bvh { None } else { Some(progress::stage("building", quiet, build)?) };
+        // That of instances is of several parts, which the form has no place for.
+        let has_none = self.no_bvh || !scene.instances.is_empty();
+        let bvh = if has_none { None } else { Some(progress::stage("building", quiet, build)?) };
         let hierarchy = bvh.as_ref().map(|bvh| (quality, bvh));
         let write = || output::write_atomically(path, |out| Ok(scene_io::write(scene, hierarchy, out)?));
         progress::stage("writing", quiet, write)

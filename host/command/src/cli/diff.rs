@@ -42,7 +42,7 @@ pub(super) struct Diff {
         "no_passthrough", "size", "samples", "sampler", "filter", "camera", "eye", "target", "fov", "projection", "orthographic", "aperture",
         "f_stop", "focus", "focus_on", "blades", "transparent", "pixel_filter", "bounces", "min_contribution",
         "cull", "no_compensation", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
-        "allow_outside", "light_unit",
+        "allow_outside", "light_unit", "instances",
     ])]
     second: Option<PathBuf>,
     /// Compare this layer of two .exr files instead of their colours, for example depth, normal or ViewLayer.Mist

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 /// Bytes of every stage.
 pub(super) struct Footprint {
-    primitives: usize,
+    primitives: u64,
     stages: Vec<(&'static str, u64)>,
     peak: Option<u64>,
 }

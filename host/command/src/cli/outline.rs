@@ -29,9 +29,12 @@ impl<'a> Outline<'a> {
         let bounds = |[least, greatest]: [Vec3; 2]| json!([least.to_array(), greatest.to_array()]);
         let meshes = self.scene.objects.iter().map(|object| {
             let count = |noun| if object.primitives.noun() == noun { object.primitives.count() } else { 0 };
+            let copied = object.primitives.instances(&self.scene.instances);
+            let triangles: usize = copied.iter().map(|of| self.scene.shared[of.mesh as usize].triangles.len()).sum();
             json!({
                 "name": object.name,
-                "triangles": count("triangle"),
+                "triangles": count("triangle") + triangles,
+                "instances": count("instance"),
                 "spheres": count("sphere"),
                 "disks": count("disk"),
                 "bounds": bounds(object.bounds),

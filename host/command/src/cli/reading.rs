@@ -10,11 +10,11 @@ use std::time::{Duration, Instant};
 use clap::Args;
 use eyerays::scene::{Integrator, Scene};
 use eyerays::scene_io;
-use eyerays::scene_io::{AnimationWish, LightUnit, Loading, Moment};
+use eyerays::scene_io::{AnimationWish, Instancing, LightUnit, Loading, Moment};
 
 use super::choice::choice;
 use super::progress;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 
 /// How a scene's files are read.
@@ -26,6 +26,9 @@ pub(super) struct Reading {
     /// In what unit a glTF file has its lights [default: that of what wrote it]
     #[arg(long, value_name = "UNIT", value_parser = choice::<LightUnit>(), help_heading = "View")]
     light_unit: Option<LightUnit>,
+    /// Whether meshes that stand in several places are held in memory once; the picture is the same [default: auto]
+    #[arg(long, value_name = "WHEN", value_parser = choice::<Instancing>(), help_heading = "Speed")]
+    instances: Option<Instancing>,
     /// How a glTF file stands so many seconds after the start of an animation [default: 0]
     #[arg(long, value_name = "S", value_parser = number, allow_hyphen_values = true, help_heading = "View")]
     time: Option<f64>,
@@ -38,7 +41,19 @@ impl Reading {
     /// For an integrator, if it is known before the scene is.
     pub fn loading(&self, integrator: Option<Integrator>) -> Loading {
         let moment = Moment { animation: self.animation.clone(), seconds: self.time };
-        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator, moment }
+        let instancing = self.instances.unwrap_or_default();
+        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator, moment, instancing }
+    }
+
+    /// For who measures rays in one hierarchy, where each copy of a mesh has triangles of its own.
+    ///
+    /// # Errors
+    /// Copies were asked for.
+    pub fn flat(&self) -> Result<Loading> {
+        match self.instances {
+            None | Some(Instancing::Never) => Ok(Loading { instancing: Instancing::Never, ..self.loading(None) }),
+            Some(_) => Err(Error::new("what is measured is one hierarchy of all triangles: leave --instances out")),
+        }
     }
 
     /// The same for a picture of an animation, at other seconds.

@@ -256,7 +256,7 @@ impl Tradeoff {
     }
 
     fn subject(&self, quiet: bool) -> Result<Subject> {
-        let mut scene = Read::scene(&self.scene, &self.destinations(), self.reading.loading(None), quiet)?.unbuilt();
+        let mut scene = Read::scene(&self.scene, &self.destinations(), self.reading.flat()?, quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
         if self.quick && !self.view.has_size() {
             settings.size = (256, 256);

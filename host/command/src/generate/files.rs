@@ -67,7 +67,7 @@ impl Files {
     }
 }
 
-/// Where a scene of spheres goes: the scene, and beside it their list of the same name.
+/// Where a scene of spheres or of plants goes: the scene, and beside it a file of the same name of what it shows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pair {
     scene: PathBuf,
@@ -76,19 +76,27 @@ pub struct Pair {
 }
 
 impl Pair {
-    /// The files of a scene or of a list at `path`.
+    /// The files of a scene of spheres or of a list of them at `path`.
     ///
     /// # Errors
     /// A name that is neither `.toml` nor `.xyzr`, or that the scene could not hold.
     pub fn beside(path: &Path) -> Result<Self> {
+        Pair::of("xyzr", path)
+    }
+
+    /// The files of a scene or of what it shows, which ends in `ending`, at `path`.
+    ///
+    /// # Errors
+    /// A name that ends otherwise, or that the scene could not hold.
+    pub fn of(ending: &str, path: &Path) -> Result<Self> {
         if path == Path::new("-") {
-            return Err(Error::new("-o - can't be: a scene of spheres is two files; name a .toml file"));
+            return Err(Error::new("-o - can't be: the scene is two files; name a .toml file"));
         }
         let is = |end: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
-        let (scene, list) = match (is("toml"), is("xyzr")) {
-            (true, _) => (path.to_owned(), path.with_extension("xyzr")),
+        let (scene, list) = match (is("toml"), is(ending)) {
+            (true, _) => (path.to_owned(), path.with_extension(ending)),
             (_, true) => (path.with_extension("toml"), path.to_owned()),
-            _ => return Err(Error::file(path, "spheres make a scene: give -o a name that ends in .toml")),
+            _ => return Err(Error::file(path, "this makes a scene: give -o a name that ends in .toml")),
         };
         let list_name = plain_name(&list)?;
         Ok(Pair { scene, list, list_name })

@@ -1,5 +1,5 @@
 //! Scenes to measure with, made on the spot: a hall, a forest and a cathedral of any number of triangles, and a flake of any
-//! number of spheres.
+//! number of spheres, and plants over hills.
 //!
 //! The first three stand in for Conference, Fairy Forest and Sibenik, which are not ours to ship. The same kind, number and
 //! seed give the same bytes on every machine, since nothing but `+ - * /` and the square root makes them.
@@ -7,6 +7,7 @@
 mod cathedral;
 mod circle;
 mod document;
+mod ecosystem;
 mod files;
 mod flake;
 mod forest;
@@ -22,6 +23,7 @@ mod spheres;
 #[cfg(test)]
 mod tests;
 
+pub use ecosystem::Ecosystem;
 pub use files::{Files, Pair};
 pub use spheres::Spheres;
 

@@ -7,6 +7,11 @@ use std::path::{Path, PathBuf};
 use super::Destination;
 use crate::error::{Error, Result};
 
+/// What the JSON of a binary glTF begins with where a command of ours wrote it, but for the command's name.
+const GENERATOR: &str = r#"{"asset":{"generator":""#;
+/// The bytes in front of the JSON of a binary glTF.
+const GLTF_HEAD: usize = 20;
+
 /// Refuses an output that is a file which the command reads, and two outputs that are one file, however their paths are
 /// spelled and through links.
 ///
@@ -30,22 +35,25 @@ pub fn check_apart(outputs: &[Destination], inputs: impl IntoIterator<Item = imp
     Ok(())
 }
 
-/// Refuses to replace a file that does not begin with the comment of the command that writes such files. `option` names
-/// the output.
+/// Refuses to replace a file that does not begin with the comment of the command that writes such files, or as a binary
+/// glTF with that command as its generator. `option` names the output.
 ///
 /// # Errors
 /// One that names the file.
 pub fn check_own(path: &Path, command: &str, option: &str) -> Result<()> {
-    if path.is_file() && !begins_with(path, &format!("# {command}")) {
+    let marks = [(0, "# "), (GLTF_HEAD, GENERATOR)];
+    let own = marks.iter().any(|&(skipped, mark)| begins_with(path, skipped, &format!("{mark}{command}")));
+    if path.is_file() && !own {
         let fault = format!("was not written by {command} and would be lost; move it, or give {option} another name");
         return Err(Error::file(path, fault));
     }
     Ok(())
 }
 
-fn begins_with(path: &Path, mark: &str) -> bool {
-    let mut start = vec![0; mark.len()];
-    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && start == mark.as_bytes()
+/// Whether this stands in the file behind so many bytes.
+fn begins_with(path: &Path, skipped: usize, mark: &str) -> bool {
+    let mut start = vec![0; skipped + mark.len()];
+    File::open(path).and_then(|mut file| file.read_exact(&mut start)).is_ok() && &start[skipped..] == mark.as_bytes()
 }
 
 fn is_same(a: &Path, b: &Path) -> bool {

@@ -50,7 +50,7 @@ impl Bvh {
 ///
 /// The same references give the same hierarchy, whatever the number of rayon's threads. Every box of
 /// a pair contains exactly what is below it, no leaf has more than [`MAX_LEAF`](eyerays_shader::data::MAX_LEAF) references, and
-/// no path has more than [`MAX_DEPTH`] pairs; [`validate_wide`] tells what wide nodes promise.
+/// no path has more than [`MAX_DEPTH`](crate::MAX_DEPTH) pairs; [`validate_wide`] tells what wide nodes promise.
 ///
 /// # Errors
 ///

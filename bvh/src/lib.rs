@@ -1,6 +1,6 @@
 //! Bounding volume hierarchies for Eyerays.
 //!
-//! [`split`] turns primitives into references from left to right in a tree, once a scene; [`build`] makes node pairs of it,
+//! [`split`] turns primitives into references from left to right in a tree, and splits some of them; [`build`] makes node pairs of it,
 //! which most traversal methods walk, once obvhs has improved it as far as wanted. [`Bvh::widen`] adds the nodes of eight
 //! children that one method on a GPU walks, [`Bvh8`] has those that a CPU walks.
 //! This crate bounds the depth, computes every box itself and validates the result, because the kernels index without checks

@@ -3,16 +3,24 @@
 /// Build time against traversal time.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Quality {
-    /// For scenes that are traced once: the tree that splits primitives, as it was grown.
+    /// For scenes that are traced once: primitives stay whole, and the tree as it was grown.
     Fast,
-    /// For most scenes: large nodes are moved to where they cost less.
+    /// For most scenes: triangles are split, and large nodes moved to where they cost less.
     #[default]
     Medium,
-    /// For scenes that are traced many times: every node is tried elsewhere.
+    /// For scenes that are traced many times: triangles are split, and every node is tried elsewhere.
     High,
 }
 
 impl Quality {
+    /// How many references [`split`](crate::split) may add for this quality, as a share of the primitives. A hit does not depend on them.
+    pub fn split_budget(self) -> f32 {
+        match self {
+            Quality::Fast => 0.0,
+            Quality::Medium | Quality::High => 0.3,
+        }
+    }
+
     /// Which share of the nodes of a tree the first pass of reinsertion tries.
     pub(crate) fn reinsertion(self) -> f32 {
         match self {

@@ -14,9 +14,8 @@ use crate::{
 
 /// A primitive, or a part of one.
 ///
-/// A ray may enter and leave a part's box before it hits the primitive in another part. So the box bounds the
-/// distance of a hit from below, which keeps culling exact, but not from above: a distance clamped to its end
-/// would be too short (measured: 5 of 1000 rays in Conference). The primitive's own box bounds it from above.
+/// A ray may enter and leave a part's box before it hits the primitive in another part (5 of 1000 rays in Conference), so a
+/// leaf tests primitives and asks no part. Parts only decide which leaves a ray comes to.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reference {
     /// The primitive's index.
@@ -32,9 +31,8 @@ impl Reference {
         Reference { primitive: 0, bounds: Record { least: UVec4::ZERO, greatest: UVec4::ZERO } };
 }
 
-/// References to all primitives of a scene, from left to right in the tree whose planes split them: they are made once,
-/// so that every quality of hierarchy is built over the same, and no builder can change what a ray meets. Builds start from
-/// the tree.
+/// References to all primitives of a scene, from left to right in the tree whose planes split them. Builds start from the
+/// tree. What a ray meets does not depend on the parts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct References {
     pub(crate) list: Vec<Reference>,

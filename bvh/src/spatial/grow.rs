@@ -29,7 +29,8 @@ const MANY: usize = 2048;
 /// own boxes, stay where the parts were.
 pub(super) fn grow<'p>(triangles: &[Primitive], parts: &'p mut [Part], count: usize) -> Branch<Left<'p>> {
     let scene = area(around(&parts[..count]));
-    let grower = Grower { triangles, least_overlap: OVERLAP * scene };
+    let least_overlap = if count < parts.len() { OVERLAP * scene } else { f32::INFINITY };
+    let grower = Grower { triangles, least_overlap };
     grower.branch(Node { parts, count, level: 0 })
 }
 

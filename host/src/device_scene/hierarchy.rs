@@ -8,9 +8,6 @@ use super::{normalisation, records};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 
-/// References added by splitting triangles, as a share of the triangles.
-const SPLIT_BUDGET: f32 = 0.3;
-
 /// The hierarchy that kernels find a scene's primitives by: the one that the scene brings along if it has this quality,
 /// checked, or a new one.
 ///
@@ -37,7 +34,7 @@ pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Qu
 
 /// A new hierarchy.
 pub(super) fn built(primitives: &[Primitive], quality: Quality, limits: Limits) -> Result<Bvh> {
-    let references = eyerays_bvh::split(primitives, SPLIT_BUDGET).map_err(refused)?;
+    let references = eyerays_bvh::split(primitives, quality.split_budget()).map_err(refused)?;
     eyerays_bvh::build_within(&references, quality, limits).map_err(refused)
 }
 

@@ -57,7 +57,7 @@ impl Scene {
     }
 
     /// Triangles of some copies.
-    pub(crate) fn triangles_of(&self, copies: &[Instance]) -> u64 {
+    pub fn triangles_of(&self, copies: &[Instance]) -> u64 {
         copies.iter().map(|copy| self.shared[copy.mesh as usize].triangles.len() as u64).sum()
     }
 

@@ -83,7 +83,7 @@ pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scen
 pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
-        Ok((settled(path, binary::load(path, budget)?, budget, &loading)?, Vec::new()))
+        Ok((settled(path, binary::load(path, budget)?, budget, loading.instancing)?, Vec::new()))
     } else if is(path, "toml") {
         load_toml(path, budget, loading)
     } else if is(path, "obj") || is(path, "ply") {
@@ -99,8 +99,9 @@ pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Resu
 }
 
 fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let mut images = Images::within(file::folder(path), budget, loading.clone());
-    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?, budget, &loading)?;
+    let instancing = loading.instancing;
+    let mut images = Images::within(file::folder(path), budget, loading);
+    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?, budget, instancing)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
         // Whitted's model draws nothing that shines, and paths no ambient light.
@@ -113,8 +114,9 @@ fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Ve
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading.clone())?;
-    let (scene, warnings) = bare(path, obj, budget, &loading)?;
+    let instancing = loading.instancing;
+    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading)?;
+    let (scene, warnings) = bare(path, obj, budget, instancing)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
@@ -136,7 +138,7 @@ fn of_paths() -> Settings {
 }
 
 /// A scene of one mesh without a camera, and the warnings of it.
-fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Scene, Vec<Warning>)> {
+fn bare(path: &Path, obj: Obj, budget: Budget, instancing: Instancing) -> Result<(Scene, Vec<Warning>)> {
     let Obj { mesh, copies, materials, warnings, libraries, objects } = obj;
     let name = match &*objects {
         [only] => only.name.clone(),
@@ -167,13 +169,13 @@ fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Sce
         settings: Settings::default(),
         hierarchy: None,
     };
-    Ok((settled(path, scene, budget, loading)?, warnings))
+    Ok((settled(path, scene, budget, instancing)?, warnings))
 }
 
 /// A scene with the bounds of its copies, which are held as is asked.
-fn settled(path: &Path, mut scene: Scene, budget: Budget, loading: &Loading) -> Result<Scene> {
+fn settled(path: &Path, mut scene: Scene, budget: Budget, instancing: Instancing) -> Result<Scene> {
     scene.measure_copies();
-    loading.instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))
+    instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))
 }
 
 /// Gives a scene without a camera one that sees all of it.
@@ -256,7 +258,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         settings,
         hierarchy: None,
     };
-    let mut scene = settled(path, scene, budget, &Loading { instancing, ..Loading::default() })?;
+    let mut scene = settled(path, scene, budget, instancing)?;
     if !names_lights {
         frame::without_spare_lamps(&mut scene, settings.transport.integrator);
     }

@@ -18,6 +18,13 @@ pub struct Transform {
     scale: DVec3,
 }
 
+/// A transform in the arithmetic that kernels share.
+pub fn exact(linear: &DMat3, translate: DVec3) -> geometry::Transform {
+    let rows = linear.transpose();
+    let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec3());
+    geometry::Transform::new(rows, translate.as_vec3())
+}
+
 impl Transform {
     /// Reads `scale`, `rotate` (degrees) and `translate` of a `[[mesh]]` table, all optional.
     ///
@@ -80,10 +87,7 @@ impl Transform {
 
     /// Moves a mesh. A mirror turns the triangles around, so that their fronts stay outside.
     pub fn apply(&self, mesh: &mut Mesh) {
-        let rows = self.linear.transpose();
-        let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.as_vec3());
-        let transform = geometry::Transform::new(rows, self.translate.as_vec3());
-        mesh.moved(&transform);
+        mesh.moved(&exact(&self.linear, self.translate));
     }
 }
 

@@ -30,10 +30,9 @@ impl<'a> Outline<'a> {
         let meshes = self.scene.objects.iter().map(|object| {
             let count = |noun| if object.primitives.noun() == noun { object.primitives.count() } else { 0 };
             let copied = object.primitives.instances(&self.scene.instances);
-            let triangles: usize = copied.iter().map(|of| self.scene.shared[of.mesh as usize].triangles.len()).sum();
             json!({
                 "name": object.name,
-                "triangles": count("triangle") + triangles,
+                "triangles": count("triangle") as u64 + self.scene.triangles_of(copied),
                 "instances": count("instance"),
                 "spheres": count("sphere"),
                 "disks": count("disk"),

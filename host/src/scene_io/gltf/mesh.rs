@@ -1,7 +1,7 @@
 //! The meshes of all nodes as one, in world units.
 
 use eyerays_shader::geometry;
-use glam::{DMat4, Vec2, Vec3, Vec4};
+use glam::{DMat3, DMat4, Vec2, Vec3, Vec4};
 
 use super::accessor::Accessors;
 use super::document::{self, Document, pick};
@@ -15,6 +15,7 @@ use crate::scene;
 use crate::scene::{MAX_PRIMITIVES, Mesh, Primitives, Unplaced, extent};
 use crate::scene_io::budget::Budget;
 use crate::scene_io::copies::Copies;
+use crate::scene_io::transform::exact;
 
 /// All that is placed so far.
 pub struct Merge<'f> {
@@ -276,9 +277,7 @@ struct Transform(geometry::Transform);
 
 impl Transform {
     fn new(world: DMat4) -> Self {
-        let rows = world.transpose();
-        let rows = [rows.x_axis, rows.y_axis, rows.z_axis].map(|row| row.truncate().as_vec3());
-        Transform(geometry::Transform::new(rows, world.w_axis.truncate().as_vec3()))
+        Transform(exact(&DMat3::from_mat4(world), world.w_axis.truncate()))
     }
 
     fn is_mirror(&self) -> bool {

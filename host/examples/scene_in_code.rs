@@ -78,6 +78,7 @@ fn scene() -> Scene {
         background_group: String::new(),
         ambient: Vec3::ONE,
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
+        motion: None,
         hierarchy: None,
         environment: None,
     }

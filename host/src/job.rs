@@ -165,9 +165,8 @@ impl Job {
     /// What cameras and the film need.
     fn camera_bits(&self) -> u32 {
         let is_filtered = self.settings.pixel_filter() != PixelFilter::Box;
-        let optics = self.optics().bits() | if is_filtered { Launch::FILTERED } else { 0 };
-        let is_kept = !needs(self).stages.generates
-            && optics & (Launch::LENS | Launch::ROUND | Launch::FILTERED | Launch::CLIPPED | Launch::STEREO) != 0;
+        let optics = self.optics().bits() | self.movement().bits() | if is_filtered { Launch::FILTERED } else { 0 };
+        let is_kept = !needs(self).stages.generates && optics & (KEPT_CAMERAS | Launch::MOVING | Launch::PANNED) != 0;
         optics | if is_kept { Launch::KEPT } else { 0 } | self.film_bits()
     }
 
@@ -231,10 +230,15 @@ impl Job {
             vertices: self.primitives().len() as u32,
             aovs: self.aov_count(),
             group: self.background_group(),
+            steps: self.movement().steps,
+            exposure: self.movement().exposure,
             ..Frame::default()
         }
     }
 }
+
+/// What makes rays of the camera that lie in memory.
+const KEPT_CAMERAS: u32 = Launch::LENS | Launch::ROUND | Launch::FILTERED | Launch::CLIPPED | Launch::STEREO;
 
 /// All that a scene says is asked of a job, too.
 impl Deref for Job {

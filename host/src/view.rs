@@ -139,8 +139,10 @@ impl View {
 
     /// All that its rays of the camera depend on beside the image and tables.
     pub(crate) fn camera_bytes(&self) -> Vec<u8> {
-        let CameraRecord { camera, spread, angle, aperture, clip, eyes } = &self.record;
-        [bytemuck::bytes_of(camera), bytemuck::cast_slice(&[[*spread, *angle], [*aperture, 0.0], *clip, *eyes])]
+        let CameraRecord { camera, spread, angle, aperture, clip, eyes, keys } = &self.record;
+        // How it moves is told by the scene; whether it does, by what stands in the place of nothing.
+        let moves = if *keys == Frame::STILL { 0.0 } else { 1.0 };
+        [bytemuck::bytes_of(camera), bytemuck::cast_slice(&[[*spread, *angle], [*aperture, moves], *clip, *eyes])]
             .concat()
     }
 
@@ -177,8 +179,9 @@ impl View {
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
     pub fn launch(&self, scene: &Job, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
-        let CameraRecord { camera, spread, angle, aperture, clip: [near, farthest], eyes: [eyes, converging] } =
+        let CameraRecord { camera, spread, angle, aperture, clip: [near, farthest], eyes: [eyes, converging], keys } =
             self.record;
+        let frame = scene.frame();
         Frame {
             camera,
             spread,
@@ -188,6 +191,8 @@ impl View {
             farthest,
             eyes,
             converging,
+            keys,
+            row_delay: (1.0 - frame.exposure) / self.height as f32,
             filter_steps: FILTER_STEPS as f32 / (2 * self.grid) as f32,
             width: self.width,
             height: self.height,
@@ -200,7 +205,7 @@ impl View {
             rows: region.height,
             pixel_slots,
             slots: count * pixel_slots,
-            ..scene.frame()
+            ..frame
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use eyerays_shader::data::Effects;
+use eyerays_shader::data::{Effects, Launch};
 use eyerays_shader::real::{Native, Scalar, SimdIsa, Task};
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{self, FACES_AWAY, Found, Segment, ShadowInputs};
@@ -17,7 +17,7 @@ use crate::way::Way;
 
 /// What is asked of the rays of some slots, and where the answers go, in the order of the slots.
 pub enum Query<'a, R: Scalar> {
-    /// Their closest hits, of paths or a stream's rays.
+    /// Their closest hits, of paths or a stream's rays, in the place of those before at whose times the rays are.
     Trace(&'a [R::Record], &'a mut [Found<R>]),
     /// Whether something is on their way to a light, or before the ends of a stream's rays.
     Shadow(ShadowInputs<'a, R>, u32, &'a mut [u32]),
@@ -33,8 +33,9 @@ macro_rules! follows {
     };
 }
 
-/// Follows the rays of slots by a method, with the instructions of an [`Isa`].
+/// Follows the rays of slots by a method, with the instructions of an [`Isa`]. Neighbours of several times go alone.
 pub fn follow<R: Scalar>(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, R>) {
+    let way = if geometry.base.spec.launch.has(Launch::MOVING) { way.alone() } else { way };
     let follows = if geometry.base.spec.effects.has(Effects::SPHERE | Effects::DISK | Effects::INSTANCED) {
         among::<R, Primitives>(way)
     } else {
@@ -107,7 +108,7 @@ fn one_by_one<R: Scalar, L: Leaf, M: traverse::Method<R>>(
     match query {
         Query::Trace(paths, hits) => {
             for (&slot, hit) in slots.iter().zip(hits) {
-                *hit = stage::trace::<R, M, L>(geometry, slot, paths);
+                *hit = stage::trace::<R, M, L>(geometry, (slot, hit.time), paths);
             }
         }
         Query::Shadow(asking, light, answers) => {

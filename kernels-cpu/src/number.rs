@@ -5,7 +5,7 @@ use eyerays_shader::data::{Frame, Launch, Light, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
-use eyerays_shader::stage::{self, FilmWords};
+use eyerays_shader::stage::{self, CameraTables, FilmWords};
 
 use crate::follow::{Query, follow};
 use crate::isa::Isa;
@@ -38,7 +38,13 @@ pub struct Shown<'a> {
 /// Queues are less than the launch's; records are as long as its kernels ask, see [`eyerays_shader::resources`].
 pub trait Number: Scalar<Record: Send + Sync> {
     /// Starts the paths of some slots, by the tables of cameras.
-    fn generate(frame: &Frame, spec: Specialisation, optics: &[u32], slots: &[u32], paths: &mut [Self::Record]);
+    fn generate(
+        frame: &Frame,
+        spec: Specialisation,
+        tables: CameraTables<'_>,
+        slots: &[u32],
+        records: &mut Records<Self>,
+    );
 
     /// Follows the rays of some slots, with the instructions of an [`Isa`].
     fn follow(isa: Isa, way: Way, geometry: &TraceContext<'_>, slots: &[u32], query: Query<'_, Self>);
@@ -69,12 +75,12 @@ macro_rules! number {
             fn generate(
                 frame: &Frame,
                 spec: Specialisation,
-                optics: &[u32],
+                tables: CameraTables<'_>,
                 slots: &[u32],
-                paths: &mut [Self::Record],
+                Records { paths, hits, .. }: &mut Records<Self>,
             ) {
                 for &slot in slots {
-                    stage::generate::<Self>(frame, spec, (&[], optics), slot, paths);
+                    stage::generate::<Self>(frame, spec, tables, slot, (&mut *paths, &mut *hits));
                 }
             }
 

@@ -22,6 +22,8 @@ pub struct Ray<R: Real> {
     /// The primitive that it starts on, which it can't hit again; [`Hit::NOTHING`] for none. With [`Ray::INSIDE`] it can, on
     /// the far side.
     pub source_primitive: R::Index,
+    /// When it is, of all lanes: from 0, where the shutter opens, to 1, where it closes.
+    pub time: f32,
 }
 
 /// Woop, Benthin and Wald 2013: the ray's space, in which a triangle is tested in two dimensions.
@@ -88,7 +90,13 @@ impl<R: Real> Ray<R> {
         } else {
             V3::new(started(origin.x, d.x), started(origin.y, d.y), started(origin.z, d.z))
         };
-        Ray { origin, direction: d, inverse, offset: origin.times(inverse), shear, source_primitive }
+        Ray { origin, direction: d, inverse, offset: origin.times(inverse), shear, source_primitive, time: 0.0 }
+    }
+
+    /// The same ray at another time.
+    #[inline(always)]
+    pub fn at(self, time: f32) -> Self {
+        Ray { time, ..self }
     }
 
     /// A vertex relative to the origin, its axes cycled.

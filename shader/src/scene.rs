@@ -4,9 +4,10 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    CentredPair, CompactPair, CwbvhNode, Effects, Frame, Instance, Layout, Maps, Material, NodeRef, Normals, Primitive,
-    Specialisation, numbers, pack,
+    CentredPair, CompactPair, CwbvhNode, Effects, Frame, Instance, Launch, Layout, Maps, Material, NodeRef, Normals,
+    Primitive, Specialisation, line, numbers, pack,
 };
+use crate::geometry::Transform;
 use crate::ray::Hit;
 use crate::real::{Real, TINY};
 use crate::texture::Textures;
@@ -44,15 +45,78 @@ impl LaunchContext<'_> {
         }
     }
 
-    /// The primitive at an index of a copy of a mesh, or of none.
+    /// The primitive at an index of a copy of a mesh, or of none, at a time.
     #[inline(always)]
-    pub fn placed(&self, index: u32, instance: u32) -> Primitive {
-        let own = self.primitive(index);
+    pub fn placed(&self, index: u32, instance: u32, time: f32) -> Primitive {
         if self.spec.effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
-            return placed(own, read(self.instances, instance), self.frame.origin);
+            let posed = Posed::new(self.spec.launch, self.frame, self.instances, (instance, time));
+            let mut own = self.primitive(index + posed.from);
+            if self.spec.launch.has(Launch::MOVING) && posed.is_bent() {
+                own = bent(own, self.primitive(index + posed.to), posed.share);
+            }
+            return placed(own, posed.instance, self.frame.origin);
         }
-        own
+        self.primitive(index)
     }
+}
+
+/// A copy of a mesh at a time.
+struct Posed {
+    instance: Instance,
+    /// How far from its triangles those of the keys before and behind are.
+    from: u32,
+    to: u32,
+    /// The share of the way between.
+    share: f32,
+}
+
+impl Posed {
+    /// By the number of its record, or of the first of its keys.
+    #[inline(always)]
+    fn new(launch: Launch, frame: &Frame, instances: &[Instance], (number, time): (u32, f32)) -> Self {
+        let is_moving = launch.has(Launch::MOVING);
+        let mut mesh = UVec4::ZERO;
+        let (mut step, mut share, mut after) = (0, 0.0, 0);
+        if is_moving {
+            mesh = read(instances, number).mesh;
+            if mesh.z & Instance::MOVES != 0 {
+                (step, share) = frame.step(time);
+                after = 1;
+            }
+        }
+        let instance = read(instances, number + step);
+        if is_moving {
+            return posed(mesh, instance, read(instances, number + step + after), (step, share));
+        }
+        Posed { instance, from: 0, to: 0, share }
+    }
+
+    /// Does its mesh change its shape?
+    #[inline(always)]
+    fn is_bent(&self) -> bool {
+        self.to != 0
+    }
+}
+
+/// A copy at a step and a share of it, between two keys; one of a mesh that does not move is as it is.
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn posed(mesh: UVec4, from: Instance, to: Instance, (step, share): (u32, f32)) -> Posed {
+    if mesh.z & Instance::MOVES == 0 {
+        return Posed { instance: from, from: 0, to: 0, share: 0.0 };
+    }
+    let instance = Instance { mesh, ..from.towards(&to, share) };
+    Posed { instance, from: if step == 0 { 0 } else { from.mesh.x }, to: to.mesh.x, share }
+}
+
+/// A triangle at a share of the way between two keys: each vertex goes straight.
+// Likewise.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn bent(from: Primitive, to: Primitive, share: f32) -> Primitive {
+    let place = |from: UVec4, to: UVec4| pack(line(numbers(from), numbers(to), share), from.w);
+    Primitive { a: place(from.a, to.a), b: place(from.b, to.b), c: place(from.c, to.c) }
 }
 
 /// A triangle of a mesh where a copy has it.
@@ -85,10 +149,10 @@ pub struct TraceContext<'a> {
 }
 
 impl TraceContext<'_> {
-    /// The child pair that a reference leads to where the copy has it that the reference was found in, and the copy that it is in
-    /// itself: it may lead to one.
+    /// The child pair that a reference leads to where the copy has it at a time that the reference was found in, and the copy that it
+    /// is in itself: it may lead to one.
     #[inline(always)]
-    pub fn opened(&self, node: NodeRef, instance: u32) -> (CentredPair, u32) {
+    pub fn opened(&self, node: NodeRef, instance: u32, time: f32) -> (CentredPair, u32) {
         let is_instanced = self.base.spec.effects.has(Effects::INSTANCED);
         let (mut number, mut instance) = (node.index(), instance);
         let mut of = Instance::NONE;
@@ -96,7 +160,8 @@ impl TraceContext<'_> {
             let leads = number >= self.base.frame.pairs;
             instance = if leads { number - self.base.frame.pairs } else { instance };
             if instance != Hit::<f32>::NOTHING {
-                of = read(self.base.instances, instance);
+                let LaunchContext { spec, frame, instances, .. } = self.base;
+                of = Posed::new(spec.launch, frame, instances, (instance, time)).instance;
                 number = if leads { of.root() } else { number };
             }
         }
@@ -157,32 +222,43 @@ pub struct ShadingData<'a> {
     pub maps: &'a [Maps],
     /// What they are covered with.
     pub textures: Textures<'a>,
-    /// Copies of meshes ([`Effects::INSTANCED`]).
-    pub instances: &'a [Instance],
 }
 
 impl ShadingData<'_> {
-    /// The vertex normals of a triangle, where the copy has it that it may be in.
+    /// The vertex normals of a triangle, where the copy has it at a time that it may be in.
     #[inline(always)]
-    pub fn normals(&self, effects: Effects, (index, instance): (u32, u32)) -> Normals {
-        let own = read(self.normals, index);
-        if effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
-            let transform = read(self.instances, instance).transform();
-            let turned = |n: UVec4| pack(transform.normal(numbers(n)), n.w);
-            return Normals { a: turned(own.a), b: turned(own.b), c: turned(own.c) };
-        }
-        own
+    pub fn normals(&self, launch: &LaunchContext<'_>, place: (u32, u32, f32)) -> Normals {
+        launch.turned(self.normals, place, |transform, normal| transform.normal(normal))
     }
 
     /// Likewise its tangents. Those of a mesh that is mirrored are so in its own cube.
     #[inline(always)]
-    pub fn tangents(&self, effects: Effects, (index, instance): (u32, u32)) -> Normals {
-        let own = read(self.tangents, index);
-        if effects.has(Effects::INSTANCED) && instance != Hit::<f32>::NOTHING {
-            let transform = read(self.instances, instance).transform();
-            let turned = |t: UVec4| pack(transform.direction(numbers(t)), t.w);
-            return Normals { a: turned(own.a), b: turned(own.b), c: turned(own.c) };
+    pub fn tangents(&self, launch: &LaunchContext<'_>, place: (u32, u32, f32)) -> Normals {
+        launch.turned(self.tangents, place, |transform, tangent| transform.direction(tangent))
+    }
+}
+
+impl LaunchContext<'_> {
+    /// Vectors of a triangle's vertices, turned where a copy has it.
+    #[inline(always)]
+    fn turned(
+        &self,
+        all: &[Normals],
+        (index, instance, time): (u32, u32, f32),
+        turn: impl Fn(&Transform, Vec3) -> Vec3,
+    ) -> Normals {
+        if !self.spec.effects.has(Effects::INSTANCED) || instance == Hit::<f32>::NOTHING {
+            return read(all, index);
         }
-        own
+        let posed = Posed::new(self.spec.launch, self.frame, self.instances, (instance, time));
+        let Normals { mut a, mut b, mut c } = read(all, index + posed.from);
+        if self.spec.launch.has(Launch::MOVING) && posed.is_bent() {
+            let to = read(all, index + posed.to);
+            let between = |from: UVec4, to: UVec4| pack(line(numbers(from), numbers(to), posed.share), from.w);
+            (a, b, c) = (between(a, to.a), between(b, to.b), between(c, to.c));
+        }
+        let transform = posed.instance.transform();
+        let turned = |own: UVec4| pack(turn(&transform, numbers(own)), own.w);
+        Normals { a: turned(a), b: turned(b), c: turned(c) }
     }
 }

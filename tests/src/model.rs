@@ -21,6 +21,7 @@ pub fn empty() -> Scene {
         background_group: String::new(),
         ambient: Vec3::ZERO,
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
+        motion: None,
         hierarchy: None,
         environment: None,
     }

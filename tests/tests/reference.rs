@@ -56,7 +56,7 @@ impl Log<'_> {
     fn tell<R: Scalar>(&self, geometry: &TraceContext<'_>, slot: u32, records: &Records<R>, story: &mut Story) {
         let path = Path::<R>::current(&geometry.base, slot, &records.paths);
         story.events.extend([path.bounces, path.pending]);
-        let Found { index, instance, coordinates, .. } = Found::<R>::load(&geometry.base, slot, &records.hits);
+        let Found { index, instance, coordinates, time, .. } = Found::<R>::load(&geometry.base, slot, &records.hits);
         if index == Hit::<R>::NOTHING {
             return story.events.push(index);
         }
@@ -64,10 +64,10 @@ impl Log<'_> {
         let looks = ShadingData { normals: packed.normals(), materials: packed.materials(), ..ShadingData::default() };
         let triangle = &geometry.primitive(index);
         let contact = SurfaceInteraction::new(geometry.base.spec.effects, triangle, coordinates, path.direction);
-        let (effects, direction) = (geometry.base.spec.effects, path.direction);
+        let direction = path.direction;
         let narrow = Cone::none();
-        let seen = Seen { index, instance, primitive: *triangle, interaction: contact, direction, cone: narrow };
-        let surface = Surface::new(effects, &looks, &seen, &Covering::none());
+        let seen = Seen { index, instance, time, primitive: *triangle, interaction: contact, direction, cone: narrow };
+        let surface = Surface::new(&geometry.base, &looks, &seen, &Covering::none());
         // The diffuse colour tells the checker's cell.
         let cell = [surface.diffuse.x, surface.diffuse.y, surface.diffuse.z].map(|channel| channel.to_f32().to_bits());
         story.events.extend([triangle.number(), u32::from(contact.front)]);

@@ -8,7 +8,7 @@ use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
-use eyerays_shader::stage::{BLOCK, FilmWords, Found, ShadowInputs};
+use eyerays_shader::stage::{BLOCK, CameraTables, FilmWords, Found, ShadowInputs};
 
 use crate::device_scene::SceneView;
 use crate::error::Result;
@@ -154,8 +154,9 @@ impl<R: Number> Executor for Launch<'_, R> {
             Stage::Shadow => self.shadow(&scene, method),
             Stage::Shade => self.shade(&scene),
             Stage::Generate => {
-                let optics = self.planned.laid.job.optic_tables();
-                R::generate(self.frame, step.spec, optics, &self.queue, &mut self.records.paths);
+                let job = &self.planned.laid.job;
+                let tables = CameraTables { cells: &[], optics: job.optic_tables(), instances: job.instances() };
+                R::generate(self.frame, step.spec, tables, &self.queue, &mut self.records);
             }
             Stage::Scatter => self.scatter(&scene),
             Stage::Gather => R::gather(self.frame, step.spec, &self.records, self.film),
@@ -171,7 +172,9 @@ impl<R: Number> Executor for Launch<'_, R> {
 
 impl<R: Number> Launch<'_, R> {
     fn trace(&mut self, scene: &TraceContext<'_>, method: Method) {
-        let mut hits = vec![Found::nothing(); self.queue.len()];
+        let hits = &self.records.hits;
+        let timed = |&slot: &u32| Found { time: Found::<R>::time(&scene.base, slot, hits), ..Found::nothing() };
+        let mut hits: Vec<Found<R>> = self.queue.iter().map(timed).collect();
         let query = Query::Trace(&self.records.paths, &mut hits);
         R::follow(self.planned.isa, method.way(), scene, &self.queue, query);
         for (&slot, hit) in self.queue.iter().zip(hits) {

@@ -1,5 +1,7 @@
 //! Records of the copies of meshes.
 
+use std::collections::HashSet;
+
 use eyerays_bvh::{Bvh, Limits, Quality};
 use eyerays_shader::data::{BOX_PADDING, CentredPair, Instance as Record, NodePair, NodeRef, Primitive, numbers, pack};
 use eyerays_shader::geometry::Transform;
@@ -14,9 +16,12 @@ use crate::scene::{Instance, Primitives, Scene, SharedMesh};
 /// A roundoff of single precision.
 const U: f64 = 1.0 / (1 << 24) as f64;
 
-/// What a shared mesh is multiplied by so that it lies in [-1, 1]: a power of two.
-pub(super) fn cube(scene: &Scene, shared: &SharedMesh) -> Normalisation {
-    Normalisation::of(scene.mesh.positions[shared.vertices.clone()].iter().copied(), false)
+/// What a shared mesh is multiplied by so that it lies in [-1, 1] in each of its shapes: a power of two.
+pub(super) fn cube(scene: &Scene, number: usize) -> Normalisation {
+    let own = scene.mesh.positions[scene.shared[number].vertices.clone()].iter();
+    let poses = scene.motion.iter().flat_map(|motion| &motion.poses);
+    let shapes = poses.flat_map(|pose| &pose.shapes).filter(|(mesh, _)| *mesh as usize == number);
+    Normalisation::of(own.chain(shapes.flat_map(|(_, shape)| &shape.positions)).copied(), false)
 }
 
 /// A copy's transform from the cube of its mesh to the scene's, before the scene's origin is taken off.
@@ -56,22 +61,23 @@ pub(super) struct Bottom {
 }
 
 impl Bottom {
-    /// Builds that of some triangles in their cube.
+    /// Builds that of some triangles in their cube, or of boxes around them.
     ///
     /// # Errors
     /// What the builder refuses.
-    pub fn new(triangles: &[Primitive], quality: Quality) -> Result<Self> {
-        let bvh = built(triangles, quality, Limits::OF_LEVELS)?;
+    pub fn new(primitives: &[Primitive], quality: Quality) -> Result<Self> {
+        let bvh = built(primitives, quality, Limits::OF_LEVELS)?;
         let parts = parts(&bvh.nodes);
         Ok(Bottom { bvh, parts })
     }
 
-    /// A box around a copy in the normalised scene: of the moved parts, with what rounding and padding add.
+    /// A box around a copy in the normalised scene: of the moved parts, with what rounding and padding add, that of a transform
+    /// between two keys, too.
     fn bounds(&self, transform: &Transform, origin: Vec3) -> [Vec3; 2] {
         let rows = [transform.x, transform.y, transform.z].map(Vec3::as_dvec3);
         let added = transform.translation.as_dvec3() - origin.as_dvec3();
         let most = DVec3::splat(1.0 + f64::from(BOX_PADDING));
-        let room = sums(transform, origin) * (8.0 * U) + 1.01 * f64::from(BOX_PADDING);
+        let room = sums(transform, origin) * (16.0 * U) + 1.01 * f64::from(BOX_PADDING);
         let moved = |&[low, high]: &[DVec3; 2]| {
             let (middle, half) = ((low + high) / 2.0, (high - low) / 2.0);
             let at = DVec3::from_array(rows.map(|row| row.dot(middle))) + added;
@@ -110,8 +116,8 @@ fn parts(nodes: &[NodePair]) -> Vec<[DVec3; 2]> {
     parts
 }
 
-/// The records of all copies and their boxes, as primitives of the hierarchy above. `roots` are the pairs that the hierarchies of
-/// meshes start with.
+/// The records of all copies, each that moves with its keys, and their boxes while the shutter is open, as primitives of the hierarchy
+/// above, by the numbers of their first records.
 pub(super) fn records(
     scene: &Scene,
     normalisation: &Normalisation,
@@ -138,10 +144,41 @@ pub(super) fn records(
             z: pack(transform.z, added[2]),
             mesh: UVec4::new(roots[mesh], first, flags(number) | mirrors, margin),
         };
-        let [least, greatest] = bottoms[mesh].bounds(&transform, origin);
-        (record, Primitive::instance(least, greatest, number as u32))
+        (record, bottoms[mesh].bounds(&transform, origin))
     };
-    scene.instances.par_iter().enumerate().map(record).unzip()
+    let Some(motion) = &scene.motion else {
+        let alone = |(number, instance)| {
+            let (record, [least, greatest]) = record((number, instance));
+            (record, Primitive::instance(least, greatest, number as u32))
+        };
+        return scene.instances.par_iter().enumerate().map(alone).unzip();
+    };
+    let bent: HashSet<u32> = motion.bent().map(|mesh| mesh as u32).collect();
+    let keys = |(number, instance): (usize, &Instance)| {
+        let later = || motion.poses.iter().map(|pose| &pose.instances[number]);
+        let moves = bent.contains(&instance.mesh) || later().any(|other| other != instance);
+        let first = record((number, instance));
+        if moves {
+            [first].into_iter().chain(later().map(|other| record((number, other)))).collect()
+        } else {
+            vec![first]
+        }
+    };
+    let keys: Vec<Vec<(Record, [Vec3; 2])>> = scene.instances.par_iter().enumerate().map(keys).collect();
+    let (mut all, mut boxes) = (Vec::new(), Vec::new());
+    for keys in keys {
+        let number = all.len() as u32;
+        let [least, greatest] =
+            keys.iter().map(|&(_, of)| of).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default();
+        boxes.push(Primitive::instance(least, greatest, number));
+        let moves = if keys.len() > 1 { Record::MOVES } else { 0 };
+        let margin = keys.iter().map(|(key, _)| key.margin()).fold(0.0, f32::max).to_bits();
+        all.extend(keys.into_iter().enumerate().map(|(key, (record, _))| {
+            let UVec4 { x: root, y: first, z: flags, .. } = record.mesh;
+            Record { mesh: UVec4::new(if key == 0 { root } else { 0 }, first, flags | moves, margin), ..record }
+        }));
+    }
+    (all, boxes)
 }
 
 /// A scene in which each copy of a mesh can be one: objects are flattened whose meshes emit light. Pictures of it have the bits of the
@@ -159,7 +196,7 @@ pub(crate) fn unfit_triangles(scene: &Scene) -> u64 {
 }
 
 /// Whether objects are copies of meshes that emit light, or whose numbers change by more than their exponents when they are normalised.
-fn unfit_objects(scene: &Scene) -> Vec<bool> {
+pub(crate) fn unfit_objects(scene: &Scene) -> Vec<bool> {
     /// Numbers between one over this and this are normal in any units.
     const MOST: f32 = (1u64 << 60) as f32;
     let is_held = |x: f32| x == 0.0 || (1.0 / MOST..=MOST).contains(&x.abs());

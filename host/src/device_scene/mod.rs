@@ -16,6 +16,7 @@ mod feature;
 mod flags;
 mod frame;
 mod hierarchy;
+mod keys;
 mod levels;
 mod light_tree;
 mod lighting;
@@ -28,7 +29,7 @@ mod view;
 mod words;
 
 pub use copies::fitted;
-pub(crate) use copies::unfit_triangles;
+pub(crate) use copies::{unfit_objects, unfit_triangles};
 pub use feature::Feature;
 pub use hierarchy::hierarchy;
 pub use lighting::Lighting;
@@ -40,6 +41,7 @@ pub use view::SceneView;
 pub use words::{NodeWords, PrimitiveWords};
 
 use hierarchy::{centred, gathered};
+pub(crate) use keys::Movement;
 use lighting::Lamps;
 use two_levels::Levels;
 
@@ -56,6 +58,7 @@ pub struct DeviceScene {
     wide: Vec<CwbvhNode>,
     primitives: Vec<Primitive>,
     instances: Vec<InstanceRecord>,
+    movement: Movement,
     /// Pairs and slots of what stands in the world; those of shared meshes follow.
     top: (usize, usize),
     bounds: Vec<Bounds>,
@@ -114,21 +117,22 @@ impl DeviceScene {
         let effects = records::effects(scene);
         let normalisation = normalisation(scene);
         let start = Instant::now();
-        let Levels { bvh, top, primitives, instances, statistics } =
+        let Levels { bvh, top, primitives, mut instances, bends, statistics, is_split } =
             Levels::new(scene, &normalisation, quality, is_wide)?;
-        let is_split = bvh.order.len() > primitives.len();
+        let movement = Movement::new(scene, &normalisation, &mut instances)?;
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
         let material = |m| records::material(m, groups.unlit(m), scene.ambient, normalisation.scale);
         // One thing after the other, so that no more lies in memory than must.
         let nodes = centred(bvh.nodes);
-        let primitives = gathered(primitives, &bvh.order);
-        let normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
+        let mut primitives = gathered(primitives, &bvh.order);
+        let mut normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
         let physical = |m| records::physical(m, normalisation.scale);
         let physicals =
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation)?;
-        let textures = Textures::new(scene, effects, &bvh.order)?;
+        let mut textures = Textures::new(scene, effects, &bvh.order)?;
+        bends.shape((scene, &normalisation), &bvh.order, (&mut primitives, &mut normals, &mut textures.tangents));
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let background_group = groups.number(&scene.background_group);
@@ -140,6 +144,7 @@ impl DeviceScene {
             statistics,
             primitives,
             instances,
+            movement,
             top,
             normals,
             nodes,
@@ -206,7 +211,12 @@ impl DeviceScene {
         &self.primitives
     }
 
-    /// Copies of meshes.
+    /// What moves while the shutter is open.
+    pub(crate) fn movement(&self) -> &Movement {
+        &self.movement
+    }
+
+    /// Copies of meshes, each that moves with its keys, and the keys of cameras.
     pub fn instances(&self) -> &[InstanceRecord] {
         &self.instances
     }

@@ -1,16 +1,20 @@
 //! The hierarchies of a scene as one: that of what stands in the world, and behind it those of meshes that stand in several places,
 //! to whose starts copies lead.
 
+use std::collections::HashSet;
+use std::ops::Range;
+
 use eyerays_bvh::{Bvh, Limits, Quality, Statistics};
 use eyerays_shader::data::{CentredPair, Instance as Record, NodePair, NodeRef, Primitive};
 use rayon::prelude::*;
 
 use super::copies::{self, Bottom};
 use super::hierarchy::{built, kept_or_built, refused};
+use super::keys::{self, Bends};
 use super::normalisation::Normalisation;
 use super::{flags, records};
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Motion, Scene, SharedMesh};
 
 /// Hierarchies, and what their leaves hold.
 pub(super) struct Levels {
@@ -23,8 +27,12 @@ pub(super) struct Levels {
     pub primitives: Vec<Primitive>,
     /// Copies of meshes.
     pub instances: Vec<Record>,
+    /// Triangles of meshes in their later shapes, the last in the order.
+    pub bends: Bends,
     /// Of that of the world.
     pub statistics: Statistics,
+    /// Do some primitives have several slots?
+    pub is_split: bool,
 }
 
 impl Levels {
@@ -33,18 +41,25 @@ impl Levels {
     /// # Errors
     /// What builders refuse.
     pub fn new(scene: &Scene, normalisation: &Normalisation, quality: Quality, is_wide: bool) -> Result<Self> {
-        let cubes: Vec<Normalisation> = scene.shared.iter().map(|shared| copies::cube(scene, shared)).collect();
+        let cubes: Vec<Normalisation> = (0..scene.shared.len()).map(|mesh| copies::cube(scene, mesh)).collect();
         let mut primitives = records::primitives(scene, normalisation, &cubes);
         if scene.shared.is_empty() {
             let mut bvh = kept_or_built(scene, &primitives, quality)?;
             widen(&mut bvh, is_wide)?;
             let statistics = Statistics::of(&bvh, &primitives);
             let top = (bvh.nodes.len(), bvh.order.len());
-            return Ok(Levels { bvh, top, primitives, instances: Vec::new(), statistics });
+            let is_split = bvh.order.len() > primitives.len();
+            let (instances, bends) = (Vec::new(), Bends::default());
+            return Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split });
         }
-        let meshes = scene.shared.par_iter();
-        let bottoms: Vec<Bottom> =
-            meshes.map(|shared| Bottom::new(&primitives[shared.triangles.clone()], quality)).collect::<Result<_>>()?;
+        let bent: HashSet<usize> = scene.motion.iter().flat_map(Motion::bent).collect();
+        let bottom = |(mesh, shared): (usize, &SharedMesh)| {
+            if bent.contains(&mesh) {
+                return Bottom::new(&keys::boxes(scene, mesh, &cubes[mesh]), quality);
+            }
+            Bottom::new(&primitives[shared.triangles.clone()], quality)
+        };
+        let bottoms: Vec<Bottom> = scene.shared.par_iter().enumerate().map(bottom).collect::<Result<_>>()?;
         let (firsts, by_object) = (scene.first_numbers(), flags::by_object(scene));
         let flags = |number: usize| by_object(firsts[number]);
         let (mut instances, boxes) = copies::records(scene, normalisation, (&cubes, &bottoms), flags);
@@ -56,20 +71,45 @@ impl Levels {
         let statistics = Statistics::of(&bvh, &above);
         bvh.order.par_iter_mut().for_each(|primitive| *primitive = own[*primitive as usize]);
         let top = (bvh.nodes.len(), bvh.order.len());
-        instances.par_iter_mut().for_each(|instance| instance.mesh.x += top.0 as u32);
+        let firsts = primitives[primitives.len() - scene.instances.len()..].iter().map(|copy| copy.number() as usize);
+        let firsts: Vec<usize> = firsts.collect();
+        firsts.iter().for_each(|&first| instances[first].mesh.x += top.0 as u32);
+        let mut slots = Vec::with_capacity(bottoms.len());
         for (Bottom { bvh: bottom, .. }, shared) in bottoms.into_iter().zip(&scene.shared) {
+            slots.push(bvh.order.len()..bvh.order.len() + bottom.order.len());
             append(&mut bvh, bottom, shared.triangles.start as u32)?;
         }
-        lead(&mut bvh, top.0, &primitives)?;
-        Ok(Levels { bvh, top, primitives, instances, statistics })
+        lead(&mut bvh, top.0, &primitives, instances.len())?;
+        let is_split = bvh.order.len() > primitives.len();
+        let bends = bends(scene, (&slots, &firsts), &mut bvh.order, &mut instances);
+        Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split })
     }
 }
 
+/// Adds the triangles of meshes in their later shapes, and tells the keys of their copies where those are.
+fn bends(
+    scene: &Scene,
+    (slots, firsts): (&[Range<usize>], &[usize]),
+    order: &mut Vec<u32>,
+    instances: &mut [Record],
+) -> Bends {
+    let mut bends = Bends::default();
+    let Some(motion) = &scene.motion else { return bends };
+    for mesh in motion.bent() {
+        let behind = bends.add(slots[mesh].clone(), motion.poses.len(), order);
+        let copies = firsts.iter().zip(&scene.instances).filter(|(_, copy)| copy.mesh as usize == mesh);
+        for (&first, _) in copies {
+            instances[first + 1..].iter_mut().zip(&behind).for_each(|(key, &behind)| key.mesh.x = behind);
+        }
+    }
+    bends
+}
+
 /// Makes leaves of a copy lead to it: a number behind those of all pairs stands for it.
-fn lead(bvh: &mut Bvh, top: usize, primitives: &[Primitive]) -> Result<()> {
+fn lead(bvh: &mut Bvh, top: usize, primitives: &[Primitive], records: usize) -> Result<()> {
     let pairs = bvh.nodes.len() as u64;
     let most = u64::from(NodeRef::MAX_INDEX);
-    let last = pairs + primitives.iter().rev().take_while(|primitive| primitive.is_instance()).count() as u64;
+    let last = pairs + records as u64;
     if last > most {
         return Err(Error::new(format!("pairs of nodes and copies of meshes are {last}, more than {most}; use fewer")));
     }
@@ -126,8 +166,9 @@ pub(super) fn leaves(pairs: &[CentredPair], top: usize, primitives: &[Primitive]
     let copies = primitives.iter().enumerate().filter(|(_, primitive)| primitive.is_instance());
     let mut slots: Vec<(u32, u32)> = copies.map(|(slot, copy)| (copy.number(), slot as u32)).collect();
     slots.par_sort_unstable();
-    let leaf = |child: NodeRef| match (child.index() as usize).checked_sub(pairs.len()) {
-        Some(copy) if !child.is_leaf() => NodeRef::leaf(slots[copy].1, 1),
+    let slot = |copy: u32| slots[slots.partition_point(|&(number, _)| number < copy)].1;
+    let leaf = |child: NodeRef| match child.index().checked_sub(pairs.len() as u32) {
+        Some(copy) if !child.is_leaf() => NodeRef::leaf(slot(copy), 1),
         _ => child,
     };
     let mut pairs = pairs[..top].to_vec();

@@ -57,7 +57,6 @@ impl SceneView {
             materials: packed.materials(),
             tangents: &packed.textures().tangents,
             maps: &packed.textures().maps,
-            instances: packed.instances(),
             textures: self.textures(),
         }
     }

@@ -24,6 +24,8 @@ pub(crate) struct CameraRecord {
     pub clip: [f32; 2],
     /// See [`data::Frame::eyes`] and [`data::Frame::converging`].
     pub eyes: [f32; 2],
+    /// See [`data::Frame::keys`].
+    pub keys: u32,
 }
 
 impl CameraRecord {
@@ -56,6 +58,8 @@ impl CameraRecord {
             Projection::Perspective { .. } | Projection::Orthographic { .. } => axes.flat(job, camera, of_eye, grid)?,
             Projection::Equirectangular | Projection::Fisheye { .. } => axes.round(camera.projection, of_eye, grid),
         };
+        let keys = job.movement().keys(camera).unwrap_or(data::Frame::STILL);
+        let record = CameraRecord { keys, ..record };
         record.clipped(job, camera).and_then(|record| record.of_two(job, camera))
     }
 
@@ -123,7 +127,8 @@ impl Axes {
         };
         // Half a cell's height is a step at distance 1.
         let spread = 2.0 * up.length();
-        Ok(CameraRecord { camera, spread, angle: 0.0, aperture, clip: [0.0; 2], eyes: [0.0; 2] })
+        let (clip, eyes, keys) = ([0.0; 2], [0.0; 2], data::Frame::STILL);
+        Ok(CameraRecord { camera, spread, angle: 0.0, aperture, clip, eyes, keys })
     }
 
     /// The same through a lens, and its diameter.
@@ -170,7 +175,8 @@ impl Axes {
             }
         };
         let spread = (2.0 * turns * std::f64::consts::TAU) as f32;
-        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0, clip: [0.0; 2], eyes: [0.0; 2] }
+        let (clip, eyes, keys) = ([0.0; 2], [0.0; 2], data::Frame::STILL);
+        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0, clip, eyes, keys }
     }
 }
 

@@ -61,6 +61,11 @@ impl Camera {
         sine.length() >= 1e-6
     }
 
+    /// Is it where another is, turned alike?
+    pub(crate) fn stands_as(&self, other: &Camera) -> bool {
+        (self.eye, self.target, self.up) == (other.eye, other.target, other.up)
+    }
+
     /// The way that it looks, of unit length.
     pub(crate) fn forward(&self) -> DVec3 {
         (self.target.as_dvec3() - self.eye.as_dvec3()).normalize_or_zero()

@@ -139,6 +139,35 @@ impl Scene {
         if self.instances.is_empty() { Vec::new() } else { self.shared.par_iter().map(corners).collect() }
     }
 
+    /// Corners of boxes around all copies that move, at each pose.
+    pub(crate) fn motion_bounds(&self) -> Vec<Vec3> {
+        let Some(motion) = &self.motion else { return Vec::new() };
+        let mut corners = self.corners();
+        for (mesh, shape) in motion.poses.iter().flat_map(|pose| &pose.shapes) {
+            let [low, high] = extent::of(shape.positions.iter().copied()).map(Vec3::as_dvec3);
+            let [least, greatest] = &mut corners[*mesh as usize];
+            (*least, *greatest) = (least.min(low), greatest.max(high));
+        }
+        let bent: Vec<usize> = motion.bent().collect();
+        let around = |copy: &Instance| {
+            let [low, high] = corners[copy.mesh as usize];
+            let rows = copy.rows.map(Vec3::as_dvec3);
+            let middle = DVec3::from_array(rows.map(|row| row.dot((low + high) / 2.0))) + copy.translation.as_dvec3();
+            let half = DVec3::from_array(rows.map(|row| row.abs().dot((high - low) / 2.0)));
+            // More than vertices are off that are moved in single precision.
+            let half = half + (middle.abs() + half) * 1e-6;
+            [(middle - half).as_vec3(), (middle + half).as_vec3()]
+        };
+        let moves = |(own, copy): (&Instance, &Instance)| {
+            (own != copy || bent.contains(&(copy.mesh as usize))).then(|| around(copy))
+        };
+        let of_pose = |pose: &super::Pose| {
+            let boxes = self.instances.par_iter().zip(&pose.instances).filter_map(moves);
+            boxes.reduce_with(|[a, b], [c, d]| [a.min(c), b.max(d)])
+        };
+        motion.poses.iter().filter_map(of_pose).flatten().collect()
+    }
+
     /// Least and greatest corner of all copies in the world, as they are when they are flattened; none where there is none.
     pub(crate) fn copies_bounds(&self) -> Option<[Vec3; 2]> {
         Copies { scene: self, instances: &self.instances, corners: &self.corners() }.bounds()

@@ -142,7 +142,7 @@ impl Scene {
 
 impl Mesh {
     /// Some of its vertices and the triangles of these.
-    fn part(&self, vertices: Range<usize>, triangles: Range<usize>) -> Mesh {
+    pub(super) fn part(&self, vertices: Range<usize>, triangles: Range<usize>) -> Mesh {
         fn part<T: Clone>(all: &[T], range: &Range<usize>) -> Vec<T> {
             all.get(range.clone()).unwrap_or_default().to_vec()
         }
@@ -157,6 +157,40 @@ impl Mesh {
             tangents: part(&self.tangents, &vertices),
             colours: part(&self.colours, &vertices),
         }
+    }
+
+    /// Some of its triangles with their own vertices.
+    pub(super) fn picked(&self, triangles: Range<usize>) -> Mesh {
+        fn picked<T: Copy>(all: &[T], vertices: &[usize]) -> Vec<T> {
+            vertices.iter().filter_map(|&vertex| all.get(vertex).copied()).collect()
+        }
+        let mut numbers = vec![u32::MAX; self.positions.len()];
+        let mut vertices = Vec::new();
+        let mut number = |vertex: u32| {
+            let own = &mut numbers[vertex as usize];
+            if *own == u32::MAX {
+                *own = vertices.len() as u32;
+                vertices.push(vertex as usize);
+            }
+            *own
+        };
+        let corners = self.triangles[triangles.clone()].iter().map(|corners| corners.map(&mut number)).collect();
+        Mesh {
+            positions: picked(&self.positions, &vertices),
+            normals: picked(&self.normals, &vertices),
+            triangles: corners,
+            materials: self.materials[triangles].to_vec(),
+            coordinates: self.coordinates.each_ref().map(|coordinates| picked(coordinates, &vertices)),
+            tangents: picked(&self.tangents, &vertices),
+            colours: picked(&self.colours, &vertices),
+        }
+    }
+
+    /// All of its vertices and some of its triangles.
+    pub(super) fn kept(&self, triangles: &[usize]) -> Mesh {
+        let corners = triangles.iter().map(|&triangle| self.triangles[triangle]).collect();
+        let materials = triangles.iter().map(|&triangle| self.materials[triangle]).collect();
+        Mesh { triangles: corners, materials, ..self.clone() }
     }
 
     /// Repeats a vertex with another tangent, and returns its number.
@@ -210,7 +244,7 @@ impl Mesh {
     }
 
     /// Adds another mesh behind `first` vertices. Parts of one scene's mesh have the same lists, but for tangents.
-    fn append(&mut self, other: &Mesh, first: usize) {
+    pub(super) fn append(&mut self, other: &Mesh, first: usize) {
         self.positions.extend(&other.positions);
         self.normals.extend(&other.normals);
         let shift = |corners: &[u32; 3]| corners.map(|vertex| first as u32 + vertex);

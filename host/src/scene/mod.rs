@@ -15,6 +15,7 @@ mod instance;
 mod lens;
 mod light_groups;
 mod matrices;
+mod motion;
 pub(crate) mod normal;
 mod object;
 mod physical;
@@ -39,6 +40,7 @@ pub use hierarchy::Hierarchy;
 pub use instance::{Instance, SharedMesh};
 pub use lens::{Focus, Lens};
 pub use light_groups::LightGroups;
+pub use motion::{Motion, Moved, Pose, Shape};
 pub use object::{Object, ObjectNumbers};
 pub use physical::{Absorption, Conductor, Physical, Wall};
 pub use pixel_filter::PixelFilter;
@@ -100,6 +102,8 @@ pub struct Scene {
     pub ambient: Vec3,
     /// What the scene file asks of a rendering; the command line has the last word.
     pub settings: Settings,
+    /// What moves while the shutter is open, if anything does.
+    pub motion: Option<Motion>,
     /// What a binary scene brings along to be built no more. It is of this geometry alone: who changes that sets this to
     /// `None`, or the scene is refused.
     pub hierarchy: Option<Hierarchy>,

@@ -27,6 +27,14 @@ pub fn texture() -> Arc<Texture> {
     TEXTURE.clone()
 }
 
+/// A picture of one texel.
+pub fn blank() -> Arc<Texture> {
+    static BLANK: LazyLock<Arc<Texture>> = LazyLock::new(|| {
+        Arc::new(Texture { name: String::new(), width: 1, height: 1, texels: Texels::Bytes(vec![[255; 4]]) })
+    });
+    BLANK.clone()
+}
+
 /// The studio, which the camera does not see.
 pub fn environment() -> Environment {
     Environment { texture: texture(), rotation: 0.0, scale: 1.0, visible: false }

@@ -4,20 +4,22 @@ use std::collections::HashSet;
 
 use glam::{DVec3, Vec3};
 
+use super::keys::Keys;
 use super::table::Table;
 use crate::error::Result;
 use crate::scene::Range;
 use crate::scene::{Camera, Focus, Lens, Mapping, Projection, Stereo};
 
-/// Reads every `[[camera]]`.
+/// Reads every `[[camera]]` as it is after so many seconds. Those with keys move until the last of all.
 ///
 /// # Errors
 /// A name given twice, a view that has no direction or no upright, a number out of range, or an unknown key.
-pub fn cameras(tables: Vec<Table>) -> Result<Vec<Camera>> {
+pub fn cameras(tables: Vec<Table>, seconds: f64) -> Result<(Vec<Camera>, Option<f32>)> {
     let mut names = HashSet::new();
-    let mut cameras = Vec::new();
+    let (mut cameras, mut last) = (Vec::new(), None);
     for mut table in tables {
-        let camera = camera(&mut table)?;
+        let (camera, keys) = camera(&mut table, seconds)?;
+        last = last.into_iter().chain(keys).reduce(f32::max);
         if !names.insert(camera.name.clone()) {
             let fault = format!("a second camera {:?}; rename one", camera.name);
             return Err(table.fault_of("name", fault));
@@ -25,23 +27,32 @@ pub fn cameras(tables: Vec<Table>) -> Result<Vec<Camera>> {
         table.done()?;
         cameras.push(camera);
     }
-    Ok(cameras)
+    Ok((cameras, last))
 }
 
-fn camera(table: &mut Table) -> Result<Camera> {
+/// A camera after so many seconds, and the time of its last key if it has any.
+fn camera(table: &mut Table, seconds: f64) -> Result<(Camera, Option<f32>)> {
     let name = table.name("name")?;
     let eye = table.triple("eye", Range::ANY)?;
     let target = table.triple("target", Range::ANY)?;
-    let (name, eye) = (table.need("name", name)?, table.need("eye", eye)?);
+    let up = table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y);
+    let own = [eye.unwrap_or(Vec3::ZERO), target.unwrap_or(Vec3::ZERO), up];
+    let keys = Keys::read(table, [("eye", Range::ANY), ("target", Range::ANY), ("up", Range::ANY)], own)?;
+    let last = keys.as_ref().map(Keys::last);
+    let name = table.need("name", name)?;
+    let [eye, target, up] = match keys {
+        Some(keys) => keys.at(seconds),
+        None => [table.need("eye", eye)?, table.need("target", target)?, up],
+    };
     let sensor = table.number("sensor", Range::LENGTH)?.unwrap_or(Lens::SENSOR);
     let projection = projection(table, sensor)?;
     let camera = Camera {
-        up: table.triple("up", Range::ANY)?.unwrap_or(Vec3::Y),
+        up,
         shift: shift(table, projection)?,
         lens: lens(table, projection, sensor)?,
         clip: clip(table)?,
         stereo: stereo(table, projection)?,
-        ..Camera::new(name, eye, table.need("target", target)?, projection)
+        ..Camera::new(name, eye, target, projection)
     };
     let named = format!("camera {:?}", camera.name);
     if camera.forward() == DVec3::ZERO {
@@ -57,7 +68,7 @@ fn camera(table: &mut Table) -> Result<Camera> {
         let fault = format!("{named} is to be sharp behind its eye; move the point before it");
         return Err(table.fault_of("focus_on", fault));
     }
-    Ok(camera)
+    Ok((camera, last))
 }
 
 #[derive(Clone, Copy, PartialEq)]

@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::budget::Budget;
 use crate::choice::choices;
-use crate::device_scene::{fitted, unfit_triangles};
+use crate::device_scene::{fitted, unfit_objects, unfit_triangles};
 use crate::scene::{Instance, Mesh, Scene, Unplaced};
 
 /// Meshes in units of their own, and where they stand.
@@ -101,8 +101,6 @@ impl Instancing {
     /// # Errors
     /// There is no room for all the triangles that copies would have of their own.
     pub fn of(self, scene: Scene, budget: &Budget) -> Unplaced<Scene> {
-        /// Triangles that copies have beyond those of their meshes: what takes less than a second to build flat is as well met faster.
-        const MANY: u64 = 1 << 18;
         if scene.instances.is_empty() {
             return Ok(scene);
         }
@@ -111,16 +109,42 @@ impl Instancing {
         check(unfit).map_err(|fault| format!("copies of meshes that must be apart have {fault}"))?;
         let scene = fitted(scene);
         let stored = (scene.mesh.triangles.len() - scene.own_triangles()) as u64;
-        let saved = scene.copied_triangles().saturating_sub(stored);
-        let keeps = match self {
-            Instancing::Auto => saved >= MANY,
-            Instancing::Always => true,
-            Instancing::Never => false,
-        };
-        if keeps {
+        if self.keeps(scene.copied_triangles().saturating_sub(stored)) {
             return Ok(scene);
         }
         check(scene.copied_triangles())?;
         Ok(scene.flattened())
+    }
+
+    /// Which objects of a scene are to be flattened, some of which move: those that can't be copies, and those that stand still where
+    /// they are not to be held once.
+    ///
+    /// # Errors
+    /// There is no room for their triangles.
+    pub fn flattens(self, scene: &Scene, moving: &[bool], budget: &Budget) -> Unplaced<Vec<bool>> {
+        let of = |is: &dyn Fn(usize) -> bool| {
+            let objects = scene.objects.iter().enumerate().filter(|&(number, _)| is(number));
+            let copies = objects.map(|(_, object)| object.primitives.instances(&scene.instances));
+            copies.map(|copies| scene.triangles_of(copies)).sum::<u64>()
+        };
+        let unfit = unfit_objects(scene);
+        let stored = (scene.mesh.triangles.len() - scene.own_triangles()) as u64;
+        let keeps = self.keeps(of(&|number| !moving[number]).saturating_sub(stored));
+        let is_flat = |number: usize| unfit[number] || (!keeps && !moving[number]);
+        let flat: Vec<bool> = (0..scene.objects.len()).map(is_flat).collect();
+        let count = of(&is_flat) as usize;
+        budget.check(count, count)?;
+        Ok(flat)
+    }
+
+    /// Are copies kept that save so many triangles beyond those of their meshes?
+    fn keeps(self, saved: u64) -> bool {
+        /// What takes less than a second to build flat is as well met faster.
+        const MANY: u64 = 1 << 18;
+        match self {
+            Instancing::Auto => saved >= MANY,
+            Instancing::Always => true,
+            Instancing::Never => false,
+        }
     }
 }

@@ -43,6 +43,8 @@ pub struct Files<'p> {
     pub paths: Vec<PathBuf>,
     /// How they may move.
     pub animations: Vec<Animation>,
+    /// When the last key of the scene file itself is, if it has any.
+    last_key: Option<f32>,
     /// What several tables are of, if it is placed.
     pub repeated: HashSet<String>,
 }
@@ -61,8 +63,20 @@ impl<'p> Files<'p> {
             warnings: Vec::new(),
             paths: Vec::new(),
             animations: Vec::new(),
+            last_key: None,
             repeated: HashSet::new(),
         }
+    }
+
+    /// Remembers the last key of a table, if it has keys.
+    pub fn move_until(&mut self, last: Option<f32>) {
+        self.last_key = last.into_iter().chain(self.last_key).reduce(f32::max);
+    }
+
+    /// How all of the scene may move: by its own keys, and as its files say.
+    pub fn take_animations(&mut self) -> Vec<Animation> {
+        let own = self.last_key.map(|last| Animation { name: "keys".into(), seconds: last.into() });
+        own.into_iter().chain(std::mem::take(&mut self.animations)).collect()
     }
 
     /// Where the file of a table's key `file` lies.

@@ -20,9 +20,10 @@ use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
 use super::mesh_table::{self, Placed};
 use super::obj::Obj;
+use super::shutter;
 use super::source::Source;
 use super::table::Table;
-use super::{LightUnit, Moment};
+use super::{Instant, LightUnit, Moment, Shutter};
 use super::{Warning, WarningKind};
 use super::{camera_table, document};
 use crate::error::{Error, Result};
@@ -57,6 +58,10 @@ pub struct Loading {
     pub integrator: Option<Integrator>,
     /// When a glTF file is looked at that moves.
     pub moment: Moment,
+    /// When the shutter is open; without one as the scene says, or for no time.
+    pub shutter: Option<Shutter>,
+    /// What of the scene is read.
+    pub instant: Instant,
     /// Are meshes that stand in several places held once?
     pub instancing: Instancing,
 }
@@ -83,13 +88,14 @@ pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scen
 pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
-        Ok((settled(path, binary::load(path, budget)?, budget, loading.instancing)?, Vec::new()))
+        Ok((settled(path, binary::load(path, budget)?, budget, &loading)?, Vec::new()))
     } else if is(path, "toml") {
         load_toml(path, budget, loading)
     } else if is(path, "obj") || is(path, "ply") {
         load_mesh(path, budget, loading)
     } else if is_gltf(path) {
-        load_gltf(path, budget, loading)
+        let open = loading.shutter;
+        shutter::over(path, budget, (loading, open), |loading| load_gltf(path, budget, loading))
     } else if is(path, "gz") {
         Err(Error::file(path, "it is compressed; unpack it (gunzip) and name what comes out"))
     } else {
@@ -99,31 +105,29 @@ pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Resu
 }
 
 fn load_mesh(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let instancing = loading.instancing;
-    let mut images = Images::within(file::folder(path), budget, loading);
-    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?, budget, instancing)?;
+    let mut images = Images::within(file::folder(path), budget, loading.clone());
+    let (mut scene, warnings) = bare(path, read_mesh(path, budget, &mut images, false)?, budget, &loading)?;
     scene.files.extend(images.paths());
     if scene.materials.iter().any(|material| material.emission != Vec3::ZERO) {
         // Whitted's model draws nothing that shines, and paths no ambient light.
         (scene.settings, scene.ambient) = (of_paths(), Vec3::ZERO);
     }
-    Ok((framed(path, scene)?, warnings))
+    Ok((framed(path, scene, loading.instant)?, warnings))
 }
 
 /// What the camera sees behind a glTF scene without light, which the studio lights: a bright grey of 80 %.
 const BACKDROP: Vec3 = Vec3::splat(0.6);
 
 fn load_gltf(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
-    let instancing = loading.instancing;
-    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading)?;
-    let (scene, warnings) = bare(path, obj, budget, instancing)?;
+    let Gltf { obj, lights, cameras, aspect, animations } = gltf::load(path, budget, loading.clone())?;
+    let (scene, warnings) = bare(path, obj, budget, &loading)?;
     let is_lit = lit::is_lit(&scene, &lights);
     let background = Background::Colour(if is_lit { Vec3::ZERO } else { BACKDROP });
     let environment = (!is_lit).then(studio::environment);
     let mut settings = of_paths();
     settings.size = aspect.map_or(settings.size, frame::size);
     let scene = Scene { lights, cameras, background, environment, ambient: Vec3::ZERO, settings, animations, ..scene };
-    Ok((framed(path, scene)?, warnings))
+    Ok((framed(path, scene, loading.instant)?, warnings))
 }
 
 /// Enough samples of paths to look at a model.
@@ -138,7 +142,7 @@ fn of_paths() -> Settings {
 }
 
 /// A scene of one mesh without a camera, and the warnings of it.
-fn bare(path: &Path, obj: Obj, budget: Budget, instancing: Instancing) -> Result<(Scene, Vec<Warning>)> {
+fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Scene, Vec<Warning>)> {
     let Obj { mesh, copies, materials, warnings, libraries, objects } = obj;
     let name = match &*objects {
         [only] => only.name.clone(),
@@ -167,20 +171,24 @@ fn bare(path: &Path, obj: Obj, budget: Budget, instancing: Instancing) -> Result
         background_group: String::new(),
         ambient: Vec3::splat(0.2),
         settings: Settings::default(),
+        motion: None,
         hierarchy: None,
     };
-    Ok((settled(path, scene, budget, instancing)?, warnings))
+    Ok((settled(path, scene, budget, loading)?, warnings))
 }
 
-/// A scene with the bounds of its copies, which are held as is asked.
-fn settled(path: &Path, mut scene: Scene, budget: Budget, instancing: Instancing) -> Result<Scene> {
+/// A scene with the bounds of its copies, which are held as is asked unless more is to come of it.
+fn settled(path: &Path, mut scene: Scene, budget: Budget, loading: &Loading) -> Result<Scene> {
     scene.measure_copies();
-    instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))
+    if loading.instant != Instant::Alone {
+        return Ok(scene);
+    }
+    loading.instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))
 }
 
-/// Gives a scene without a camera one that sees all of it.
-fn framed(path: &Path, mut scene: Scene) -> Result<Scene> {
-    if scene.cameras.is_empty() {
+/// Gives a scene without a camera one that sees all of it, as it is first.
+fn framed(path: &Path, mut scene: Scene, instant: Instant) -> Result<Scene> {
+    if scene.cameras.is_empty() && instant != Instant::Later {
         let (width, height) = scene.settings.size;
         let camera = frame::default_camera(&scene, f64::from(width) / f64::from(height));
         let fault = "the scene is too large to be seen whole; make it smaller or add a [[camera]]";
@@ -214,16 +222,26 @@ fn text<'b>(path: &Path, bytes: &'b [u8]) -> Result<&'b str> {
 /// The scene of a TOML text, whose meshes are relative to the folder of `path`.
 pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
+    let own = table.table("shutter")?.map(shutter::read).transpose()?;
+    let open = loading.shutter.or(own);
+    shutter::over(path, budget, (loading, open), |loading| parse_once(path, bytes, budget, loading))
+}
+
+fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
+    let mut table = Source::new(path, text(path, bytes)?).parse(&budget)?;
+    table.table("shutter")?.map(shutter::read).transpose()?;
     let settings = table.table("render")?.map(document::settings);
     let settings = settings.transpose()?.unwrap_or_default();
-    let instancing = loading.instancing;
+    let holding = loading.clone();
     let integrator = Some(loading.integrator.unwrap_or(settings.transport.integrator));
     let mut files = Files::new(file::folder(path), budget, Loading { integrator, ..loading });
     files.has = Own { lights: table.has("light"), cameras: table.has("camera") };
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let Surroundings { background, environment, group } = background.transpose()?.unwrap_or_default();
     let ambient = table.triple("ambient", Range::AMOUNT)?;
-    let cameras = camera_table::cameras(table.tables("camera")?.unwrap_or_default())?;
+    let seconds = holding.moment.seconds.unwrap_or(0.0);
+    let (cameras, last) = camera_table::cameras(table.tables("camera")?.unwrap_or_default(), seconds)?;
+    files.move_until(last);
     let lights = table.tables("light")?.map(document::lights).transpose()?;
     let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();
@@ -236,6 +254,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
     files.is_covered = overrides.values().any(Override::has_maps);
     let Merged { mesh, spheres, disks, shared, instances, objects, materials } =
         merge(meshes, &overrides, &mut files)?.finish();
+    let animations = files.take_animations();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
     let names_lights = lights.is_some();
@@ -246,7 +265,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         shared,
         instances,
         objects,
-        animations: files.animations,
+        animations,
         files: files.paths.into_iter().chain(files.images.paths()).collect(),
         materials,
         lights: lights.unwrap_or_else(frame::lights),
@@ -256,9 +275,10 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         background_group: group,
         ambient: ambient.unwrap_or(Vec3::ZERO),
         settings,
+        motion: None,
         hierarchy: None,
     };
-    let mut scene = settled(path, scene, budget, instancing)?;
+    let mut scene = settled(path, scene, budget, &holding)?;
     if !names_lights {
         frame::without_spare_lamps(&mut scene, settings.transport.integrator);
     }
@@ -267,7 +287,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8], budget: Budget, loading: Loading)
         let said = idle.map(|idle| format!("material {:?}: {idle}", material.name));
         warnings.extend(said.map(|said| Warning::new(WarningKind::Idle, path, said)));
     }
-    Ok((framed(path, scene)?, warnings))
+    Ok((framed(path, scene, holding.instant)?, warnings))
 }
 
 fn overrides(tables: Vec<Table>, images: &mut Images) -> Result<Overrides> {

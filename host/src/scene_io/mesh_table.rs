@@ -8,7 +8,7 @@ use super::named::{self, Wish};
 use super::obj::Obj;
 use super::table::Table;
 use super::transform::Transform;
-use super::visible;
+use super::{Instant, visible};
 use crate::error::Result;
 use crate::scene::{Mesh, Object, Primitives, Visibility, extent, normal};
 
@@ -68,7 +68,7 @@ impl Placed {
 
 /// What a `[[mesh]]` table is of, wherever it goes: tables of the same are equal texts.
 pub fn of_what(table: &Table) -> String {
-    table.text_without(&["scale", "rotate", "translate"])
+    table.text_without(&["scale", "rotate", "translate", "key"])
 }
 
 /// Reads a `[[mesh]]` table, but for refusing unknown keys. `repeated` is what it is of if others are, too.
@@ -79,7 +79,11 @@ pub fn of_what(table: &Table) -> String {
 pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> Result<Placed> {
     let material = table.name("material")?;
     let smooth = table.flag("smooth")?;
-    let wish = Wish { smooth, transform: Transform::read(table)? };
+    let loading = &files.images.loading;
+    let (transform, last) = Transform::read(table, loading.moment.seconds.unwrap_or(0.0))?;
+    let is_kept = last.is_some() && loading.instant != Instant::Alone;
+    files.move_until(last);
+    let wish = Wish { smooth, transform };
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
     let Source { name, mut geometry, mut copies, materials, mut objects } = source(table, &wish, files)?;
@@ -93,7 +97,7 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     }
     copies.meshes.iter_mut().for_each(shade);
     let repeated = repeated.filter(|_| matches!(geometry, Geometry::Mesh(_)));
-    if let (Some(_), Geometry::Mesh(mesh)) = (&repeated, &mut geometry) {
+    if let (true, Geometry::Mesh(mesh)) = (repeated.is_some() || is_kept, &mut geometry) {
         copies = Copies::with(std::mem::take(mesh), copies);
         objects.clear();
     }

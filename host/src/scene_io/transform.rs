@@ -3,6 +3,7 @@
 use eyerays_shader::geometry;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
+use super::keys::Keys;
 use super::table::Table;
 use crate::error::Result;
 use crate::math;
@@ -26,22 +27,23 @@ pub fn exact(linear: &DMat3, translate: DVec3) -> geometry::Transform {
 }
 
 impl Transform {
-    /// Reads `scale`, `rotate` (degrees) and `translate` of a `[[mesh]]` table, all optional.
+    /// Reads `scale`, `rotate` (degrees) and `translate` of a `[[mesh]]` table, all optional, and keys that say others over time. Returns
+    /// what it is after so many seconds, and when its last key is.
     ///
     /// # Errors
-    /// A number that is not finite, or a scale of zero.
-    pub fn read(table: &mut Table) -> Result<Option<Transform>> {
+    /// A number that is not finite, a scale of zero, or keys that make no sense.
+    pub fn read(table: &mut Table, seconds: f64) -> Result<(Option<Transform>, Option<f32>)> {
         let scale = table.triple_or_number("scale", Range::FACTOR)?;
         let rotate = table.triple("rotate", Range::ANY)?;
         let translate = table.triple("translate", Range::ANY)?;
-        if scale.is_none() && rotate.is_none() && translate.is_none() {
-            return Ok(None);
+        let is_none = scale.is_none() && rotate.is_none() && translate.is_none();
+        let own = [scale.unwrap_or(Vec3::ONE), rotate.unwrap_or(Vec3::ZERO), translate.unwrap_or(Vec3::ZERO)];
+        let fields = [("scale", Range::FACTOR), ("rotate", Range::ANY), ("translate", Range::ANY)];
+        let of = |[scale, rotate, translate]: [Vec3; 3]| Transform::new(scale, rotate, translate);
+        match Keys::read(table, fields, own)? {
+            Some(keys) => Ok((Some(of(keys.at(seconds))), Some(keys.last()))),
+            None => Ok(((!is_none).then(|| of(own)), None)),
         }
-        Ok(Some(Transform::new(
-            scale.unwrap_or(Vec3::ONE),
-            rotate.unwrap_or(Vec3::ZERO),
-            translate.unwrap_or(Vec3::ZERO),
-        )))
     }
 
     /// Scales, then turns by `rotate` degrees about the fixed x, y and z axes in this order

@@ -5,12 +5,14 @@ mod filter;
 mod lens;
 mod ray;
 mod round;
+mod shutter;
 mod stereo;
 
 pub use clip::limit;
 pub use filter::FILTER_STEPS;
 pub use lens::{MOST_CORNERS, OUTLINE};
 pub use ray::{CameraRay, plain_ray, ray};
+pub use shutter::{panned, time};
 
 use crate::buffer::read;
 use crate::data::{Frame, Order};

@@ -1,6 +1,7 @@
 //! What changes from launch to launch.
 
 use super::{Camera, Launch};
+use crate::real::{Real, SMALL, Scalar};
 use bytemuck::{Pod, Zeroable};
 use glam::UVec4;
 
@@ -91,14 +92,42 @@ pub struct Frame {
     pub group: u32,
     /// How many pairs of nodes there are: what refers to one behind them refers to a copy of a mesh.
     pub pairs: u32,
+    /// How many even steps the time has in which the shutter is open, each with a key at its start and its end
+    /// ([`Launch::MOVING`], [`Launch::PANNED`]); 0 for rays without a time, as those of streams.
+    pub steps: u32,
+    /// For how much of that time each row is exposed: 1 without a rolling shutter.
+    pub exposure: f32,
+    /// How much later each row's exposure begins than that of the row above.
+    pub row_delay: f32,
+    /// The first key of the camera, among the records of copies, or [`Frame::STILL`].
+    pub keys: u32,
     /// Nothing: records are whole words of 16 bytes.
     pub unused: u32,
 }
 
 impl Frame {
+    /// In place of the first key of a camera that does not move.
+    pub const STILL: u32 = u32::MAX;
+
+    /// The step that a time of the shutter is in, of which 0 is its opening and 1 its closing, and the share of the step before it.
+    #[inline(always)]
+    pub fn step(&self, time: f32) -> (u32, f32) {
+        step(self.steps, time)
+    }
+
     /// Does the camera have a lens? Others of the scene may have one.
     #[inline(always)]
     pub fn has_lens(&self, launch: Launch) -> bool {
         launch.has(Launch::LENS) && self.aperture != 0.0
     }
+}
+
+// A function of its own on the GPU, so that a module holds it once.
+#[cfg_attr(target_arch = "spirv", inline(never))]
+#[cfg_attr(not(target_arch = "spirv"), inline(always))]
+fn step(steps: u32, time: f32) -> (u32, f32) {
+    let all = time * steps as f32;
+    let last = if steps == 0 { 0 } else { steps - 1 };
+    let step = (all.floor_index() as u32).min(last);
+    (step, (all - step as f32).flush(SMALL))
 }

@@ -3,8 +3,9 @@
 use bytemuck::{Pod, Zeroable};
 use glam::{UVec4, Vec3};
 
-use super::numbers;
+use super::{numbers, pack};
 use crate::geometry::Transform;
+use crate::real::{Real, TINY};
 
 /// A copy of a mesh. The mesh lies in a cube [-1, 1] of its own, from which its vertices and its boxes are moved to the normalised
 /// scene when a ray comes to them.
@@ -18,7 +19,9 @@ pub struct Instance {
     /// On the third.
     pub z: UVec4,
     /// The pair of nodes that the hierarchy of its mesh starts with; the number of its first triangle in the scene; flags that all its
-    /// triangles have ([`Primitive`](super::Primitive)), with [`Instance::MIRRORS`]; and the bits of [`Instance::margin`].
+    /// triangles have ([`Primitive`](super::Primitive)), with [`Instance::MIRRORS`] and [`Instance::MOVES`]; and the bits of
+    /// [`Instance::margin`]. Of a key but the first, see [`Instance::MOVES`], the first integer is how far behind the triangles of the
+    /// first key its own are in leaf order, 0 if they are the same.
     pub mesh: UVec4,
 }
 
@@ -29,6 +32,10 @@ impl Instance {
 
     /// The bit of its flags that says that its transform mirrors.
     pub const MIRRORS: u32 = 1 << 31;
+
+    /// The bit that says that it moves: its record is the key at the opening of the shutter, and those of the ends of the
+    /// [steps](super::Frame::steps) follow it.
+    pub const MOVES: u32 = 1 << 30;
 
     /// Nothing of any mesh.
     pub const NONE: Instance = Instance { x: UVec4::ZERO, y: UVec4::ZERO, z: UVec4::ZERO, mesh: UVec4::ZERO };
@@ -62,7 +69,23 @@ impl Instance {
     /// Flags that all its triangles have.
     #[inline(always)]
     pub fn flags(&self) -> u32 {
-        self.mesh.z & !Self::MIRRORS
+        self.mesh.z & !(Self::MIRRORS | Self::MOVES)
+    }
+
+    /// Does it move?
+    #[inline(always)]
+    pub fn moves(&self) -> bool {
+        self.mesh.z & Self::MOVES != 0
+    }
+
+    /// It at a share of the way to another key: each number of its transform goes straight.
+    #[inline(always)]
+    pub fn towards(&self, end: &Instance, share: f32) -> Instance {
+        let row = |a: UVec4, b: UVec4| {
+            let added = between(f32::from_bits(a.w), f32::from_bits(b.w), share);
+            pack(line(numbers(a), numbers(b), share), added.to_bits())
+        };
+        Instance { x: row(self.x, end.x), y: row(self.y, end.y), z: row(self.z, end.z), mesh: self.mesh }
     }
 
     /// The number in the scene of a triangle with this number in its mesh.
@@ -71,4 +94,17 @@ impl Instance {
         let number = self.mesh.y + in_mesh;
         if number < Self::NUMBERS { number } else { number - Self::NUMBERS }
     }
+}
+
+/// The number at a share of the way from one to another. A difference of numbers of at least 2^-60 is none that is subnormal, nor is
+/// its product with a share, which is zero or at least 2^-40.
+#[inline(always)]
+fn between(from: f32, to: f32, share: f32) -> f32 {
+    (from + (to - from) * share).flush(TINY)
+}
+
+/// The place at a share of the straight way from one to another.
+#[inline(always)]
+pub fn line(from: Vec3, to: Vec3, share: f32) -> Vec3 {
+    Vec3::new(between(from.x, to.x, share), between(from.y, to.y, share), between(from.z, to.z, share))
 }

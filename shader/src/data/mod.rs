@@ -27,7 +27,7 @@ pub use compact::CompactPair;
 pub use cwbvh::CwbvhNode;
 pub use emitter::{Emission, Emitter};
 pub use frame::Frame;
-pub use instance::Instance;
+pub use instance::{Instance, line};
 pub use light_node::LightNode;
 pub use node::{CentredPair, NodePair, NodeRef};
 pub use physical::Physical;

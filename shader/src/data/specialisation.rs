@@ -163,6 +163,10 @@ bits! {
         STEREO = 28;
         /// Only where what the camera sees first is.
         POSITION = 29;
+        /// Copies of meshes move while the shutter is open: each sample's rays have a time of their own.
+        MOVING = 30;
+        /// The camera moves while it is open.
+        PANNED = 31;
     }
 }
 

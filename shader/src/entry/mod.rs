@@ -83,7 +83,7 @@ macro_rules! shading {
                 }
                 let launch = LaunchContext { frame, spec, primitives, instances };
                 let textures = Textures { textures, texels, coordinates, colours };
-                let shading = ShadingData { normals, materials, tangents, maps, textures, instances };
+                let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let wave = Wave { paths, hits, shadows, lights, environment, sums };
                 let goes_on = integrator::shade::<$R>(&launch, &shading, slot, wave);
                 enqueue(spec, goes_on, slot, next, counters);
@@ -104,7 +104,7 @@ macro_rules! shading {
                 let slot = if starts { id.x } else { read(queue, id.x) };
                 let launch = LaunchContext { frame, spec, primitives, instances };
                 let textures = Textures { textures, texels, coordinates, colours };
-                let shading = ShadingData { normals, materials, tangents, maps, textures, instances };
+                let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
                 let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting };
                 let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
@@ -117,9 +117,10 @@ macro_rules! shading {
 
         entry! {
             /// Starts the paths of a launch.
-            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame paths cells optics] {
+            generate<64>(#[spirv(global_invocation_id)] id: UVec3,) spec [frame instances paths hits cells optics] {
                 if id.x < frame.slots {
-                    stage::generate::<$R>(frame, spec, (cells, optics), id.x, paths);
+                    let tables = CameraTables { cells, optics, instances };
+                    stage::generate::<$R>(frame, spec, tables, id.x, (paths, hits));
                 }
             }
         }
@@ -176,7 +177,8 @@ macro_rules! tracing {
                 let base = LaunchContext { frame, spec, primitives, instances };
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
-                stage::trace::<$R, $method, Primitives>(&scene, slot, paths).store(&base, slot, hits);
+                let time = stage::Found::<$R>::time(&base, slot, hits);
+                stage::trace::<$R, $method, Primitives>(&scene, (slot, time), paths).store(&base, slot, hits);
             }
         }
 
@@ -212,15 +214,17 @@ macro_rules! persistent_tracing {
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
-                stage::persistent::<$R, $method, Primitives, Closest, Subgroup>(
+                stage::persistent::<$R, $method, Primitives, Closest, Subgroup, _>(
                     &scene,
-                    count,
+                    (count, hits),
                     move |wants| take(wants, lane, counters, counter::TRACED),
-                    move |number| {
-                        let (ray, limit) = stage::ray::<$R>(&scene, queued(spec, number, queue), paths);
+                    move |hits, number| {
+                        let slot = queued(spec, number, queue);
+                        let time = stage::Found::<$R>::time(&base, slot, hits);
+                        let (ray, limit) = stage::ray::<$R>(&scene, (slot, time), paths);
                         (ray, limit, true)
                     },
-                    move |number, _, ray, hit| {
+                    move |hits, number, _, ray, hit| {
                         stage::Found::of(&scene, ray, hit).store(&base, queued(spec, number, queue), hits);
                     },
                 );
@@ -240,16 +244,17 @@ macro_rules! persistent_tracing {
                 // A launch without slots takes no number; the guard spares the division's panic.
                 let row = if count == 0 { 1 } else { count };
                 let rows = if spec.launch.has(Launch::STREAM) { 1 } else { frame.shadow_rays };
-                stage::persistent::<$R, $method, Primitives, Occlusion, Subgroup>(
+                stage::persistent::<$R, $method, Primitives, Occlusion, Subgroup, _>(
                     &scene,
-                    count * rows,
+                    (count * rows, shadows),
                     move |wants| take(wants, lane, counters, counter::ASKED),
-                    move |number| {
+                    move |_, number| {
                         let slot = queued(spec, number % row, queue);
                         let (segment, faces) = stage::shadow_ray(&scene, inputs, slot, number / row);
-                        (segment.ray(), segment.limit, faces)
+                        let time = stage::Found::<$R>::time(&base, slot, inputs.hits);
+                        (segment.ray().at(time), segment.limit, faces)
                     },
-                    move |number, traced, _, hit| {
+                    move |shadows, number, traced, _, hit| {
                         let answer = if traced { stage::visibility(hit) } else { stage::FACES_AWAY };
                         let slot = queued(spec, number % row, queue);
                         write(shadows, number / row * frame.slots + slot, answer);

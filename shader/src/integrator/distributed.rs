@@ -26,11 +26,11 @@ pub(super) fn at<R: Scalar>(
     let seen = vertex.met(launch);
     let vertex = &vertex.arrived(effects, physicals, &seen);
     let covering = seen.covering(launch, shading, false);
-    let surface = Surface::new(effects, shading, &seen, &covering);
-    let seen = Seen { interaction: lifted(effects, shading, &seen), ..seen };
+    let surface = Surface::new(launch, shading, &seen, &covering);
+    let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
     let (path, interaction) = (vertex.path, seen.interaction);
     if effects.has(Effects::PHYSICAL) {
-        let closure = closure(effects, context, (&seen, &surface), &covering);
+        let closure = closure(launch, context, (&seen, &surface), &covering);
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
         let shadow = light_by_closure(launch, lighting, vertex, (&seen, &closure));
         let draws = vertex.draws.set(path.counts().1);

@@ -23,7 +23,7 @@ pub(super) fn at<R: Scalar>(
         seen.interaction.position
     } else {
         let covering = seen.covering(launch, &context.shading, false);
-        let surface = Surface::new(launch.spec.effects, &context.shading, &seen, &covering);
+        let surface = Surface::new(launch, &context.shading, &seen, &covering);
         if launch.spec.launch.has(Launch::NORMAL) {
             surface.normal
         } else {

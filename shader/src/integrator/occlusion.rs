@@ -11,8 +11,8 @@ use crate::stage::{Segment, ShadowRay};
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let seen = vertex.met(launch);
     let covering = seen.covering(launch, shading, false);
-    let interaction = lifted(launch.spec.effects, shading, &seen);
-    let surface = Surface::new(launch.spec.effects, shading, &seen, &covering);
+    let interaction = lifted(launch, shading, &seen);
+    let surface = Surface::new(launch, shading, &seen, &covering);
     let (direction, _) = cosine_direction(surface.normal, vertex.draws.pair(0));
     let mut shadow = ShadowRay::none();
     // A direction about an interpolated normal may lie below the surface, where nothing is seen.

@@ -39,15 +39,15 @@ pub(super) fn at<R: Scalar>(
     if is_last {
         return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
-    let surface = Surface::new(effects, shading, &seen, &covering);
+    let surface = Surface::new(launch, shading, &seen, &covering);
     if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
         let albedo = albedo(effects, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
         let normal = surface.normal.map(|c| c.flush(FAINT));
         outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
     }
-    let seen = Seen { interaction: lifted(effects, shading, &seen), ..seen };
+    let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
     if effects.has(Effects::PHYSICAL) {
-        let closure = closure(effects, context, (&seen, &surface), &covering);
+        let closure = closure(launch, context, (&seen, &surface), &covering);
         return scattered(launch, context, vertex, (&seen, &closure), (light, outputs));
     }
     let interaction = seen.interaction;

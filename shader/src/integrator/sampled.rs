@@ -62,11 +62,11 @@ impl<R: Scalar> Vertex<R> {
     /// What is hit.
     #[inline(always)]
     pub fn met(&self, launch: &LaunchContext<'_>) -> Seen<R> {
-        let (Found { t, coordinates, index, instance }, direction) = (self.found, self.path.direction);
-        let primitive = launch.placed(index, instance);
+        let (Found { t, coordinates, index, instance, time }, direction) = (self.found, self.path.direction);
+        let primitive = launch.placed(index, instance, time);
         let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, coordinates, direction);
         let cone = self.path.cone(launch, t, self.draws.sample);
-        Seen { index, instance, primitive, interaction, direction, cone }
+        Seen { index, instance, time, primitive, interaction, direction, cone }
     }
 
     /// With what of the path has come through the body whose inside it hits.
@@ -249,7 +249,7 @@ pub fn scatter<R: Scalar>(
         Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
         let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
-        if after_catcher && launch.placed(found.index, found.instance).has(Primitive::CATCHER) {
+        if after_catcher && launch.placed(found.index, found.instance, found.time).has(Primitive::CATCHER) {
             caught = caught.open();
         }
         let sample = camera::sample(launch.frame, slot);
@@ -283,7 +283,7 @@ pub fn scatter<R: Scalar>(
 fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, found: &Found<R>) -> bool {
     launch.spec.effects.has(Effects::HOLDOUT)
         && path.bounces == 0
-        && launch.placed(found.index, found.instance).has(Primitive::HOLDOUT)
+        && launch.placed(found.index, found.instance, found.time).has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.

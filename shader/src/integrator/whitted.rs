@@ -54,7 +54,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
         add(launch, sums, slot, &path, background(effects, launch.frame, environment, path.direction, is_first), 0);
         return pop(launch, slot, &path, paths);
     }
-    let primitive = launch.placed(found.index, found.instance);
+    let primitive = launch.placed(found.index, found.instance, found.time);
     if is_first && effects.has(Effects::HOLDOUT) && primitive.has(Primitive::HOLDOUT) {
         let word = if launch.spec.launch.has(Launch::CLEAR) { CLEARED } else { 0 };
         add(launch, sums, slot, &path, V3::zero(), word);
@@ -64,10 +64,10 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let sample = camera::sample(launch.frame, slot);
     let start = if is_first { Cone::confused(launch, found.t, sample) } else { Cone::none() };
     let cone = start.after(launch, found.t, sample);
-    let seen =
-        Seen { index: found.index, instance: found.instance, primitive, interaction, direction: path.direction, cone };
+    let (Found { index, instance, time, .. }, direction) = (found, path.direction);
+    let seen = Seen { index, instance, time, primitive, interaction, direction, cone };
     let covering = seen.covering(launch, shading, false);
-    let surface = Surface::new(effects, shading, &seen, &covering);
+    let surface = Surface::new(launch, shading, &seen, &covering);
     let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {

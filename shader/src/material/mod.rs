@@ -71,6 +71,8 @@ pub struct Seen<R: Real> {
     pub index: u32,
     /// The copy of a mesh that it is in, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
     pub instance: u32,
+    /// When it is, see [`Ray::time`](crate::ray::Ray::time).
+    pub time: f32,
     /// The primitive.
     pub primitive: Primitive,
     /// The place on it.
@@ -109,18 +111,19 @@ impl<R: Scalar> Seen<R> {
 impl<R: Scalar> Surface<R> {
     /// The surface of what a ray has met, with what covers it.
     #[inline(always)]
-    pub fn new(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
-        let Seen { index, instance, primitive, interaction, direction, .. } = *seen;
+    pub fn new(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, seen: &Seen<R>, covering: &Covering<R>) -> Self {
+        let effects = launch.spec.effects;
+        let Seen { index, instance, time, primitive, interaction, direction, .. } = *seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let normal = if effects.has(Effects::SMOOTH) {
-            interpolated(&shading.normals(effects, (index, instance)), direction, &interaction)
+            interpolated(&shading.normals(launch, (index, instance, time)), direction, &interaction)
         } else {
             interaction.normal
         };
         let normal = if effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED) {
-            mapped(effects, shading, seen, (normal, covering.normal))
+            mapped(launch, shading, seen, (normal, covering.normal))
         } else {
             normal
         };
@@ -177,9 +180,14 @@ fn interpolated<R: Scalar>(normals: &Normals, direction: V3<R>, interaction: &Su
 
 /// The tangent at a place, at right angles to a normal, and the sign of the bitangent; a zero vector if there is none.
 #[inline(always)]
-fn tangent<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> (V3<R>, R) {
+fn tangent<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    seen: &Seen<R>,
+    normal: V3<R>,
+) -> (V3<R>, R) {
     let (u, v) = seen.interaction.coordinates;
-    let Normals { a, b, c } = shading.tangents(effects, (seen.index, seen.instance));
+    let Normals { a, b, c } = shading.tangents(launch, (seen.index, seen.instance, seen.time));
     let of = |record| V3::<R>::splat(numbers(record));
     let sum = of(a) * (R::splat(1.0) - u - v) + of(b) * u + of(c) * v;
     let across = sum - normal * normal.dot(sum);
@@ -194,12 +202,17 @@ const LEAST_TANGENT: f32 = 1.0 / 1024.0;
 
 /// The axes of a surface's frame: tangent, bitangent and normal, of unit length.
 #[inline(always)]
-pub fn axes<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>, normal: V3<R>) -> [V3<R>; 3] {
+pub fn axes<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    seen: &Seen<R>,
+    normal: V3<R>,
+) -> [V3<R>; 3] {
     let [x, y] = tangents(normal);
-    if !effects.has(Effects::TANGENTS) {
+    if !launch.spec.effects.has(Effects::TANGENTS) {
         return [x, y, normal];
     }
-    let (along, sign) = tangent(effects, shading, seen, normal);
+    let (along, sign) = tangent(launch, shading, seen, normal);
     let none = along.greatest().eq(R::splat(0.0)) && (-along).greatest().eq(R::splat(0.0));
     let side = R::select(seen.interaction.front, sign, -sign);
     let across = normal.cross(along).map(|c| c.flush(TINY)) * side;
@@ -210,7 +223,7 @@ pub fn axes<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<
 /// viewer it is bent back until it is seen.
 #[inline(always)]
 fn mapped<R: Scalar>(
-    effects: Effects,
+    launch: &LaunchContext<'_>,
     shading: &ShadingData<'_>,
     seen: &Seen<R>,
     (normal, map): (V3<R>, V3<R>),
@@ -218,7 +231,7 @@ fn mapped<R: Scalar>(
     /// The least cosine to the viewer.
     const LEAST: f32 = 1.0 / 64.0;
     let (zero, front) = (R::splat(0.0), seen.interaction.front);
-    let (along, sign) = tangent(effects, shading, seen, normal);
+    let (along, sign) = tangent(launch, shading, seen, normal);
     let own = V3::select(front, normal, -normal);
     let across = own.cross(along).map(|c| c.flush(TINY)) * sign;
     let part = |axis: V3<R>, length: R| (axis * length.flush(SMALL)).map(|c| c.flush(SMALL));

@@ -10,7 +10,7 @@ use crate::data::{Effects, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
 use crate::real::{Real, Scalar, TINY, V3};
-
+use crate::scene::LaunchContext;
 use crate::texture::Covering;
 
 /// What a physical material says at a place, as textures may change it there.
@@ -75,16 +75,17 @@ impl<R: Scalar> Parameters<R> {
 /// The closure of a surface that is seen along a unit direction.
 #[inline(always)]
 pub fn closure<'a, R: Scalar>(
-    effects: Effects,
+    launch: &LaunchContext<'_>,
     context: &ScatterContext<'a>,
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
 ) -> Bsdf<'a, R> {
+    let effects = launch.spec.effects;
     let Seen { interaction, direction, .. } = *seen;
     let material = read(context.physicals, seen.material());
     let leans = effects.has(Effects::SMOOTH) || (effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED));
     let normal = if leans { bent(&interaction, surface.normal, direction) } else { surface.normal };
-    let frame = axes(effects, &context.shading, seen, normal);
+    let frame = axes(launch, &context.shading, seen, normal);
     let at = Parameters::new(&material, covering);
     let is_physical = material.has(Physical::IS_PHYSICAL);
     let frame = if effects.has(Effects::ANISOTROPIC) && is_physical { at.turned(frame) } else { frame };

@@ -4,18 +4,22 @@ use super::Seen;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::real::{SMALL, Scalar, V3};
-use crate::scene::ShadingData;
+use crate::scene::{LaunchContext, ShadingData};
 
 /// An interaction whose rays start above its triangle, on the smooth surface that the triangle stands for: as far above as the planes
 /// through the vertices lie, at right angles to their normals, weighted as the vertices are (Hanika, Hacking the Shadow Terminator,
 /// Ray Tracing Gems II, 2021), along the triangle's own normal. Concave surfaces and what lets light pass stay as they are.
 #[inline(always)]
-pub fn lifted<R: Scalar>(effects: Effects, shading: &ShadingData<'_>, seen: &Seen<R>) -> SurfaceInteraction<R> {
-    let Seen { index, instance, primitive, interaction, .. } = *seen;
-    if !effects.has(Effects::SMOOTH) || primitive.is_transparent() || interaction.is_curved {
+pub fn lifted<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    shading: &ShadingData<'_>,
+    seen: &Seen<R>,
+) -> SurfaceInteraction<R> {
+    let Seen { index, instance, time, primitive, interaction, .. } = *seen;
+    if !launch.spec.effects.has(Effects::SMOOTH) || primitive.is_transparent() || interaction.is_curved {
         return interaction;
     }
-    let normals = shading.normals(effects, (index, instance));
+    let normals = shading.normals(launch, (index, instance, time));
     let (u, v) = interaction.coordinates;
     let [a, b, c] = primitive.vertices();
     let over = |vertex, normal, weight: R| above(&interaction, V3::splat(vertex), V3::splat(numbers(normal))) * weight;
@@ -37,7 +41,7 @@ fn above<R: Scalar>(interaction: &SurfaceInteraction<R>, vertex: V3<R>, normal: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::data::{Normals, Primitive, pack};
+    use crate::data::{Frame, Normals, Primitive, Specialisation, pack};
     use crate::ray::Ray;
     use crate::texture::Cone;
     use glam::Vec3;
@@ -55,8 +59,11 @@ mod tests {
         let interaction = SurfaceInteraction::new(Effects(0), &primitive, coordinates, direction);
         let [a, b, c] = normals.map(|n| pack(n, 0));
         let shading = ShadingData { normals: &[Normals { a, b, c }], ..ShadingData::default() };
-        let seen = Seen { index: 0, instance: u32::MAX, primitive, interaction, direction, cone: Cone::none() };
-        lifted(Effects(Effects::SMOOTH), &shading, &seen)
+        let (instance, time, cone) = (u32::MAX, 0.0, Cone::none());
+        let seen = Seen { index: 0, instance, time, primitive, interaction, direction, cone };
+        let spec = Specialisation { effects: Effects(Effects::SMOOTH), ..Specialisation::default() };
+        let launch = LaunchContext { frame: &Frame::default(), spec, primitives: &[], instances: &[] };
+        lifted(&launch, &shading, &seen)
     }
 
     /// Three places on a unit ball about the origin, near the z axis.

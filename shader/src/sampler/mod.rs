@@ -4,7 +4,7 @@ mod sobol;
 
 use crate::data::Launch;
 use glam::UVec4;
-use sobol::{sobol, sobol4};
+use sobol::{sobol, sobol4, van_der_corput};
 
 /// Places are whole steps of 2^-17 of a cell's edge, so that one in a pixel of 128 x 128 cells is exact.
 const BITS: u32 = 17;
@@ -83,6 +83,15 @@ pub fn set(launch: Launch, key: Key, number: u32, set: u32) -> UVec4 {
     let [p, q, r] = hash([a, b, c.wrapping_add(set)]);
     UVec4::new(p, q, r, hash([p, q, r])[0])
 }
+
+/// The number in [0, 1) that a sample draws for its time: one in each of 2^k equal parts of any aligned run of 2^k samples.
+#[inline(always)]
+pub fn time(Key(x, y): Key, number: u32) -> f32 {
+    unit(van_der_corput(number, hash([x, y, TIMES])))
+}
+
+/// In the place of a set, those of times. No path has so many vertices.
+const TIMES: u32 = AFTER_LENS + 1;
 
 /// No set has this bit, but for those of [`DECISIONS`] beyond all bounces.
 const FURTHER: u32 = 1 << 30;

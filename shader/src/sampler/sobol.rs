@@ -10,6 +10,13 @@ pub fn sobol(index: u32, seeds: [u32; 3]) -> [u32; 2] {
     [scrambled(index, seeds[1]).reverse_bits(), scrambled(pascal(index), seeds[2]).reverse_bits()]
 }
 
+/// A point of the first dimension, likewise.
+#[inline(always)]
+pub fn van_der_corput(index: u32, seeds: [u32; 3]) -> u32 {
+    let index = scrambled(index.reverse_bits(), seeds[0]).reverse_bits();
+    scrambled(index, seeds[1]).reverse_bits()
+}
+
 /// A point of the first four dimensions. The first two are those of [`sobol`] with the same seeds.
 #[inline(always)]
 pub fn sobol4(index: u32, seeds: [u32; 3], further: [u32; 2]) -> UVec4 {

@@ -1,25 +1,44 @@
 //! The camera's ray of a slot, as it lies in memory.
 
 use super::segment::NOWHERE;
-use super::{Path, PathState};
+use super::{Found, Path, PathState};
 use crate::camera::{self, CameraRay};
-use crate::data::{Frame, Launch, Specialisation};
+use crate::data::{Frame, Instance, Launch, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
-/// Starts a slot's path. The ray of a slot outside the region meets nothing. `cells` are those of a launch over cells, `optics` the
-/// tables of cameras that have any.
+/// What cameras read.
+#[derive(Clone, Copy)]
+pub struct CameraTables<'a> {
+    /// The cells of a launch over cells.
+    pub cells: &'a [u32],
+    /// Of their filters and lenses.
+    pub optics: &'a [u32],
+    /// Of those that move their keys, beside copies of meshes.
+    pub instances: &'a [Instance],
+}
+
+/// Starts a slot's path, and the time of its rays where anything moves. The ray of a slot outside the region meets nothing.
 #[inline(always)]
 pub fn generate<R: Scalar>(
     frame: &Frame,
     spec: Specialisation,
-    (cells, optics): (&[u32], &[u32]),
+    CameraTables { cells, optics, instances }: CameraTables<'_>,
     slot: u32,
-    paths: &mut [R::Record],
+    (paths, hits): (&mut [R::Record], &mut [R::Record]),
 ) {
     let pixel = camera::pixel(frame, spec.order, slot);
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
-    let ray = camera::ray(frame, spec.launch, optics, pixel);
+    let mut ray = camera::ray(frame, spec.launch, optics, pixel);
+    if spec.launch.has(Launch::MOVING | Launch::PANNED) {
+        let time = camera::time(frame, pixel);
+        if spec.launch.has(Launch::PANNED) {
+            ray = camera::panned(frame, instances, time, ray);
+        }
+        if spec.launch.has(Launch::MOVING) {
+            Found::<R>::start(time, frame.slots, slot, hits);
+        }
+    }
     let is_kept = spec.launch.has(Launch::KEPT);
     if is_kept && !spec.launch.has(Launch::CLIPPED) {
         Path::of_camera(ray).store(frame.slots, slot, 0, paths);

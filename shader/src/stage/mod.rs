@@ -26,7 +26,7 @@ pub use film::{
     SQUARE_MOST, Sample, brightness, expose, expose_blocks, film_words,
 };
 pub use found::Found;
-pub use generate::generate;
+pub use generate::{CameraTables, generate};
 pub use path::{Path, RECORDS};
 pub use path_state::{LINKED_GROUPS, PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
 pub use persistent::persistent;

@@ -12,15 +12,15 @@ use crate::warp::Warp;
 const IDLE: u32 = u32::MAX;
 
 /// Follows rays until none is left. `take` gives each lane that wants a ray the number of one, `count` or
-/// more if there is none; `load` reads it, with its limit and whether it is to be traced at all; `store` is told the
-/// outcome.
+/// more if there is none; `load` reads it, with its limit and whether it is to be traced at all; `store` keeps the outcome among the
+/// `answers`.
 #[inline(always)]
-pub fn persistent<R: Scalar, M: Resumable<R>, L: Leaf, Q: Query, W: Warp>(
+pub fn persistent<R: Scalar, M: Resumable<R>, L: Leaf, Q: Query, W: Warp, A>(
     context: &TraceContext<'_>,
-    count: u32,
+    (count, answers): (u32, &mut [A]),
     mut take: impl FnMut(bool) -> u32,
-    load: impl Fn(u32) -> (Ray<R>, R, bool),
-    mut store: impl FnMut(u32, bool, &Ray<R>, &Hit<R>),
+    load: impl Fn(&[A], u32) -> (Ray<R>, R, bool),
+    store: impl Fn(&mut [A], u32, bool, &Ray<R>, &Hit<R>),
 ) {
     let enough = (W::count(true) * context.base.spec.tuning.busy()).div_ceil(100).max(1);
     let mut number = IDLE;
@@ -32,14 +32,14 @@ pub fn persistent<R: Scalar, M: Resumable<R>, L: Leaf, Q: Query, W: Warp>(
     let mut more = true;
     loop {
         if number != IDLE && cursor.is_done() {
-            store(number, traced, &ray, &hit);
+            store(answers, number, traced, &ray, &hit);
             number = IDLE;
         }
         if more {
             let next = take(number == IDLE);
             if number == IDLE && next < count {
                 number = next;
-                let (own, limit, wanted) = load(next);
+                let (own, limit, wanted) = load(answers, next);
                 (ray, traced) = (own, wanted);
                 hit = Hit::none(limit);
                 cursor = if wanted { M::Cursor::start() } else { M::Cursor::finished() };

@@ -50,7 +50,7 @@ pub fn shadow_ray<R: Scalar>(
         };
         return (nowhere, false);
     }
-    let primitive = context.base.placed(found.index, found.instance);
+    let primitive = context.base.placed(found.index, found.instance, found.time);
     let effects = context.base.spec.effects;
     let interaction = SurfaceInteraction::new(effects, &primitive, found.coordinates, path.direction);
     let light = read(asking.lights, index);
@@ -72,7 +72,8 @@ pub fn shadow<R: Scalar, M: Method<R>, L: Leaf>(
         return FACES_AWAY;
     }
     let mut hit = Hit::none(segment.limit);
-    M::traverse::<Occlusion, L>(context, &segment.ray(), &mut hit);
+    let time = Found::<R>::time(&context.base, slot, asking.hits);
+    M::traverse::<Occlusion, L>(context, &segment.ray().at(time), &mut hit);
     visibility(&hit)
 }
 

@@ -1,4 +1,5 @@
-//! Rays that lie beside each other, in the lanes of values: what a CPU with vectors follows at once.
+//! Rays that lie beside each other, in the lanes of values: what a CPU with vectors follows at once. They have one time; rays of
+//! several times are followed one by one.
 
 use core::array::from_fn;
 
@@ -33,7 +34,7 @@ pub fn trace_together<S: Scalar, P: Lanes<S> + RayLanes, M: Together, L: Leaf>(
         while i < lanes && value * lanes + i < segments.len() {
             let (index, instance) = (P::index_of(hit.primitive_index, i), P::index_of(hit.instance, i));
             let coordinates = (u.lane(i), v.lane(i));
-            keep(value * lanes + i, Found { t: hit.t.lane(i), coordinates, index, instance });
+            keep(value * lanes + i, Found { t: hit.t.lane(i), coordinates, index, instance, time: 0.0 });
             i += 1;
         }
     }

@@ -35,19 +35,23 @@ pub(super) fn is_of_camera(launch: Launch) -> bool {
     !launch.has(Launch::SECONDARY | Launch::STREAM)
 }
 
-/// A slot's ray, ready for boxes and primitives, and its limit.
+/// A slot's ray at a time, ready for boxes and primitives, and its limit.
 #[inline(always)]
-pub fn ray<R: Scalar>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> (Ray<R>, R) {
+pub fn ray<R: Scalar>(context: &TraceContext<'_>, (slot, time): (u32, f32), paths: &[R::Record]) -> (Ray<R>, R) {
     let segment = traced::<R>(context, slot, paths);
     let from_afar = is_of_camera(context.base.spec.launch);
     let source_primitive = R::index(segment.source_primitive);
-    (Ray::prepared(source_primitive, segment.origin, segment.direction, from_afar), segment.limit)
+    (Ray::prepared(source_primitive, segment.origin, segment.direction, from_afar).at(time), segment.limit)
 }
 
-/// Traces a slot's ray.
+/// Traces a slot's ray at a time.
 #[inline(always)]
-pub fn trace<R: Scalar, M: Method<R>, L: Leaf>(context: &TraceContext<'_>, slot: u32, paths: &[R::Record]) -> Found<R> {
-    let (ray, limit) = ray::<R>(context, slot, paths);
+pub fn trace<R: Scalar, M: Method<R>, L: Leaf>(
+    context: &TraceContext<'_>,
+    of: (u32, f32),
+    paths: &[R::Record],
+) -> Found<R> {
+    let (ray, limit) = ray::<R>(context, of, paths);
     let mut hit = Hit::none(limit);
     M::traverse::<Closest, L>(context, &ray, &mut hit);
     Found::of(context, &ray, &hit)

@@ -35,10 +35,11 @@ impl Cursor {
         Cursor { node, instance, depth: 0, outside: 0 }
     }
 
-    /// The child pair of the current node, which is inner. What is on the stack when it leads to a copy is outside of that.
+    /// The child pair of the current node, which is inner, at the time of a ray. What is on the stack when it leads to a copy is
+    /// outside of that.
     #[inline(always)]
-    pub fn open(&mut self, context: &TraceContext<'_>) -> CentredPair {
-        let (pair, instance) = context.opened(self.node, self.instance);
+    pub fn open(&mut self, context: &TraceContext<'_>, time: f32) -> CentredPair {
+        let (pair, instance) = context.opened(self.node, self.instance, time);
         if context.base.spec.effects.has(Effects::INSTANCED) {
             let enters = self.instance == Hit::<f32>::NOTHING && instance != Hit::<f32>::NOTHING;
             self.outside = if enters { self.depth } else { self.outside };

@@ -93,6 +93,7 @@ impl<R: Real> Ray<R> {
             offset: vector(&self.offset),
             shear: self.shear.lane(i),
             source_primitive: S::index(R::index_of(self.source_primitive, i)),
+            time: self.time,
         }
     }
 }

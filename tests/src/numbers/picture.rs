@@ -7,7 +7,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::Launch;
 use eyerays_shader::integrator::{self, Exchange, Wave};
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::stage::{self, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
+use eyerays_shader::stage::{self, CameraTables, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
 use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
@@ -30,7 +30,7 @@ fn whitted<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut context = scene.context(&frame, spec);
     while !queue.is_empty() {
         for &slot in &queue {
-            stage::trace::<R, IfIf, Primitives>(&context, slot, &paths).store(&context.base, slot, &mut hits);
+            stage::trace::<R, IfIf, Primitives>(&context, (slot, 0.0), &paths).store(&context.base, slot, &mut hits);
             for light in 0..frame.lights {
                 let inputs = ShadowInputs { lights: posed.lights(), paths: &paths, hits: &hits };
                 let answer = stage::shadow::<R, IfIf, Primitives>(&context, inputs, slot, light);
@@ -62,11 +62,12 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let order = spec.order;
     let inside = |slot: &u32| camera::pixel(&frame, order, *slot).inside;
     let mut queue: Vec<u32> = (0..frame.slots).filter(inside).collect();
-    queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, (&[], posed.optic_tables()), slot, &mut paths));
+    let tables = CameraTables { cells: &[], optics: posed.optic_tables(), instances: &[] };
+    queue.iter().for_each(|&slot| stage::generate::<R>(&frame, spec, tables, slot, (&mut paths, &mut [])));
     while !queue.is_empty() {
         let streams = scene.context(&frame, spec.with_launch(Launch::STREAM));
         for &slot in &queue {
-            stage::trace::<R, IfIf, Primitives>(&streams, slot, &paths).store(&streams.base, slot, &mut hits);
+            stage::trace::<R, IfIf, Primitives>(&streams, (slot, 0.0), &paths).store(&streams.base, slot, &mut hits);
         }
         let (base, wave) = (scene.context(&frame, spec).base, queue.clone());
         queue.retain(|&slot| {

@@ -27,9 +27,9 @@ fn hits<R: Scalar<Record = UVec4>, M: traverse::Method<R>>(case: &Case) -> Vec<U
     let geometry = laid.stream(&frame);
     // Parts of a split triangle are hit alike, so the slot is no part of the answer.
     let primitive = |slot: u32| case.packed.primitives().get(slot as usize).map_or(slot, |t| t.number());
-    let hit = |slot| {
+    let hit = |slot: u32| {
         let Found { t, coordinates: (u, v), index, .. } =
-            stage::trace::<R, M, Primitives>(&geometry, slot, stream.words());
+            stage::trace::<R, M, Primitives>(&geometry, (slot, 0.0), stream.words());
         R::store(V3::new(t, u, v), primitive(index))
     };
     (0..stream.len() as u32).map(hit).collect()

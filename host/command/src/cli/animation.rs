@@ -42,7 +42,7 @@ impl<'a> Animation<'a> {
         if reading::is_standard_input(path) {
             return Err(Error::new("--frames and --frame read a scene for each picture: name its file"));
         }
-        let start = Read::scene(path, &[], reading.at(0.0).loading(integrator), true)?.scene;
+        let start = Read::scene(path, &[], reading.at(Instant::FIRST).still(integrator), true)?.scene;
         if start.animations.is_empty() {
             let fault = "it has no animation, whose pictures --frames and --frame are; leave them out";
             return Err(Error::file(path, fault));
@@ -67,7 +67,7 @@ impl<'a> Animation<'a> {
     /// # Errors
     /// It can't be read.
     pub fn read(&self, moving: Moving<'_>, quiet: bool) -> Result<Read<'a>> {
-        let at = moving.instant.map(|instant| self.reading.at(instant.seconds));
+        let at = moving.instant.map(|instant| self.reading.at(instant));
         let loading = at.as_ref().unwrap_or(self.reading).loading(self.integrator);
         let mut read = Read::scene(self.path, &[], loading, quiet || !moving.is_first)?;
         if let Some(camera) = moving.camera {

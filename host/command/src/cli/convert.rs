@@ -64,7 +64,7 @@ impl Convert {
         let destination = Destination::File(path.to_owned());
         output::check_writable(&destination)?;
         let Read { scene, .. } =
-            Read::scene(&self.scene, slice::from_ref(&destination), self.reading.loading(None), quiet)?;
+            Read::scene(&self.scene, slice::from_ref(&destination), self.reading.moment()?, quiet)?;
         output::check_apart(slice::from_ref(&destination), [&self.scene])?;
         if is_text {
             check_new(path)?;

@@ -31,6 +31,7 @@ mod reading;
 mod render;
 mod sequence;
 mod shot;
+mod shutter;
 #[cfg(unix)]
 mod signals;
 mod summary;

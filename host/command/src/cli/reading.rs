@@ -5,15 +5,17 @@ use std::convert::Infallible;
 use std::ffi::OsStr;
 use std::io;
 use std::path::Path;
-use std::time::{Duration, Instant};
+use std::time::{self, Duration};
 
 use clap::Args;
 use eyerays::scene::{Integrator, Scene};
 use eyerays::scene_io;
-use eyerays::scene_io::{AnimationWish, Instancing, LightUnit, Loading, Moment};
+use eyerays::scene_io::{AnimationWish, Instancing, LightUnit, Loading, Moment, Shutter};
 
 use super::choice::choice;
 use super::progress;
+use super::sequence::Instant;
+use super::shutter::{self, Open};
 use crate::error::{Error, Result};
 use crate::output::{self, Destination};
 
@@ -32,9 +34,19 @@ pub(super) struct Reading {
     /// How a glTF file stands so many seconds after the start of an animation [default: 0]
     #[arg(long, value_name = "S", value_parser = number, allow_hyphen_values = true, help_heading = "View")]
     time: Option<f64>,
+    /// When the shutter is open, in pictures after each one's moment: things blur by their motion from A to B (0,0.5 is half of a picture's
+    /// time); in seconds with an s (0,0.02s); 0 closes a scene's own
+    #[arg(long, value_name = "A,B", value_parser = shutter::open, allow_hyphen_values = true, help_heading = "View")]
+    shutter: Option<Open>,
+    /// The share of that time for which each row of a picture is exposed, from the top to the bottom, as by a telephone's camera
+    #[arg(long, value_name = "SHARE", value_parser = shutter::share, requires = "shutter", help_heading = "View")]
+    rolling_shutter: Option<f64>,
     /// Which of a glTF file's animations that is, by its name or its number from 0; none is how it stands at rest [default: 0]
     #[arg(long, value_name = "NAME", value_parser = wish, help_heading = "View")]
     animation: Option<AnimationWish>,
+    /// Pictures a second.
+    #[arg(skip)]
+    rate: Option<f64>,
 }
 
 impl Reading {
@@ -42,23 +54,42 @@ impl Reading {
     pub fn loading(&self, integrator: Option<Integrator>) -> Loading {
         let moment = Moment { animation: self.animation.clone(), seconds: self.time };
         let instancing = self.instances.unwrap_or_default();
-        Loading { allow_outside: self.allow_outside, light_unit: self.light_unit, integrator, moment, instancing }
+        let Reading { allow_outside, light_unit, .. } = *self;
+        let rate = self.rate.unwrap_or(Instant::RATE);
+        let shutter = self.shutter.map(|open| open.shutter(rate, self.rolling_shutter));
+        Loading { allow_outside, light_unit, integrator, moment, shutter, instancing, ..Loading::default() }
+    }
+
+    /// As a scene is at one moment.
+    pub fn still(&self, integrator: Option<Integrator>) -> Loading {
+        Loading { shutter: Some(Shutter::CLOSED), ..self.loading(integrator) }
+    }
+
+    /// The same for who keeps it, or measures it.
+    ///
+    /// # Errors
+    /// A shutter was asked for.
+    pub fn moment(&self) -> Result<Loading> {
+        if self.shutter.is_some() {
+            return Err(Error::new("this is of a scene at one moment: leave --shutter out; --time chooses the moment"));
+        }
+        Ok(self.still(None))
     }
 
     /// For who measures rays in one hierarchy, where each copy of a mesh has triangles of its own.
     ///
     /// # Errors
-    /// Copies were asked for.
+    /// Copies or a shutter were asked for.
     pub fn flat(&self) -> Result<Loading> {
         match self.instances {
-            None | Some(Instancing::Never) => Ok(Loading { instancing: Instancing::Never, ..self.loading(None) }),
+            None | Some(Instancing::Never) => Ok(Loading { instancing: Instancing::Never, ..self.moment()? }),
             Some(_) => Err(Error::new("what is measured is one hierarchy of all triangles: leave --instances out")),
         }
     }
 
-    /// The same for a picture of an animation, at other seconds.
-    pub fn at(&self, seconds: f64) -> Reading {
-        Reading { time: Some(seconds), ..self.clone() }
+    /// The same for a picture of an animation, at its seconds.
+    pub fn at(&self, Instant { seconds, rate, .. }: Instant) -> Reading {
+        Reading { time: Some(seconds), rate: Some(rate), ..self.clone() }
     }
 }
 
@@ -115,7 +146,7 @@ impl<'a> Read<'a> {
     /// Reads a scene, from standard input if its name is `-`, and says what of it is not drawn. None of the files that it names may
     /// be among `outputs`.
     pub fn scene(path: &'a Path, outputs: &[Destination], loading: Loading, quiet: bool) -> Result<Self> {
-        let start = Instant::now();
+        let start = time::Instant::now();
         let load = || match is_standard_input(path) {
             true => scene_io::read_as(io::stdin().lock(), called(path), loading),
             false => scene_io::load_as(path, loading),

@@ -47,6 +47,16 @@ pub(super) struct Instant {
     frame: u32,
     /// After the animation's start.
     pub seconds: f64,
+    /// Pictures a second.
+    pub rate: f64,
+}
+
+impl Instant {
+    /// Pictures a second where nobody says otherwise.
+    pub const RATE: f64 = 24.0;
+
+    /// The start.
+    pub const FIRST: Instant = Instant { frame: 0, seconds: 0.0, rate: Self::RATE };
 }
 
 impl Shot {
@@ -93,8 +103,8 @@ impl SequenceArgs {
             )));
         }
         self.turn()?;
-        let fps = self.fps.unwrap_or(24.0);
-        Ok(frames.map(|frame| Some(Instant { frame, seconds: f64::from(frame) / fps })).collect())
+        let rate = self.fps.unwrap_or(Instant::RATE);
+        Ok(frames.map(|frame| Some(Instant { frame, seconds: f64::from(frame) / rate, rate })).collect())
     }
 
     /// The pictures of a scene, from this camera unless all are asked for; of an animation those of an instant.

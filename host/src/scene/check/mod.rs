@@ -2,6 +2,7 @@
 
 mod covering;
 mod instances;
+mod motion;
 mod settings;
 
 use glam::Vec3;
@@ -223,6 +224,7 @@ fn geometry(scene: &Scene) -> Result<()> {
     let materials = scene.materials.len();
     mesh(&scene.mesh, materials)?;
     instances::check(scene)?;
+    motion::check(scene)?;
     let spheres = scene.spheres.par_iter().enumerate();
     first(spheres.find_map_first(|(number, sphere)| {
         let Sphere { center, radius, material } = *sphere;

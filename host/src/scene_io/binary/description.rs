@@ -104,6 +104,7 @@ impl Description {
             objects,
             animations: Vec::new(),
             files: Vec::new(),
+            motion: None,
             hierarchy: None,
             materials,
             lights,

@@ -14,12 +14,13 @@ use crate::job::Job;
 use crate::memory::Room;
 use crate::quality::Bvh;
 use crate::scene::{Alpha, Environment, Light, Map, Maps, Placement, Scene, Texels, Texture, Unplaced, Wrap};
-use crate::scene_io::{budget::Budget, load};
+use crate::scene_io::{Loading, Shutter, budget::Budget, load_as};
 
-/// A scene of a text form, and no files, as binary ones have none.
+/// A scene of a text form at one moment, and no files, as binary ones have none.
 pub(super) fn text(path: &str) -> Scene {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
-    Scene { files: Vec::new(), ..load(&path).expect("a scene").0 }
+    let still = Loading { shutter: Some(Shutter::CLOSED), ..Loading::default() };
+    Scene { files: Vec::new(), animations: Vec::new(), ..load_as(&path, still).expect("a scene").0 }
 }
 
 fn binary(scene: &Scene) -> Vec<u8> {

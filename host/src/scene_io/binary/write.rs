@@ -9,7 +9,7 @@ use super::header::{ALIGNMENT, Counts, Header, SECTIONS, hash};
 use super::textures::{Pictures, bytes};
 use crate::error::{Error, Result};
 use crate::quality;
-use crate::scene::Scene;
+use crate::scene::{Camera, Motion, Pose, Scene, Shape};
 
 /// Writes the binary form of a scene, from which [`load`](crate::scene_io::load) makes the same scene, but for
 /// [`Scene::files`], which it stands for itself, and with this hierarchy of it
@@ -20,6 +20,10 @@ use crate::scene::Scene;
 pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
     scene.settings.check()?;
+    if scene.motion.is_some() {
+        let fault = "a scene that moves while the shutter is open has no binary form";
+        return Err(Error::new(format!("{fault}: write it as it is at one moment")));
+    }
     let (pictures, textures) = Pictures::of(scene);
     let texels = textures.iter().map(|texture| bytes(texture)).collect::<Vec<_>>().concat();
     let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));
@@ -48,7 +52,27 @@ pub fn fingerprint(scene: &Scene) -> Result<[u8; 32]> {
     let description = Description::bare(scene, pictures).text().map_err(Error::new)?;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
     let (counts, sections) = sections(scene, &description, &[], &none);
-    Ok(hash(&counts, sections.into_iter().chain(textures.iter().map(|texture| bytes(texture)))))
+    let motion = scene.motion.as_ref().map(motion_bytes).transpose()?;
+    let textures = textures.iter().map(|texture| bytes(texture));
+    Ok(hash(&counts, sections.into_iter().chain(textures).chain(motion.as_deref())))
+}
+
+/// All that a motion holds.
+fn motion_bytes(motion: &Motion) -> Result<Vec<u8>> {
+    let mut all = motion.exposure.to_le_bytes().to_vec();
+    let cameras_bytes = |cameras: &[Camera]| serde_json::to_vec(cameras).map_err(|error| Error::new(error.to_string()));
+    all.extend(cameras_bytes(&motion.cameras)?);
+    for Pose { instances, shapes, cameras } in &motion.poses {
+        all.extend_from_slice(bytemuck::cast_slice(instances));
+        for (mesh, Shape { positions, normals, tangents }) in shapes {
+            all.extend_from_slice(&mesh.to_le_bytes());
+            all.extend_from_slice(bytemuck::cast_slice(positions));
+            all.extend_from_slice(bytemuck::cast_slice(normals));
+            all.extend_from_slice(bytemuck::cast_slice(tangents));
+        }
+        all.extend(cameras_bytes(cameras)?);
+    }
+    Ok(all)
 }
 
 /// What a file holds after its header, and how much of it there is.

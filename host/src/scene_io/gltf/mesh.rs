@@ -70,12 +70,12 @@ impl<'f> Merge<'f> {
         }
     }
 
-    /// Adds the mesh of a number at all of some nodes that have it, whose morph targets have the same weights. A mesh is read once,
-    /// and is gone before the next.
+    /// Adds the mesh of a number at all of some nodes that have it, whose morph targets have the same weights, and whether it is kept to
+    /// be moved. A mesh is read once, and is gone before the next.
     ///
     /// # Errors
     /// There is no such mesh, it makes no sense, or it is too large.
-    pub fn add(&mut self, number: usize, nodes: &[&Placed], notes: &mut Notes) -> Unplaced<()> {
+    pub fn add(&mut self, number: usize, (nodes, is_kept): (&[&Placed], bool), notes: &mut Notes) -> Unplaced<()> {
         let Some(first) = nodes.first() else { return Ok(()) };
         let owner = format!("nodes[{}].mesh", first.number);
         let mesh = pick(&self.document.meshes, number, &owner, "mesh")?;
@@ -88,7 +88,7 @@ impl<'f> Merge<'f> {
             copies = copies.saturating_add(instance::Copies::of(placed, &self.accessors)?.count);
         }
         // What joints move has another shape in each place.
-        let is_shared = copies > 1 && !shape.is_skinned;
+        let is_shared = (copies > 1 || is_kept) && !shape.is_skinned;
         if is_shared {
             self.places = self.places.saturating_add(copies);
             let fits = self.budget.check_bytes((self.places as u64).saturating_mul(PLACE));

@@ -46,7 +46,7 @@ use super::copies::Copies;
 use super::material::{DEFAULT, Fields};
 use super::neighbours::Neighbours;
 use super::obj::Obj;
-use super::{LightUnit, Loading, file};
+use super::{Instant, LightUnit, Loading, file};
 use crate::error::{Error, Result};
 use crate::scene::{Animation, Camera, Light, LightGroups, Mesh, Object, Unplaced};
 
@@ -102,7 +102,8 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     let buffers = Buffers::read(&document, chunk, neighbours)?;
     let pose = Pose::of(&document, &Accessors::new(&document, &buffers), &loading.moment, &mut notes)?;
     let nodes = node::walk(&document, &pose)?;
-    let (mesh, copies, objects) = merged(&document, &buffers, &nodes, budget, &mut notes)?;
+    let is_alone = loading.instant == Instant::Alone;
+    let (mesh, copies, objects) = merged((&document, &buffers), &nodes, budget, is_alone, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
@@ -123,7 +124,8 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
              --light-unit gltf takes them as they are",
         );
     }
-    let (materials, pictures) = materials(&document, &buffers, (&mesh, &copies), neighbours, &mut notes)?;
+    let is_drawn = loading.instant != Instant::Later;
+    let (materials, pictures) = materials((&document, &buffers), (&mesh, &copies), neighbours, is_drawn, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, copies, materials, warnings: notes.finish(), libraries, objects };
     let animations = animation::list(&document, &Accessors::new(&document, &buffers));
@@ -190,11 +192,12 @@ fn plain(fault: &serde_json::Error) -> String {
     format!("{found} makes no sense here (line {}, column {})", fault.line(), fault.column())
 }
 
+/// All meshes where nodes have them. Unless it is alone, those of nodes that move are held once, whoever else has them.
 fn merged(
-    document: &Document,
-    buffers: &Buffers,
+    (document, buffers): (&Document, &Buffers),
     nodes: &[Placed],
     budget: Budget,
+    is_alone: bool,
     notes: &mut Notes,
 ) -> Unplaced<(Mesh, Copies, Vec<Object>)> {
     // A mesh has another shape at each node that has weights of its own.
@@ -208,7 +211,8 @@ fn merged(
     let skins = Skins::new(document, nodes);
     let mut merge = Merge::new(document, Accessors::new(document, buffers), skins, budget);
     for ((mesh, _), nodes) in by_mesh {
-        merge.add(mesh, &nodes, notes)?;
+        let is_kept = !is_alone && nodes.iter().any(|placed| placed.moves);
+        merge.add(mesh, (&nodes, is_kept), notes)?;
     }
     let (mesh, copies, objects) = merge.finish();
     if mesh.triangles.is_empty() && copies.places.is_empty() {
@@ -239,10 +243,10 @@ fn nothing(document: &Document) -> String {
 type Materials = (Vec<(String, Fields)>, Vec<PathBuf>);
 
 fn materials(
-    document: &Document,
-    buffers: &Buffers,
+    (document, buffers): (&Document, &Buffers),
     (mesh, copies): (&Mesh, &Copies),
     neighbours: &Neighbours,
+    is_drawn: bool,
     notes: &mut Notes,
 ) -> Unplaced<Materials> {
     let mut pictures = Pictures::new(document, buffers, neighbours);
@@ -254,7 +258,8 @@ fn materials(
     }
     let mut materials = vec![(DEFAULT.to_owned(), material::plain())];
     for ((number, of), is_used) in document.materials.iter().enumerate().zip(is_used.into_iter().skip(1)) {
-        let fields = if is_used { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
+        let fields =
+            if is_used && is_drawn { material::read(of, number, &mut pictures, notes)? } else { material::plain() };
         let name =
             of.name.clone().filter(|name| !name.trim().is_empty()).unwrap_or_else(|| format!("material {number}"));
         materials.push((name, fields));

@@ -15,6 +15,8 @@ pub struct Placed<'d> {
     pub weights: Option<&'d [f64]>,
     /// From its own units to the world's; may hold what is not finite.
     pub world: DMat4,
+    /// Does an animation say where it is, or where an ancestor is?
+    pub moves: bool,
 }
 
 /// All nodes of the scene that the file shows first in a pose, parents before their children.
@@ -26,9 +28,9 @@ pub fn walk<'d>(document: &'d Document, pose: &'d Pose) -> Unplaced<Vec<Placed<'
     let mut placed = Vec::new();
     let mut is_seen = vec![false; document.nodes.len()];
     // The last is next.
-    let mut open: Vec<(usize, DMat4)> = roots(document, &has_parent)?;
+    let mut open: Vec<(usize, DMat4, bool)> = roots(document, &has_parent)?;
     open.reverse();
-    while let Some((number, above)) = open.pop() {
+    while let Some((number, above, is_carried)) = open.pop() {
         let node = pick(&document.nodes, number, "nodes", "node")?;
         if std::mem::replace(is_seen.get_mut(number).unwrap_or(&mut true), true) {
             return Err(format!("nodes[{number}]: it is reached twice; name it once, and no node as its own ancestor"));
@@ -36,8 +38,9 @@ pub fn walk<'d>(document: &'d Document, pose: &'d Pose) -> Unplaced<Vec<Placed<'
         let change = pose.change(number);
         let world = above * local(node, change).map_err(|fault| format!("nodes[{number}].{fault}"))?;
         let weights = change.and_then(|change| change.weights.as_deref()).or(node.weights.as_deref());
-        placed.push(Placed { number, node, weights, world });
-        open.extend(node.children.iter().rev().map(|&child| (child, world)));
+        let moves = is_carried || change.is_some_and(Change::moves);
+        placed.push(Placed { number, node, weights, world, moves });
+        open.extend(node.children.iter().rev().map(|&child| (child, world, moves)));
     }
     Ok(placed)
 }
@@ -57,8 +60,8 @@ fn parents(document: &Document) -> Unplaced<Vec<bool>> {
     Ok(has_parent)
 }
 
-fn roots(document: &Document, has_parent: &[bool]) -> Unplaced<Vec<(usize, DMat4)>> {
-    let here = |number| (number, DMat4::IDENTITY);
+fn roots(document: &Document, has_parent: &[bool]) -> Unplaced<Vec<(usize, DMat4, bool)>> {
+    let here = |number| (number, DMat4::IDENTITY, false);
     if document.scenes.is_empty() && document.scene.is_none() {
         let roots = has_parent.iter().enumerate().filter(|(_, has)| !**has);
         return Ok(roots.map(|(number, _)| here(number)).collect());

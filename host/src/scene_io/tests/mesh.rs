@@ -35,6 +35,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         background_group: String::new(),
         ambient: Vec3::ZERO,
         settings: Settings::default(),
+        motion: None,
         hierarchy: None,
         environment: None,
     }

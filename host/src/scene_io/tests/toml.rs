@@ -37,6 +37,15 @@ fn the_documented_example_loads_as_documented() {
     assert_eq!((integrator, direct), (Integrator::Path, Direct::Power));
     assert_eq!((seed, roulette, clamp, ao_distance), (1, 4, 20.0, 2.0));
     assert_eq!((scene.materials[3].emission, scene.materials[3].two_sided), (Vec3::new(4.0, 3.5, 3.0), true));
+    let motion = scene.motion.as_ref().expect("it moves");
+    assert_eq!((motion.cameras.as_slice(), motion.exposure), (&scene.cameras[..1], 0.3));
+    // Half of a picture of 25 a second, in which the camera goes straight and the box turns by 3.6 degrees.
+    let last = motion.poses.last().unwrap();
+    assert!((last.cameras[0].eye.x - 0.01).abs() < 1e-6, "{}", last.cameras[0].eye);
+    let turn = (30.0f32 + 0.02 * 180.0).to_radians();
+    let row = last.instances[0].rows[0];
+    assert!((row - Vec3::new(turn.cos(), 0.0, turn.sin())).length() < 1e-5, "{row}");
+    assert_eq!((scene.instances.len(), motion.bent().count()), (1, 0));
     assert_eq!(scene.cameras[0].projection, Projection::Perspective { fov: 40.0 });
     assert_eq!(scene.ambient, Vec3::splat(0.1));
     assert_eq!(

@@ -30,7 +30,7 @@ impl Leaf for Primitives {
         hit: &mut Hit<R>,
     ) {
         Q::on_primitive();
-        let primitive = context.base.placed(index, instance);
+        let primitive = context.base.placed(index, instance, ray.time);
         let effects = context.base.spec.effects;
         if hidden::is_unmet::<Q, R>(effects, &primitive, ray) {
             return;
@@ -112,7 +112,7 @@ pub fn coordinates<R: Scalar>(context: &TraceContext<'_>, ray: &Ray<R>, hit: &Hi
     if hit.primitive_index == Hit::<R>::NOTHING {
         return (R::splat(0.0), R::splat(0.0));
     }
-    let primitive = context.base.placed(hit.primitive_index, hit.instance);
+    let primitive = context.base.placed(hit.primitive_index, hit.instance, ray.time);
     let effects = context.base.spec.effects;
     if effects.has(Effects::SPHERE) && primitive.is_sphere() {
         sphere::coordinates(&primitive, ray)

@@ -2,7 +2,7 @@
 
 mod world;
 
-use core::cell::{Cell, RefCell};
+use core::cell::Cell;
 
 use glam::Vec3;
 use proptest::prelude::*;
@@ -213,19 +213,23 @@ fn light_passes_transparent_triangles_only() {
     }
 }
 
+/// Whether a ray was traced, the distance and the primitive.
+type Answer = Option<(bool, f32, u32)>;
+
 /// Persistent lanes take rays until none is left: each is answered once, as a thread a ray answers it.
 fn persistent_lanes<M: Method<f32> + Resumable<f32>>(world: &World, rays: &[Segment<f32>]) {
-    let (next, seen) = (Cell::new(0), RefCell::new(vec![None; rays.len()]));
+    let (next, mut seen) = (Cell::new(0), vec![None; rays.len()]);
     let take = |wants: bool| if wants { next.replace(next.get() + 1) } else { u32::MAX };
     // Every third ray is not to be traced.
-    let load = |number: u32| (rays[number as usize].ray(), rays[number as usize].limit, number % 3 != 2);
-    let store = |number: u32, traced: bool, _: &Ray<f32>, hit: &Hit<f32>| {
-        let before = seen.borrow_mut()[number as usize].replace((traced, hit.t, hit.primitive));
+    let load = |_: &[_], number: u32| (rays[number as usize].ray(), rays[number as usize].limit, number % 3 != 2);
+    let store = |seen: &mut [Answer], number: u32, traced: bool, _: &Ray<f32>, hit: &Hit<f32>| {
+        let before = seen[number as usize].replace((traced, hit.t, hit.primitive));
         assert!(before.is_none(), "{number} is answered twice");
     };
-    persistent::<f32, M, Primitives, Closest, Alone>(&world.context(), rays.len() as u32, take, load, store);
-    for (number, answer) in seen.into_inner().into_iter().enumerate() {
-        let (ray, limit, wanted) = load(number as u32);
+    let count = rays.len() as u32;
+    persistent::<f32, M, Primitives, Closest, Alone, _>(&world.context(), (count, &mut seen), take, load, store);
+    for (number, answer) in seen.into_iter().enumerate() {
+        let (ray, limit, wanted) = load(&[], number as u32);
         let want = world.trace::<M, Closest, f32>(&ray, limit);
         let want = if wanted { (true, want.t, want.primitive) } else { (false, limit, Hit::<f32>::NOTHING) };
         assert_eq!(answer, Some(want), "{number}");

@@ -19,6 +19,7 @@ mod layout;
 mod median;
 mod quality;
 mod reference;
+pub mod refit;
 mod reinsertion;
 mod search;
 mod spatial;

@@ -48,7 +48,17 @@ impl Job {
         scene.check()?;
         settings.check()?;
         check_emission(scene.emissive(), settings.transport.integrator)?;
-        Job::of(Arc::new(DeviceScene::of_checked(scene, quality, is_wide)?), settings)
+        Job::of(Arc::new(DeviceScene::of_checked(scene, quality, is_wide, None)?), settings)
+    }
+
+    /// The same for the scene at another moment, by the hierarchy that it has where that will do: see [`DeviceScene::moved`].
+    ///
+    /// # Errors
+    /// As [`Job::new`].
+    pub fn moved(&self, scene: &Scene, settings: Settings) -> Result<Job> {
+        settings.check()?;
+        check_emission(scene.emissive(), settings.transport.integrator)?;
+        Job::of(Arc::new(self.scene.moved(scene)?), settings)
     }
 
     /// Of a scene that is packed.

@@ -12,6 +12,9 @@ static FAST: LazyLock<Vec<u8>> = LazyLock::new(|| unpacked(include_bytes!(concat
 /// The kernel `numerics::evaluate`: what exact arithmetic is built from, see `numerics` of the kernels' own crate.
 pub const NUMERICS: &[u8] = include_bytes!("numerics.spv");
 
+/// The kernels `refit::*`: hierarchies whose triangles move, see `refit` of the kernels' own crate.
+pub const REFIT: &[u8] = include_bytes!("refit.spv");
+
 /// A hash of the sources that the modules were made of.
 pub const SOURCE: &str = env!("EYERAYS_SOURCE");
 

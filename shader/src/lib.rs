@@ -16,6 +16,7 @@ pub mod methods;
 pub mod numerics;
 pub mod ray;
 pub mod real;
+pub mod refit;
 pub mod resources;
 pub mod sampler;
 pub mod scene;

@@ -3,7 +3,8 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::{Bvh8, Quality, Statistics};
+use eyerays_bvh::refit::refit;
+use eyerays_bvh::{Bvh, Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Instance as InstanceRecord, Light as LightRecord,
     Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive,
@@ -82,6 +83,12 @@ pub struct DeviceScene {
     optics: Optics,
     normalisation: Normalisation,
     statistics: Statistics,
+    /// How its hierarchy is built, and whether with nodes of eight children.
+    quality: (Quality, bool),
+    /// Was it fitted to this scene, from the hierarchy of another moment?
+    is_fitted: bool,
+    /// What that cost by the surface area heuristic when it was built.
+    built_cost: f64,
     build_time: Duration,
     bvh8: OnceLock<Bvh8>,
 }
@@ -95,7 +102,7 @@ impl DeviceScene {
     /// a light too far away for the scene's numbers.
     pub fn new(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
         scene.check()?;
-        Self::of_checked(scene, quality, false)
+        Self::of_checked(scene, quality, false, None)
     }
 
     /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
@@ -105,20 +112,27 @@ impl DeviceScene {
     /// As there.
     pub fn with_wide_nodes(scene: &Scene, quality: Quality) -> Result<DeviceScene> {
         scene.check()?;
-        Self::of_checked(scene, quality, true)
+        Self::of_checked(scene, quality, true, None)
     }
 
-    /// Of a scene that was checked; `is_wide` with nodes of eight children, too.
+    /// Of a scene that was checked; `is_wide` with nodes of eight children, too; by the hierarchy of the scene as it was `before`, if
+    /// that will do.
     ///
     /// # Errors
     /// As [`DeviceScene::new`].
-    pub(crate) fn of_checked(scene: &Scene, quality: Quality, is_wide: bool) -> Result<DeviceScene> {
+    pub(crate) fn of_checked(
+        scene: &Scene,
+        quality: Quality,
+        is_wide: bool,
+        before: Option<&DeviceScene>,
+    ) -> Result<DeviceScene> {
         let emissive = scene.emissive().map(str::to_owned);
         let effects = records::effects(scene);
         let normalisation = normalisation(scene);
         let start = Instant::now();
-        let Levels { bvh, top, primitives, mut instances, bends, statistics, is_split } =
-            Levels::new(scene, &normalisation, quality, is_wide)?;
+        let Levels { bvh, top, primitives, mut instances, bends, statistics, is_split, is_fitted } =
+            Levels::new(scene, &normalisation, (quality, is_wide), before)?;
+        let built_cost = before.filter(|_| is_fitted).map_or(statistics.sah_cost, |before| before.built_cost);
         let movement = Movement::new(scene, &normalisation, &mut instances)?;
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
@@ -141,6 +155,9 @@ impl DeviceScene {
         let lighting = Lighting::new((&scene.lights, &lights), &lamps, (&groups, background_group), &normalisation);
         let many = if lighting.nodes.is_empty() { 0 } else { Effects::MANY_LIGHTS };
         Ok(DeviceScene {
+            quality: (quality, is_wide),
+            is_fitted,
+            built_cost,
             statistics,
             primitives,
             instances,
@@ -168,6 +185,36 @@ impl DeviceScene {
             build_time,
             bvh8: OnceLock::new(),
         })
+    }
+
+    /// The scene with its surfaces elsewhere, or another one: with the hierarchy that there is, fitted to where they are (thesis 4.1.1), as
+    /// long as it has the same number of triangles, spheres and disks, and costs at most [`DeviceScene::WORN`] times what it cost
+    /// when it was built; else by a new one.
+    ///
+    /// # Errors
+    /// As [`DeviceScene::new`].
+    pub fn moved(&self, scene: &Scene) -> Result<DeviceScene> {
+        scene.check()?;
+        let (quality, is_wide) = self.quality;
+        Self::of_checked(scene, quality, is_wide, Some(self))
+    }
+
+    /// How many times what it cost by the surface area heuristic a hierarchy may cost that is fitted to what has moved.
+    pub const WORN: f64 = 1.5;
+
+    /// Was its hierarchy [fitted](DeviceScene::moved) from that of another moment?
+    pub fn is_fitted(&self) -> bool {
+        self.is_fitted
+    }
+
+    /// Its hierarchy for primitives elsewhere, if it may be.
+    fn fitted(&self, primitives: &[Primitive]) -> Option<Bvh> {
+        if !self.instances.is_empty() || self.statistics.primitives != primitives.len() {
+            return None;
+        }
+        let order = self.primitives.iter().map(Primitive::number).collect();
+        let (bvh, cost) = refit(&self.nodes, order, primitives).ok()?;
+        (cost <= Self::WORN * self.built_cost).then_some(bvh)
     }
 
     /// Child pairs of the hierarchy.

@@ -12,7 +12,7 @@ use super::copies::{self, Bottom};
 use super::hierarchy::{built, kept_or_built, refused};
 use super::keys::{self, Bends};
 use super::normalisation::Normalisation;
-use super::{flags, records};
+use super::{DeviceScene, flags, records};
 use crate::error::{Error, Result};
 use crate::scene::{Motion, Scene, SharedMesh};
 
@@ -33,24 +33,34 @@ pub(super) struct Levels {
     pub statistics: Statistics,
     /// Do some primitives have several slots?
     pub is_split: bool,
+    /// Is it that of the scene before?
+    pub is_fitted: bool,
 }
 
 impl Levels {
-    /// Builds those of a scene that was checked, or takes the one that it brings along; `is_wide` with nodes of eight children, too.
+    /// Builds those of a scene that was checked, or takes the one that it brings along; `is_wide` with nodes of eight children, too. That of
+    /// the scene as it was `before` is fitted to it where that will do.
     ///
     /// # Errors
     /// What builders refuse.
-    pub fn new(scene: &Scene, normalisation: &Normalisation, quality: Quality, is_wide: bool) -> Result<Self> {
+    pub fn new(
+        scene: &Scene,
+        normalisation: &Normalisation,
+        (quality, is_wide): (Quality, bool),
+        before: Option<&DeviceScene>,
+    ) -> Result<Self> {
         let cubes: Vec<Normalisation> = (0..scene.shared.len()).map(|mesh| copies::cube(scene, mesh)).collect();
         let mut primitives = records::primitives(scene, normalisation, &cubes);
         if scene.shared.is_empty() {
-            let mut bvh = kept_or_built(scene, &primitives, quality)?;
+            let fitted = before.and_then(|before| before.fitted(&primitives));
+            let is_fitted = fitted.is_some();
+            let mut bvh = fitted.map_or_else(|| kept_or_built(scene, &primitives, quality), Ok)?;
             widen(&mut bvh, is_wide)?;
             let statistics = Statistics::of(&bvh, &primitives);
             let top = (bvh.nodes.len(), bvh.order.len());
             let is_split = bvh.order.len() > primitives.len();
             let (instances, bends) = (Vec::new(), Bends::default());
-            return Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split });
+            return Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split, is_fitted });
         }
         let bent: HashSet<usize> = scene.motion.iter().flat_map(Motion::bent).collect();
         let bottom = |(mesh, shared): (usize, &SharedMesh)| {
@@ -82,7 +92,7 @@ impl Levels {
         lead(&mut bvh, top.0, &primitives, instances.len())?;
         let is_split = bvh.order.len() > primitives.len();
         let bends = bends(scene, (&slots, &firsts), &mut bvh.order, &mut instances);
-        Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split })
+        Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split, is_fitted: false })
     }
 }
 

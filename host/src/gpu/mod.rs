@@ -13,6 +13,7 @@ mod module;
 pub mod numerics;
 mod readback;
 mod recipe;
+mod refit;
 mod render;
 mod scene;
 mod timer;

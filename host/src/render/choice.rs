@@ -87,4 +87,12 @@ impl Choice {
         let pack = if is_wide { Job::with_wide_nodes } else { Job::new };
         cpu::pool(self.threads)?.install(|| pack(scene, settings, quality))
     }
+
+    /// Packs the scene of a job as it is at another moment, see [`Job::moved`], by as many threads.
+    ///
+    /// # Errors
+    /// As [`Job::moved`].
+    pub fn pack_moved(&self, before: &Job, scene: &Scene, settings: Settings) -> Result<Job> {
+        cpu::pool(self.threads)?.install(|| before.moved(scene, settings))
+    }
 }

@@ -161,3 +161,123 @@ pub mod numerics {
         }
     }
 }
+
+/// Hierarchies whose triangles move, see [`crate::refit`].
+#[cfg(feature = "exact")]
+pub mod refit {
+    use super::*;
+    use crate::refit::{self, Block, Refit};
+    use glam::Vec3;
+
+    /// The number of a thread, which may be in a further row.
+    #[inline(always)]
+    fn number(id: UVec3) -> u32 {
+        id.y * ROW + id.x
+    }
+
+    #[inline(always)]
+    fn block(blocks: &[UVec4], number: u32) -> Block {
+        refit::unpacked([read(blocks, 2 * number), read(blocks, 2 * number + 1)])
+    }
+
+    #[inline(always)]
+    fn keep(blocks: &mut [UVec4], number: u32, of: Block) {
+        let [least, greatest] = refit::packed(of);
+        write(blocks, 2 * number, least);
+        write(blocks, 2 * number + 1, greatest);
+    }
+
+    #[inline(always)]
+    fn vector(numbers: &[u32], vertex: u32) -> Vec3 {
+        let number = |axis| f32::from_bits(read(numbers, 3 * vertex + axis));
+        Vec3::new(number(0), number(1), number(2))
+    }
+
+    /// Gathers the vertices of a slot's triangle, and finds its box.
+    #[spirv(compute(threads(64)))]
+    pub fn place(
+        #[spirv(global_invocation_id)] id: UVec3,
+        #[spirv(uniform, descriptor_set = 0, binding = 0)] of: &Refit,
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] corners: &[UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] positions: &[u32],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] primitives: &mut [UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 4)] blocks: &mut [UVec4],
+    ) {
+        let slot = number(id);
+        if slot >= of.slots {
+            return;
+        }
+        let UVec4 { x, y, z, .. } = read(corners, slot);
+        let at = |word| read(primitives, 3 * slot + word);
+        let before = Primitive { a: at(0), b: at(1), c: at(2) };
+        let vertices = [vector(positions, x), vector(positions, y), vector(positions, z)];
+        let triangle = refit::placed(before, vertices);
+        write(primitives, 3 * slot, triangle.a);
+        write(primitives, 3 * slot + 1, triangle.b);
+        write(primitives, 3 * slot + 2, triangle.c);
+        keep(blocks, slot, refit::of_triangle(&triangle));
+    }
+
+    /// Gathers the normals of a slot's vertices.
+    #[spirv(compute(threads(64)))]
+    pub fn turn(
+        #[spirv(global_invocation_id)] id: UVec3,
+        #[spirv(uniform, descriptor_set = 0, binding = 0)] of: &Refit,
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] corners: &[UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] vectors: &[u32],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] normals: &mut [Normals],
+    ) {
+        let slot = number(id);
+        if slot < of.slots {
+            let UVec4 { x, y, z, .. } = read(corners, slot);
+            write(normals, slot, refit::turned([vector(vectors, x), vector(vectors, y), vector(vectors, z)]));
+        }
+    }
+
+    /// Finds the boxes of a level of blocks, each of two of the level below.
+    #[spirv(compute(threads(64)))]
+    pub fn merge(
+        #[spirv(global_invocation_id)] id: UVec3,
+        #[spirv(uniform, descriptor_set = 0, binding = 0)] of: &Refit,
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] blocks: &mut [UVec4],
+    ) {
+        let own = number(id);
+        let ((below, had), (first, count)) = (refit::level(of.slots, of.level - 1), refit::level(of.slots, of.level));
+        if own >= count {
+            return;
+        }
+        let mut around = block(blocks, below + 2 * own);
+        if 2 * own + 1 < had {
+            around = around.around(block(blocks, below + 2 * own + 1));
+        }
+        keep(blocks, first + own, around);
+    }
+
+    /// Fits the boxes of a pair of nodes to the slots below.
+    #[spirv(compute(threads(64)))]
+    pub fn fit(
+        #[spirv(global_invocation_id)] id: UVec3,
+        #[spirv(uniform, descriptor_set = 0, binding = 0)] of: &Refit,
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 1)] runs: &[UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 2)] blocks: &[UVec4],
+        #[spirv(storage_buffer, descriptor_set = 0, binding = 3)] nodes: &mut [UVec4],
+    ) {
+        let pair = number(id);
+        if pair >= of.pairs {
+            return;
+        }
+        let UVec4 { x: first, y: middle, z: end, .. } = read(runs, pair);
+        let slots = of.slots;
+        let left = refit::run(slots, (first, middle), |number| block(blocks, number));
+        let (centre, half) = refit::centred(left, read(nodes, 4 * pair).w);
+        write(nodes, 4 * pair, centre);
+        write(nodes, 4 * pair + 1, half);
+        // The right child of a single triangle's tree is nothing.
+        if middle < end {
+            let right = refit::run(slots, (middle, end), |number| block(blocks, number));
+            let (centre, half) = refit::centred(right, read(nodes, 4 * pair + 2).w);
+            write(nodes, 4 * pair + 2, centre);
+            write(nodes, 4 * pair + 3, half);
+        }
+    }
+}

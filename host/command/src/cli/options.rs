@@ -148,15 +148,15 @@ impl View {
 
     /// Packs a scene for these options and what traces it.
     pub fn pack(&self, read: Read<'_>, effort: &Effort, choice: &Choice, quiet: bool) -> Result<Loaded> {
-        self.pack_and_keep(read, effort, choice, quiet).map(|(loaded, ..)| loaded)
+        self.pack_and_keep(read, effort, (choice, None), quiet).map(|(loaded, ..)| loaded)
     }
 
-    /// The same, with the scene and the camera that it is seen from.
+    /// The same, with the scene and the camera that it is seen from; after the job of the same scene at another moment.
     pub fn pack_and_keep(
         &self,
         read: Read<'_>,
         effort: &Effort,
-        choice: &Choice,
+        (choice, before): (&Choice, Option<&Job>),
         quiet: bool,
     ) -> Result<(Loaded, Scene, Camera)> {
         let Read { path, mut scene, time: read_time, .. } = read;
@@ -170,7 +170,10 @@ impl View {
         let start = Instant::now();
         // It may be none of the scene's.
         scene.cameras.push(camera.clone());
-        let pack = || choice.pack(&scene, settings, effort.quality());
+        let pack = || match before {
+            Some(before) => choice.pack_moved(before, &scene, settings),
+            None => choice.pack(&scene, settings, effort.quality()),
+        };
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         scene.cameras.pop();
         if let Some(pixel) = self.lens.focus_on() {

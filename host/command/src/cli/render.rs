@@ -29,8 +29,9 @@ use crate::output::{self, Destination};
 use crate::preset::Preset;
 use eyerays::denoise::Denoiser;
 use eyerays::fireflies::Buckets;
+use eyerays::job::Job;
 use eyerays::layers::{self, Aovs, Layer};
-use eyerays::render::{Backend, Choice, DeviceWish};
+use eyerays::render::{Backend, Choice, DeviceWish, Session};
 use eyerays::scene::{Integrator, LightGroups, Scene, Settings};
 use eyerays::scene_io;
 
@@ -125,6 +126,10 @@ struct Task<'a> {
     /// Opened once, and not closed: the end of the process takes everything back at once, and a driver takes 70 ms for it one by one
     /// (an H200).
     backend: OnceCell<ManuallyDrop<Backend>>,
+    /// What has rendered the pictures before, with its kernels.
+    session: RefCell<Option<Session>>,
+    /// The scene as it was in the picture of an animation before.
+    before: RefCell<Option<Job>>,
     /// Where pictures have gone.
     places: RefCell<Vec<Destination>>,
 }
@@ -170,8 +175,8 @@ impl Render {
         };
         self.noise.target(&self.look)?;
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
-        let (backend, places) = Default::default();
-        Ok(Task { of: self, effort: self.effort.over(&preset), choice, quiet, backend, places })
+        let (backend, session, before, places) = Default::default();
+        Ok(Task { of: self, effort: self.effort.over(&preset), choice, quiet, backend, session, before, places })
     }
 
     /// Refuses what is for one picture.
@@ -268,6 +273,7 @@ impl Task<'_> {
     /// Renders a scene at instants of its animation, until one fails or a signal ends it: what is wrong with one is mostly with all.
     fn animation(&self, path: &Path, instants: &[Option<Instant>]) -> Result<ExitCode> {
         let animation = Animation::new(path, (&self.of.reading, self.effort.integrator()), instants)?;
+        self.before.take();
         for moving in animation.pictures(instants) {
             let code = self.pictures(path, (&animation, moving))?;
             if code != ExitCode::SUCCESS {
@@ -292,7 +298,12 @@ impl Task<'_> {
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
-        let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, &self.choice, self.quiet)?;
+        let before = self.before.take();
+        let choice = (&self.choice, before.as_ref());
+        let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, choice, self.quiet)?;
+        // Of scenes that stand still none is held longer than its pictures take.
+        let moves = moving.instant.is_some();
+        self.before.replace(moves.then(|| loaded.packed.clone()));
         let kept = self.of.kept(loaded.packed.settings().transport.integrator);
         loaded.packed = loaded.packed.keeping(kept).map_err(|error| error.of(path))?;
         let shots = self.of.sequence.shots(&scene, camera, moving.instant)?;
@@ -304,7 +315,10 @@ impl Task<'_> {
         let backend = self.backend.get().expect("it was opened");
         let studio =
             Studio { of: self.of, path, scene: &scene, hash, choice: &self.choice, backend, quiet: self.quiet };
-        studio.pictures(&loaded, &places)
+        let mut session = studio.session(self.session.take(), &loaded)?;
+        let code = studio.pictures(&mut session, &loaded, &places)?;
+        self.session.replace(moves.then_some(session));
+        Ok(code)
     }
 
     /// Opens the device, unless that was done for another scene, and hashes the scene meanwhile: a driver takes longer for it.

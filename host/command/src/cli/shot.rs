@@ -54,13 +54,18 @@ struct Layers {
 }
 
 impl Studio<'_> {
+    /// What renders them: what has rendered others before, or anew.
+    pub fn session(&self, before: Option<Session>, loaded: &Loaded) -> Result<Session> {
+        let turned = before.and_then(|mut session| session.turn(&loaded.packed).is_ok().then_some(session));
+        Ok(turned.map_or_else(|| self.backend.open(&loaded.packed), Ok).map_err(|error| error.of(self.path))?)
+    }
+
     /// Renders all of them, until a signal ends one.
-    pub fn pictures(&self, loaded: &Loaded, places: &[Place]) -> Result<ExitCode> {
-        let mut session = self.backend.open(&loaded.packed).map_err(|error| error.of(self.path))?;
+    pub fn pictures(&self, session: &mut Session, loaded: &Loaded, places: &[Place]) -> Result<ExitCode> {
         each(places, |place| {
             let identity = self.identity(loaded, place)?;
-            let mut rendering = self.rendered(&mut session, place, &identity)?;
-            let layers = self.layers(&mut session, place, &mut rendering)?;
+            let mut rendering = self.rendered(session, place, &identity)?;
+            let layers = self.layers(session, place, &mut rendering)?;
             self.finish(loaded, place, identity, rendering, layers)
         })
     }

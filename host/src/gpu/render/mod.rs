@@ -13,6 +13,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Order};
 use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
+use glam::Vec3;
 use wgpu::BufferUsages as Use;
 
 use self::cells::Cells;
@@ -22,6 +23,7 @@ use super::kernel::{Kernel, Known};
 use super::launch::{Launch, Queue};
 use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
+use super::refit::Moving;
 use super::scene::SceneBuffers;
 use crate::error::Result;
 use crate::film::{Coverage, Film, Part};
@@ -31,7 +33,7 @@ use crate::noise::{CellSums, Lot};
 use crate::picture::Picture;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
-use crate::scene::Light;
+use crate::scene::{Light, Scene};
 use crate::view::{Region, View};
 use crate::watch::Grows;
 
@@ -59,6 +61,8 @@ pub struct Renderer {
     scene: SceneBuffers,
     /// Other lights than the scene's.
     relit: Option<Vec<Light>>,
+    /// Once vertices have moved.
+    moving: Option<Moving>,
     most_slots: u32,
     memory: Option<Memory>,
     growing: Option<Growing>,
@@ -162,6 +166,7 @@ impl Renderer {
             known,
             scene,
             relit: None,
+            moving: None,
             most_slots,
             memory: None,
             growing: None,
@@ -179,7 +184,7 @@ impl Renderer {
         // Its groups bind the buffers of the plan before.
         (self.memory, self.growing, self.cells) = (None, None, None);
         if !Arc::ptr_eq(self.job.scene(), job.scene()) {
-            (self.scene, self.relit) = (SceneBuffers::default(), None);
+            (self.scene, self.relit, self.moving) = (SceneBuffers::default(), None, None);
         }
         let (known, scene) = (&mut self.known, &mut self.scene);
         let ready = ready(&self.gpu, job, self.exact, self.traversal, known, scene)?;
@@ -207,6 +212,24 @@ impl Renderer {
         write(binding::LIGHT_NODES, bytemuck::cast_slice(&lighting.nodes));
         write(binding::EMISSIONS, bytemuck::cast_slice(&lighting.emissions));
         self.relit = Some(lights.to_vec());
+        Ok(())
+    }
+
+    /// Goes on with the vertices of the scene that was packed elsewhere, in world units, and with their normals if it has any (thesis
+    /// 4.1.1). Its hierarchy is fitted to them on the device, and stays as good as they stay near to each other: where they do not,
+    /// [`Job::moved`] tells when it is better built anew. `scene` is what was packed; only its triangles are read, and only once.
+    ///
+    /// # Errors
+    /// What can't be moved so: all but triangles that are not split, shine or have tangents. Vertices out of the box that the scene was
+    /// packed in, or what the GPU reports.
+    pub fn deform(&mut self, scene: &Scene, positions: &[Vec3], normals: &[Vec3]) -> Result<()> {
+        let layout = self.traversal.layout;
+        let moving = match self.moving.take() {
+            Some(moving) => moving,
+            None => Moving::new(&self.gpu, &self.job, layout, scene, &self.scene)?,
+        };
+        moving.go(&self.gpu, &self.job, positions, normals)?;
+        self.moving = Some(moving);
         Ok(())
     }
 

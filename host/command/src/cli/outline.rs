@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::plural;
 use crate::error::printable;
-use eyerays::scene::{Animation, Camera, Projection, Scene, default_camera};
+use eyerays::scene::{Animation, Camera, Instance, Motion, Projection, Scene, default_camera};
 
 /// The most meshes and the most materials that are told one by one as text.
 const MOST: usize = 50;
@@ -80,12 +80,28 @@ impl fmt::Display for Outline<'_> {
             writeln!(out, "animation: {}, {seconds:.3} s", printable(name))?;
         }
         more(out, animations.len())?;
+        if let Some(motion) = &self.scene.motion {
+            let moving = moving(&self.scene, motion);
+            let steps = plural(motion.poses.len(), "step");
+            let cameras = plural(motion.cameras.len(), "camera");
+            let (moving, bent) = (plural(moving, "instance"), plural(motion.bent().count(), "shape"));
+            writeln!(out, "while the shutter is open: {steps}; {moving} and {cameras} that move, {bent} that bend")?;
+        }
         let materials = &self.scene.materials;
         for (number, material) in materials.iter().enumerate().take(MOST) {
             writeln!(out, "material {}: {}", number + 1, printable(&material.name))?;
         }
         more(out, materials.len())
     }
+}
+
+/// How many copies of meshes stand elsewhere later, or are of a mesh that changes its shape.
+fn moving(scene: &Scene, motion: &Motion) -> usize {
+    let bent: Vec<usize> = motion.bent().collect();
+    let moves = |&(number, copy): &(usize, &Instance)| {
+        bent.contains(&(copy.mesh as usize)) || motion.poses.iter().any(|pose| pose.instances[number] != *copy)
+    };
+    scene.instances.iter().enumerate().filter(moves).count()
 }
 
 /// Says how many of a list are not told.

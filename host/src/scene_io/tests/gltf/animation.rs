@@ -9,14 +9,14 @@ use crate::scene_io::gltf::Gltf;
 use crate::scene_io::{AnimationWish, Moment};
 
 /// A triangle whose node has an animation of one channel.
-fn moving(path: &str, interpolation: &str, times: &[f32], values: &[f32]) -> Model {
+pub fn moving(path: &str, interpolation: &str, times: &[f32], values: &[f32]) -> Model {
     let mut model = Model::triangle();
     channel(&mut model, (0, path), interpolation, times, values);
     model
 }
 
 /// Adds a channel to the only animation.
-fn channel(model: &mut Model, (node, path): (usize, &str), interpolation: &str, times: &[f32], values: &[f32]) {
+pub fn channel(model: &mut Model, (node, path): (usize, &str), interpolation: &str, times: &[f32], values: &[f32]) {
     let (kind, width) = match path {
         "rotation" => ("VEC4", 4),
         "weights" => ("SCALAR", 1),

@@ -6,6 +6,7 @@ mod hostile;
 mod left_out;
 mod model;
 mod shape;
+mod shutter;
 mod surroundings;
 
 use glam::{Vec2, Vec3, Vec4};

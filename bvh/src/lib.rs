@@ -16,6 +16,7 @@ mod depth;
 mod error;
 mod kept;
 mod layout;
+pub mod linear;
 mod median;
 mod quality;
 mod reference;

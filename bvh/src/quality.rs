@@ -3,6 +3,9 @@
 /// Build time against traversal time.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, Debug, Default)]
 pub enum Quality {
+    /// For scenes that are large and soon gone: primitives stay whole, in an order that a device sorts by itself, see
+    /// [`linear`](crate::linear).
+    Linear,
     /// For scenes that are traced once: primitives stay whole, and the tree as it was grown.
     Fast,
     /// For most scenes: triangles are split, and large nodes moved to where they cost less.
@@ -16,7 +19,7 @@ impl Quality {
     /// How many references [`split`](crate::split) may add for this quality, as a share of the primitives. A hit does not depend on them.
     pub fn split_budget(self) -> f32 {
         match self {
-            Quality::Fast => 0.0,
+            Quality::Linear | Quality::Fast => 0.0,
             Quality::Medium | Quality::High => 0.3,
         }
     }
@@ -24,7 +27,7 @@ impl Quality {
     /// Which share of the nodes of a tree the first pass of reinsertion tries.
     pub(crate) fn reinsertion(self) -> f32 {
         match self {
-            Quality::Fast => 0.0,
+            Quality::Linear | Quality::Fast => 0.0,
             Quality::Medium => 0.1,
             Quality::High => 1.0,
         }

@@ -71,30 +71,25 @@ fn main() -> Result<(), Box<dyn Error>> {
     let rate = f64::from(frames) / time.as_secs_f64();
     println!("{frames} frames of {count} triangles and {width}x{height} pixels: {rate:.1} a second");
     println!("of {:.2} ms a frame, {:.2} move the vertices", mean(time, frames), mean(computing, frames));
-    let before = renderer.device_time();
-    for _ in 0..frames {
-        renderer.deform(&scene, &positions, &[])?;
-    }
-    gpu_wait(&mut renderer, &view)?;
-    let wall = Instant::now();
-    for _ in 0..frames {
-        renderer.deform(&scene, &positions, &[])?;
-    }
-    renderer.start(&view)?;
-    renderer.add(0..1, &|_| ())?;
+    let repeated = |renderer: &mut Renderer, what: &str, work: &dyn Fn(&mut Renderer) -> eyerays::error::Result<()>| {
+        work(renderer)?;
+        renderer.wait()?;
+        let start = Instant::now();
+        (0..frames).try_for_each(|_| work(renderer))?;
+        renderer.wait()?;
+        println!("{what} alone: {:.2} ms", mean(start.elapsed(), frames));
+        eyerays::error::Result::Ok(())
+    };
+    let picture = |renderer: &mut Renderer| {
+        renderer.start(&view)?;
+        renderer.add(0..1, &|_| ())
+    };
+    repeated(&mut renderer, "a picture", &picture)?;
+    repeated(&mut renderer, "uploading and fitting", &|renderer| renderer.deform(&scene, &positions, &[]))?;
+    repeated(&mut renderer, "building on the device", &Renderer::rebuild)?;
+    repeated(&mut renderer, "a picture by what was built there", &picture)?;
     let last = renderer.film()?.develop()?;
-    println!("uploading and fitting alone: {:.2} ms a frame", mean(wall.elapsed(), frames));
-    if let Some((after, before)) = renderer.device_time().zip(before) {
-        println!("on the device, two pictures: {:.2} ms", (after - before).as_secs_f64() * 1e3);
-    }
     println!("checksum of the last: {}", last.hash());
-    Ok(())
-}
-
-fn gpu_wait(renderer: &mut Renderer, view: &View) -> Result<(), Box<dyn Error>> {
-    renderer.start(view)?;
-    renderer.add(0..1, &|_| ())?;
-    renderer.film()?;
     Ok(())
 }
 

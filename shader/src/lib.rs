@@ -11,6 +11,7 @@ pub mod geometry;
 pub mod integrator;
 pub mod launch;
 pub mod light;
+pub mod linear;
 pub mod material;
 pub mod methods;
 pub mod numerics;

@@ -185,6 +185,57 @@ fn a_gpu_fits_its_own_hierarchy() {
 }
 
 #[test]
+fn a_gpu_builds_a_hierarchy_of_its_own_and_fits_that() {
+    let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
+    for (edge, smooth, quality) in [(1, false, Quality::Fast), (37, true, Quality::Medium), (60, true, Quality::Fast)] {
+        let first = framed(edge, smooth, 0.0);
+        let job = Job::new(&first, whitted(), quality).unwrap();
+        let view = eyerays::view::View::new(&job, &first.cameras[0]).unwrap();
+        let picture = |scene: &Scene| on_cpu(&pack_in(scene, &scene.cameras[0], whitted(), quality)).0;
+        for method in [Method::IfIf, Method::Packet] {
+            let mut renderer = gpu::Renderer::new(&gpu, &job, true, method).unwrap();
+            let render =
+                |renderer: &mut gpu::Renderer| renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
+            let before = render(&mut renderer);
+            renderer.rebuild().unwrap();
+            let what = format!("{edge}, {method:?}");
+            assert_same_bits(&before, &render(&mut renderer), &what);
+            // What is split has several slots of a triangle, which can't be moved.
+            if quality != Quality::Fast {
+                continue;
+            }
+            let later = framed(edge, smooth, 0.7);
+            renderer.deform(&first, &later.mesh.positions, &later.mesh.normals).unwrap();
+            let want = picture(&later);
+            assert_same_bits(&want, &render(&mut renderer), &format!("{what}, fitted"));
+            renderer.rebuild().unwrap();
+            assert_same_bits(&want, &render(&mut renderer), &format!("{what}, built anew"));
+        }
+    }
+}
+
+/// Many triangles of one code, and of none: those that lie in each other, and those without extent.
+#[test]
+fn triangles_in_one_place_are_a_tree_too() {
+    let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
+    let mut scene = framed(3, false, 0.0);
+    let mut rng = Rng::with_seed(4);
+    for _ in 0..3000 {
+        let at = Vec3::new(0.1, 0.9, 0.0);
+        let corner =
+            |rng: &mut Rng| at + Vec3::new(rng.f32(), rng.f32(), rng.f32()) * if rng.bool() { 0.2 } else { 0.0 };
+        let corners = [corner(&mut rng), corner(&mut rng), corner(&mut rng)];
+        add(&mut scene, matt(Vec3::new(0.2, 0.9, 0.4)), &corners, &[[0, 1, 2]]);
+    }
+    let job = Job::new(&scene, whitted(), Quality::Fast).unwrap();
+    let view = eyerays::view::View::new(&job, &scene.cameras[0]).unwrap();
+    let mut renderer = gpu::Renderer::new(&gpu, &job, true, Method::IfIf).unwrap();
+    renderer.rebuild().unwrap();
+    let got = renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
+    assert_same_bits(&on_cpu(&pack_in(&scene, &scene.cameras[0], whitted(), Quality::Fast)).0, &got, "a heap");
+}
+
+#[test]
 fn what_a_gpu_cannot_move_is_told() {
     let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
     let deform = |scene: &Scene, quality, positions: &[Vec3]| {
@@ -200,4 +251,7 @@ fn what_a_gpu_cannot_move_is_told() {
     let mut round = scene.clone();
     round.spheres.push(eyerays::scene::Sphere { center: Vec3::ZERO, radius: 0.2, material: 0 });
     assert!(deform(&round, Quality::Fast, &scene.mesh.positions).contains("it has spheres"));
+    let job = Job::new(&round, whitted(), Quality::Fast).unwrap();
+    let mut renderer = gpu::Renderer::new(&gpu, &job, true, Method::IfIf).unwrap();
+    assert!(renderer.rebuild().unwrap_err().message().contains("hierarchies of triangles alone"));
 }

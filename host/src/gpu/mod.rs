@@ -8,6 +8,7 @@ mod deep;
 mod device;
 mod kernel;
 mod launch;
+mod linear;
 mod memory;
 mod module;
 pub mod numerics;
@@ -16,6 +17,7 @@ mod recipe;
 mod refit;
 mod render;
 mod scene;
+mod step;
 mod timer;
 mod warm;
 

@@ -2,16 +2,15 @@
 
 use eyerays_bvh::refit::runs;
 use eyerays_shader::data::Effects;
-use eyerays_shader::launch::{ROW, WORKGROUP};
 use eyerays_shader::refit::{Refit, blocks, level, levels};
 use eyerays_shader::resources::binding;
 use glam::{UVec4, Vec3};
 use rayon::prelude::*;
-use wgpu::BufferUsages as Use;
 
 use super::device::Gpu;
+use super::linear::Linear;
 use super::scene::SceneBuffers;
-use super::{module, readback};
+use super::step::{Kernel, Step, empty, filled, run, uniform};
 use crate::device_scene::flushed;
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -24,14 +23,10 @@ pub(super) struct Moving {
     normals: Option<wgpu::Buffer>,
     /// Vertices of the scene.
     vertices: usize,
-    steps: Vec<Step>,
-}
-
-/// A dispatch.
-struct Step {
-    pipeline: wgpu::ComputePipeline,
-    group: wgpu::BindGroup,
-    threads: u32,
+    /// What puts vertices where they are.
+    gather: Vec<Step>,
+    /// What fits the hierarchy that the scene was packed with.
+    fit: Vec<Step>,
 }
 
 impl Moving {
@@ -60,28 +55,29 @@ impl Moving {
         let (positions, turned) = (vectors("positions"), normals.map(|_| vectors("vertex normals")));
         gpu.check()?;
         let kernel = |name, writes: &[bool]| Kernel::new(gpu, name, writes);
-        let (merge, uniform) = (kernel("refit::merge", &[true]), uniform(gpu, &told));
+        let uniform = uniform(gpu, &told);
         let place = kernel("refit::place", &[false, false, true, true]);
-        let mut steps = vec![place.step(gpu, &uniform, &[&corners, &positions, primitives, &all], slots)];
+        let mut gather = vec![place.step(gpu, &uniform, &[&corners, &positions, primitives, &all], slots)];
         if let (Some(normals), Some(vectors)) = (normals, &turned) {
             let turn = kernel("refit::turn", &[false, false, true]);
-            steps.push(turn.step(gpu, &uniform, &[&corners, vectors, normals], slots));
+            gather.push(turn.step(gpu, &uniform, &[&corners, vectors, normals], slots));
         }
-        for number in 1..levels(slots) {
-            let told = self::uniform(gpu, &Refit { level: number, ..told });
-            steps.push(merge.step(gpu, &told, &[&all], level(slots, number).1));
-        }
-        let fit = kernel("refit::fit", &[false, false, true]);
-        steps.push(fit.step(gpu, &uniform, &[&runs, &all, nodes], pairs));
+        let fit = fitting(gpu, &told, (&runs, &all, nodes));
         gpu.check()?;
-        Ok(Moving { positions, normals: turned, vertices, steps })
+        Ok(Moving { positions, normals: turned, vertices, gather, fit })
     }
 
-    /// Moves the vertices, in world units, and fits the hierarchy.
+    /// Moves the vertices, in world units, and fits the hierarchy: that of the device, if it has built one.
     ///
     /// # Errors
     /// They are not as many as before, or leave the cube that the scene was normalised to; or what the GPU reports.
-    pub fn go(&self, gpu: &Gpu, job: &Job, positions: &[Vec3], normals: &[Vec3]) -> Result<()> {
+    pub fn go(
+        &self,
+        (gpu, job): (&Gpu, &Job),
+        linear: Option<&Linear>,
+        positions: &[Vec3],
+        normals: &[Vec3],
+    ) -> Result<()> {
         let (count, vertices) = (positions.len(), self.vertices);
         if count != vertices || (self.normals.is_some() && normals.len() != vertices) {
             let own = normals.len();
@@ -103,17 +99,27 @@ impl Moving {
             let flushed: Vec<Vec3> = normals.par_iter().map(|&normal| flushed(normal)).collect();
             gpu.queue.write_buffer(buffer, 0, bytemuck::cast_slice(&flushed));
         }
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        let mut pass = encoder.begin_compute_pass(&Default::default());
-        for Step { pipeline, group, threads } in &self.steps {
-            pass.set_pipeline(pipeline);
-            pass.set_bind_group(0, group, &[]);
-            pass.dispatch_workgroups((*threads).min(ROW).div_ceil(WORKGROUP), threads.div_ceil(ROW), 1);
+        match linear {
+            Some(linear) => run(gpu, self.gather.iter().chain(linear.fit())),
+            None => run(gpu, self.gather.iter().chain(&self.fit)),
         }
-        drop(pass);
-        gpu.queue.submit([encoder.finish()]);
-        gpu.check()
     }
+}
+
+/// What fits the boxes of nodes to the blocks of slots, of which each has its own: `runs` are those below the nodes.
+pub(super) fn fitting(
+    gpu: &Gpu,
+    told: &Refit,
+    (runs, blocks, nodes): (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer),
+) -> Vec<Step> {
+    let merge = Kernel::new(gpu, "refit::merge", &[true]);
+    let merged = (1..levels(told.slots)).map(|number| {
+        let record = uniform(gpu, &Refit { level: number, ..*told });
+        merge.step(gpu, &record, &[blocks], level(told.slots, number).1)
+    });
+    let fit = Kernel::new(gpu, "refit::fit", &[false, false, true]);
+    let fit = fit.step(gpu, &uniform(gpu, told), &[runs, blocks, nodes], told.pairs);
+    merged.chain([fit]).collect()
 }
 
 /// Refuses what can't be moved so.
@@ -137,73 +143,4 @@ fn check(job: &Job, layout: Layout, scene: &Scene) -> Result<()> {
         return refused("its triangles have tangents; pack it anew instead");
     }
     Ok(())
-}
-
-fn empty(gpu: &Gpu, name: &str, size: u64) -> wgpu::Buffer {
-    let usage = Use::STORAGE | Use::COPY_DST;
-    gpu.device.create_buffer(&wgpu::BufferDescriptor { label: Some(name), size, usage, mapped_at_creation: false })
-}
-
-fn filled(gpu: &Gpu, name: &str, bytes: &[u8]) -> wgpu::Buffer {
-    let buffer = empty(gpu, name, bytes.len() as u64);
-    gpu.queue.write_buffer(&buffer, 0, bytes);
-    buffer
-}
-
-fn uniform(gpu: &Gpu, told: &Refit) -> wgpu::Buffer {
-    let (label, size, usage) = (Some("refit"), size_of::<Refit>() as u64, Use::UNIFORM | Use::COPY_DST);
-    let buffer = gpu.device.create_buffer(&wgpu::BufferDescriptor { label, size, usage, mapped_at_creation: false });
-    gpu.queue.write_buffer(&buffer, 0, bytemuck::bytes_of(told));
-    buffer
-}
-
-/// A kernel that takes a uniform record and buffers.
-struct Kernel {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
-}
-
-impl Kernel {
-    /// By its name, with whether it writes each of its buffers.
-    fn new(gpu: &Gpu, name: &str, writes: &[bool]) -> Kernel {
-        let storage = |&writes: &bool| wgpu::BufferBindingType::Storage { read_only: !writes };
-        let types = [wgpu::BufferBindingType::Uniform].into_iter().chain(writes.iter().map(storage));
-        let entries: Vec<_> = types
-            .zip(0..)
-            .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-                count: None,
-            })
-            .collect();
-        let layout = &wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-        let layout = gpu.device.create_bind_group_layout(layout);
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
-        let words: Vec<u32> = readback::words(eyerays_modules::REFIT).collect();
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
-            layout: Some(&pipeline_layout),
-            module: &module::create(gpu, &words, name),
-            entry_point: Some(name),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Kernel { layout, pipeline }
-    }
-
-    /// A dispatch of so many threads over buffers, after the uniform record.
-    fn step(&self, gpu: &Gpu, uniform: &wgpu::Buffer, buffers: &[&wgpu::Buffer], threads: u32) -> Step {
-        let all = [&uniform].into_iter().chain(buffers).zip(0..);
-        let entries: Vec<_> = all
-            .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let (layout, entries) = (&self.layout, &entries[..]);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
-        Step { pipeline: self.pipeline.clone(), group, threads }
-    }
 }

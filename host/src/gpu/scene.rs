@@ -95,6 +95,12 @@ impl SceneBuffers {
         Ok(())
     }
 
+    /// Takes another buffer in the place of a resource's.
+    pub fn replace(&mut self, binding: u32, buffer: wgpu::Buffer) {
+        self.0.retain(|(own, _)| *own != binding);
+        self.0.push((binding, buffer));
+    }
+
     /// The buffer of a resource.
     pub fn find(&self, binding: u32) -> Option<&wgpu::Buffer> {
         self.0.iter().find(|(own, _)| *own == binding).map(|(_, buffer)| buffer)

@@ -81,7 +81,7 @@ impl fmt::Display for Outline<'_> {
         }
         more(out, animations.len())?;
         if let Some(motion) = &self.scene.motion {
-            let moving = moving(&self.scene, motion);
+            let moving = moving(self.scene, motion);
             let steps = plural(motion.poses.len(), "step");
             let cameras = plural(motion.cameras.len(), "camera");
             let (moving, bent) = (plural(moving, "instance"), plural(motion.bent().count(), "shape"));

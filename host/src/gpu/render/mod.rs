@@ -21,6 +21,7 @@ use super::bands::bands;
 use super::device::Gpu;
 use super::kernel::{Kernel, Known};
 use super::launch::{Launch, Queue};
+use super::linear::Linear;
 use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::refit::Moving;
@@ -63,6 +64,8 @@ pub struct Renderer {
     relit: Option<Vec<Light>>,
     /// Once vertices have moved.
     moving: Option<Moving>,
+    /// Once the device has built a hierarchy.
+    linear: Option<Linear>,
     most_slots: u32,
     memory: Option<Memory>,
     growing: Option<Growing>,
@@ -167,6 +170,7 @@ impl Renderer {
             scene,
             relit: None,
             moving: None,
+            linear: None,
             most_slots,
             memory: None,
             growing: None,
@@ -184,7 +188,8 @@ impl Renderer {
         // Its groups bind the buffers of the plan before.
         (self.memory, self.growing, self.cells) = (None, None, None);
         if !Arc::ptr_eq(self.job.scene(), job.scene()) {
-            (self.scene, self.relit, self.moving) = (SceneBuffers::default(), None, None);
+            (self.scene, self.relit) = (SceneBuffers::default(), None);
+            (self.moving, self.linear) = (None, None);
         }
         let (known, scene) = (&mut self.known, &mut self.scene);
         let ready = ready(&self.gpu, job, self.exact, self.traversal, known, scene)?;
@@ -228,9 +233,38 @@ impl Renderer {
             Some(moving) => moving,
             None => Moving::new(&self.gpu, &self.job, layout, scene, &self.scene)?,
         };
-        moving.go(&self.gpu, &self.job, positions, normals)?;
+        moving.go((&self.gpu, &self.job), self.linear.as_ref(), positions, normals)?;
         self.moving = Some(moving);
         Ok(())
+    }
+
+    /// Builds a hierarchy on the device, of its triangles where they are, in the place of the one that the scene was packed with: sooner
+    /// than any other, and less good. What is deformed afterwards is fitted into it. A film that was started is then to be started again.
+    ///
+    /// # Errors
+    /// A scene of more than triangles, or of fewer than two; another layout than the plain one; or what the GPU reports.
+    pub fn rebuild(&mut self) -> Result<()> {
+        let linear = match self.linear.take() {
+            Some(linear) => linear,
+            None => {
+                let linear = Linear::new(&self.gpu, &self.job, self.traversal.layout, &self.scene)?;
+                // The groups bind the nodes that there were.
+                (self.memory, self.growing, self.cells) = (None, None, None);
+                self.scene.replace(binding::NODES, linear.nodes().clone());
+                linear
+            }
+        };
+        linear.go(&self.gpu)?;
+        self.linear = Some(linear);
+        Ok(())
+    }
+
+    /// Waits until the device has done all that was asked of it.
+    ///
+    /// # Errors
+    /// What the GPU reports.
+    pub fn wait(&mut self) -> Result<()> {
+        self.gpu.wait()
     }
 
     /// Renders a view. `done` hears of every finished share of the pixels.

@@ -28,6 +28,9 @@ pub struct Limits {
 }
 
 impl Limits {
+    /// Of a tree whose leaves have one reference each.
+    pub const SINGLE: Limits = Limits { depth: MAX_DEPTH, leaf: 1 };
+
     /// Those of two hierarchies of which one begins in the leaves of the other: one stack serves both, and a leaf leads to one.
     pub const OF_LEVELS: Limits = Limits { depth: MAX_DEPTH / 2, leaf: 1 };
 }

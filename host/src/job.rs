@@ -221,7 +221,7 @@ impl Job {
         let [horizon, zenith] = self.background();
         Frame {
             origin: self.origin(),
-            pairs: self.nodes().len() as u32,
+            pairs: self.pairs(),
             lamps: pack(flushed((least + greatest) * 0.5), 0),
             lamps_half: pack(flushed((greatest - least) * 0.5), 0),
             horizon,

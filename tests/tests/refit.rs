@@ -255,3 +255,35 @@ fn what_a_gpu_cannot_move_is_told() {
     let mut renderer = gpu::Renderer::new(&gpu, &job, true, Method::IfIf).unwrap();
     assert!(renderer.rebuild().unwrap_err().message().contains("hierarchies of triangles alone"));
 }
+
+/// A scene that is packed for a device that builds has the bits of any other, also where a CPU must do it after all.
+#[test]
+fn a_scene_whose_hierarchy_is_left_open_looks_like_any_other() {
+    for (edge, smooth) in [(1, false), (30, true)] {
+        let scene = framed(edge, smooth, 0.3);
+        let want = on_cpu(&pack_in(&scene, &scene.cameras[0], path(), Quality::Fast)).0;
+        let open = || Job::new(&scene, path(), Bvh::Device.quality()).unwrap();
+        let view = eyerays::view::View::new(&open(), &scene.cameras[0]).unwrap();
+        for method in [Method::Auto, Method::IfIf, Method::Packet] {
+            let got = cpu::render::<f32>(&open(), &view, method, 0, &|_| ()).unwrap().0;
+            assert_same_bits(&want, &got, &format!("{edge}, {method:?} on a CPU"));
+        }
+        assert_eq!(open().scene().primitive_count(), scene.mesh.triangles.len());
+        assert!(open().statistics().depth < 64);
+        let Some(gpu) = gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { continue };
+        let job = open();
+        let mut renderer = gpu::Renderer::new(&gpu, &job, true, Method::Auto).unwrap();
+        let got = renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
+        assert_same_bits(&want, &got, &format!("{edge} on a GPU"));
+        let later = framed(edge, smooth, 0.6);
+        renderer.deform(&scene, &later.mesh.positions, &later.mesh.normals).unwrap();
+        let got = renderer.render(&view, &|_| ()).unwrap().film.develop().unwrap();
+        assert_same_bits(&on_cpu(&pack_in(&later, &later.cameras[0], path(), Quality::Fast)).0, &got, "moved");
+    }
+    // What a device can't build is built as any other.
+    let mut round = sheet(4, false, 0.0);
+    round.spheres.push(eyerays::scene::Sphere { center: Vec3::ZERO, radius: 0.2, material: 0 });
+    let [want, got] =
+        [Bvh::Fast, Bvh::Device].map(|bvh| on_cpu(&pack_in(&round, &round.cameras[0], whitted(), bvh.quality())).0);
+    assert_same_bits(&want, &got, "with a ball");
+}

@@ -31,7 +31,7 @@ impl DeviceScene {
             slots: count as u32,
             vertices: self.primitives.len() as u32,
             origin: self.origin(),
-            pairs: self.nodes.len() as u32,
+            pairs: self.pairs(),
             ..Frame::default()
         }
     }

@@ -1,7 +1,8 @@
 //! The hierarchy of a scene, and what lies in its order.
 
-use eyerays_bvh::{BuildError, Bvh, Limits, Quality};
-use eyerays_shader::data::{CentredPair, NodePair, Primitive};
+use eyerays_bvh::linear::linear;
+use eyerays_bvh::{BuildError, Bvh, Limits, Quality, Statistics};
+use eyerays_shader::data::{CentredPair, NodePair, NodeRef, Primitive};
 use rayon::prelude::*;
 
 use super::{normalisation, records};
@@ -34,8 +35,31 @@ pub(super) fn kept_or_built(scene: &Scene, primitives: &[Primitive], quality: Qu
 
 /// A new hierarchy.
 pub(super) fn built(primitives: &[Primitive], quality: Quality, limits: Limits) -> Result<Bvh> {
-    let references = eyerays_bvh::split(primitives, quality.split_budget()).map_err(refused)?;
+    let references = match quality {
+        Quality::Linear => linear(primitives),
+        _ => eyerays_bvh::split(primitives, quality.split_budget()),
+    };
+    let references = references.map_err(refused)?;
     eyerays_bvh::build_within(&references, quality, limits).map_err(refused)
+}
+
+/// The figures of a hierarchy that is built as [`in_place`].
+pub(super) fn statistics(triangles: &[Primitive]) -> Statistics {
+    let bvh = built(triangles, Quality::Linear, Limits::SINGLE).expect("its triangles were checked");
+    Statistics::of(&bvh, triangles)
+}
+
+/// The pairs of triangles that lie in any order, built when a device asks for them that can't build its own. Each leaf has one.
+pub(super) fn in_place(triangles: &[Primitive]) -> Vec<CentredPair> {
+    let bvh = built(triangles, Quality::Linear, Limits::SINGLE).expect("its triangles were checked");
+    let mut pairs = centred(bvh.nodes);
+    let slot =
+        |child: NodeRef| if child.is_leaf() { NodeRef::leaf(bvh.order[child.index() as usize], 1) } else { child };
+    pairs.par_iter_mut().for_each(|pair| {
+        pair.left_centre.w = slot(pair.left()).0;
+        pair.right_centre.w = slot(pair.right()).0;
+    });
+    pairs
 }
 
 /// The pairs as kernels test them, in the same memory.

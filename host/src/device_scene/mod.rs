@@ -55,7 +55,8 @@ use crate::scene::{Background, Light, LightGroups, Matte, Scene, Settings};
 /// A scene as the kernels read it, owned. Whatever it was made of was checked, and nothing outside can change it, since
 /// kernels read through its numbers without checking them.
 pub struct DeviceScene {
-    nodes: Vec<CentredPair>,
+    /// Empty until it is asked for where a device builds its own.
+    nodes: OnceLock<Vec<CentredPair>>,
     wide: Vec<CwbvhNode>,
     primitives: Vec<Primitive>,
     instances: Vec<InstanceRecord>,
@@ -82,7 +83,8 @@ pub struct DeviceScene {
     background: Background,
     optics: Optics,
     normalisation: Normalisation,
-    statistics: Statistics,
+    /// Likewise.
+    statistics: OnceLock<Statistics>,
     /// How its hierarchy is built, and whether with nodes of eight children.
     quality: (Quality, bool),
     /// Was it fitted to this scene, from the hierarchy of another moment?
@@ -132,7 +134,8 @@ impl DeviceScene {
         let start = Instant::now();
         let Levels { bvh, top, primitives, mut instances, bends, statistics, is_split, is_fitted } =
             Levels::new(scene, &normalisation, (quality, is_wide), before)?;
-        let built_cost = before.filter(|_| is_fitted).map_or(statistics.sah_cost, |before| before.built_cost);
+        let own_cost = statistics.map_or(0.0, |statistics| statistics.sah_cost);
+        let built_cost = before.filter(|_| is_fitted).map_or(own_cost, |before| before.built_cost);
         let movement = Movement::new(scene, &normalisation, &mut instances)?;
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
@@ -158,13 +161,13 @@ impl DeviceScene {
             quality: (quality, is_wide),
             is_fitted,
             built_cost,
-            statistics,
+            statistics: statistics.map_or_else(OnceLock::new, OnceLock::from),
             primitives,
             instances,
             movement,
             top,
             normals,
-            nodes,
+            nodes: if nodes.is_empty() { OnceLock::new() } else { OnceLock::from(nodes) },
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().map(material).collect(),
@@ -209,17 +212,28 @@ impl DeviceScene {
 
     /// Its hierarchy for primitives elsewhere, if it may be.
     fn fitted(&self, primitives: &[Primitive]) -> Option<Bvh> {
-        if !self.instances.is_empty() || self.statistics.primitives != primitives.len() {
+        let is_alike = !self.is_left_open() && self.statistics().primitives == primitives.len();
+        if !self.instances.is_empty() || !is_alike {
             return None;
         }
         let order = self.primitives.iter().map(Primitive::number).collect();
-        let (bvh, cost) = refit(&self.nodes, order, primitives).ok()?;
+        let (bvh, cost) = refit(self.nodes(), order, primitives).ok()?;
         (cost <= Self::WORN * self.built_cost).then_some(bvh)
     }
 
-    /// Child pairs of the hierarchy.
+    /// Child pairs of the hierarchy. Where a device may build its own they are built when they are first asked for.
     pub fn nodes(&self) -> &[CentredPair] {
-        &self.nodes
+        self.nodes.get_or_init(|| hierarchy::in_place(&self.primitives))
+    }
+
+    /// May a device build the hierarchy, over triangles in any order?
+    pub(crate) fn is_left_open(&self) -> bool {
+        self.quality.0 == Quality::Linear && self.top.0 == 0
+    }
+
+    /// Its pairs, where references behind them lead to copies.
+    pub(crate) fn pairs(&self) -> u32 {
+        if self.instances.is_empty() { 0 } else { self.nodes().len() as u32 }
     }
 
     /// The same hierarchy with nodes of eight children, none unless it was packed [`with_wide_nodes`](Self::with_wide_nodes).
@@ -246,9 +260,9 @@ impl DeviceScene {
             let (pairs, slots) = self.top;
             let (primitives, bounds) = (&self.primitives[..slots], self.bounds.get(..slots).unwrap_or_default());
             if self.instances.is_empty() {
-                return Bvh8::of(&self.nodes, primitives, bounds);
+                return Bvh8::of(self.nodes(), primitives, bounds);
             }
-            Bvh8::of(&two_levels::leaves(&self.nodes, pairs, primitives), primitives, bounds)
+            Bvh8::of(&two_levels::leaves(self.nodes(), pairs, primitives), primitives, bounds)
         })
     }
 
@@ -353,15 +367,20 @@ impl DeviceScene {
         &self.normalisation
     }
 
-    /// The hierarchy's figures.
+    /// How many triangles, spheres, disks and copies there are, each once.
+    pub fn primitive_count(&self) -> usize {
+        self.statistics.get().map_or(self.primitives.len(), |statistics| statistics.primitives)
+    }
+
+    /// The hierarchy's figures; of one that a device builds, those of the same built here.
     pub fn statistics(&self) -> &Statistics {
-        &self.statistics
+        self.statistics.get_or_init(|| hierarchy::statistics(&self.primitives))
     }
 
     /// What it holds of each kind, in bytes, with what a CPU makes of it.
     pub fn bytes(&self) -> [(&'static str, usize); 9] {
         [
-            ("node pairs", size_of_val(&self.nodes[..])),
+            ("node pairs", size_of_val(self.nodes())),
             ("wide nodes", size_of_val(&self.wide[..])),
             ("primitives", size_of_val(&self.primitives[..])),
             ("copies", size_of_val(&self.instances[..])),

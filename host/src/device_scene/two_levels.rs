@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use eyerays_bvh::{Bvh, Limits, Quality, Statistics};
+use eyerays_bvh::{Bvh, Limits, Quality, Statistics, linear};
 use eyerays_shader::data::{CentredPair, Instance as Record, NodePair, NodeRef, Primitive};
 use rayon::prelude::*;
 
@@ -29,8 +29,8 @@ pub(super) struct Levels {
     pub instances: Vec<Record>,
     /// Triangles of meshes in their later shapes, the last in the order.
     pub bends: Bends,
-    /// Of that of the world.
-    pub statistics: Statistics,
+    /// Of that of the world, unless it is left open.
+    pub statistics: Option<Statistics>,
     /// Do some primitives have several slots?
     pub is_split: bool,
     /// Is it that of the scene before?
@@ -52,11 +52,18 @@ impl Levels {
         let cubes: Vec<Normalisation> = (0..scene.shared.len()).map(|mesh| copies::cube(scene, mesh)).collect();
         let mut primitives = records::primitives(scene, normalisation, &cubes);
         if scene.shared.is_empty() {
+            if quality == Quality::Linear
+                && !is_wide
+                && primitives.len() > 1
+                && primitives.iter().all(Primitive::is_triangle)
+            {
+                return Self::left_open(primitives);
+            }
             let fitted = before.and_then(|before| before.fitted(&primitives));
             let is_fitted = fitted.is_some();
             let mut bvh = fitted.map_or_else(|| kept_or_built(scene, &primitives, quality), Ok)?;
             widen(&mut bvh, is_wide)?;
-            let statistics = Statistics::of(&bvh, &primitives);
+            let statistics = Some(Statistics::of(&bvh, &primitives));
             let top = (bvh.nodes.len(), bvh.order.len());
             let is_split = bvh.order.len() > primitives.len();
             let (instances, bends) = (Vec::new(), Bends::default());
@@ -78,7 +85,7 @@ impl Levels {
         let above: Vec<Primitive> = own.par_iter().map(|&primitive| primitives[primitive as usize]).collect();
         let mut bvh = built(&above, quality, Limits::OF_LEVELS)?;
         widen(&mut bvh, is_wide)?;
-        let statistics = Statistics::of(&bvh, &above);
+        let statistics = Some(Statistics::of(&bvh, &above));
         bvh.order.par_iter_mut().for_each(|primitive| *primitive = own[*primitive as usize]);
         let top = (bvh.nodes.len(), bvh.order.len());
         let firsts = primitives[primitives.len() - scene.instances.len()..].iter().map(|copy| copy.number() as usize);
@@ -113,6 +120,17 @@ fn bends(
         }
     }
     bends
+}
+
+impl Levels {
+    /// Triangles in the order that they have, whose hierarchy a device builds, or whoever asks for it first.
+    fn left_open(primitives: Vec<Primitive>) -> Result<Self> {
+        linear::check(&primitives).map_err(refused)?;
+        let order = (0..primitives.len() as u32).collect();
+        let bvh = Bvh { nodes: Vec::new(), wide: Vec::new(), order, bounds: Vec::new() };
+        let (top, instances, bends) = ((0, primitives.len()), Vec::new(), Bends::default());
+        Ok(Levels { bvh, top, primitives, instances, bends, statistics: None, is_split: false, is_fitted: false })
+    }
 }
 
 /// Makes leaves of a copy lead to it: a number behind those of all pairs stands for it.

@@ -36,7 +36,7 @@ impl NodeWords {
     pub fn of(packed: &DeviceScene, layout: Layout) -> Self {
         NodeWords(match layout {
             Layout::Compact => {
-                let pairs: Vec<CompactPair> = packed.nodes.par_iter().map(CompactPair::from).collect();
+                let pairs: Vec<CompactPair> = packed.nodes().par_iter().map(CompactPair::from).collect();
                 Some(bytemuck::cast_slice(&pairs).to_vec())
             }
             Layout::Gathered | Layout::Indexed => None,
@@ -45,7 +45,7 @@ impl NodeWords {
 
     /// The words, of the scene that they were made for.
     pub fn words<'a>(&'a self, packed: &'a DeviceScene) -> &'a [UVec4] {
-        self.0.as_deref().unwrap_or(bytemuck::cast_slice(&packed.nodes))
+        self.0.as_deref().unwrap_or(bytemuck::cast_slice(packed.nodes()))
     }
 }
 

@@ -39,14 +39,17 @@ impl Moving {
         let (Some(nodes), Some(primitives)) = (buffers.find(binding::NODES), buffers.find(binding::PRIMITIVES)) else {
             return Err(Error::new("the hierarchy of pairs is not on the device: choose another method than wide"));
         };
-        let (slots, pairs) = (job.primitives().len() as u32, job.nodes().len() as u32);
+        let (slots, pairs) =
+            (job.primitives().len() as u32, if job.is_left_open() { 0 } else { job.nodes().len() as u32 });
         let corner = |primitive: &eyerays_shader::data::Primitive| {
             let [a, b, c] = scene.mesh.triangles[primitive.number() as usize];
             UVec4::new(a, b, c, 0)
         };
         let corners: Vec<UVec4> = job.primitives().par_iter().map(corner).collect();
         let corners = filled(gpu, "corners", bytemuck::cast_slice(&corners));
-        let runs = filled(gpu, "runs", bytemuck::cast_slice(&runs(job.nodes())));
+        // Of what the device has built it knows the runs.
+        let runs = if job.is_left_open() { Vec::new() } else { runs(job.nodes()) };
+        let runs = (!runs.is_empty()).then(|| filled(gpu, "runs", bytemuck::cast_slice(&runs)));
         let vertices = scene.mesh.positions.len();
         let vectors = |name| empty(gpu, name, 12 * vertices as u64);
         let normals = job.effects().has(Effects::SMOOTH).then(|| buffers.find(binding::NORMALS)).flatten();
@@ -62,7 +65,7 @@ impl Moving {
             let turn = kernel("refit::turn", &[false, false, true]);
             gather.push(turn.step(gpu, &uniform, &[&corners, vectors, normals], slots));
         }
-        let fit = fitting(gpu, &told, (&runs, &all, nodes));
+        let fit = runs.map_or_else(Vec::new, |runs| fitting(gpu, &told, (&runs, &all, nodes)));
         gpu.check()?;
         Ok(Moving { positions, normals: turned, vertices, gather, fit })
     }

@@ -5,6 +5,7 @@ use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::adapter::AdapterReport;
 use super::device::Gpu;
+use super::linear::Linear;
 use crate::device_scene::{NodeWords, PrimitiveWords};
 use crate::error::{Content, Error, Result};
 use crate::job::Job;
@@ -22,7 +23,9 @@ pub(super) struct SceneRecords<'a> {
 impl<'a> SceneRecords<'a> {
     /// A scene in one of its layouts. A hierarchy that no method walks is left out.
     pub fn new(packed: &'a Job, layout: Layout, hierarchies: Hierarchies) -> Self {
-        let nodes = hierarchies.binary.then(|| NodeWords::of(packed, layout));
+        // What is left open a device builds, in the layout that it knows.
+        let is_open = packed.is_left_open() && layout == Layout::Gathered;
+        let nodes = (hierarchies.binary && !is_open).then(|| NodeWords::of(packed, layout));
         SceneRecords { packed, nodes, primitives: PrimitiveWords::of(packed, layout), wide: hierarchies.wide }
     }
 
@@ -91,6 +94,11 @@ impl SceneBuffers {
             if self.find(binding).is_none() {
                 self.0.push((binding, upload(gpu, binding, bytes)?));
             }
+        }
+        if hierarchies.binary && job.is_left_open() && self.find(binding::NODES).is_none() {
+            let linear = Linear::new(gpu, job, layout, self)?;
+            linear.go(gpu)?;
+            self.0.push((binding::NODES, linear.nodes().clone()));
         }
         Ok(())
     }

@@ -105,7 +105,7 @@ impl<'a> Summary<'a> {
             "precision": self.precision(),
             "device": self.rendering.device,
             "why": remedy::why(self.rendering),
-            "primitives": self.loaded.packed.statistics().primitives,
+            "primitives": self.loaded.packed.primitive_count(),
             "rays": self.rendering.rays,
             "film_hash": self.rendering.picture.hash(),
             "mrays_per_second": self.mrays(times.render),

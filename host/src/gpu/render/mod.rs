@@ -229,6 +229,9 @@ impl Renderer {
     /// packed in, or what the GPU reports.
     pub fn deform(&mut self, scene: &Scene, positions: &[Vec3], normals: &[Vec3]) -> Result<()> {
         let layout = self.traversal.layout;
+        if self.job.is_left_open() && self.linear.is_none() {
+            self.rebuild()?;
+        }
         let moving = match self.moving.take() {
             Some(moving) => moving,
             None => Moving::new(&self.gpu, &self.job, layout, scene, &self.scene)?,

@@ -3,8 +3,7 @@
 use std::sync::OnceLock;
 use std::time::{Duration, Instant};
 
-use eyerays_bvh::refit::refit;
-use eyerays_bvh::{Bvh, Bvh8, Quality, Statistics};
+use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Instance as InstanceRecord, Light as LightRecord,
     Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive,
@@ -21,6 +20,7 @@ mod keys;
 mod levels;
 mod light_tree;
 mod lighting;
+mod moved;
 mod normalisation;
 mod records;
 mod tangents;
@@ -188,37 +188,6 @@ impl DeviceScene {
             build_time,
             bvh8: OnceLock::new(),
         })
-    }
-
-    /// The scene with its surfaces elsewhere, or another one: with the hierarchy that there is, fitted to where they are (thesis 4.1.1), as
-    /// long as it has the same number of triangles, spheres and disks, and costs at most [`DeviceScene::WORN`] times what it cost
-    /// when it was built; else by a new one.
-    ///
-    /// # Errors
-    /// As [`DeviceScene::new`].
-    pub fn moved(&self, scene: &Scene) -> Result<DeviceScene> {
-        scene.check()?;
-        let (quality, is_wide) = self.quality;
-        Self::of_checked(scene, quality, is_wide, Some(self))
-    }
-
-    /// How many times what it cost by the surface area heuristic a hierarchy may cost that is fitted to what has moved.
-    pub const WORN: f64 = 1.5;
-
-    /// Was its hierarchy [fitted](DeviceScene::moved) from that of another moment?
-    pub fn is_fitted(&self) -> bool {
-        self.is_fitted
-    }
-
-    /// Its hierarchy for primitives elsewhere, if it may be.
-    fn fitted(&self, primitives: &[Primitive]) -> Option<Bvh> {
-        let is_alike = !self.is_left_open() && self.statistics().primitives == primitives.len();
-        if !self.instances.is_empty() || !is_alike {
-            return None;
-        }
-        let order = self.primitives.iter().map(Primitive::number).collect();
-        let (bvh, cost) = refit(self.nodes(), order, primitives).ok()?;
-        (cost <= Self::WORN * self.built_cost).then_some(bvh)
     }
 
     /// Child pairs of the hierarchy. Where a device may build its own they are built when they are first asked for.

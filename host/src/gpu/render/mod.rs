@@ -1,6 +1,7 @@
 //! Films on the GPU: launches over bands of the image and batches of samples, whose sums stay there until they are read.
 
 mod cells;
+mod moved;
 mod read;
 
 use std::ops::Range;
@@ -13,7 +14,6 @@ use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Order};
 use eyerays_shader::launch::argument;
 use eyerays_shader::resources::binding;
-use glam::Vec3;
 use wgpu::BufferUsages as Use;
 
 use self::cells::Cells;
@@ -34,7 +34,7 @@ use crate::noise::{CellSums, Lot};
 use crate::picture::Picture;
 use crate::plan::{self, Plan};
 use crate::rays::Rays;
-use crate::scene::{Light, Scene};
+use crate::scene::Light;
 use crate::view::{Region, View};
 use crate::watch::Grows;
 
@@ -218,56 +218,6 @@ impl Renderer {
         write(binding::EMISSIONS, bytemuck::cast_slice(&lighting.emissions));
         self.relit = Some(lights.to_vec());
         Ok(())
-    }
-
-    /// Goes on with the vertices of the scene that was packed elsewhere, in world units, and with their normals if it has any (thesis
-    /// 4.1.1). Its hierarchy is fitted to them on the device, and stays as good as they stay near to each other: where they do not,
-    /// [`Job::moved`] tells when it is better built anew. `scene` is what was packed; only its triangles are read, and only once.
-    ///
-    /// # Errors
-    /// What can't be moved so: all but triangles that are not split, shine or have tangents. Vertices out of the box that the scene was
-    /// packed in, or what the GPU reports.
-    pub fn deform(&mut self, scene: &Scene, positions: &[Vec3], normals: &[Vec3]) -> Result<()> {
-        let layout = self.traversal.layout;
-        if self.job.is_left_open() && self.linear.is_none() {
-            self.rebuild()?;
-        }
-        let moving = match self.moving.take() {
-            Some(moving) => moving,
-            None => Moving::new(&self.gpu, &self.job, layout, scene, &self.scene)?,
-        };
-        moving.go((&self.gpu, &self.job), self.linear.as_ref(), positions, normals)?;
-        self.moving = Some(moving);
-        Ok(())
-    }
-
-    /// Builds a hierarchy on the device, of its triangles where they are, in the place of the one that the scene was packed with: sooner
-    /// than any other, and less good. What is deformed afterwards is fitted into it. A film that was started is then to be started again.
-    ///
-    /// # Errors
-    /// A scene of more than triangles, or of fewer than two; another layout than the plain one; or what the GPU reports.
-    pub fn rebuild(&mut self) -> Result<()> {
-        let linear = match self.linear.take() {
-            Some(linear) => linear,
-            None => {
-                let linear = Linear::new(&self.gpu, &self.job, self.traversal.layout, &self.scene)?;
-                // The groups bind the nodes that there were.
-                (self.memory, self.growing, self.cells) = (None, None, None);
-                self.scene.replace(binding::NODES, linear.nodes().clone());
-                linear
-            }
-        };
-        linear.go(&self.gpu)?;
-        self.linear = Some(linear);
-        Ok(())
-    }
-
-    /// Waits until the device has done all that was asked of it.
-    ///
-    /// # Errors
-    /// What the GPU reports.
-    pub fn wait(&mut self) -> Result<()> {
-        self.gpu.wait()
     }
 
     /// Renders a view. `done` hears of every finished share of the pixels.

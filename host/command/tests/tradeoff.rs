@@ -189,7 +189,7 @@ fn bad_settings_files() {
         ("roulette = -1\n", &["kept.toml:1: ", "\"roulette\""]),
         ("clamp = inf\n", &["kept.toml:1: ", "\"clamp\""]),
         ("method = 3\n", &["kept.toml:1: ", "\"method\" must be a string"]),
-        ("bvh = \"best\"\n", &["kept.toml:1: ", "unknown bvh \"best\"", "fast, high, medium"]),
+        ("bvh = \"best\"\n", &["kept.toml:1: ", "unknown bvh \"best\"", "device, fast, high, medium"]),
         ("device = \"tpu\"\n", &["kept.toml:1: ", "\"tpu\"", "\"cpu\""]),
         ("layout = \"compact\"\ntriangle = \"moller\"\n", &["kept.toml:2: ", "precision = \"fast\""]),
         ("samples = 1\nsamples = 2\n", &["kept.toml:2: ", "duplicate"]),

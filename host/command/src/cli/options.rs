@@ -18,7 +18,7 @@ use eyerays::choice::Named;
 use eyerays::job::Job;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
-use eyerays::render::Choice;
+use eyerays::render::{Choice, DeviceWish};
 use eyerays::scene::{
     self, Camera, Filter, Focus, Integrator, Lens, PixelFilter, Projection, Sampler, Scene, Settings,
 };
@@ -80,7 +80,7 @@ pub(super) struct Effort {
     /// Least share of its sample that a ray is followed for [default: the scene's]
     #[arg(long, value_name = "SHARE")]
     min_contribution: Option<f32>,
-    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: medium]
+    /// Quality of the hierarchy: a better one takes longer to build and is faster to trace [default: that of the scene's file, or fast for pictures of few rays and medium for others]
     #[arg(long, value_name = "QUALITY", value_parser = choice::<Bvh>())]
     bvh: Option<Bvh>,
     #[command(flatten)]
@@ -126,8 +126,17 @@ impl Effort {
         self.transport.integrator()
     }
 
-    fn quality(&self) -> Quality {
-        self.bvh.unwrap_or_default().quality()
+    /// That of the hierarchy of a scene by some settings: what is asked for, or what the scene brings along, or what its picture is
+    /// worth.
+    fn quality(&self, scene: &Scene, settings: &Settings, choice: &Choice) -> Quality {
+        if let Some(bvh) = self.bvh.or(scene.hierarchy.as_ref().map(|kept| kept.quality())) {
+            return bvh.quality();
+        }
+        let (width, height) = settings.size;
+        // A ray and a shadow ray, and those of some bounces where light is sampled.
+        let of_sample = if settings.transport.integrator.samples() { 8 } else { 2 };
+        let samples = u64::from(width) * u64::from(height) * u64::from(settings.samples_a_pixel());
+        Bvh::worth(scene.primitives(), samples.saturating_mul(of_sample), choice.device == DeviceWish::Cpu).quality()
     }
 }
 
@@ -172,7 +181,7 @@ impl View {
         scene.cameras.push(camera.clone());
         let pack = || match before {
             Some(before) => choice.pack_moved(before, &scene, settings),
-            None => choice.pack(&scene, settings, effort.quality()),
+            None => choice.pack(&scene, settings, effort.quality(&scene, &settings, choice)),
         };
         let packed = progress::stage("building", quiet, pack).map_err(|e| e.of(path))?;
         scene.cameras.pop();

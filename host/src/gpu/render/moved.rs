@@ -12,7 +12,7 @@ use crate::scene::Scene;
 impl Renderer {
     /// Goes on with the vertices of the scene that was packed elsewhere, in world units, and with their normals if it has any (thesis
     /// 4.1.1). Its hierarchy is fitted to them on the device, and stays as good as they stay near to each other: where they do not,
-    /// [`Job::moved`] tells when it is better built anew. `scene` is what was packed; only its triangles are read, and only once.
+    /// [`Job::moved`](crate::job::Job::moved) tells when it is better built anew. `scene` is what was packed; only its triangles are read, and only once.
     ///
     /// # Errors
     /// What can't be moved so: all but triangles that are not split, shine or have tangents. Vertices out of the box that the scene was

@@ -69,7 +69,16 @@ pub fn over(
         return read(loading).map(|(scene, _)| (scene, warnings));
     }
     let cameras = opening.cameras.clone();
-    let (opening, later) = followed(opening, |share| {
+    // All moments are held until what moves is known.
+    let room = |scenes: usize| budget.check_bytes((scenes as u64).saturating_mul(opening.bytes() as u64));
+    room(STEPS.0 + 1).map_err(|why| {
+        Error::file(
+            path,
+            format!("while the shutter is open its scenes would {why}; close the shutter, or make it smaller"),
+        )
+    })?;
+    let steps = (1..=STEPS.1).rev().find(|&steps| room(steps + 1).is_ok()).unwrap_or(1);
+    let (opening, later) = followed(opening, steps, |share| {
         let (scene, _) = at(share, Instant::Later)?;
         // One that was made to frame the scene stands still.
         Ok(if scene.cameras.is_empty() { Scene { cameras: cameras.clone(), ..scene } } else { scene })
@@ -90,16 +99,16 @@ pub fn over(
     Ok((scene, warnings))
 }
 
-/// The scene at the ends of so many even steps that everything goes straight in each, but for what no eye sees.
-fn followed(opening: Scene, at: impl Fn(f64) -> Result<Scene>) -> Result<(Scene, Vec<Scene>)> {
-    let (first, most) = STEPS;
+/// The scene at the ends of so many even steps, `most` at most, that everything goes straight in each, but for what no eye sees.
+fn followed(opening: Scene, most: usize, at: impl Fn(f64) -> Result<Scene>) -> Result<(Scene, Vec<Scene>)> {
+    let first = STEPS.0;
     let mut scenes = vec![opening];
     for step in 1..=first {
         scenes.push(at(step as f64 / first as f64)?);
     }
     let [least, greatest] = scenes[0].bounds();
     let most_off = STRAIGHT * f64::from((greatest - least).max_element());
-    while scenes.len() - 1 < most && !is_straight(&scenes, most_off) {
+    while 2 * (scenes.len() - 1) <= most && !is_straight(&scenes, most_off) {
         let steps = 2 * (scenes.len() - 1);
         let mut finer = Vec::with_capacity(steps + 1);
         for (step, scene) in scenes.into_iter().enumerate() {

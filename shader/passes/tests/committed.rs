@@ -24,6 +24,7 @@ fn specialisations() -> Vec<Specialisation> {
     let path = effects(Effects::LIT | Effects::EMISSIVE | Effects::SPHERE | Effects::SMOOTH | Effects::REFRACTION);
     let path = path.with_launch(Launch::SECONDARY | Launch::GOES_ON | Launch::SOBOL);
     let order = Specialisation { order: Order(Order::MORTON), ..effects(Effects::LIT) };
+    let moving = effects(Effects::INSTANCED | Effects::SMOOTH | Effects::LIT);
     vec![
         effects(0),
         all,
@@ -44,6 +45,8 @@ fn specialisations() -> Vec<Specialisation> {
             ..path.with_launch(Launch::CATCHER | Launch::BLOCKS)
         },
         wave.without_launch(Launch::SECONDARY).with_launch(Launch::KEPT | Launch::LENS | Launch::PARALLEL),
+        moving.with_launch(Launch::KEPT | Launch::MOVING | Launch::PANNED),
+        moving.with_launch(Launch::SECONDARY | Launch::MOVING | Launch::GOES_ON),
     ]
 }
 
@@ -239,6 +242,9 @@ fn a_kernel_binds_what_it_reads_and_writes() {
     for launch in [Launch::LENS, Launch::FILTERED, Launch::LENS | Launch::KEPT] {
         assert_eq!(bindings("exact::generate", effects(0).with_launch(launch)), [FRAME, PATHS, OPTICS]);
     }
+    let launch = Launch::MOVING | Launch::KEPT;
+    assert_eq!(bindings("exact::generate", effects(Effects::INSTANCED).with_launch(launch)), [FRAME, PATHS, HITS]);
+    assert_eq!(bindings("exact::generate", effects(0).with_launch(Launch::PANNED)), [FRAME, PATHS, INSTANCES]);
     assert_eq!(bindings("exact::shade", effects(0)), [FRAME, PRIMITIVES, MATERIALS, HITS, SUMS]);
     let lit = [FRAME, PRIMITIVES, NORMALS, MATERIALS, LIGHTS, HITS, SHADOWS, SUMS];
     assert_eq!(bindings("exact::shade", effects(Effects::SMOOTH | Effects::LIT)), lit);

@@ -1,7 +1,5 @@
 //! Records of the copies of meshes.
 
-use std::collections::HashSet;
-
 use eyerays_bvh::{Bvh, Limits, Quality};
 use eyerays_shader::data::{BOX_PADDING, CentredPair, Instance as Record, NodePair, NodeRef, Primitive, numbers, pack};
 use eyerays_shader::geometry::Transform;
@@ -153,13 +151,11 @@ pub(super) fn records(
         };
         return scene.instances.par_iter().enumerate().map(alone).unzip();
     };
-    let bent: HashSet<u32> = motion.bent().map(|mesh| mesh as u32).collect();
     let keys = |(number, instance): (usize, &Instance)| {
-        let later = || motion.poses.iter().map(|pose| &pose.instances[number]);
-        let moves = bent.contains(&instance.mesh) || later().any(|other| other != instance);
+        let later = motion.poses.iter().map(|pose| &pose.instances[number]);
         let first = record((number, instance));
-        if moves {
-            [first].into_iter().chain(later().map(|other| record((number, other)))).collect()
+        if motion.moves(number, instance) {
+            [first].into_iter().chain(later.map(|other| record((number, other)))).collect()
         } else {
             vec![first]
         }

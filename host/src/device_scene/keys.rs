@@ -45,15 +45,14 @@ impl Bends {
         order: &[u32],
         (primitives, normals, axes): (&mut [Primitive], &mut [Normals], &mut [Normals]),
     ) {
+        if self.0.is_empty() {
+            return;
+        }
         let poses = scene.motion.iter().flat_map(|motion| motion.poses.iter().enumerate());
+        let cubes: Vec<Normalisation> = (0..scene.shared.len()).map(|mesh| super::copies::cube(scene, mesh)).collect();
         for (number, pose) in poses {
             let bends: Vec<&Bend> = self.0.iter().filter(|bend| bend.pose == number).collect();
-            if bends.is_empty() {
-                continue;
-            }
             let at = scene.at(pose);
-            let cubes: Vec<Normalisation> =
-                (0..scene.shared.len()).map(|mesh| super::copies::cube(scene, mesh)).collect();
             let all = records::primitives(&at, normalisation, &cubes);
             for bend in bends {
                 let (order, own) = (&order[bend.slots.clone()], bend.own..bend.own + bend.slots.len());

@@ -1,7 +1,6 @@
 //! The hierarchies of a scene as one: that of what stands in the world, and behind it those of meshes that stand in several places,
 //! to whose starts copies lead.
 
-use std::collections::HashSet;
 use std::ops::Range;
 
 use eyerays_bvh::{Bvh, Limits, Quality, Statistics, linear};
@@ -14,7 +13,7 @@ use super::keys::{self, Bends};
 use super::normalisation::Normalisation;
 use super::{DeviceScene, flags, records};
 use crate::error::{Error, Result};
-use crate::scene::{Motion, Scene, SharedMesh};
+use crate::scene::{Scene, SharedMesh};
 
 /// Hierarchies, and what their leaves hold.
 pub(super) struct Levels {
@@ -69,9 +68,8 @@ impl Levels {
             let (instances, bends) = (Vec::new(), Bends::default());
             return Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split, is_fitted });
         }
-        let bent: HashSet<usize> = scene.motion.iter().flat_map(Motion::bent).collect();
         let bottom = |(mesh, shared): (usize, &SharedMesh)| {
-            if bent.contains(&mesh) {
+            if scene.motion.as_ref().is_some_and(|motion| motion.is_bent(mesh as u32)) {
                 return Bottom::new(&keys::boxes(scene, mesh, &cubes[mesh]), quality);
             }
             Bottom::new(&primitives[shared.triangles.clone()], quality)

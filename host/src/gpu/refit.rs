@@ -46,11 +46,15 @@ impl Moving {
             UVec4::new(a, b, c, 0)
         };
         let corners: Vec<UVec4> = job.primitives().par_iter().map(corner).collect();
+        // Kernels read vertices by them without checking them again.
+        let vertices = scene.mesh.positions.len();
+        if corners.par_iter().any(|corners| corners.max_element() as usize >= vertices) {
+            return Err(Error::new("a triangle names a vertex that the scene has not: give the scene that was packed"));
+        }
         let corners = filled(gpu, "corners", bytemuck::cast_slice(&corners));
         // Of what the device has built it knows the runs.
         let runs = if job.is_left_open() { Vec::new() } else { runs(job.nodes()) };
         let runs = (!runs.is_empty()).then(|| filled(gpu, "runs", bytemuck::cast_slice(&runs)));
-        let vertices = scene.mesh.positions.len();
         let vectors = |name| empty(gpu, name, 12 * vertices as u64);
         let normals = job.effects().has(Effects::SMOOTH).then(|| buffers.find(binding::NORMALS)).flatten();
         let all = empty(gpu, "blocks", 32 * u64::from(blocks(slots)));

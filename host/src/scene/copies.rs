@@ -148,7 +148,6 @@ impl Scene {
             let [least, greatest] = &mut corners[*mesh as usize];
             (*least, *greatest) = (least.min(low), greatest.max(high));
         }
-        let bent: Vec<usize> = motion.bent().collect();
         let around = |copy: &Instance| {
             let [low, high] = corners[copy.mesh as usize];
             let rows = copy.rows.map(Vec3::as_dvec3);
@@ -158,9 +157,8 @@ impl Scene {
             let half = half + (middle.abs() + half) * 1e-6;
             [(middle - half).as_vec3(), (middle + half).as_vec3()]
         };
-        let moves = |(own, copy): (&Instance, &Instance)| {
-            (own != copy || bent.contains(&(copy.mesh as usize))).then(|| around(copy))
-        };
+        let moves =
+            |(own, copy): (&Instance, &Instance)| (own != copy || motion.is_bent(copy.mesh)).then(|| around(copy));
         let of_pose = |pose: &super::Pose| {
             let boxes = self.instances.par_iter().zip(&pose.instances).filter_map(moves);
             boxes.reduce_with(|[a, b], [c, d]| [a.min(c), b.max(d)])

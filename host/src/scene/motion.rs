@@ -49,6 +49,16 @@ impl Motion {
     pub fn bent(&self) -> impl Iterator<Item = usize> + '_ {
         self.poses.first().into_iter().flat_map(|pose| pose.shapes.iter().map(|&(mesh, _)| mesh as usize))
     }
+
+    /// Does a shared mesh change its shape?
+    pub fn is_bent(&self, mesh: u32) -> bool {
+        self.poses.first().is_some_and(|pose| pose.shapes.binary_search_by_key(&mesh, |&(bent, _)| bent).is_ok())
+    }
+
+    /// Is a copy, by its number in [`Scene::instances`], elsewhere at some pose, or of a mesh that changes its shape?
+    pub fn moves(&self, number: usize, copy: &Instance) -> bool {
+        self.is_bent(copy.mesh) || self.poses.iter().any(|pose| pose.instances[number] != *copy)
+    }
 }
 
 /// What a scene over some time has become, and what of it stands still though it should not.

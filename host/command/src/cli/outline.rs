@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 
 use super::plural;
 use crate::error::printable;
-use eyerays::scene::{Animation, Camera, Instance, Motion, Projection, Scene, default_camera};
+use eyerays::scene::{Animation, Camera, Motion, Projection, Scene, default_camera};
 
 /// The most meshes and the most materials that are told one by one as text.
 const MOST: usize = 50;
@@ -97,11 +97,7 @@ impl fmt::Display for Outline<'_> {
 
 /// How many copies of meshes stand elsewhere later, or are of a mesh that changes its shape.
 fn moving(scene: &Scene, motion: &Motion) -> usize {
-    let bent: Vec<usize> = motion.bent().collect();
-    let moves = |&(number, copy): &(usize, &Instance)| {
-        bent.contains(&(copy.mesh as usize)) || motion.poses.iter().any(|pose| pose.instances[number] != *copy)
-    };
-    scene.instances.iter().enumerate().filter(moves).count()
+    scene.instances.iter().enumerate().filter(|&(number, copy)| motion.moves(number, copy)).count()
 }
 
 /// Says how many of a list are not told.

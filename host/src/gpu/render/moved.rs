@@ -26,9 +26,8 @@ impl Renderer {
             Some(moving) => moving,
             None => Moving::new(&self.gpu, &self.job, layout, scene, &self.scene)?,
         };
-        moving.go((&self.gpu, &self.job), self.linear.as_ref(), positions, normals)?;
-        self.moving = Some(moving);
-        Ok(())
+        let moving = self.moving.insert(moving);
+        moving.go((&self.gpu, &self.job), self.linear.as_ref(), positions, normals)
     }
 
     /// Builds a hierarchy on the device, of its triangles where they are, in the place of the one that the scene was packed with: sooner
@@ -47,9 +46,8 @@ impl Renderer {
                 linear
             }
         };
-        linear.go(&self.gpu)?;
-        self.linear = Some(linear);
-        Ok(())
+        // Kept whatever comes of it: the nodes are its own.
+        self.linear.insert(linear).go(&self.gpu)
     }
 
     /// Waits until the device has done all that was asked of it.

@@ -23,7 +23,8 @@ pub fn builds(options: &Options, path: &Path) -> Result<(), Box<dyn Error>> {
     let (scene, _) = scene_io::load(path)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    for (quality, own, embree) in QUALITIES {
+    let is_asked = |quality: &str| options.quality.as_deref().is_none_or(|asked| asked == quality);
+    for (quality, own, embree) in QUALITIES.into_iter().filter(|(quality, ..)| is_asked(quality)) {
         let (mut times, mut peers, mut count) = (Vec::new(), Vec::new(), 0);
         // The first warms caches.
         for repeat in 0..=options.repeat {

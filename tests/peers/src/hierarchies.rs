@@ -22,6 +22,7 @@ fn triangles(packed: &Job) -> Vec<Triangle> {
 
 fn parameters(quality: Quality) -> BvhBuildParams {
     match quality {
+        Quality::Linear => BvhBuildParams::fastest_build(),
         Quality::Fast => BvhBuildParams::fast_build(),
         Quality::Medium => BvhBuildParams::medium_build(),
         Quality::High => BvhBuildParams::slow_build(),

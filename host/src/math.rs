@@ -4,7 +4,7 @@
 //! software, the same code everywhere; clippy forbids std's (`clippy.toml`). Arithmetic and square roots of std are
 //! correctly rounded everywhere.
 
-pub use libm::{acos, atan, cos, exp2, log as ln, log2, log10, pow, sin, sincos as sin_cos, tan};
+pub use libm::{acos, asin, atan, atan2, cos, exp2, log as ln, log2, log10, pow, sin, sincos as sin_cos, tan};
 
 /// The greatest power of two that is no more than a positive normal number.
 pub fn power_of_two_below(x: f64) -> f64 {

@@ -73,6 +73,8 @@ pub struct View {
     film: u32,
     /// Arbitrary output variables of its films.
     aovs: u32,
+    /// Is all that it shows as the shutter opens?
+    opens: bool,
 }
 
 impl View {
@@ -110,6 +112,7 @@ impl View {
             end: settings.samples_a_pixel(),
             film: packed.film_bits(),
             aovs: packed.aov_count(),
+            opens: false,
         })
     }
 
@@ -135,6 +138,12 @@ impl View {
             return Err(Error::new(format!("samples {start} to {end} are not some of the samples {whole}")));
         }
         Ok(View { window: region, first: start, end, ..*self })
+    }
+
+    /// The same of the moment in which the shutter opens.
+    #[must_use]
+    pub(crate) fn as_it_opens(self) -> View {
+        View { opens: true, ..self }
     }
 
     /// All that its rays of the camera depend on beside the image and tables.
@@ -182,6 +191,7 @@ impl View {
         let CameraRecord { camera, spread, angle, aperture, clip: [near, farthest], eyes: [eyes, converging], keys } =
             self.record;
         let frame = scene.frame();
+        let (exposure, delayed) = if self.opens { (0.0, 0.0) } else { (frame.exposure, 1.0 - frame.exposure) };
         Frame {
             camera,
             spread,
@@ -192,7 +202,8 @@ impl View {
             eyes,
             converging,
             keys,
-            row_delay: (1.0 - frame.exposure) / self.height as f32,
+            exposure,
+            row_delay: delayed / self.height as f32,
             filter_steps: FILTER_STEPS as f32 / (2 * self.grid) as f32,
             width: self.width,
             height: self.height,

@@ -1,7 +1,7 @@
 //! Layers that films keep: parts of the light, which add up to the picture, whatever renders it and however it is parted.
 
 use eyerays::film::Film;
-use eyerays::layers::{self, Aovs, Layer, Values};
+use eyerays::layers::{self, Aovs, Layer, Shown, Values};
 use eyerays::noise::Target;
 use eyerays::picture::Picture;
 use eyerays::render::{Backend, Choice, DeviceWish, Rendering, Session};
@@ -175,7 +175,7 @@ fn layers_are_the_pictures_of_what_they_hold() {
         let without = session.expose(&plain.view, &|_| ()).unwrap();
         assert_same_bits(&kept.picture, &without.picture, "the picture");
         assert_eq!(kept.rays, without.rays);
-        let rendered = layers::render(&mut session, (&scene, &scene.cameras[0]), &without, &lit).unwrap();
+        let rendered = layers::render(&mut session, Shown::of(&scene), &without, &lit).unwrap();
         for (layer, values) in rendered {
             let (Values::Light(picture) | Values::Colours(picture) | Values::Vectors(picture)) = values else {
                 panic!("{layer} is no picture")

@@ -3,7 +3,7 @@
 use eyerays::batch::{Batch, Ray};
 use eyerays::cpu;
 use eyerays::job::Job;
-use eyerays::layers::{self, Layer, Values};
+use eyerays::layers::{self, Layer, Shown, Values};
 use eyerays::method::Method;
 use eyerays::picture::Picture;
 use eyerays::quality::Bvh;
@@ -38,7 +38,7 @@ fn layered(scene: &Scene, spp: u32, layers: &[Layer]) -> (Picture, Vec<(Layer, V
     let view = View::new(&packed, &scene.cameras[0]).unwrap();
     let mut session = backend.open(&packed).unwrap();
     let picture = session.render(&view, 1, &|_| ()).unwrap();
-    let layers = layers::render(&mut session, (scene, &scene.cameras[0]), &picture, layers).unwrap();
+    let layers = layers::render(&mut session, Shown::of(scene), &picture, layers).unwrap();
     let again = session.render(&view, 1, &|_| ()).unwrap();
     assert!(again.picture.bits_equal(&picture.picture), "layers change the session that they are of");
     (picture.picture, layers)

@@ -146,16 +146,11 @@ impl Movement {
 
 /// How a camera is turned against its first key, and where it is.
 fn key(first: &Camera, camera: &Camera, normalisation: &Normalisation) -> Result<Record> {
-    let axes = |camera: &Camera| {
-        let forward = camera.forward();
-        let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
-        [right, right.cross(forward), forward]
-    };
     let eye = normalisation.place_anywhere(camera.eye).ok_or_else(|| {
         let name = &camera.name;
         Error::new(format!("camera {name:?} goes too far away while the shutter is open: move it nearer to the scene"))
     })?;
-    let (from, to) = (axes(first), axes(camera));
+    let (from, to) = (first.axes(), camera.axes());
     let row = |axis: usize| from.iter().zip(&to).map(|(from, to)| *from * to[axis]).sum::<DVec3>().as_vec3();
     let record = |axis: usize| pack(flushed(row(axis)), eye[axis].to_bits());
     Ok(Record { x: record(0), y: record(1), z: record(2), mesh: UVec4::ZERO })

@@ -59,6 +59,11 @@ pub(super) fn layered(
             all.truncate(2);
             all
         }
+        Values::Ways(picture) => {
+            let mut all = three(picture, &name, ["X", "Y", "Z"], 1.0, false);
+            all.truncate(2);
+            all
+        }
         Values::Parts(parts) => {
             let of = |(name, picture): &(String, Picture)| {
                 three(&balanced(picture, encoding.white), &format!("{name}."), ["R", "G", "B"], scale, is_half)

@@ -1,6 +1,7 @@
 //! A picture in layers: beside its light what the camera sees, for those who denoise pictures or put them together.
 
 mod kept;
+mod motion;
 mod studio;
 mod surface;
 
@@ -11,12 +12,13 @@ use crate::error::Result;
 use crate::job::Job;
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
-use crate::scene::{Camera, Scene, Settings};
+use crate::scene::{Camera, Settings};
 use crate::view::Region;
 
 pub use eyerays_shader::data::Aovs;
 pub(crate) use kept::can_be_named;
 pub use kept::{all_of_film, asked, check, check_room, names, of_film};
+pub use motion::Shown;
 use studio::{Studio, middles, seen};
 use surface::Place;
 
@@ -36,6 +38,10 @@ choices! {
         Position = "position",
         /// Its texture coordinates, the second down; zeros without
         Uv = "uv",
+        /// How far to the right and down in pixels that is in the picture before, if something moves
+        MotionBack = "motion_back",
+        /// The same of the picture after
+        MotionForward = "motion_forward",
         /// The number of the mesh there, as check and info count them; 0 for nothing
         Object = "object",
         /// The number of the material there, likewise
@@ -90,6 +96,8 @@ pub enum Values {
     Numbers(Vec<u32>),
     /// Two coordinates, and zero.
     Coordinates(Picture),
+    /// Ways in the image, and zero.
+    Ways(Picture),
     /// Shares of names.
     Shares(Cryptomatte),
     /// Light in parts, each with its name.
@@ -103,7 +111,8 @@ impl Values {
             Values::Light(picture)
             | Values::Colours(picture)
             | Values::Vectors(picture)
-            | Values::Coordinates(picture) => picture.pixels.len(),
+            | Values::Coordinates(picture)
+            | Values::Ways(picture) => picture.pixels.len(),
             Values::Lengths(lengths) => lengths.len(),
             Values::Numbers(numbers) => numbers.len(),
             Values::Shares(matte) => matte.pixels(),
@@ -113,21 +122,21 @@ impl Values {
 }
 
 /// The layers beside a picture of the session's job: those that its film keeps ([`Job::keeping`]), and others rendered, each with as many
-/// samples as the picture got, and with its numbers drawn for the same places. The session goes on with the job that it had.
+/// samples as the picture got, and with its numbers drawn for the same places. What is told of the middle of a pixel is as the shutter opens. The session goes on with the job that it had.
 ///
 /// # Errors
 /// As [`Session::turn`] and [`Session::render`].
 pub fn render(
     session: &mut Session,
-    (scene, camera): (&Scene, &Camera),
+    shown: Shown<'_>,
     rendering: &Rendering,
     layers: &[Layer],
 ) -> Result<Vec<(Layer, Values)>> {
     let job = session.job().clone();
     let settings = Settings { spp: rendering.samples, ..*job.settings() };
-    let mut studio = Studio::new(session, camera, rendering.region, settings);
+    let mut studio = Studio::new(session, shown, rendering.region, settings);
     let layers = layers.iter().filter(|&&layer| layer != Layer::Colour);
-    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, scene, rendering)?))).collect();
+    let rendered = layers.map(|&layer| Ok((layer, studio.layer(layer, rendering)?))).collect();
     session.turn(&job)?;
     rendered
 }
@@ -158,5 +167,5 @@ fn at_middles(job: &Job, camera: &Camera, feature: Feature, window: Region, thre
     let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
     let (middle, pinhole) = middles(job.settings(), camera);
     let job = job.with(middle)?.showing(Some(feature));
-    Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?, 1, &|_| ())?.picture)
+    Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?.as_it_opens(), 1, &|_| ())?.picture)
 }

@@ -4,7 +4,7 @@ use glam::Vec3;
 use rayon::prelude::*;
 
 use super::surface::{Finder, Place, primitive};
-use super::{Layer, Values, names, of_film};
+use super::{Layer, Shown, Values, motion, names, of_film};
 use crate::cryptomatte::{Counter, Cryptomatte};
 use crate::device_scene::Feature;
 use crate::error::{Error, Result};
@@ -17,7 +17,7 @@ use crate::view::{Region, View};
 /// What all layers are rendered with, and what several of them take.
 pub(super) struct Studio<'a> {
     session: &'a mut Session,
-    camera: &'a Camera,
+    shown: Shown<'a>,
     /// What of the image it shows.
     window: Region,
     /// Of the picture.
@@ -36,13 +36,13 @@ pub(super) struct Studio<'a> {
 const COUNTED: u32 = 64;
 
 impl<'a> Studio<'a> {
-    pub fn new(session: &'a mut Session, camera: &'a Camera, window: Region, settings: Settings) -> Self {
+    pub fn new(session: &'a mut Session, shown: Shown<'a>, window: Region, settings: Settings) -> Self {
         let kept = names(session.job());
-        Studio { session, camera, window, settings, kept, direct: None, places: None, positions: None, mattes: None }
+        Studio { session, shown, window, settings, kept, direct: None, places: None, positions: None, mattes: None }
     }
 
-    pub fn layer(&mut self, layer: Layer, scene: &Scene, rendering: &Rendering) -> Result<Values> {
-        let picture = &rendering.picture;
+    pub fn layer(&mut self, layer: Layer, rendering: &Rendering) -> Result<Values> {
+        let (scene, picture) = (self.shown.scene, &rendering.picture);
         let no_film = || Error::new(format!("the layer {layer} is told by the film: render with one (expose)"));
         let film = rendering.film.as_ref().ok_or_else(no_film);
         if let Some(film) = &rendering.film
@@ -74,6 +74,8 @@ impl<'a> Studio<'a> {
                 let (positions, places) = (self.positions.as_ref(), self.places.as_ref());
                 coordinates(scene, positions.expect("just made"), places.expect("just made"))?
             }
+            Layer::MotionBack => Values::Ways(self.ways(0)?),
+            Layer::MotionForward => Values::Ways(self.ways(1)?),
             Layer::Depth => Values::Lengths(self.places()?.iter().map(|place| place.depth).collect()),
             Layer::Object => {
                 let objects = ObjectNumbers::of(scene);
@@ -91,6 +93,23 @@ impl<'a> Studio<'a> {
     fn numbers(&mut self, of: impl Fn(usize) -> u32) -> Result<Values> {
         let numbers = self.places()?.iter().map(|place| place.primitive.map_or(0, &of));
         Ok(Values::Numbers(numbers.collect()))
+    }
+
+    /// To the picture before, or to the one after.
+    fn ways(&mut self, neighbour: usize) -> Result<Picture> {
+        let Shown { scene, camera, neighbours } = self.shown;
+        if camera.stereo.is_some() {
+            return Err(Error::new(
+                "the layers motion_back and motion_forward are of one eye: leave them out, or stereo",
+            ));
+        }
+        let unknown =
+            || Error::new("how things move is told by the pictures before and after: give them as neighbours");
+        let other = neighbours.ok_or_else(unknown)?[neighbour];
+        self.positions()?;
+        let (positions, places) = (self.positions.as_ref(), self.places.as_ref());
+        let seen = (positions.expect("just made"), &places.expect("just made")[..]);
+        motion::ways((scene, camera), other, (self.window, self.settings.size), seen)
     }
 
     fn direct(&mut self) -> Result<&Picture> {
@@ -120,7 +139,7 @@ impl<'a> Studio<'a> {
                 Counter::new("CryptoMaterial", scene.materials.iter().map(|material| material.name.as_str()), pixels);
             let job = self.session.job().with(self.settings)?.showing(Some(Feature::Place));
             self.session.turn(&job)?;
-            let view = View::new(&job, self.camera)?;
+            let view = View::new(&job, self.shown.camera)?;
             let samples = view.range();
             for sample in samples.start..samples.end.min(samples.start + COUNTED) {
                 let seen = self.session.render(&view.part(self.window, sample..sample + 1)?, 1, &|_| ())?.picture;
@@ -153,18 +172,17 @@ impl<'a> Studio<'a> {
 
     /// A feature at the middle of each pixel.
     fn at_middles(&mut self, feature: Feature) -> Result<Picture> {
-        let (middle, pinhole) = middles(&self.settings, self.camera);
-        self.picture_by(&pinhole, Some(feature), middle)
+        let (middle, pinhole) = middles(&self.settings, self.shown.camera);
+        let job = self.session.job().with(middle)?.showing(Some(feature));
+        self.session.turn(&job)?;
+        let view = seen(&job, &pinhole, self.window)?.as_it_opens();
+        Ok(self.session.render(&view, 1, &|_| ())?.picture)
     }
 
     fn picture(&mut self, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
-        self.picture_by(self.camera, feature, settings)
-    }
-
-    fn picture_by(&mut self, camera: &Camera, feature: Option<Feature>, settings: Settings) -> Result<Picture> {
         let job = self.session.job().with(settings)?.showing(feature);
         self.session.turn(&job)?;
-        Ok(self.session.render(&seen(&job, camera, self.window)?, 1, &|_| ())?.picture)
+        Ok(self.session.render(&seen(&job, self.shown.camera, self.window)?, 1, &|_| ())?.picture)
     }
 }
 

@@ -1,6 +1,6 @@
 //! What of a scene a pixel shows.
 
-use glam::{DVec3, Vec3};
+use glam::{DQuat, DVec3, Vec3};
 
 use crate::scene::Scene;
 
@@ -62,6 +62,45 @@ impl<'s> Finder<'s> {
         }
     }
 
+    /// The corners of a triangle in the world, or of one in a copy.
+    fn corners(&self, triangle: usize, copy: Option<usize>) -> [DVec3; 3] {
+        let transform = copy.map(|copy| self.scene.instances[copy].transform());
+        self.scene.mesh.triangles[triangle].map(|corner| {
+            let own = self.scene.mesh.positions[corner as usize];
+            transform.as_ref().map_or(own, |transform| transform.place(own)).as_dvec3()
+        })
+    }
+
+    /// How a place of a primitive moves, in world units, until the scene is that of another finder, where the primitive has a number. Spheres
+    /// and disks turn as little as they can.
+    pub fn moved(&self, (primitive, at): (usize, DVec3), (other, there): (&Finder<'_>, usize)) -> DVec3 {
+        match (self.find(primitive), other.find(there)) {
+            (Primitive::Triangle(triangle, copy), Primitive::Triangle(triangle_there, copy_there)) => {
+                let (now, then) = (self.corners(triangle, copy), other.corners(triangle_there, copy_there));
+                let weights = barycentric(now, at);
+                (0..3).map(|corner| (then[corner] - now[corner]) * weights[corner]).sum()
+            }
+            (Primitive::Round(round), Primitive::Round(round_there)) => {
+                let ((centre, axis, radius), (centre_there, axis_there, radius_there)) =
+                    (self.round(round), other.round(round_there));
+                let (from, grown) = (at - centre, radius_there / radius);
+                let turned = if axis == axis_there { from } else { DQuat::from_rotation_arc(axis, axis_there) * from };
+                centre_there - centre + (turned * grown - from)
+            }
+            _ => DVec3::ZERO,
+        }
+    }
+
+    /// The centre, the axis and the radius of a sphere or a disk.
+    fn round(&self, round: usize) -> (DVec3, DVec3, f64) {
+        let disk = || {
+            let disk = &self.scene.disks[round - self.scene.spheres.len()];
+            (disk.center.as_dvec3(), disk.normal.as_dvec3().normalize_or_zero(), disk.radius.into())
+        };
+        let sphere = self.scene.spheres.get(round);
+        sphere.map_or_else(disk, |sphere| (sphere.center.as_dvec3(), DVec3::Z, sphere.radius.into()))
+    }
+
     /// The number of a primitive's material, from 0.
     pub fn material(&self, primitive: usize) -> u32 {
         let scene = self.scene;
@@ -81,13 +120,8 @@ impl<'s> Finder<'s> {
         else {
             return [0.0; 2];
         };
-        let corners = mesh.triangles[triangle];
-        let place = |corner: u32| {
-            let own = mesh.positions[corner as usize];
-            copy.map_or(own, |copy| self.scene.instances[copy].transform().place(own)).as_dvec3()
-        };
-        let weights = barycentric(corners.map(place), Vec3::from(at).as_dvec3());
-        let of = corners.map(|corner| mesh.coordinates[0][corner as usize].as_dvec2());
+        let weights = barycentric(self.corners(triangle, copy), Vec3::from(at).as_dvec3());
+        let of = mesh.triangles[triangle].map(|corner| mesh.coordinates[0][corner as usize].as_dvec2());
         (of[0] * weights[0] + of[1] * weights[1] + of[2] * weights[2]).as_vec2().to_array()
     }
 }

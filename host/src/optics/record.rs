@@ -34,8 +34,7 @@ impl CameraRecord {
     /// # Errors
     /// There is no way to look so, it is too far away for the scene's numbers, or the scene was packed without what it needs.
     pub fn new(job: &Job, camera: &Camera, size: (u32, u32), grid: u32) -> Result<CameraRecord> {
-        let forward = camera.forward();
-        let right = forward.cross(camera.up.as_dvec3()).normalize_or_zero();
+        let [right, up, forward] = camera.axes();
         if right == DVec3::ZERO {
             return Err(refused(camera, "looks along its up vector or at itself: move its target or turn its up"));
         }
@@ -47,7 +46,7 @@ impl CameraRecord {
                  add it to the scene's cameras before it is packed";
             return Err(refused(camera, why));
         }
-        let axes = Axes { eye, right, up: right.cross(forward), forward };
+        let axes = Axes { eye, right, up, forward };
         let of_eye = camera.stereo.map_or(size, |stereo| stereo.halved(size));
         if camera.stereo.is_some()
             && 2 * u64::from(of_eye.0) * u64::from(of_eye.1) != u64::from(size.0) * u64::from(size.1)

@@ -9,9 +9,7 @@ impl Camera {
     /// From world space to the camera's: x to the right, y up, and it looks along -z. For column vectors.
     pub fn world_to_camera(&self) -> DMat4 {
         let eye = self.eye.as_dvec3();
-        let forward = (self.target.as_dvec3() - eye).normalize_or_zero();
-        let right = forward.cross(self.up.as_dvec3()).normalize_or_zero();
-        let up = right.cross(forward);
+        let [right, up, forward] = self.axes();
         let row = |axis: DVec3| axis.extend(-axis.dot(eye));
         DMat4::from_cols(row(right), row(up), row(-forward), DVec4::W).transpose()
     }
@@ -23,7 +21,7 @@ impl Camera {
         let (axis, away) = (self.up.as_dvec3().normalize_or_zero(), (self.eye - self.target).as_dvec3());
         // Rodrigues' rotation.
         let turned = away * cos + axis.cross(away) * sin + axis * axis.dot(away) * (1.0 - cos);
-        let eye = if share == 0.0 { self.eye } else { (self.target.as_dvec3() + turned).as_vec3() };
+        let eye = if share.fract() == 0.0 { self.eye } else { (self.target.as_dvec3() + turned).as_vec3() };
         Camera { eye, ..self.clone() }
     }
 

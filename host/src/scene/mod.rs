@@ -24,6 +24,7 @@ mod primitive;
 mod projection;
 mod range;
 mod sampler;
+mod seen;
 mod stereo;
 pub(crate) mod studio;
 mod texture;

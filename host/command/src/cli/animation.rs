@@ -5,7 +5,7 @@ use std::path::Path;
 use super::reading::{self, Read, Reading};
 use super::sequence::Instant;
 use crate::error::{Error, Result};
-use eyerays::scene::{Camera, Integrator, default_camera};
+use eyerays::scene::{Camera, Integrator, Scene, default_camera};
 
 /// A picture of an animation, or of a scene that stands still.
 #[derive(Clone, Copy)]
@@ -47,9 +47,7 @@ impl<'a> Animation<'a> {
             let fault = "it has no animation, whose pictures --frames and --frame are; leave them out";
             return Err(Error::file(path, fault));
         }
-        let (width, height) = start.settings.size;
-        let framed = default_camera(&start, f64::from(width) / f64::from(height));
-        Ok(Animation { camera: framed.filter(|camera| start.cameras == [camera.clone()]), ..still })
+        Ok(Animation { camera: framed(&start), ..still })
     }
 
     /// Its pictures.
@@ -68,11 +66,43 @@ impl<'a> Animation<'a> {
     /// It can't be read.
     pub fn read(&self, moving: Moving<'_>, quiet: bool) -> Result<Read<'a>> {
         let at = moving.instant.map(|instant| self.reading.at(instant));
-        let loading = at.as_ref().unwrap_or(self.reading).loading(self.integrator);
-        let mut read = Read::scene(self.path, &[], loading, quiet || !moving.is_first)?;
-        if let Some(camera) = moving.camera {
+        let reading = at.as_ref().unwrap_or(self.reading);
+        self.read_by(reading, moving.camera, quiet || !moving.is_first)
+    }
+
+    fn read_by(&self, reading: &Reading, camera: Option<&Camera>, quiet: bool) -> Result<Read<'a>> {
+        let mut read = Read::scene(self.path, &[], reading.loading(self.integrator), quiet)?;
+        if let Some(camera) = camera {
             read.scene.cameras = vec![camera.clone()];
         }
         Ok(read)
     }
+
+    /// A scene as the pictures before and after show it; none of one without an animation.
+    ///
+    /// # Errors
+    /// It can't be read again.
+    pub fn beside(&self, moving: Moving<'_>, scene: &Scene) -> Result<Option<[Scene; 2]>> {
+        if scene.animations.is_empty() {
+            return Ok(None);
+        }
+        if reading::is_standard_input(self.path) {
+            return Err(Error::new("the layers motion_back and motion_forward read a scene again: name its file"));
+        }
+        let own = framed(scene);
+        let camera = moving.camera.or(own.as_ref());
+        let now = moving.instant.unwrap_or(self.reading.instant());
+        let beside = |step: f64| {
+            let reading = self.reading.at(now.later(step));
+            self.read_by(&reading, camera, true).map(|read| read.scene)
+        };
+        Ok(Some([beside(-1.0)?, beside(1.0)?]))
+    }
+}
+
+/// The camera that a scene was given for want of one.
+fn framed(scene: &Scene) -> Option<Camera> {
+    let (width, height) = scene.settings.size;
+    let framed = default_camera(scene, f64::from(width) / f64::from(height));
+    framed.filter(|camera| scene.cameras == [camera.clone()])
 }

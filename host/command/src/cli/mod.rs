@@ -2,6 +2,7 @@
 
 mod animation;
 mod bench;
+mod beside;
 mod camera;
 mod check;
 mod checkpoint;

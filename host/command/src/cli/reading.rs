@@ -55,7 +55,7 @@ impl Reading {
         let moment = Moment { animation: self.animation.clone(), seconds: self.time };
         let instancing = self.instances.unwrap_or_default();
         let Reading { allow_outside, light_unit, .. } = *self;
-        let rate = self.rate.unwrap_or(Instant::RATE);
+        let rate = self.instant().rate;
         let shutter = self.shutter.map(|open| open.shutter(rate, self.rolling_shutter));
         Loading { allow_outside, light_unit, integrator, moment, shutter, instancing, ..Loading::default() }
     }
@@ -85,6 +85,12 @@ impl Reading {
             None | Some(Instancing::Never) => Ok(Loading { instancing: Instancing::Never, ..self.moment()? }),
             Some(_) => Err(Error::new("what is measured is one hierarchy of all triangles: leave --instances out")),
         }
+    }
+
+    /// That of a picture of which no number is asked for.
+    pub fn instant(&self) -> Instant {
+        let rate = self.rate.unwrap_or(Instant::RATE);
+        Instant::unnumbered(self.time.unwrap_or(0.0), rate)
     }
 
     /// The same for a picture of an animation, at its seconds.

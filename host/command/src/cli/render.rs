@@ -10,6 +10,7 @@ use std::time::Duration;
 use clap::Args;
 
 use super::animation::{Animation, Moving};
+use super::beside;
 use super::checkpoint::CheckpointArgs;
 use super::choice::choice;
 use super::denoising;
@@ -298,6 +299,11 @@ impl Task<'_> {
         if self.of.time_limit.is_some() {
             effort = effort.endless(&read.scene)?;
         }
+        let is_asked = beside::is_asked(&self.of.layers);
+        let others = match is_asked && !self.of.sequence.only_turns(moving.instant) {
+            true => animation.beside(moving, &read.scene)?,
+            false => None,
+        };
         let before = self.before.take();
         let choice = (&self.choice, before.as_ref());
         let (mut loaded, scene, camera) = self.of.view.pack_and_keep(read, &effort, choice, self.quiet)?;
@@ -306,8 +312,12 @@ impl Task<'_> {
         self.before.replace(moves.then(|| loaded.packed.clone()));
         let kept = self.of.kept(loaded.packed.settings().transport.integrator);
         loaded.packed = loaded.packed.keeping(kept).map_err(|error| error.of(path))?;
-        let shots = self.of.sequence.shots(&scene, camera, moving.instant)?;
-        let places = self.places(path, &loaded, &scene, shots)?;
+        let shots = self.of.sequence.shots(&scene, camera.clone(), moving.instant)?;
+        let mut places = self.places(path, &loaded, &scene, shots)?;
+        if is_asked {
+            let how = (&self.of.sequence, &self.of.view);
+            beside::put(&mut places, how, (&scene, &camera, moving.instant), others)?;
+        }
         if self.of.preview {
             self.preview(&loaded, &places)?;
         }
@@ -365,7 +375,7 @@ impl Task<'_> {
             let view = self.of.part.of(&view)?;
             layers::check_room(&loaded.packed, &view)?;
             self.of.noise.check(&view)?;
-            Ok(Place { camera: shot.camera, view, destination, checkpoint })
+            Ok(Place { camera: shot.camera, view, destination, checkpoint, beside: None })
         });
         places.collect()
     }

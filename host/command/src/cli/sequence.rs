@@ -57,6 +57,16 @@ impl Instant {
 
     /// The start.
     pub const FIRST: Instant = Instant { frame: 0, seconds: 0.0, rate: Self::RATE };
+
+    /// One whose picture has no number.
+    pub fn unnumbered(seconds: f64, rate: f64) -> Instant {
+        Instant { frame: 0, seconds, rate }
+    }
+
+    /// That of as many pictures later, by its seconds.
+    pub fn later(self, pictures: f64) -> Instant {
+        Instant { seconds: self.seconds + pictures / self.rate, ..self }
+    }
 }
 
 impl Shot {
@@ -109,13 +119,29 @@ impl SequenceArgs {
 
     /// The pictures of a scene, from this camera unless all are asked for; of an animation those of an instant.
     pub fn shots(&self, scene: &Scene, camera: Camera, instant: Option<Instant>) -> Result<Vec<Shot>> {
+        self.shots_beside(scene, camera, instant, 0)
+    }
+
+    /// The same with each so many pictures later, of a scene as it is then.
+    pub fn shots_beside(
+        &self,
+        scene: &Scene,
+        camera: Camera,
+        instant: Option<Instant>,
+        later: i8,
+    ) -> Result<Vec<Shot>> {
         let cameras = if self.all_cameras { scene.cameras.clone() } else { vec![camera] };
         let count = f64::from(self.turntable.unwrap_or(1));
         let frames = match instant {
             Some(Instant { frame, .. }) => Some(frame..frame.saturating_add(1)),
             None => self.turn()?,
         };
-        Ok(cameras.into_iter().flat_map(|camera| turned(camera, frames.clone(), count)).collect())
+        Ok(cameras.into_iter().flat_map(|camera| turned(camera, frames.clone(), later, count)).collect())
+    }
+
+    /// Does a camera turn around a scene that stands still?
+    pub fn only_turns(&self, instant: Option<Instant>) -> bool {
+        self.turntable.is_some() && instant.is_none()
     }
 
     /// The name of a picture where none was given.
@@ -164,12 +190,13 @@ pub(super) fn check_distinct(places: &[Destination]) -> Result<()> {
     }
 }
 
-/// A camera, or as many as a turn has of it.
-fn turned(camera: Camera, frames: Option<Range<u32>>, count: f64) -> Vec<Shot> {
+/// A camera, or as many as a turn has of it, each where the picture so many later has it.
+fn turned(camera: Camera, frames: Option<Range<u32>>, later: i8, count: f64) -> Vec<Shot> {
     match frames {
         None => vec![Shot { camera, frame: None }],
         Some(frames) => {
-            frames.map(|frame| Shot { camera: camera.turned(f64::from(frame) / count), frame: Some(frame) }).collect()
+            let at = |frame: u32| (f64::from(frame) + f64::from(later)) / count;
+            frames.map(|frame| Shot { camera: camera.turned(at(frame)), frame: Some(frame) }).collect()
         }
     }
 }
@@ -286,7 +313,7 @@ mod tests {
     #[test]
     fn two_pictures_in_one_place_are_refused() {
         let sequence = SequenceArgs { turntable: Some(3), ..SequenceArgs::default() };
-        let shots = turned(camera("a"), Some(0..3), 3.0);
+        let shots = turned(camera("a"), Some(0..3), 0, 3.0);
         let places = |output: &str| sequence.destinations(Some(output.as_ref()), "s/room.toml".as_ref(), &shots);
         assert!(places("x.png").unwrap_err().message.contains("{frame:04}"));
         assert_eq!(places("{frame}.png").unwrap().len(), 3);
@@ -297,7 +324,8 @@ mod tests {
     /// A quarter of a turn, seen from above, is to the other side of the target.
     #[test]
     fn a_turn_keeps_height_and_distance_and_ends_where_it_began() {
-        let shots = turned(camera("a"), Some(0..4), 4.0);
+        let shots = turned(camera("a"), Some(0..4), 0, 4.0);
+        assert_eq!(turned(camera("a"), Some(1..3), 1, 4.0)[0].camera, shots[2].camera);
         assert_eq!(shots[0].camera, camera("a"));
         for (shot, eye) in shots.iter().zip([[1.0, 2.0, 5.0], [6.0, 2.0, 0.0], [1.0, 2.0, -5.0], [-4.0, 2.0, 0.0]]) {
             assert!((shot.camera.eye - Vec3::from(eye)).length() < 1e-6, "{}", shot.camera.eye);

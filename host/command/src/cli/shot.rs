@@ -4,6 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use super::beside::Beside;
 use super::checkpoint::{self, Checkpoint};
 use super::console;
 use super::denoising;
@@ -18,7 +19,7 @@ use crate::output::{self, Destination};
 use eyerays::film::{Film, Identity};
 use eyerays::fireflies::Buckets;
 use eyerays::job::Job;
-use eyerays::layers::{self, Layer, Values};
+use eyerays::layers::{self, Layer, Shown, Values};
 use eyerays::render::{Backend, Choice, Precision, Rendering, Session};
 use eyerays::scene::{Camera, Scene};
 use eyerays::view::View;
@@ -29,6 +30,8 @@ pub(super) struct Place {
     pub view: View,
     pub destination: Destination,
     pub checkpoint: Option<Checkpoint>,
+    /// The pictures before and after, if its layers ask for them.
+    pub beside: Option<[Beside; 2]>,
 }
 
 /// What renders the pictures of a scene.
@@ -170,7 +173,7 @@ impl Studio<'_> {
         }
         let start = Instant::now();
         let layers = progress::stage("rendering layers", self.quiet || self.of.json, || {
-            layers::render(session, (self.scene, &place.camera), rendering, &needed)
+            layers::render(session, self.shown(place), rendering, &needed)
         });
         let (mut layers, mut denoised) = (layers.map_err(|error| error.of(self.path))?, None);
         if let Some(denoiser) = self.of.denoise {
@@ -182,6 +185,12 @@ impl Studio<'_> {
             layers.retain(|(layer, _)| asked.contains(layer) || *layer == Layer::Noisy && keeps_noisy);
         }
         Ok(Layers { all: layers, time: Some(start.elapsed()), denoised })
+    }
+
+    fn shown<'p>(&'p self, place: &'p Place) -> Shown<'p> {
+        let scene = self.scene;
+        let of = |beside: &'p Beside| (beside.scene.as_deref().unwrap_or(scene), &beside.camera);
+        Shown { scene, camera: &place.camera, neighbours: place.beside.as_ref().map(|[a, b]| [of(a), of(b)]) }
     }
 
     /// Writes a picture and says what it was.

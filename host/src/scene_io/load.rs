@@ -88,7 +88,9 @@ pub fn read_as(stream: impl Read, name: &Path, loading: Loading) -> Result<(Scen
 pub(super) fn load_within(path: &Path, budget: Budget, loading: Loading) -> Result<(Scene, Vec<Warning>)> {
     file::open(path, u64::MAX).map_err(|fault| Error::file(path, fault))?;
     if is(path, binary::ENDING) {
-        Ok((settled(path, binary::load(path, budget)?, budget, &loading)?, Vec::new()))
+        let scene = binary::load(path, budget)?;
+        let (scene, warnings) = shutter::kept(path, scene, loading.shutter)?;
+        Ok((settled(path, scene, budget, &loading)?, warnings))
     } else if is(path, "toml") {
         load_toml(path, budget, loading)
     } else if is(path, "obj") || is(path, "ply") {
@@ -180,7 +182,8 @@ fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Sce
 /// A scene with the bounds of its copies, which are held as is asked unless more is to come of it.
 fn settled(path: &Path, mut scene: Scene, budget: Budget, loading: &Loading) -> Result<Scene> {
     scene.measure_copies();
-    if loading.instant != Instant::Alone {
+    // What moves is settled already.
+    if loading.instant != Instant::Alone || scene.motion.is_some() {
         return Ok(scene);
     }
     loading.instancing.of(scene, &budget).map_err(|fault| Error::file(path, fault))

@@ -99,6 +99,24 @@ pub fn over(
     Ok((scene, warnings))
 }
 
+/// A scene that was written with its motion, or without one, by a shutter that somebody asks for.
+///
+/// # Errors
+/// It is open at another time than the one that the scene was written with.
+pub fn kept(path: &Path, scene: Scene, asked: Option<Shutter>) -> Result<(Scene, Vec<Warning>)> {
+    let idle = |fault: &str| vec![Warning::new(WarningKind::Idle, path, fault)];
+    match (asked.map(|shutter| shutter.is_open()), &scene.motion) {
+        (Some(true), Some(_)) => {
+            let fault =
+                "it was written with its shutter; leave --shutter out, or convert its scene again with this one";
+            Err(Error::file(path, fault))
+        }
+        (Some(true), None) => Ok((scene, idle("it was written as it is at one moment: the shutter shows nothing"))),
+        (Some(false), _) => Ok((Scene { motion: None, ..scene }, Vec::new())),
+        (None, _) => Ok((scene, Vec::new())),
+    }
+}
+
 /// The scene at the ends of so many even steps, `most` at most, that everything goes straight in each, but for what no eye sees.
 fn followed(opening: Scene, most: usize, at: impl Fn(f64) -> Result<Scene>) -> Result<(Scene, Vec<Scene>)> {
     let first = STEPS.0;

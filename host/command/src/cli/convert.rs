@@ -63,8 +63,8 @@ impl Convert {
         }
         let destination = Destination::File(path.to_owned());
         output::check_writable(&destination)?;
-        let Read { scene, .. } =
-            Read::scene(&self.scene, slice::from_ref(&destination), self.reading.moment()?, quiet)?;
+        let loading = if is_text { self.reading.moment()? } else { self.reading.loading(None) };
+        let Read { scene, .. } = Read::scene(&self.scene, slice::from_ref(&destination), loading, quiet)?;
         output::check_apart(slice::from_ref(&destination), [&self.scene])?;
         if is_text {
             check_new(path)?;

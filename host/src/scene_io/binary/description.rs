@@ -4,10 +4,11 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::header::AGAIN;
+use super::motion::Shutter;
 use super::textures::Pictures;
 use crate::quality;
 use crate::scene::{
-    Background, Camera, Disk, Light, Material, Mesh, Object, Scene, Settings, SharedMesh, Sphere, Unplaced,
+    Background, Camera, Disk, Instance, Light, Material, Mesh, Object, Scene, Settings, SharedMesh, Sphere, Unplaced,
 };
 use crate::scene_io::budget::Budget;
 use crate::scene_io::source;
@@ -29,7 +30,16 @@ pub struct Description {
     materials: Vec<Material>,
     lights: Vec<Light>,
     cameras: Vec<Camera>,
+    motion: Option<Shutter>,
     textures: Pictures,
+}
+
+/// What sections hold as it is.
+pub struct Geometry {
+    pub mesh: Mesh,
+    pub spheres: Vec<Sphere>,
+    pub disks: Vec<Disk>,
+    pub instances: Vec<Instance>,
 }
 
 impl Description {
@@ -46,6 +56,7 @@ impl Description {
             materials: scene.materials.clone(),
             lights: scene.lights.clone(),
             cameras: scene.cameras.clone(),
+            motion: scene.motion.as_ref().map(Shutter::of),
             textures,
         }
     }
@@ -77,11 +88,12 @@ impl Description {
         toml::to_string(self).map_err(|error| error.to_string())
     }
 
-    /// The scene of this geometry and these texels, without a hierarchy.
+    /// The scene of this geometry, these poses and texels, without a hierarchy.
     ///
     /// # Errors
-    /// Textures of other texels.
-    pub fn scene(self, mesh: Mesh, spheres: Vec<Sphere>, disks: Vec<Disk>, texels: &[u8]) -> Unplaced<Scene> {
+    /// A motion of other poses, or textures of other texels.
+    pub fn scene(self, geometry: Geometry, poses: &[u8], texels: &[u8]) -> Unplaced<Scene> {
+        let Geometry { mesh, spheres, disks, instances } = geometry;
         let Description {
             hierarchy: _,
             ambient,
@@ -93,6 +105,7 @@ impl Description {
             materials,
             lights,
             cameras,
+            motion,
             textures,
         } = self;
         let mut scene = Scene {
@@ -100,7 +113,7 @@ impl Description {
             spheres,
             disks,
             shared,
-            instances: Vec::new(),
+            instances,
             objects,
             animations: Vec::new(),
             files: Vec::new(),
@@ -115,6 +128,7 @@ impl Description {
             ambient,
             settings,
         };
+        scene.motion = motion.map(|motion| motion.motion(&scene, poses)).transpose()?;
         textures.give(&mut scene, texels)?;
         Ok(scene)
     }

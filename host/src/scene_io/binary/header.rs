@@ -13,13 +13,13 @@ use crate::scene::{Disk, Instance, Sphere, Unplaced};
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.
 const BLOCK: usize = 1 << 20;
 /// Sections of a file.
-pub const SECTIONS: usize = 16;
+pub const SECTIONS: usize = 17;
 
 /// The first bytes of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Pod, Zeroable)]
@@ -52,6 +52,8 @@ pub struct Counts {
     pub disks: u64,
     /// Copies of meshes.
     pub instances: u64,
+    /// Bytes of where things are while the shutter is open.
+    pub poses: u64,
     /// Bytes of the texels of all textures.
     pub texels: u64,
     /// Of the hierarchy; all zero without one.
@@ -77,6 +79,7 @@ impl Counts {
             (self.spheres, size_of::<Sphere>()),
             (self.disks, size_of::<Disk>()),
             (self.instances, size_of::<Instance>()),
+            (self.poses, 1),
             (self.texels, 1),
             (self.pairs, size_of::<NodePair>()),
             (self.slots, number),

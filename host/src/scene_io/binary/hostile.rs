@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 use proptest::prelude::*;
 
 use super::header::Header;
-use super::tests::{EXAMPLE, packed, read, sign, text};
+use super::tests::{EXAMPLE, moving, packed, read, sign, text};
 use super::write;
 use crate::device_scene::hierarchy;
 use crate::quality::Bvh;
@@ -32,6 +32,21 @@ static SMALL: LazyLock<Vec<u8>> = LazyLock::new(|| {
     bytes
 });
 
+/// The same of one that moves.
+static MOVING: LazyLock<Vec<u8>> = LazyLock::new(|| {
+    let mut bytes = Vec::new();
+    write(&moving(), None, &mut bytes).expect("a scene in range");
+    bytes
+});
+
+/// Where the bytes of its poses are, and what it says of them.
+fn poses() -> impl Iterator<Item = usize> {
+    let (_, sections) = Header::read(&MOVING).expect("a scene");
+    let text = std::str::from_utf8(&MOVING[sections[0].clone()]).expect("a text");
+    let [start, end] = ["[motion]", "[textures]"].map(|table| sections[0].start + text.find(table).expect("a table"));
+    (start..end).chain(sections[12].clone())
+}
+
 /// Where its sections begin and end.
 fn edges() -> Vec<usize> {
     let (_, sections) = Header::read(&SMALL).expect("a scene");
@@ -42,11 +57,12 @@ fn edges() -> Vec<usize> {
 fn no_byte_can_be_changed_unseen_and_none_does_harm_under_a_right_hash() {
     let first = edges()[0];
     assert!(first > size_of::<Header>(), "something lies between");
-    for at in 0..SMALL.len() {
-        let old = SMALL[at];
+    let moving = poses().map(|at| (&*MOVING, at));
+    for (file, at) in (0..SMALL.len()).map(|at| (&*SMALL, at)).chain(moving) {
+        let old = file[at];
         let others: &[u8] = if at < first { &[old ^ 1, old ^ 0x80, 0, 0xff] } else { &[old ^ 0x80] };
         for &new in others.iter().filter(|&&new| new != old) {
-            let mut bytes = SMALL.clone();
+            let mut bytes = file.clone();
             bytes[at] = new;
             assert!(read(&bytes).is_err(), "byte {at} as {new} is accepted");
             sign(&mut bytes);

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::description::Description;
+use super::description::{Description, Geometry};
 use super::header::{AGAIN, Header};
 use crate::error::{Error, Result};
 use crate::scene::hierarchy::records;
@@ -39,7 +39,7 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     let copies = budget.check_bytes(2 * bytes.len() as u64);
     copies.map_err(|why| format!("its {} bytes {why}; end other programs or use a smaller scene", bytes.len()))?;
     let [description, positions, normals, first, second, tangents, colours, rest @ ..] = all;
-    let [triangles, materials, spheres, disks, instances, texels, ..] = rest;
+    let [triangles, materials, spheres, disks, instances, poses, texels, ..] = rest;
     let mesh = Mesh {
         positions: records(positions),
         normals: records(normals),
@@ -53,8 +53,9 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     let description = Description::parse(description, &budget)?;
     let [.., pairs, order, bounds] = all;
     let kept = description.hierarchy.map(|quality| Hierarchy::new(quality, [pairs, order, bounds]));
-    let scene = description.scene(mesh, records(spheres), records(disks), texels).map_err(again)?;
-    let scene = Scene { hierarchy: kept, instances: records(instances), ..scene };
+    let (spheres, disks, instances) = (records(spheres), records(disks), records(instances));
+    let scene = description.scene(Geometry { mesh, spheres, disks, instances }, poses, texels).map_err(again)?;
+    let scene = Scene { hierarchy: kept, ..scene };
     if scene.cameras.is_empty() {
         return Err(again("it has no camera".into()));
     }

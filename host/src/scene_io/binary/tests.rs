@@ -7,14 +7,16 @@ use proptest::prelude::*;
 
 use super::header::Header;
 use super::read::parse;
-use super::write;
+use super::{fingerprint, write};
 use crate::device_scene::hierarchy;
 use crate::error::Result;
 use crate::job::Job;
 use crate::memory::Room;
 use crate::quality::Bvh;
-use crate::scene::{Alpha, Environment, Light, Map, Maps, Placement, Scene, Texels, Texture, Unplaced, Wrap};
-use crate::scene_io::{Loading, Shutter, budget::Budget, load_as};
+use crate::scene::{
+    Alpha, Environment, Light, Map, Maps, Motion, Placement, Scene, Shape, Texels, Texture, Unplaced, Wrap,
+};
+use crate::scene_io::{Loading, Shutter, budget::Budget, load, load_as};
 
 /// A scene of a text form at one moment, and no files, as binary ones have none.
 pub(super) fn text(path: &str) -> Scene {
@@ -116,6 +118,70 @@ fn every_scene_is_the_same_in_either_form() {
     }
 }
 
+/// Two boxes, one of which turns and bends, before a camera that pans.
+pub(super) fn moving() -> Scene {
+    let text = r#"
+        shutter = { frames = [0.0, 0.5], rolling = 0.25 }
+        camera = [{ name = "c", eye = [0, 1, 5], target = [0, 0, 0], key = [{ time = 0.0 }, { time = 0.1, eye = [1, 1, 5] }] }]
+        mesh = [
+            { shape = "box", min = [-1, 0, 0], max = [0, 1, 1] },
+            { shape = "box", min = [0, 0, 0], max = [1, 1, 1], key = [{ time = 0.0 }, { time = 0.1, rotate = [0, 20, 0] }] },
+        ]
+    "#;
+    let room = Budget::new(Room { bytes: 1 << 30, limit: "this test" });
+    let (scene, warnings) = load::parse("moving.toml".as_ref(), text.as_bytes(), room, Loading::default()).unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let mut scene = Scene { files: Vec::new(), animations: Vec::new(), ..scene };
+    let range = scene.shared[0].vertices.clone();
+    let motion = scene.motion.as_mut().expect("it moves");
+    for (number, pose) in motion.poses.iter_mut().enumerate() {
+        let bent = scene.mesh.positions[range.clone()].iter().map(|&place| place * (1.5 + number as f32));
+        let normals = scene.mesh.normals.get(range.clone()).unwrap_or_default().to_vec();
+        pose.shapes = vec![(0, Shape { positions: bent.collect(), normals, tangents: Vec::new() })];
+    }
+    scene.check().unwrap();
+    scene
+}
+
+#[test]
+fn what_moves_comes_back_and_counts_in_the_fingerprint() {
+    let scene = moving();
+    let back = read(&binary(&scene)).expect("a scene");
+    assert!(back == scene && back.motion.is_some());
+    let print = fingerprint(&scene).unwrap();
+    let changes: [fn(&mut Motion); 5] = [
+        |motion| motion.exposure = 0.5,
+        |motion| motion.cameras[0].eye.x += 1.0,
+        |motion| motion.poses[0].cameras[0].eye.x += 1.0,
+        |motion| motion.poses[0].instances[0].translation.x += 1.0,
+        |motion| motion.poses[0].shapes[0].1.positions[0].x += 1.0,
+    ];
+    for (number, change) in changes.into_iter().enumerate() {
+        let mut other = scene.clone();
+        change(other.motion.as_mut().unwrap());
+        assert_ne!(fingerprint(&other).unwrap(), print, "change {number}");
+    }
+}
+
+#[test]
+fn poses_of_other_scenes_are_refused() {
+    let scene = moving();
+    let changes: [fn(&mut Motion); 3] = [
+        |motion| {
+            let _ = motion.poses[0].instances.pop();
+        },
+        |motion| {
+            let _ = motion.poses[0].shapes[0].1.positions.pop();
+        },
+        |motion| motion.poses[0].shapes.clear(),
+    ];
+    for change in changes {
+        let mut other = scene.clone();
+        change(other.motion.as_mut().unwrap());
+        assert!(write(&other, None, &mut Vec::new()).is_err());
+    }
+}
+
 #[test]
 fn what_covers_surfaces_comes_back_and_every_picture_once() {
     let scene = covered();
@@ -192,8 +258,8 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b.truncate(100)).starts_with("its 100 bytes are less than a header"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
-    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 6 is what is read"));
-    assert!(refused(|b| b[160] = 1).starts_with("its byte 160, which belongs to no section, is not zero"));
+    assert!(refused(|b| b[8] = 6).starts_with("version 6 of the binary form, and 7 is what is read"));
+    assert!(refused(|b| b[168] = 1).starts_with("its byte 168, which belongs to no section, is not zero"));
     assert!(refused(|b| b[12] = 1).starts_with("its header has other than zeros in its spare bytes"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));
     assert!(refused(|b| b.push(0)).contains("are not what its header tells"));
@@ -229,7 +295,7 @@ fn a_scene_out_of_range_is_not_written_nor_read_under_a_right_hash() {
     let refused = write(&scene, None, &mut Vec::new()).expect_err("written").message();
     assert_eq!(refused, "the camera \"front\" looks at its own eye; move its target");
     let mut bytes = binary(&text("src/scene_io/example.toml"));
-    let (_, [.., disks, _, _, _, _, _]) = Header::read(&bytes).unwrap();
+    let (_, [.., disks, _, _, _, _, _, _]) = Header::read(&bytes).unwrap();
     bytes[disks.end - 4..disks.end].copy_from_slice(&u32::MAX.to_le_bytes());
     sign(&mut bytes);
     let refused = remedied(read(&bytes));

@@ -6,10 +6,11 @@ use eyerays_bvh::Bvh;
 
 use super::description::Description;
 use super::header::{ALIGNMENT, Counts, Header, SECTIONS, hash};
+use super::motion;
 use super::textures::{Pictures, bytes};
 use crate::error::{Error, Result};
 use crate::quality;
-use crate::scene::{Camera, Motion, Pose, Scene, Shape};
+use crate::scene::Scene;
 
 /// Writes the binary form of a scene, from which [`load`](crate::scene_io::load) makes the same scene, but for
 /// [`Scene::files`], which it stands for itself, and with this hierarchy of it
@@ -20,16 +21,13 @@ use crate::scene::{Camera, Motion, Pose, Scene, Shape};
 pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut dyn Write) -> Result<()> {
     scene.check()?;
     scene.settings.check()?;
-    if scene.motion.is_some() {
-        let fault = "a scene that moves while the shutter is open has no binary form";
-        return Err(Error::new(format!("{fault}: write it as it is at one moment")));
-    }
     let (pictures, textures) = Pictures::of(scene);
     let texels = textures.iter().map(|texture| bytes(texture)).collect::<Vec<_>>().concat();
     let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));
     let description = description.text().map_err(Error::new)?;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
-    let (counts, sections) = sections(scene, &description, &texels, hierarchy.map_or(&none, |(_, bvh)| bvh));
+    let poses = motion::bytes(scene.motion.as_ref());
+    let (counts, sections) = sections(scene, (&description, &poses, &texels), hierarchy.map_or(&none, |(_, bvh)| bvh));
     let mut end = 0;
     let header = Header::of(counts, &sections);
     for section in [bytemuck::bytes_of(&header)].into_iter().chain(sections) {
@@ -51,35 +49,16 @@ pub fn fingerprint(scene: &Scene) -> Result<[u8; 32]> {
     let (pictures, textures) = Pictures::of(scene);
     let description = Description::bare(scene, pictures).text().map_err(Error::new)?;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
-    let (counts, sections) = sections(scene, &description, &[], &none);
-    let motion = scene.motion.as_ref().map(motion_bytes).transpose()?;
+    let poses = motion::bytes(scene.motion.as_ref());
+    let (counts, sections) = sections(scene, (&description, &poses, &[]), &none);
     let textures = textures.iter().map(|texture| bytes(texture));
-    Ok(hash(&counts, sections.into_iter().chain(textures).chain(motion.as_deref())))
-}
-
-/// All that a motion holds.
-fn motion_bytes(motion: &Motion) -> Result<Vec<u8>> {
-    let mut all = motion.exposure.to_le_bytes().to_vec();
-    let cameras_bytes = |cameras: &[Camera]| serde_json::to_vec(cameras).map_err(|error| Error::new(error.to_string()));
-    all.extend(cameras_bytes(&motion.cameras)?);
-    for Pose { instances, shapes, cameras } in &motion.poses {
-        all.extend_from_slice(bytemuck::cast_slice(instances));
-        for (mesh, Shape { positions, normals, tangents }) in shapes {
-            all.extend_from_slice(&mesh.to_le_bytes());
-            all.extend_from_slice(bytemuck::cast_slice(positions));
-            all.extend_from_slice(bytemuck::cast_slice(normals));
-            all.extend_from_slice(bytemuck::cast_slice(tangents));
-        }
-        all.extend(cameras_bytes(cameras)?);
-    }
-    Ok(all)
+    Ok(hash(&counts, sections.into_iter().chain(textures)))
 }
 
 /// What a file holds after its header, and how much of it there is.
 fn sections<'a>(
     scene: &'a Scene,
-    description: &'a str,
-    texels: &'a [u8],
+    (description, poses, texels): (&'a str, &'a [u8], &'a [u8]),
     bvh: &'a Bvh,
 ) -> (Counts, [&'a [u8]; SECTIONS]) {
     let mesh = &scene.mesh;
@@ -94,6 +73,7 @@ fn sections<'a>(
         spheres: scene.spheres.len() as u64,
         disks: scene.disks.len() as u64,
         instances: scene.instances.len() as u64,
+        poses: poses.len() as u64,
         texels: texels.len() as u64,
         pairs: bvh.nodes.len() as u64,
         slots: bvh.order.len() as u64,
@@ -111,6 +91,7 @@ fn sections<'a>(
         bytemuck::cast_slice(&scene.spheres),
         bytemuck::cast_slice(&scene.disks),
         bytemuck::cast_slice(&scene.instances),
+        poses,
         texels,
         bytemuck::cast_slice(&bvh.nodes),
         bytemuck::cast_slice(&bvh.order),

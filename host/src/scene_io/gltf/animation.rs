@@ -8,6 +8,7 @@ use glam::DVec4;
 use super::accessor::{Accessors, Elements};
 use super::document::{Animation, AnimationSampler, Channel, Document, pick};
 use super::notes::Notes;
+use super::pointer::{self, Setting, Target};
 use crate::math;
 use crate::scene::{self, Unplaced};
 use crate::scene_io::{AnimationWish, Moment};
@@ -15,9 +16,14 @@ use crate::scene_io::{AnimationWish, Moment};
 /// The most keys of all curves of an animation, and weights of a moment, however often a file names them.
 const MOST_KEYS: usize = 1 << 26;
 
-/// What an animation makes of nodes, by their numbers.
+/// What an animation makes of a file.
 #[derive(Default)]
-pub struct Pose(HashMap<usize, Change>);
+pub struct Pose {
+    /// Nodes, by their numbers.
+    nodes: HashMap<usize, Change>,
+    /// What is of no node.
+    pub settings: Vec<Setting>,
+}
 
 /// What takes the place of what a node says.
 #[derive(Default)]
@@ -50,19 +56,31 @@ impl Pose {
         let mut pose = Pose::default();
         for (place, channel) in animation.channels.iter().enumerate() {
             let here = format!("animations[{number}].channels[{place}]");
-            let Some(node) = channel.target.node else {
-                notes.left_out("pointers", "animations of what is no node are left out (KHR_animation_pointer)");
-                continue;
+            let property = channel.target.extensions.property.as_ref().map(|of| &*of.pointer);
+            let (node, path) = match (property, channel.target.node) {
+                (Some(pointer), _) => match pointer::target(pointer, &here)? {
+                    Target::Node(node, path) => (node, path),
+                    Target::Property => {
+                        pose.settings.push(set(pointer, channel, animation, (&mut keys, &here), seconds)?);
+                        continue;
+                    }
+                },
+                (None, Some(node)) => (node, &*channel.target.path),
+                (None, None) => {
+                    notes.left_out("targets", &format!("{here}.target: it names no node and is left out"));
+                    continue;
+                }
             };
             pick(&document.nodes, node, &format!("{here}.target.node"), "node")?;
-            pose.0.entry(node).or_default().follow(channel, animation, (&mut keys, &here), seconds, notes)?;
+            let change = pose.nodes.entry(node).or_default();
+            change.follow((channel, path), animation, (&mut keys, &here), seconds, notes)?;
         }
         Ok(pose)
     }
 
     /// What it makes of a node, if anything.
     pub fn change(&self, node: usize) -> Option<&Change> {
-        self.0.get(&node)
+        self.nodes.get(&node)
     }
 }
 
@@ -116,18 +134,33 @@ pub fn list(document: &Document, accessors: &Accessors) -> Vec<scene::Animation>
     document.animations.iter().enumerate().map(of).collect()
 }
 
+/// What a channel makes of a property.
+fn set(
+    pointer: &str,
+    channel: &Channel,
+    animation: &Animation,
+    (keys, here): (&mut Keys, &str),
+    seconds: f64,
+) -> Unplaced<Setting> {
+    let sampler = pick(&animation.samplers, channel.sampler, &format!("{here}.sampler"), "sampler")?;
+    let owner = format!("{here}: its sampler's output");
+    let width = keys.accessors.open(sampler.output, &[1, 2, 3, 4], &owner)?.width;
+    let numbers = Curve::open(sampler, width, keys, here)?.at(seconds, false);
+    Ok(Setting { owner: here.to_owned(), pointer: pointer.to_owned(), numbers })
+}
+
 impl Change {
     /// Takes what a channel says.
     fn follow(
         &mut self,
-        channel: &Channel,
+        (channel, path): (&Channel, &str),
         animation: &Animation,
         (keys, here): (&mut Keys, &str),
         seconds: f64,
         notes: &mut Notes,
     ) -> Unplaced<()> {
         let sampler = pick(&animation.samplers, channel.sampler, &format!("{here}.sampler"), "sampler")?;
-        let width = match channel.target.path.as_str() {
+        let width = match path {
             "translation" | "scale" => 3,
             "rotation" => 4,
             "weights" => 1,
@@ -137,9 +170,9 @@ impl Change {
             }
         };
         let curve = Curve::open(sampler, width, keys, here)?;
-        let numbers = curve.at(seconds, channel.target.path == "rotation");
+        let numbers = curve.at(seconds, path == "rotation");
         let vector = || [numbers[0], numbers[1], numbers[2]];
-        match channel.target.path.as_str() {
+        match path {
             "translation" => self.translation = Some(vector()),
             "scale" => self.scale = Some(vector()),
             "rotation" => self.rotation = Some([numbers[0], numbers[1], numbers[2], numbers[3]]),

@@ -59,6 +59,11 @@ impl<'de, T: Deserialize<'de>> Deserialize<'de> for List<T> {
     }
 }
 
+/// The JSON without the mark of UTF-8, with which some writers begin.
+pub fn text(json: &[u8]) -> &[u8] {
+    json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json)
+}
+
 /// The whole of it.
 #[derive(Deserialize, Default)]
 #[serde(rename_all = "camelCase", default)]
@@ -163,6 +168,21 @@ pub struct Channel {
 pub struct Target {
     pub node: Option<usize>,
     pub path: String,
+    pub extensions: TargetExtensions,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct TargetExtensions {
+    #[serde(rename = "KHR_animation_pointer")]
+    pub property: Option<PointerOf>,
+}
+
+/// Which number of the JSON is changed.
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct PointerOf {
+    pub pointer: String,
 }
 
 /// Accessors of times and of values.

@@ -5,8 +5,9 @@ use super::notes::Notes;
 use crate::scene::Unplaced;
 
 /// Those that are drawn.
-const KNOWN: [&str; 13] = [
+const KNOWN: [&str; 14] = [
     "EXT_mesh_gpu_instancing",
+    "KHR_animation_pointer",
     "KHR_lights_punctual",
     "KHR_materials_anisotropy",
     "KHR_materials_emissive_strength",

@@ -19,6 +19,7 @@ mod morph;
 mod node;
 mod notes;
 mod picture;
+mod pointer;
 mod primitive;
 mod shading;
 mod skin;
@@ -101,15 +102,20 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     extension::check(&document, &mut notes)?;
     let buffers = Buffers::read(&document, chunk, neighbours)?;
     let pose = Pose::of(&document, &Accessors::new(&document, &buffers), &loading.moment, &mut notes)?;
-    let nodes = node::walk(&document, &pose)?;
+    let changed = match &pose.settings[..] {
+        [] => None,
+        settings => Some(self::document(&pointer::patched(json, settings, &budget)?)?),
+    };
+    let document = changed.as_ref().unwrap_or(&document);
+    let nodes = node::walk(document, &pose)?;
     let is_alone = loading.instant == Instant::Alone;
-    let (mesh, copies, objects) = merged((&document, &buffers), &nodes, budget, is_alone, &mut notes)?;
+    let (mesh, copies, objects) = merged((document, &buffers), &nodes, budget, is_alone, &mut notes)?;
     let by_writer = LightUnit::of_generator(document.asset.generator.as_deref());
     let mut lights = Vec::new();
     let mut cameras = Cameras::default();
     for placed in &nodes {
         lights.extend(light::read(placed, &document.extensions.lights.lights, unit.unwrap_or(by_writer), &mut notes)?);
-        cameras.add(placed, &document, &mut notes)?;
+        cameras.add(placed, document, &mut notes)?;
     }
     let groups: HashSet<&str> = lights.iter().map(Light::group).filter(|name| !name.is_empty()).collect();
     if groups.len() > LightGroups::MOST {
@@ -125,16 +131,15 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
         );
     }
     let is_drawn = loading.instant != Instant::Later;
-    let (materials, pictures) = materials((&document, &buffers), (&mesh, &copies), neighbours, is_drawn, &mut notes)?;
+    let (materials, pictures) = materials((document, &buffers), (&mesh, &copies), neighbours, is_drawn, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
     let obj = Obj { mesh, copies, materials, warnings: notes.finish(), libraries, objects };
-    let animations = animation::list(&document, &Accessors::new(&document, &buffers));
+    let animations = animation::list(document, &Accessors::new(document, &buffers));
     Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all, animations })
 }
 
 fn document(json: &[u8]) -> Unplaced<Document> {
-    // Some writers begin with the mark of UTF-8.
-    let json = json.strip_prefix(b"\xef\xbb\xbf").unwrap_or(json);
+    let json = document::text(json);
     if json.trim_ascii_start().first().is_some_and(|&byte| byte != b'{') {
         return Err("the JSON: it does not begin with {; write the file again as glTF 2.0".into());
     }

@@ -5,6 +5,7 @@ use serde_json::json;
 
 use super::super::said;
 use super::model::{F32, Model, floats, parse, parse_at};
+use crate::scene::Light;
 use crate::scene_io::gltf::Gltf;
 use crate::scene_io::{AnimationWish, Moment};
 
@@ -65,6 +66,68 @@ fn values_go_straight_from_key_to_key_and_stand_still_before_and_after() {
     let steps = moving("scale", "STEP", &[0.0, 1.0], &[1.0, 1.0, 1.0, 3.0, 3.0, 3.0]);
     for (seconds, size) in [(0.0, 1.0), (0.999, 1.0), (1.0, 3.0), (5.0, 3.0)] {
         assert_near(corners(&steps, seconds)[1], DVec3::X * size, &format!("{seconds} s"));
+    }
+}
+
+/// Adds a channel whose pointer names what it changes.
+fn pointing(model: &mut Model, pointer: &str, kind: &str, values: &[f32]) {
+    channel(model, (0, "pointer"), "LINEAR", &[0.0, 1.0], &[0.0; 6]);
+    let width = if kind == "SCALAR" { 1 } else { kind[3..].parse().unwrap() };
+    let output = model.accessor(kind, F32, values.len() / width, &floats(values));
+    let animation = &mut model.json["animations"][0];
+    animation["samplers"].as_array_mut().unwrap().last_mut().unwrap()["output"] = json!(output);
+    let target = &mut animation["channels"].as_array_mut().unwrap().last_mut().unwrap()["target"];
+    *target = json!({ "path": "pointer", "extensions": { "KHR_animation_pointer": { "pointer": pointer } } });
+}
+
+#[test]
+fn pointers_change_materials_cameras_lights_and_nodes() {
+    let mut model = Model::triangle();
+    model.json["materials"] = json!([{}]);
+    model.primitive()["material"] = json!(0);
+    model.json["cameras"] = json!([{ "type": "perspective", "perspective": { "yfov": 0.5, "znear": 0.1 } }]);
+    let light = json!({ "type": "point", "intensity": 1.0 });
+    model.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [light] } });
+    let of_light = json!({ "KHR_lights_punctual": { "light": 0 } });
+    let nodes = model.json["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({ "camera": 0, "extensions": of_light }));
+    model.json["scenes"][0]["nodes"] = json!([0, 1]);
+    let colours = [0.0, 0.25, 0.5, 1.0, 1.0, 0.25, 0.0, 1.0];
+    pointing(&mut model, "/materials/0/pbrMetallicRoughness/baseColorFactor", "VEC4", &colours);
+    pointing(&mut model, "/materials/0/pbrMetallicRoughness/roughnessFactor", "SCALAR", &[0.25, 0.75]);
+    pointing(&mut model, "/cameras/0/perspective/yfov", "SCALAR", &[0.5, 1.5]);
+    pointing(&mut model, "/extensions/KHR_lights_punctual/lights/0/intensity", "SCALAR", &[1.0, 5.0]);
+    pointing(&mut model, "/nodes/0/translation", "VEC3", &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]);
+    let moved = at(&model, 0.5);
+    assert_eq!(moved.obj.mesh.positions[0], Vec3::X * 2.0);
+    let (_, material) = moved.obj.materials.last().unwrap();
+    let physical = &material.physical;
+    assert_eq!((physical.base, physical.roughness), (Some(Vec3::new(0.5, 0.25, 0.25)), Some(0.5)));
+    assert!((moved.cameras[0].projection.fov().unwrap() - 1f32.to_degrees()).abs() < 1e-4);
+    let [one, three] = [0.0, 0.5].map(|seconds| match &at(&model, seconds).lights[0] {
+        Light::Point { colour, .. } => colour.x,
+        other => panic!("{other:?}"),
+    });
+    assert!((three / one - 3.0).abs() < 1e-5, "{one}, {three}");
+}
+
+#[test]
+fn pointers_that_lead_nowhere_are_refused_in_a_line() {
+    for (pointer, wanted) in [
+        ("/materials/9/alphaCutoff", "names an element that is not there"),
+        ("/accessors/0/count", "names nothing that is drawn"),
+        ("/nodes/9/translation", "there is"),
+        ("/nodes/0/name/x", "names an element that is not there"),
+        ("/nodes/0/name", "names no number"),
+        ("nodes/0/scale", "names nothing that is drawn"),
+        ("/nodes/0/mesh", "write the file again"),
+        ("", "names nothing that is drawn"),
+    ] {
+        let mut model = Model::triangle();
+        model.json["nodes"][0]["name"] = json!("a");
+        pointing(&mut model, pointer, "SCALAR", &[0.5, 0.75]);
+        let fault = parse_at(&model.glb(), Moment { animation: None, seconds: Some(0.5) }).unwrap_err().message();
+        assert!(fault.contains(wanted) && !fault.contains('\n'), "{pointer}: {fault}");
     }
 }
 
@@ -217,7 +280,7 @@ fn animations_that_make_no_sense_are_one_line_each() {
     let mut model = moving("translation", "LINEAR", &[0.0, 1.0], &[0.0; 6]);
     model.json["animations"][0]["channels"][0]["target"] = json!({ "path": "pointer" });
     let warnings = said(&parse(&model.glb()).unwrap().obj.warnings);
-    assert!(warnings.iter().any(|warning| warning.contains("KHR_animation_pointer")), "{warnings:?}");
+    assert!(warnings.iter().any(|warning| warning.contains("it names no node and is left out")), "{warnings:?}");
     model.json["animations"][0]["channels"][0]["target"] = json!({ "node": 0, "path": "colour" });
     let warnings = said(&parse(&model.glb()).unwrap().obj.warnings);
     assert!(warnings.iter().any(|warning| warning.contains("\"colour\" are left out")), "{warnings:?}");

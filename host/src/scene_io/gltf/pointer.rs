@@ -90,8 +90,7 @@ fn place<'v>(all: &'v mut Value, pointer: &str) -> Option<&'v mut Value> {
                 is_in_element = true;
                 list.get_mut(name.parse::<usize>().ok()?)?
             }
-            Value::Object(of) if is_in_element => of.entry(name).or_insert(Value::Null),
-            Value::Object(of) => of.get_mut(&name)?,
+            Value::Object(of) if is_in_element || of.contains_key(&name) => of.entry(name).or_insert(Value::Null),
             _ => return None,
         };
     }

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use glam::{DMat4, DVec3, DVec4};
 
 use super::budget::Budget;
+use super::transform::Transform;
 use crate::choice::choices;
 use crate::device_scene::{fitted, unfit_objects, unfit_triangles};
 use crate::scene::{Instance, Mesh, Scene, Unplaced};
@@ -35,9 +36,12 @@ impl Copies {
         self.places.extend(places.into_iter().map(|(mesh, world)| (first + mesh, world)));
     }
 
-    /// Moves where they stand.
-    pub fn apply(&mut self, world: &DMat4) {
-        self.places.iter_mut().for_each(|(_, own)| *own = *world * *own);
+    /// Moves where they stand, to each of some places if there are any.
+    pub fn put(&mut self, places: &[Transform]) {
+        if !places.is_empty() {
+            let at = |world: DMat4| self.places.iter().map(move |&(mesh, own)| (mesh, world * own)).collect::<Vec<_>>();
+            self.places = places.iter().flat_map(|place| at(place.matrix())).collect();
+        }
     }
 
     /// What single precision can't hold of it, and the remedy.

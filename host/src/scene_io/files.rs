@@ -10,6 +10,7 @@ use super::gltf::{self, Gltf};
 use super::load::Loading;
 use super::map::Images;
 use super::obj::{self, Obj};
+use super::object_table::Objects;
 use super::ply::{self, Ply};
 use super::table::Table;
 use super::{Warning, WarningKind};
@@ -45,6 +46,8 @@ pub struct Files<'p> {
     pub animations: Vec<Animation>,
     /// When the last key of the scene file itself is, if it has any.
     last_key: Option<f32>,
+    /// What meshes may stand on.
+    pub objects: Objects,
     /// What several tables are of, if it is placed.
     pub repeated: HashSet<String>,
 }
@@ -58,6 +61,7 @@ impl<'p> Files<'p> {
             images: Images::within(folder, budget, loading),
             is_covered: false,
             has: Own::default(),
+            objects: Objects::default(),
             meshes: HashMap::new(),
             spheres: HashMap::new(),
             warnings: Vec::new(),

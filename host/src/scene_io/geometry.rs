@@ -21,21 +21,15 @@ impl Geometry {
         }
     }
 
-    /// Moves it; spheres and disks by a transform that keeps them.
-    pub fn apply(&mut self, transform: &Transform) {
-        match self {
-            Geometry::Mesh(mesh) => transform.apply(mesh),
-            Geometry::Spheres(spheres) => {
-                for Sphere { center, radius, .. } in spheres {
-                    (*center, *radius) = (transform.place(*center), transform.length(*radius));
-                }
-            }
-            Geometry::Disks(disks) => {
-                for Disk { center, normal, radius, .. } in disks {
-                    (*center, *radius) = (transform.place(*center), transform.length(*radius));
-                    *normal = transform.normal(*normal);
-                }
-            }
+    /// Moves it to its places, if there are any: spheres and disks to each of them, by transforms that keep them; a mesh that has one.
+    pub fn put(&mut self, places: &[Transform]) {
+        match (self, places) {
+            (_, []) => {}
+            (Geometry::Mesh(mesh), [only]) => only.apply(mesh),
+            // Its copies stand there.
+            (Geometry::Mesh(_), _) => {}
+            (Geometry::Spheres(spheres), places) => *spheres = at_each(spheres, places, sphere),
+            (Geometry::Disks(disks), places) => *disks = at_each(disks, places, disk),
         }
     }
 
@@ -70,4 +64,16 @@ impl Geometry {
             Geometry::Disks(disks) => disks.iter_mut().map(|disk| &mut disk.material).for_each(change),
         }
     }
+}
+
+fn at_each<T>(all: &[T], places: &[Transform], moved: impl Fn(&T, &Transform) -> T) -> Vec<T> {
+    places.iter().flat_map(|place| all.iter().map(|one| moved(one, place)).collect::<Vec<_>>()).collect()
+}
+
+fn sphere(of: &Sphere, place: &Transform) -> Sphere {
+    Sphere { center: place.place(of.center), radius: place.length(of.radius), ..*of }
+}
+
+fn disk(of: &Disk, place: &Transform) -> Disk {
+    Disk { center: place.place(of.center), normal: place.normal(of.normal), radius: place.length(of.radius), ..*of }
 }

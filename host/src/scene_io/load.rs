@@ -20,6 +20,7 @@ use super::material::Fields;
 use super::merge::{Merge, Merged, Override, Overrides};
 use super::mesh_table::{self, Placed};
 use super::obj::Obj;
+use super::object_table::Objects;
 use super::shutter;
 use super::source::Source;
 use super::table::Table;
@@ -247,6 +248,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
     files.move_until(last);
     let lights = table.tables("light")?.map(document::lights).transpose()?;
     let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
+    files.objects = Objects::read(table.tables("object")?.unwrap_or_default(), seconds, &files.budget)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();
     // A section's misspelt name is a likelier fault than a missing section.
     table.done()?;

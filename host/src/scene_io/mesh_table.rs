@@ -1,16 +1,18 @@
 //! A `[[mesh]]` of a TOML scene: a file or a shape, and where it goes.
 
+use super::budget::Budget;
 use super::copies::Copies;
 use super::files::{Files, is, is_gltf};
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
 use super::named::{self, Wish};
 use super::obj::Obj;
+use super::object_table::Worlds;
 use super::table::Table;
-use super::transform::Transform;
 use super::{Instant, visible};
 use crate::error::Result;
-use crate::scene::{Mesh, Object, Primitives, Visibility, extent, normal};
+use crate::scene::{Instance, Mesh, Object, Primitives, Unplaced, Visibility, extent, normal};
+use glam::DMat4;
 
 /// Geometry in place, and the materials that it numbers.
 pub struct Placed {
@@ -68,7 +70,7 @@ impl Placed {
 
 /// What a `[[mesh]]` table is of, wherever it goes: tables of the same are equal texts.
 pub fn of_what(table: &Table) -> String {
-    table.text_without(&["scale", "rotate", "translate", "key"])
+    table.text_without(&["scale", "rotate", "translate", "key", "on", "place"])
 }
 
 /// Reads a `[[mesh]]` table, but for refusing unknown keys. `repeated` is what it is of if others are, too.
@@ -80,9 +82,12 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     let material = table.name("material")?;
     let smooth = table.flag("smooth")?;
     let loading = &files.images.loading;
-    let (transform, last) = Transform::read(table, loading.moment.seconds.unwrap_or(0.0))?;
+    let seconds = loading.moment.seconds.unwrap_or(0.0);
+    let Worlds { places, last } = files.objects.worlds(table, seconds, &files.budget)?;
     let is_kept = last.is_some() && loading.instant != Instant::Alone;
     files.move_until(last);
+    // What one of them makes of spheres they are everywhere.
+    let transform = places.iter().find(|place| !place.keeps_spheres()).or(places.first()).copied();
     let wish = Wish { smooth, transform };
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
@@ -97,14 +102,14 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     }
     copies.meshes.iter_mut().for_each(shade);
     let repeated = repeated.filter(|_| matches!(geometry, Geometry::Mesh(_)));
-    if let (true, Geometry::Mesh(mesh)) = (repeated.is_some() || is_kept, &mut geometry) {
+    let is_copied = repeated.is_some() || is_kept || places.len() > 1;
+    if let (true, Geometry::Mesh(mesh)) = (is_copied, &mut geometry) {
         copies = Copies::with(std::mem::take(mesh), copies);
         objects.clear();
     }
-    if let Some(transform) = &wish.transform {
-        geometry.apply(transform);
-        copies.apply(&transform.matrix());
-    }
+    check_room(&geometry, &copies, places.len().max(1), &files.budget).map_err(|fault| table.fault(fault))?;
+    geometry.put(&places);
+    copies.put(&places);
     if let Some(fault) = geometry.fault().or_else(|| copies.fault()) {
         return Err(table.fault(fault));
     }
@@ -113,6 +118,19 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
         copies.meshes.iter().for_each(|mesh| files.budget.take_mesh(mesh));
     }
     Ok(Placed { name, geometry, copies, repeated, materials, material, objects, visibility, lit_by })
+}
+
+/// Refuses what takes too much memory at so many places.
+fn check_room(geometry: &Geometry, copies: &Copies, places: usize, budget: &Budget) -> Unplaced<()> {
+    let round = match geometry {
+        Geometry::Mesh(_) => 0,
+        Geometry::Spheres(spheres) => spheres.len(),
+        Geometry::Disks(disks) => disks.len(),
+    };
+    budget.check_round(round.saturating_mul(places))?;
+    let copies = copies.places.len().saturating_mul(places) as u64;
+    let bytes = copies.saturating_mul((size_of::<(usize, DMat4)>() + size_of::<Instance>()) as u64);
+    budget.check_bytes(bytes).map_err(|why| format!("{copies} copies {why}; use fewer"))
 }
 
 /// A file or a shape as it is.

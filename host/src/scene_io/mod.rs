@@ -30,6 +30,7 @@ mod mtl;
 mod named;
 mod neighbours;
 mod obj;
+mod object_table;
 mod physical;
 mod ply;
 mod polygon;

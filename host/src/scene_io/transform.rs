@@ -16,7 +16,8 @@ use crate::scene::normal::unit;
 pub struct Transform {
     linear: DMat3,
     translate: DVec3,
-    scale: DVec3,
+    /// By which it makes everything longer, if that is the same in all directions.
+    factor: Option<f64>,
 }
 
 /// A transform in the arithmetic that kernels share.
@@ -53,18 +54,30 @@ impl Transform {
         let about_x = DMat3::from_cols(DVec3::X, DVec3::new(0.0, x.1, x.0), DVec3::new(0.0, -x.0, x.1));
         let about_y = DMat3::from_cols(DVec3::new(y.1, 0.0, -y.0), DVec3::Y, DVec3::new(y.0, 0.0, y.1));
         let about_z = DMat3::from_cols(DVec3::new(z.1, z.0, 0.0), DVec3::new(-z.0, z.1, 0.0), DVec3::Z);
-        let scale = scale.as_dvec3();
+        let (scale, sizes) = (scale.as_dvec3(), scale.as_dvec3().abs());
         Transform {
             linear: about_z * about_y * about_x * DMat3::from_diagonal(scale),
             translate: translate.as_dvec3(),
-            scale,
+            factor: (sizes.x == sizes.y && sizes.y == sizes.z).then_some(sizes.x),
+        }
+    }
+
+    /// What leaves everything where it is.
+    pub const NONE: Transform = Transform { linear: DMat3::IDENTITY, translate: DVec3::ZERO, factor: Some(1.0) };
+
+    /// Another one, and then this one.
+    #[must_use]
+    pub fn after(&self, first: &Transform) -> Transform {
+        Transform {
+            linear: self.linear * first.linear,
+            translate: self.linear * first.translate + self.translate,
+            factor: self.factor.zip(first.factor).map(|(a, b)| a * b),
         }
     }
 
     /// Does a sphere stay one? It does in a mirror.
     pub fn keeps_spheres(&self) -> bool {
-        let scale = self.scale.abs();
-        scale.x == scale.y && scale.y == scale.z
+        self.factor.is_some()
     }
 
     /// A place.
@@ -79,7 +92,7 @@ impl Transform {
 
     /// A length in a transform that keeps spheres.
     pub fn length(&self, length: f32) -> f32 {
-        (f64::from(length) * self.scale.x.abs()) as f32
+        (f64::from(length) * self.factor.unwrap_or(1.0)) as f32
     }
 
     /// A unit normal in a transform that keeps spheres; in a mirror the front stays the front.

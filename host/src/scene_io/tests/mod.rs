@@ -6,6 +6,7 @@ mod hostile;
 mod mesh;
 mod mtl;
 mod obj;
+mod object;
 mod ply;
 mod round;
 mod shipped;

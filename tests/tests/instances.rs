@@ -5,7 +5,6 @@ use eyerays::device_scene::fitted;
 use eyerays::gpu::{self, AdapterRequest};
 use eyerays::job::Job;
 use eyerays::method::{Method, Traversal};
-use eyerays::quality::Bvh;
 use eyerays::scene::{
     Camera, Instance, Integrator, Material, Mesh, Object, Physical, Primitives, Projection, Sampler, Scene, Settings,
     SharedMesh, Sphere, Transport, Visibility,
@@ -290,16 +289,17 @@ fn any_transform_will_do() {
 }
 
 #[test]
-fn copies_that_emit_light_are_flattened_and_the_others_stay() {
-    let mut scene = heap(8, 12, Vec3::ZERO);
-    scene.instances.iter_mut().enumerate().for_each(|(copy, instance)| instance.mesh = if copy < 6 { 0 } else { 1 });
-    scene.materials[2].emission = Vec3::splat(3.0);
-    let error = Job::new(&scene, whitted(), Bvh::Fast.quality()).err().expect("refused").message();
-    assert!(error.contains("emits light") && error.contains("fitted"), "{error}");
-    let fit = fitted(scene);
-    assert_eq!((fit.instances.len(), fit.shared.len()), (6, 1));
-    assert_eq!((fit.objects[2].primitives.noun(), fit.objects[3].primitives.noun()), ("triangle", "instance"));
-    let settings = sampled(Integrator::Path);
-    let [want, got] = [&fit.flattened(), &fit].map(|scene| on_cpu(&pack(scene, &scene.cameras[0], settings)).0);
-    assert_same_bits(&want, &got, "a lamp among copies");
+fn copies_that_emit_light_do_so_where_they_stand() {
+    for (seed, shining) in [(8, 2), (9, 0)] {
+        let mut scene = heap(seed, 12, Vec3::ZERO);
+        scene.materials[shining].emission = Vec3::splat(3.0);
+        assert_eq!(fitted(scene.clone()).instances.len(), 12);
+        for integrator in [Integrator::Path, Integrator::Distributed] {
+            let posed = both(&scene, sampled(integrator));
+            let lamps = posed.each_ref().map(|posed| posed.lighting().emitters.len());
+            assert!(lamps[0] == lamps[1] && lamps[0] > 10, "{lamps:?}");
+            let [copied, flat] = posed.map(|posed| on_cpu(&posed).0);
+            assert_same_bits(&flat, &copied, &format!("{seed}, {integrator}"));
+        }
+    }
 }

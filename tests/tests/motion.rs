@@ -5,8 +5,8 @@ use eyerays::gpu::{self, AdapterRequest};
 use eyerays::method::{Method, Traversal};
 use eyerays::picture::Picture;
 use eyerays::scene::{
-    Camera, Instance, Integrator, Material, Mesh, Motion, Object, PixelFilter, Primitives, Projection, Sampler, Scene,
-    Settings, Transport, Visibility,
+    Camera, Instance, Integrator, Light, Material, Mesh, Motion, Object, PixelFilter, Primitives, Projection, Sampler,
+    Scene, Settings, Transport, Visibility,
 };
 use eyerays_tests::model::{add_box, add_wall, empty, glass, glowing, lamp, matt, mirror, sun};
 use eyerays_tests::{assert_same_bits, gpu, on_cpu, pack, quick_gpu, traversals};
@@ -34,8 +34,8 @@ fn frame(scene: &mut Scene) {
     }
 }
 
-/// A heap of tetrahedra, each an object, of which some turn on their way, some change their shape, and some stand still, at a time of the
-/// shutter.
+/// A heap of tetrahedra, each an object, of which some turn on their way, some change their shape, and some stand still, below a lamp
+/// that moves, at a time of the shutter.
 fn heap(seed: u64, time: f32) -> Scene {
     let mut rng = Rng::with_seed(seed);
     let mut scene = empty();
@@ -61,7 +61,7 @@ fn heap(seed: u64, time: f32) -> Scene {
         eyerays_tests::model::add(&mut scene, material, &places, &[[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]);
         scene.objects.push(object("tetrahedron", Primitives::Triangles(first..scene.mesh.triangles.len())));
     }
-    scene.lights = vec![sun(Vec3::new(0.3, -1.0, -0.4)), lamp(Vec3::new(-2.0, 4.0, 3.0))];
+    scene.lights = vec![sun(Vec3::new(0.3, -1.0, -0.4)), lamp(Vec3::new(-2.0 + 3.0 * time, 4.0, 3.0))];
     let eye = Vec3::new(1.0, 2.5, 7.0);
     scene.cameras = vec![Camera::new("front", eye, Vec3::ZERO, Projection::Perspective { fov: 45.0 })];
     scene
@@ -116,6 +116,15 @@ fn at(scene: &Scene, time: f32) -> Scene {
     let share = time * steps as f32 - step as f32;
     let line = |a: Vec3, b: Vec3| a + (b - a) * share;
     let mut still = Scene { motion: None, ..scene.clone() };
+    for (place, &number) in scene.motion.iter().flat_map(|motion| motion.lights.iter().enumerate()) {
+        let before = if step == 0 { &scene.lights[number as usize] } else { &poses[step - 1].lights[place] };
+        let (Light::Point { position: from, .. }, Light::Point { position: to, .. }) =
+            (before, &poses[step].lights[place])
+        else {
+            panic!("other lights turn, which rounds")
+        };
+        still.lights[number as usize] = lamp(line(*from, *to));
+    }
     let from = |copy: usize| if step == 0 { scene.instances[copy] } else { poses[step - 1].instances[copy] };
     for (number, copy) in still.instances.iter_mut().enumerate() {
         let (a, b) = (from(number), poses[step].instances[number]);
@@ -155,7 +164,7 @@ fn each_row_has_the_bits_of_the_scene_at_its_moment() {
     for (seed, steps) in [(1, 1), (2, 3), (3, 4)] {
         let scene = with_copies(seed, steps, 0.0);
         let moved = scene.motion.as_ref().unwrap();
-        assert!(moved.bent().count() >= 8 && scene.instances.len() >= 16, "{:?}", scene.instances.len());
+        assert!(moved.bent().count() >= 8 && scene.instances.len() >= 16 && moved.lights == [1]);
         for settings in [whitted(2), path(2)] {
             let got = picture(&scene, settings);
             let delay = 1.0 / SIZE.1 as f32;

@@ -191,18 +191,16 @@ pub(crate) fn unfit_triangles(scene: &Scene) -> u64 {
     objects.map(|(object, _)| scene.triangles_of(object.primitives.instances(&scene.instances))).sum()
 }
 
-/// Whether objects are copies of meshes that emit light, or whose numbers change by more than their exponents when they are normalised.
+/// Whether objects are copies of meshes whose numbers change by more than their exponents when they are normalised.
 pub(crate) fn unfit_objects(scene: &Scene) -> Vec<bool> {
     /// Numbers between one over this and this are normal in any units.
     const MOST: f32 = (1u64 << 60) as f32;
     let is_held = |x: f32| x == 0.0 || (1.0 / MOST..=MOST).contains(&x.abs());
     let are_held = |v: &Vec3| v.to_array().into_iter().all(is_held);
     let is_odd = |copy: &Instance| !copy.rows.iter().chain([&copy.translation]).all(are_held);
-    let emits = |&material: &u32| scene.materials[material as usize].emission != Vec3::ZERO;
     let is_unfit = |shared: &SharedMesh| {
         let mut places = scene.mesh.positions[shared.vertices.clone()].iter();
-        let is_far = places.any(|place| place.abs().max_element() > MOST);
-        is_far || scene.mesh.materials[shared.triangles.clone()].iter().any(emits)
+        places.any(|place| place.abs().max_element() > MOST)
     };
     let unfit: Vec<bool> = scene.shared.par_iter().map(is_unfit).collect();
     let is = |primitives: &Primitives| {

@@ -3,14 +3,14 @@
 
 use std::ops::Range;
 
-use eyerays_shader::data::{BOX_PADDING, Instance as Record, Launch, Normals, Primitive, pack};
-use glam::{DVec3, UVec4, Vec3};
+use eyerays_shader::data::{BOX_PADDING, Instance as Record, Launch, Light as LightRecord, Normals, Primitive, pack};
+use glam::{DMat3, DQuat, DVec3, UVec4, Vec3};
 use rayon::prelude::*;
 
 use super::normalisation::{Normalisation, flushed};
 use super::{records, tangents};
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, Light, Scene};
 
 /// The slots of a mesh in one of its later shapes.
 struct Bend {
@@ -93,21 +93,34 @@ pub(super) fn boxes(scene: &Scene, mesh: usize, cube: &Normalisation) -> Vec<Pri
     scene.mesh.triangles[shared.triangles.clone()].par_iter().enumerate().map(around).collect()
 }
 
+/// How a light without extent moves.
+pub(crate) struct Way {
+    /// Its place in the scene's lights.
+    pub light: usize,
+    /// That of its first key among the records of copies.
+    pub first: u32,
+    /// The least and the greatest corner around all its places.
+    pub bounds: [Vec3; 2],
+}
+
 /// What moves of a scene.
 pub(crate) struct Movement {
     /// Steps of the shutter's time, 0 if nothing moves.
     pub steps: u32,
     /// For which share of it each row is exposed.
     pub exposure: f32,
-    /// Do copies of meshes move?
-    copies_move: bool,
+    /// Do copies of meshes move, or lights?
+    things_move: bool,
+    /// Lights that move.
+    pub ways: Vec<Way>,
     /// Cameras that move, each with the place of its first key among the records of copies.
     cameras: Vec<(Camera, u32)>,
 }
 
 impl Movement {
     /// Nothing does.
-    const STILL: Movement = Movement { steps: 0, exposure: 1.0, copies_move: false, cameras: Vec::new() };
+    const STILL: Movement =
+        Movement { steps: 0, exposure: 1.0, things_move: false, ways: Vec::new(), cameras: Vec::new() };
 
     /// Adds the keys of cameras to the records.
     ///
@@ -118,7 +131,8 @@ impl Movement {
         let mut movement = Movement {
             steps: motion.poses.len() as u32,
             exposure: motion.exposure,
-            copies_move: records.iter().any(Record::moves),
+            things_move: !motion.lights.is_empty() || records.iter().any(Record::moves),
+            ways: Vec::new(),
             cameras: Vec::new(),
         };
         for (number, camera) in motion.cameras.iter().enumerate() {
@@ -128,12 +142,30 @@ impl Movement {
                 records.push(key(camera, other, normalisation)?);
             }
         }
+        for (number, &light) in motion.lights.iter().enumerate() {
+            let first = &scene.lights[light as usize];
+            let later = motion.poses.iter().map(|pose| &pose.lights[number]);
+            let keys = [first].into_iter().chain(later).map(|other| light_key(first, other, normalisation));
+            let keys = keys.collect::<Option<Vec<Record>>>();
+            let keys = keys.filter(|keys| records.len() + keys.len() < (u32::MAX >> LightRecord::KEYS) as usize);
+            let keys = keys.ok_or_else(|| {
+                Error::new(format!(
+                    "light {} goes too far away while the shutter is open: move it nearer to the scene",
+                    light + 1
+                ))
+            })?;
+            let places = keys.iter().map(|key| key.transform().translation);
+            let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+            let way = places.fold(nothing, |[least, greatest], place| [least.min(place), greatest.max(place)]);
+            movement.ways.push(Way { light: light as usize, first: records.len() as u32, bounds: way });
+            records.extend(keys);
+        }
         Ok(movement)
     }
 
     /// Bits of the constant of kernels.
     pub fn bits(&self) -> u32 {
-        let moving = if self.copies_move { Launch::MOVING } else { 0 };
+        let moving = if self.things_move { Launch::MOVING } else { 0 };
         moving | if self.cameras.is_empty() { 0 } else { Launch::PANNED }
     }
 
@@ -142,6 +174,17 @@ impl Movement {
         let is = |(own, _): &&(Camera, u32)| own.name == camera.name && own.stands_as(camera);
         self.cameras.iter().find(is).map(|&(_, first)| first)
     }
+}
+
+/// How a light is turned against its first key, by the least turn, and where it is.
+fn light_key(first: &Light, light: &Light, normalisation: &Normalisation) -> Option<Record> {
+    let ((_, from), (place, to)) = (first.stance(), light.stance());
+    let turn = from.zip(to).map_or(DQuat::IDENTITY, |(from, to)| DQuat::from_rotation_arc(from, to));
+    let rows = DMat3::from_quat(turn).transpose();
+    let place = normalisation.place_anywhere(place)?;
+    let record = |row: DVec3, added: f32| pack(flushed(row.as_vec3()), added.to_bits());
+    let (x, y, z) = (record(rows.x_axis, place.x), record(rows.y_axis, place.y), record(rows.z_axis, place.z));
+    Some(Record { x, y, z, mesh: UVec4::ZERO })
 }
 
 /// How a camera is turned against its first key, and where it is.

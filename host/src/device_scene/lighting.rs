@@ -5,9 +5,11 @@ use glam::{DVec3, UVec4, Vec3};
 use std::f64::consts::PI;
 
 use super::alias::table;
+use super::keys::Way;
 use super::light_tree::{Bounded, Cone, LightTree};
 use super::normalisation::Normalisation;
 use super::records::colour;
+use super::shining::Shining;
 use super::textures::Textures;
 use crate::scene::{Light, LightGroups, Material};
 
@@ -42,23 +44,21 @@ pub(super) struct Lamps {
 impl Lamps {
     pub fn new(
         (materials, groups): (&[Material], &LightGroups),
-        primitives: &[Primitive],
+        shining: &[Shining],
         (textures, far_light): (&Textures, Option<f64>),
     ) -> Self {
-        if materials.iter().all(|material| material.emission == Vec3::ZERO) {
+        if shining.is_empty() {
             return Lamps { lamps: Vec::new(), emissions: Vec::new(), bounds: None, far_light };
         }
         let flux = |(material, number)| flux(material, textures.emission(number).1);
         let fluxes: Vec<f64> = materials.iter().zip(0..).map(flux).collect();
-        let lamp = |(primitive, index): (&Primitive, u32)| {
-            let material = primitive.material() as usize;
-            Lamp::new(primitive, index, (fluxes[material], materials[material].two_sided))
+        let flux = |shining: &Shining| fluxes[shining.primitive.material() as usize];
+        let shining = shining.iter().filter(|shining| area(&shining.primitive) * flux(shining) > 0.0);
+        let lamp = |shining: &Shining| {
+            Lamp::new(shining, (flux(shining), materials[shining.primitive.material() as usize].two_sided))
         };
-        let mut lamps: Vec<Lamp> = primitives.iter().zip(0..).map(lamp).filter(|lamp| lamp.power > 0.0).collect();
-        lamps.sort_unstable_by_key(|lamp| (lamp.number, lamp.index));
-        lamps.dedup_by_key(|lamp| lamp.number);
-        let boxes = lamps.iter().map(|lamp| primitives[lamp.index as usize].bounds());
-        let boxes = boxes.map(|(least, greatest)| [least, greatest]);
+        let lamps: Vec<Lamp> = shining.clone().map(lamp).collect();
+        let boxes = shining.map(|shining| shining.bounds);
         let bounds = boxes.reduce(|[a, b], [least, greatest]| [a.min(least), b.max(greatest)]);
         let emission = |(material, number): (&Material, usize)| {
             let (map, opacity) = (textures.emission(number).0, textures.opacity(number));
@@ -93,6 +93,8 @@ struct Lamp {
     number: u32,
     /// Its place in leaf order; of a split one the first.
     index: u32,
+    /// The first key of the copy that it is in, or [`Hit::NOTHING`](eyerays_shader::ray::Hit::NOTHING).
+    instance: u32,
     area: f64,
     power: f64,
     is_triangle: bool,
@@ -101,25 +103,22 @@ struct Lamp {
 
 impl Lamp {
     /// Of a material that sends a flux from a unit of area.
-    fn new(primitive: &Primitive, index: u32, (flux, is_two_sided): (f64, bool)) -> Self {
+    fn new(shining: &Shining, (flux, is_two_sided): (f64, bool)) -> Self {
+        let Shining { primitive, index, instance, bounds: [least, greatest], cone } = shining;
         let area = area(primitive);
         let (number, power) = (primitive.number(), area * flux);
         let sides = if is_two_sided { 2.0 } else { 1.0 };
-        let (cone, intensity) = if primitive.is_sphere() {
-            (Cone::all(), power / (4.0 * PI * sides))
-        } else {
-            (Cone::flat(normal(primitive), is_two_sided), power / (PI * sides))
-        };
-        let (least, greatest) = primitive.bounds();
-        let bounded = Bounded { least: least.as_dvec3(), greatest: greatest.as_dvec3(), intensity, cone };
-        Lamp { number, index, area, power, is_triangle: primitive.is_triangle(), bounded }
+        let intensity = power / (PI * sides) / if primitive.is_sphere() { 4.0 } else { 1.0 };
+        let bounded = Bounded { least: least.as_dvec3(), greatest: greatest.as_dvec3(), intensity, cone: *cone };
+        let (index, instance) = (*index, *instance);
+        Lamp { number, index, instance, area, power, is_triangle: primitive.is_triangle(), bounded }
     }
 
     /// As an emitter's, but for its trail.
     fn record(&self) -> LightRecord {
         let per_area = (1.0 / self.area).min(f64::from(f32::MAX)) as f32;
         LightRecord {
-            position: UVec4::new(self.number, 0, 0, Emitter::PRIMITIVE),
+            position: UVec4::new(self.number, 0, self.instance, Emitter::PRIMITIVE),
             colour: UVec4::new(per_area.to_bits(), 0, 0, 0),
             axis: pack(Vec3::ZERO, self.index),
         }
@@ -136,7 +135,7 @@ impl Lamp {
 }
 
 /// The normal of a flat primitive's front.
-fn normal(primitive: &Primitive) -> DVec3 {
+pub(super) fn normal(primitive: &Primitive) -> DVec3 {
     if primitive.is_disk() {
         return primitive.normal().as_dvec3();
     }
@@ -148,7 +147,7 @@ impl Lighting {
     /// Of lights with their records, and lamps. Each is as likely as its power is, in the normalised scene; or, of many that have a
     /// place, as its light may arrive.
     pub(super) fn new(
-        lights: (&[Light], &[LightRecord]),
+        lights: (&[Light], &[LightRecord], &[Way]),
         lamps: &Lamps,
         groups: (&LightGroups, u32),
         normalisation: &Normalisation,
@@ -211,24 +210,25 @@ struct Choice {
 
 /// All of a scene: its lights, its lamps, and its environment, which is in the group `background`.
 fn choices(
-    lights: (&[Light], &[LightRecord]),
+    (lights, records, ways): (&[Light], &[LightRecord], &[Way]),
     lamps: &Lamps,
     (groups, background): (&LightGroups, u32),
     normalisation: &Normalisation,
 ) -> Vec<Choice> {
-    let of_light = |(light, record): (&Light, &LightRecord)| {
+    let of_light = |(number, (light, record)): (usize, (&Light, &LightRecord))| {
+        let way = ways.iter().find(|way| way.light == number);
         let (record, group) = (scaled(light, record, normalisation), groups.number(light.group()));
-        Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record), record, group }
+        Choice { power: power(light, normalisation.scale), bounded: bounded(light, &record, way), record, group }
     };
     let of_lamp =
         |lamp: &Lamp| Choice { power: lamp.power, record: lamp.record(), bounded: Some(lamp.bounded), group: 0 };
     // A black environment is chosen where there is nothing else: kernels that know one choose something.
-    let is_only = lights.0.is_empty() && lamps.is_empty();
+    let is_only = lights.is_empty() && lamps.is_empty();
     let far_light = lamps.far_light.filter(|&light| light > 0.0 || is_only);
     // That on a scene within a sphere of radius 1.
     let far =
         far_light.map(|light| Choice { power: PI * light, record: of_environment(), bounded: None, group: background });
-    lights.0.iter().zip(lights.1).map(of_light).chain(lamps.lamps.iter().map(of_lamp)).chain(far).collect()
+    lights.iter().zip(records).enumerate().map(of_light).chain(lamps.lamps.iter().map(of_lamp)).chain(far).collect()
 }
 
 /// The probability of the environment, if it is among some choices.
@@ -253,17 +253,19 @@ fn far_steps(choices: &[Choice]) -> u32 {
 }
 
 /// A light without extent as the hierarchy takes it, if it has a place.
-fn bounded(light: &Light, record: &LightRecord) -> Option<Bounded> {
+fn bounded(light: &Light, record: &LightRecord, way: Option<&Way>) -> Option<Bounded> {
     let cone = match *light {
         Light::Directional { .. } => return None,
         Light::Point { .. } => Cone::all(),
         Light::Spot { outer, .. } => {
             let opening = f64::from(outer).to_radians();
+            let opening = if way.is_some() { PI } else { opening };
             Cone { axis: numbers(record.axis).as_dvec3(), opening, is_spread: false, is_two_sided: false }
         }
     };
-    let (place, intensity) = (numbers(record.position).as_dvec3(), brightness(numbers(record.colour)));
-    Some(Bounded { least: place, greatest: place, intensity, cone })
+    let (place, intensity) = (numbers(record.position), brightness(numbers(record.colour)));
+    let [least, greatest] = way.map_or([place; 2], |way| way.bounds).map(Vec3::as_dvec3);
+    Some(Bounded { least, greatest, intensity, cone })
 }
 
 /// The mean of the channels.
@@ -296,7 +298,7 @@ fn opacity_of(opacity: &Opacity) -> f32 {
 }
 
 /// The area of a primitive as rays meet it.
-fn area(primitive: &Primitive) -> f64 {
+pub(super) fn area(primitive: &Primitive) -> f64 {
     let radius = f64::from(primitive.radius());
     if primitive.is_sphere() {
         4.0 * PI * radius * radius

@@ -23,6 +23,7 @@ mod lighting;
 mod moved;
 mod normalisation;
 mod records;
+mod shining;
 mod tangents;
 mod textures;
 mod two_levels;
@@ -43,6 +44,7 @@ pub use words::{NodeWords, PrimitiveWords};
 
 use hierarchy::{centred, gathered};
 pub(crate) use keys::Movement;
+use keys::Way;
 use lighting::Lamps;
 use two_levels::Levels;
 
@@ -132,7 +134,7 @@ impl DeviceScene {
         let effects = records::effects(scene);
         let normalisation = normalisation(scene);
         let start = Instant::now();
-        let Levels { bvh, top, primitives, mut instances, bends, statistics, is_split, is_fitted } =
+        let Levels { bvh, top, primitives, mut instances, places, bends, statistics, is_split, is_fitted } =
             Levels::new(scene, &normalisation, (quality, is_wide), before)?;
         let own_cost = statistics.map_or(0.0, |statistics| statistics.sah_cost);
         let built_cost = before.filter(|_| is_fitted).map_or(own_cost, |before| before.built_cost);
@@ -147,15 +149,21 @@ impl DeviceScene {
         let physical = |m| records::physical(m, normalisation.scale);
         let physicals =
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
-        let lights = lights(&scene.lights, &normalisation)?;
+        let lights = lights(&scene.lights, &normalisation, &movement.ways)?;
         let mut textures = Textures::new(scene, effects, &bvh.order)?;
         bends.shape((scene, &normalisation), &bvh.order, (&mut primitives, &mut normals, &mut textures.tangents));
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let background_group = groups.number(&scene.background_group);
-        let lamps = Lamps::new((&scene.materials, &groups), &primitives, (&textures, far_light));
+        let shining = shining::of(scene, &normalisation, (&primitives, top.1), (&instances, &places))?;
+        let lamps = Lamps::new((&scene.materials, &groups), &shining, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
-        let lighting = Lighting::new((&scene.lights, &lights), &lamps, (&groups, background_group), &normalisation);
+        let lighting = Lighting::new(
+            (&scene.lights, &lights, &movement.ways),
+            &lamps,
+            (&groups, background_group),
+            &normalisation,
+        );
         let many = if lighting.nodes.is_empty() { 0 } else { Effects::MANY_LIGHTS };
         Ok(DeviceScene {
             quality: (quality, is_wide),
@@ -371,12 +379,13 @@ impl DeviceScene {
         &self.optics
     }
 
-    /// The records of other lights for the same kernels: as many, of the same kinds.
+    /// The records of other lights for the same kernels: as many, of the same kinds. Those that move while the shutter is open stay on
+    /// their way.
     ///
     /// # Errors
     /// They are others, or too far away.
     pub fn relit(&self, others: &[Light]) -> Result<(Vec<LightRecord>, Lighting)> {
-        let records = lights(others, &self.normalisation)?;
+        let records = lights(others, &self.normalisation, &self.movement.ways)?;
         let kinds = |lights: &[LightRecord]| lights.iter().map(|light| light.position.w).collect::<Vec<_>>();
         if kinds(&records) != kinds(&self.lights) {
             let number = self.lights.len();
@@ -385,7 +394,7 @@ impl DeviceScene {
             )));
         }
         let groups = (&self.groups, self.background_group);
-        let lighting = Lighting::new((others, &records), &self.lamps, groups, &self.normalisation);
+        let lighting = Lighting::new((others, &records, &self.movement.ways), &self.lamps, groups, &self.normalisation);
         Ok((records, lighting))
     }
 }
@@ -396,6 +405,14 @@ fn normalisation(scene: &Scene) -> Normalisation {
     Normalisation::of(scene.extremes(), moves)
 }
 
-fn lights(lights: &[Light], normalisation: &Normalisation) -> Result<Vec<LightRecord>> {
-    lights.iter().enumerate().map(|(i, light)| records::light(light, i, normalisation)).collect()
+/// Records of lights, of which some move.
+fn lights(lights: &[Light], normalisation: &Normalisation, ways: &[Way]) -> Result<Vec<LightRecord>> {
+    let record = |(i, light)| records::light(light, i, normalisation);
+    let mut records: Vec<LightRecord> = lights.iter().enumerate().map(record).collect::<Result<_>>()?;
+    for way in ways {
+        if let Some(record) = records.get_mut(way.light) {
+            record.position.w |= (way.first + 1) << LightRecord::KEYS;
+        }
+    }
+    Ok(records)
 }

@@ -91,7 +91,9 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
     ask(Effects::COLOURED, !scene.mesh.colours.is_empty());
     ask(Effects::TANGENTS, used(&Material::has_axes));
-    ask(Effects::INSTANCED, !scene.instances.is_empty());
+    // Times of rays lie where copies of meshes are told.
+    let lights_move = scene.motion.as_ref().is_some_and(|motion| !motion.lights.is_empty());
+    ask(Effects::INSTANCED, !scene.instances.is_empty() || lights_move);
     ask(Effects::CUTOUT, used(&is_cutout));
     ask(Effects::ENVIRONMENT, scene.environment.is_some());
     let hides = |of: Visibility| Visibility { matte: Matte::Shown, ..of } != Visibility::default();

@@ -11,6 +11,7 @@ use super::copies::{self, Bottom};
 use super::hierarchy::{built, kept_or_built, refused};
 use super::keys::{self, Bends};
 use super::normalisation::Normalisation;
+use super::shining::Places;
 use super::{DeviceScene, flags, records};
 use crate::error::{Error, Result};
 use crate::scene::{Scene, SharedMesh};
@@ -26,6 +27,8 @@ pub(super) struct Levels {
     pub primitives: Vec<Primitive>,
     /// Copies of meshes.
     pub instances: Vec<Record>,
+    /// Where the copies and their meshes are.
+    pub places: Places,
     /// Triangles of meshes in their later shapes, the last in the order.
     pub bends: Bends,
     /// Of that of the world, unless it is left open.
@@ -65,8 +68,8 @@ impl Levels {
             let statistics = Some(Statistics::of(&bvh, &primitives));
             let top = (bvh.nodes.len(), bvh.order.len());
             let is_split = bvh.order.len() > primitives.len();
-            let (instances, bends) = (Vec::new(), Bends::default());
-            return Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split, is_fitted });
+            let (instances, places, bends) = (Vec::new(), Places::default(), Bends::default());
+            return Ok(Levels { bvh, top, primitives, instances, places, bends, statistics, is_split, is_fitted });
         }
         let bottom = |(mesh, shared): (usize, &SharedMesh)| {
             if scene.motion.as_ref().is_some_and(|motion| motion.is_bent(mesh as u32)) {
@@ -97,7 +100,8 @@ impl Levels {
         lead(&mut bvh, top.0, &primitives, instances.len())?;
         let is_split = bvh.order.len() > primitives.len();
         let bends = bends(scene, (&slots, &firsts), &mut bvh.order, &mut instances);
-        Ok(Levels { bvh, top, primitives, instances, bends, statistics, is_split, is_fitted: false })
+        let places = Places { slots, firsts };
+        Ok(Levels { bvh, top, primitives, instances, places, bends, statistics, is_split, is_fitted: false })
     }
 }
 
@@ -126,8 +130,19 @@ impl Levels {
         linear::check(&primitives).map_err(refused)?;
         let order = (0..primitives.len() as u32).collect();
         let bvh = Bvh { nodes: Vec::new(), wide: Vec::new(), order, bounds: Vec::new() };
-        let (top, instances, bends) = ((0, primitives.len()), Vec::new(), Bends::default());
-        Ok(Levels { bvh, top, primitives, instances, bends, statistics: None, is_split: false, is_fitted: false })
+        let (top, instances, places) = ((0, primitives.len()), Vec::new(), Places::default());
+        let bends = Bends::default();
+        Ok(Levels {
+            bvh,
+            top,
+            primitives,
+            instances,
+            places,
+            bends,
+            statistics: None,
+            is_split: false,
+            is_fitted: false,
+        })
     }
 }
 

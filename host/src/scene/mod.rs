@@ -55,7 +55,7 @@ pub use transport::{Direct, Integrator, Transport};
 pub use visibility::{Matte, Visibility};
 
 use eyerays_shader::data::NodeRef;
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 use serde::{Deserialize, Serialize};
 
 use crate::choice::Named;
@@ -288,6 +288,26 @@ impl Light {
     pub fn group(&self) -> &str {
         let (Light::Point { group, .. } | Light::Directional { group, .. } | Light::Spot { group, .. }) = self;
         group
+    }
+
+    /// Where it is and which way it shines, where it does not shine every way.
+    pub(crate) fn stance(&self) -> (Vec3, Option<DVec3>) {
+        let way = |from: Vec3, to: Vec3| Some((to.as_dvec3() - from.as_dvec3()).normalize_or_zero());
+        match *self {
+            Light::Point { position, .. } => (position, None),
+            Light::Directional { direction, .. } => (Vec3::ZERO, way(Vec3::ZERO, direction)),
+            Light::Spot { position, target, .. } => (position, way(position, target)),
+        }
+    }
+
+    /// Is it of the kind of another, where that is, turned alike?
+    pub(crate) fn stands_as(&self, other: &Light) -> bool {
+        self.is_as(other) && self.stance() == other.stance()
+    }
+
+    /// Is it of the kind of another?
+    pub(crate) fn is_as(&self, other: &Light) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
     }
 
     /// The same light in a group.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use glam::{Vec3, Vec4};
 
-use super::{Camera, Instance, Mesh, Primitives, Scene, SharedMesh};
+use super::{Camera, Instance, Light, Mesh, Primitives, Scene, SharedMesh};
 use crate::device_scene::unfit_objects;
 use crate::error::{Error, Result};
 
@@ -15,6 +15,8 @@ pub struct Motion {
     pub poses: Vec<Pose>,
     /// Those of the scene's cameras that move, as the shutter opens.
     pub cameras: Vec<Camera>,
+    /// Those of the scene's lights that move, by their places in [`Scene::lights`], which rise.
+    pub lights: Vec<u32>,
     /// The share of that time for which each row of a picture is exposed, from the top to the bottom: 1 for all rows at once.
     pub exposure: f32,
 }
@@ -28,6 +30,8 @@ pub struct Pose {
     pub shapes: Vec<(u32, Shape)>,
     /// [`Motion::cameras`], where they are then and where they look.
     pub cameras: Vec<Camera>,
+    /// Those of [`Motion::lights`], where they are then and where they shine.
+    pub lights: Vec<Light>,
 }
 
 /// What changes of a mesh, by vertex.
@@ -66,7 +70,7 @@ impl Motion {
 pub struct Moved {
     /// The scene as the shutter opens, with its motion if anything moves.
     pub scene: Scene,
-    /// Names of objects that emit light or are no triangles: they stand where they are as it opens.
+    /// Names of objects that are no triangles, or that no copy could be of: they stand where they are as it opens.
     pub left: Vec<String>,
 }
 
@@ -88,15 +92,18 @@ impl Scene {
         let moves = self.moving(later);
         let is_left = |object: usize| {
             let of = &self.objects[object];
-            moves[object] && (unfit[object] || !of.primitives.can_move() || self.emits(&of.primitives))
+            moves[object] && (unfit[object] || !of.primitives.can_move())
         };
         let left: Vec<String> =
             (0..self.objects.len()).filter(|&n| is_left(n)).map(|n| self.objects[n].name.clone()).collect();
         let moving: Vec<bool> = (0..self.objects.len()).map(|n| moves[n] && !is_left(n)).collect();
         let pans = |&camera: &usize| later.iter().any(|other| !other.cameras[camera].stands_as(&self.cameras[camera]));
         let panned: Vec<usize> = (0..self.cameras.len()).filter(pans).collect();
+        let lit = |&light: &usize| later.iter().any(|other| !other.lights[light].stands_as(&self.lights[light]));
+        let lit: Vec<usize> = (0..self.lights.len()).filter(lit).collect();
+        let lights = |of: &Scene| lit.iter().map(|&light| of.lights[light].clone()).collect::<Vec<_>>();
         let cameras = |of: &Scene| panned.iter().map(|&camera| of.cameras[camera].clone()).collect::<Vec<_>>();
-        if !moving.contains(&true) && panned.is_empty() {
+        if !moving.contains(&true) && panned.is_empty() && lit.is_empty() {
             return Ok(Moved { scene: self, left });
         }
         let scene = self.taken_apart(&moving);
@@ -107,8 +114,14 @@ impl Scene {
             instances: scene.stood(&other.instances, &moving),
             shapes: bent.iter().map(|&mesh| (mesh as u32, other.shape(mesh))).collect(),
             cameras: cameras(other),
+            lights: lights(other),
         };
-        let motion = Motion { poses: later.iter().map(pose).collect(), cameras: cameras(&scene), exposure };
+        let motion = Motion {
+            poses: later.iter().map(pose).collect(),
+            cameras: cameras(&scene),
+            lights: lit.iter().map(|&light| light as u32).collect(),
+            exposure,
+        };
         Ok(Moved { scene: Scene { motion: Some(motion), ..scene }, left })
     }
 
@@ -147,6 +160,7 @@ impl Scene {
             ("copies of meshes", meshes(self) == meshes(other)),
             ("objects", objects(self) == objects(other)),
             ("cameras", self.cameras.len() == other.cameras.len()),
+            ("lights", self.lights.len() == other.lights.len()),
         ];
         all.into_iter().find(|(_, is_same)| !is_same).map(|(what, _)| what)
     }
@@ -166,13 +180,6 @@ impl Scene {
             Primitives::Spheres(range) => self.spheres[range.clone()] != other.spheres[range.clone()],
             Primitives::Disks(range) => self.disks[range.clone()] != other.disks[range.clone()],
         }
-    }
-
-    /// Do some of its triangles emit light?
-    fn emits(&self, primitives: &Primitives) -> bool {
-        let Primitives::Triangles(range) = primitives else { return false };
-        let emits = |&material: &u32| self.materials[material as usize].emission != Vec3::ZERO;
-        self.mesh.materials[range.clone()].iter().any(emits)
     }
 
     /// A shared mesh at this moment.

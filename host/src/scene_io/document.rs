@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::picture::Picture;
 use crate::scene::Range;
 use crate::scene::studio;
-use crate::scene::{Background, Environment, Light, Settings, Transport};
+use crate::scene::{Background, Environment, Settings, Transport};
 
 /// Reads `[render]`; what it does not say is the default.
 ///
@@ -110,74 +110,4 @@ fn environment(table: &mut Table, images: &mut Images) -> Result<Option<Environm
     let rotation = table.number("rotation", Range::ANY)?.unwrap_or(0.0);
     let scale = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
     Ok(Some(Environment { texture, rotation, scale, visible }))
-}
-
-/// Reads every `[[light]]`.
-///
-/// # Errors
-/// A light without direction, a number out of range, or a key that its kind does not take.
-pub fn lights(tables: Vec<Table>) -> Result<Vec<Light>> {
-    tables.into_iter().map(light).collect()
-}
-
-#[derive(Clone, Copy)]
-enum Kind {
-    Point,
-    Directional,
-    Spot,
-}
-
-fn light(mut table: Table) -> Result<Light> {
-    let words = [("point", Kind::Point), ("directional", Kind::Directional), ("spot", Kind::Spot)];
-    let kind = table.word("kind", &words)?;
-    let kind = table.need("kind", kind)?;
-    let colour = light_colour(&mut table)?;
-    let group = table.name("group")?.unwrap_or_default();
-    let light = match kind {
-        Kind::Point => {
-            table.rename("a point light");
-            let position = table.triple("position", Range::ANY)?;
-            Light::Point { position: table.need("position", position)?, colour, group }
-        }
-        Kind::Directional => {
-            table.rename("a directional light");
-            let direction = table.triple("direction", Range::ANY)?;
-            let direction = table.need("direction", direction)?;
-            if direction == Vec3::ZERO {
-                let fault = "the direction is zero; say which way the light travels";
-                return Err(table.fault_of("direction", fault));
-            }
-            Light::Directional { direction, colour, group }
-        }
-        Kind::Spot => spot(&mut table, colour)?.in_group(&group),
-    };
-    table.done()?;
-    Ok(light)
-}
-
-fn spot(table: &mut Table, colour: Vec3) -> Result<Light> {
-    table.rename("a spot light");
-    let position = table.triple("position", Range::ANY)?;
-    let position = table.need("position", position)?;
-    let target = table.triple("target", Range::ANY)?;
-    let target = table.need("target", target)?;
-    if target == position {
-        let fault = "the spot light shines at its own position; move its target";
-        return Err(table.fault_of("target", fault));
-    }
-    let angle = table.number("angle", Range::CONE)?;
-    let outer = table.need("angle", angle)? / 2.0;
-    let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
-    let falloff = table.choice("falloff")?.unwrap_or_default();
-    Ok(Light::Spot { position, target, colour, outer, inner: outer * (1.0 - softness), falloff, group: String::new() })
-}
-
-fn light_colour(table: &mut Table) -> Result<Vec3> {
-    let colour = table.triple("color", Range::AMOUNT)?.unwrap_or(Vec3::ONE);
-    let intensity = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
-    if !(colour * intensity).is_finite() {
-        let fault = "color times intensity is not finite; lower the intensity";
-        return Err(table.fault_of("intensity", fault));
-    }
-    Ok(colour * intensity)
 }

@@ -6,22 +6,22 @@ use super::table::Table;
 use crate::error::Result;
 use crate::scene::Range;
 
-/// Three triples at some times, in seconds.
+/// So many triples at some times, in seconds.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Keys {
+pub struct Keys<const N: usize> {
     times: Vec<f32>,
-    values: Vec<[Vec3; 3]>,
+    values: Vec<[Vec3; N]>,
 }
 
 /// What a key may say: how it is called, and its range.
 pub type Field = (&'static str, Range);
 
-impl Keys {
+impl<const N: usize> Keys<N> {
     /// Reads every `[[...key]]` of a table, if it has any. What a key does not say is as in the table itself, `own`.
     ///
     /// # Errors
     /// A key without a time, or one that is not after that of the key before; a number out of range, or an unknown word.
-    pub fn read(table: &mut Table, fields: [Field; 3], own: [Vec3; 3]) -> Result<Option<Keys>> {
+    pub fn read(table: &mut Table, fields: [Field; N], own: [Vec3; N]) -> Result<Option<Keys<N>>> {
         let Some(tables) = table.tables("key")? else { return Ok(None) };
         let mut keys = Keys { times: Vec::new(), values: Vec::new() };
         for mut table in tables {
@@ -49,7 +49,7 @@ impl Keys {
     }
 
     /// The triples at a time; before the first key and after the last they stand still.
-    pub fn at(&self, seconds: f64) -> [Vec3; 3] {
+    pub fn at(&self, seconds: f64) -> [Vec3; N] {
         let next = self.times.partition_point(|&time| f64::from(time) <= seconds);
         if next == 0 || next == self.times.len() {
             return self.values[next.saturating_sub(1)];

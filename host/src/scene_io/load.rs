@@ -14,6 +14,7 @@ use super::file;
 use super::files::{Files, Own, is, is_gltf, read_mesh};
 use super::geometry::Geometry;
 use super::gltf::{self, Gltf};
+use super::light_table;
 use super::lit;
 use super::map::Images;
 use super::material::Fields;
@@ -246,7 +247,9 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
     let seconds = holding.moment.seconds.unwrap_or(0.0);
     let (cameras, last) = camera_table::cameras(table.tables("camera")?.unwrap_or_default(), seconds)?;
     files.move_until(last);
-    let lights = table.tables("light")?.map(document::lights).transpose()?;
+    let lights = table.tables("light")?.map(|tables| light_table::lights(tables, seconds)).transpose()?;
+    let (lights, last) = lights.map_or((None, None), |(lights, last)| (Some(lights), last));
+    files.move_until(last);
     let overrides = overrides(table.tables("material")?.unwrap_or_default(), &mut files.images)?;
     files.objects = Objects::read(table.tables("object")?.unwrap_or_default(), seconds, &files.budget)?;
     let meshes = table.tables("mesh")?.unwrap_or_default();

@@ -17,6 +17,7 @@ mod files;
 mod geometry;
 mod gltf;
 mod keys;
+mod light_table;
 mod light_unit;
 mod lines;
 mod lit;

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 
 use super::budget::Budget;
 use super::load::Loading;
 use super::table::Table;
 use super::{Instant, Moment, Shutter, Warning, WarningKind};
 use crate::error::{Error, Result};
-use crate::scene::{Camera, Instance, Moved, Range, Scene};
+use crate::scene::{Camera, Instance, Light, Moved, Range, Scene};
 
 /// Pictures a second where nobody says otherwise.
 const RATE: f64 = 24.0;
@@ -92,7 +92,7 @@ pub fn over(
     if let Some(name) = left.first() {
         let others = if left.len() == 1 { String::new() } else { format!(" and {} more", left.len() - 1) };
         let fault = format!(
-            "{name:?}{others} stands still while the shutter is open, since it shines or is a whole sphere or disk; tessellate makes a mesh of those"
+            "{name:?}{others} stands still while the shutter is open, since it is a whole sphere or disk; tessellate makes a mesh of those"
         );
         warnings.push(Warning::new(WarningKind::LeftOut, path, fault));
     }
@@ -168,7 +168,16 @@ fn off(before: &Scene, middle: &Scene, after: &Scene) -> f64 {
         between(a.eye, b.eye, c.eye) + between(a.target, b.target, c.target).min(distance)
     };
     let cameras = before.cameras.iter().zip(&middle.cameras).zip(&after.cameras).map(camera).fold(0.0, f64::max);
-    vertices.max(copies).max(cameras)
+    let [least, greatest] = before.bounds();
+    let edge = f64::from((greatest - least).max_element());
+    let light = |((a, b), c): ((&Light, &Light), &Light)| {
+        let ((from, start), (place, way), (to, end)) = (a.stance(), b.stance(), c.stance());
+        let turn = |ways: (DVec3, DVec3, DVec3)| ((ways.0 + ways.2).normalize_or_zero() - ways.1).length();
+        let turned = start.zip(way).zip(end).map_or(0.0, |((a, b), c)| turn((a, b, c)));
+        between(from, place, to) + turned * edge
+    };
+    let lights = before.lights.iter().zip(&middle.lights).zip(&after.lights).map(light).fold(0.0, f64::max);
+    vertices.max(copies).max(cameras).max(lights)
 }
 
 /// How far the vertices of a mesh are from its zero.

@@ -51,6 +51,12 @@ impl Emitter {
         self.light.position.y
     }
 
+    /// The first key of the copy that a primitive is in, or [`Hit::NOTHING`](crate::ray::Hit::NOTHING).
+    #[inline(always)]
+    pub fn instance(&self) -> u32 {
+        self.light.position.z
+    }
+
     /// One over a primitive's area in the normalised scene.
     #[inline(always)]
     pub fn per_area(&self) -> f32 {

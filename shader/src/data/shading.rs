@@ -41,7 +41,7 @@ pub struct Material {
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C, align(16))]
 pub struct Light {
-    /// Position, or the direction towards a directional light; the integer is its kind.
+    /// Position, or the direction towards a directional light; the integer is its kind, see [`Light::KINDS`].
     pub position: UVec4,
     /// Colour times intensity; the integer is the bits of the cosine of a spot's inner angle.
     pub colour: UVec4,
@@ -60,4 +60,22 @@ impl Light {
     // 3 and 4 are kinds of [`Emitter`](super::Emitter).
     /// As [`Light::SPOT`], but light fades by the square of a ramp (KHR_lights_punctual) instead of a cubic.
     pub const RAMP: u32 = 5;
+
+    /// The bits of a kind. Above them is one more than the place of its first key among the records of copies, if it moves while the
+    /// shutter is open: how it is turned against how it is when that opens, and where it is.
+    pub const KINDS: u32 = (1 << Self::KEYS) - 1;
+    /// How many these bits are.
+    pub const KEYS: u32 = 4;
+
+    /// Does it move?
+    #[inline(always)]
+    pub fn moves(&self) -> bool {
+        self.position.w > Self::KINDS
+    }
+
+    /// The place of its first key.
+    #[inline(always)]
+    pub fn first_key(&self) -> u32 {
+        (self.position.w >> Self::KEYS) - 1
+    }
 }

@@ -108,7 +108,7 @@ fn light_by_closure<R: Scalar>(
         return ShadowRay::none();
     }
     let interaction = &seen.interaction;
-    let view = Viewpoint::on(interaction, closure.normal(), seen.primitive.is_transparent());
+    let view = Viewpoint::on(interaction, closure.normal(), seen.primitive.is_transparent()).at(seen.time);
     let sample = drawn_light(launch, lighting, vertex, &view);
     let value = if sample.density.over.eq(R::splat(0.0)) {
         closure.eval(interaction, sample.direction).value
@@ -134,7 +134,7 @@ fn sampled_light<R: Scalar>(
     if !is_lit(launch) {
         return ShadowRay::none();
     }
-    let view = Viewpoint::on(interaction, surface.normal, false);
+    let view = Viewpoint::on(interaction, surface.normal, false).at(vertex.found.time);
     let sample = drawn_light(launch, lighting, vertex, &view);
     if !interaction.receives(sample.direction) {
         return ShadowRay::none();

@@ -84,7 +84,7 @@ fn scattered<R: Scalar>(
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent());
+    let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent()).at(seen.time);
     let is_asked = is_lit(launch) && closure.is_rough();
     let unlit = unlit(launch, shading.materials, seen);
     let lamp = if is_asked {
@@ -197,8 +197,9 @@ fn emitted<R: Scalar>(
     if vertex.after_catcher {
         return V3::zero();
     }
-    let view = vertex.path.view();
-    let other = Density::of_hit(launch, lighting, (&primitive, &emission), &interaction, &view);
+    let view = vertex.path.view().at(seen.time);
+    let place = (&interaction, seen.index, seen.instance);
+    let other = Density::of_hit(launch, lighting, (&primitive, &emission), place, &view);
     (radiance * weight(launch.spec.launch, Launch::BY_SURFACE, other.over, own * other.under)).map(|c| c.flush(FAINT))
 }
 

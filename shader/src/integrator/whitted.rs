@@ -5,7 +5,7 @@ use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::{Effects, Launch, Light, Primitive};
 use crate::geometry::SurfaceInteraction;
-use crate::light::LightSample;
+use crate::light::{LightSample, at_time};
 use crate::material::{Seen, Surface, eval_phong, fresnel, mirrored, refract};
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};
@@ -68,7 +68,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let seen = Seen { index, instance, time, primitive, interaction, direction, cone };
     let covering = seen.covering(launch, shading, false);
     let surface = Surface::new(launch, shading, &seen, &covering);
-    let (light, rays) = lit(launch, lights, slot, path.direction, (&interaction, &surface), shadows);
+    let (light, rays) = lit(launch, lights, (slot, time), path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
         return false;
@@ -81,7 +81,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
 fn lit<R: Scalar>(
     launch: &LaunchContext<'_>,
     lights: &[Light],
-    slot: u32,
+    (slot, time): (u32, f32),
     direction: V3<R>,
     lit: (&SurfaceInteraction<R>, &Surface<R>),
     shadows: &[u32],
@@ -99,7 +99,8 @@ fn lit<R: Scalar>(
             rays += 1;
         }
         if answer == REACHED {
-            let incidence = LightSample::new(launch.spec.effects, &read(lights, index), interaction.position);
+            let light = at_time::<R>(launch, read(lights, index), time);
+            let incidence = LightSample::new(launch.spec.effects, &light, interaction.position);
             sum = sum + eval_phong(launch.spec.effects, surface, direction, &incidence);
         }
         index += 1;

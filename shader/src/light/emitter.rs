@@ -5,7 +5,8 @@
 //! and a function here gives them for a place whether it was sampled or hit, so that both know the same.
 
 use super::choice::{per_area, per_area_of_hit, picked};
-use super::{Environment, LightSample, SHORT, Viewpoint};
+use super::moving::over_area_at;
+use super::{Environment, LightSample, SHORT, Viewpoint, at_time};
 use crate::buffer::read;
 use crate::data::{Aovs, Effects, Emission, Emitter, Light, LightNode, Primitive, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
@@ -99,11 +100,13 @@ impl<R: Scalar> EmitterSample<R> {
             return Environment::new(lighting.environment).sample(place, probability);
         }
         if !effects.has(Effects::EMISSIVE) || emitter.light.position.w != Emitter::PRIMITIVE {
-            return Self::without_extent(effects, &emitter.light, origin, probability);
+            return Self::without_extent(effects, &at_time::<R>(launch, emitter.light, view.time), origin, probability);
         }
-        let primitive = launch.primitive(emitter.light.axis.w);
+        let (index, instance) = (emitter.light.axis.w, emitter.instance());
+        let primitive = launch.placed(index, instance, view.time);
         let emission = read(lighting.emissions, primitive.material());
         let per_area = per_area(effects, &emission, emitter, probability);
+        let per_area = over_area_at(launch, per_area, (index, instance, view.time));
         let sample = if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             Self::of_sphere(&primitive, (&emission, per_area), origin, place)
         } else {
@@ -232,11 +235,12 @@ impl<R: Scalar> Density<R> {
         launch: &LaunchContext<'_>,
         lighting: &Lighting<'_>,
         (primitive, emission): (&Primitive, &Emission),
-        at: &SurfaceInteraction<R>,
+        (at, index, instance): (&SurfaceInteraction<R>, u32, u32),
         view: &Viewpoint<R>,
     ) -> Self {
         let (effects, origin) = (launch.spec.effects, view.origin);
         let per_area = per_area_of_hit(launch, lighting, (primitive, emission), view);
+        let per_area = over_area_at(launch, per_area, (index, instance, view.time));
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {
             let (centre, radius) = (V3::<R>::splat(primitive.centre()), R::splat(primitive.radius()));
             let cone = Cone::new(centre, radius, origin);

@@ -4,12 +4,14 @@
 mod choice;
 mod emitter;
 mod environment;
+mod moving;
 mod tree;
 mod viewpoint;
 
 pub use emitter::{Density, EmitterSample, Lighting};
 pub(crate) use emitter::{glowing, on_circle};
 pub use environment::{Environment, HEADER};
+pub use moving::at_time;
 pub use tree::{Chosen, Guide, descend};
 pub use viewpoint::Viewpoint;
 

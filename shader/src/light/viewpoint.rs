@@ -11,6 +11,8 @@ pub struct Viewpoint<R: Real> {
     /// A normal in steps of 1/127, a byte for each component from 1 on, so that paths keep it as a number below 2^24 and every
     /// strategy knows the same; 0 where light comes from both sides.
     pub side: u32,
+    /// When it is, see [`Ray::time`](crate::ray::Ray::time).
+    pub time: f32,
 }
 
 /// The byte of a component of 0 is between this and one less.
@@ -34,7 +36,13 @@ impl<R: Scalar> Viewpoint<R> {
             (steps as u32) & 0xff
         };
         let side = byte(normal.x) | (byte(normal.y) << 8) | (byte(normal.z) << 16);
-        Viewpoint { origin, side: if passes { 0 } else { side } }
+        Viewpoint { origin, side: if passes { 0 } else { side }, time: 0.0 }
+    }
+
+    /// The same at a time.
+    #[inline(always)]
+    pub fn at(self, time: f32) -> Self {
+        Viewpoint { time, ..self }
     }
 
     /// Its normal, to a hundredth.

@@ -102,7 +102,7 @@ impl<R: Scalar> PathState<R> {
     /// From where it sees lights, where it does not branch.
     #[inline(always)]
     pub fn view(&self) -> Viewpoint<R> {
-        Viewpoint { origin: self.origin, side: self.beside.1.to_f32() as u32 }
+        Viewpoint { origin: self.origin, side: self.beside.1.to_f32() as u32, time: 0.0 }
     }
 
     /// How wide it is after a distance. Where paths branch, each begins as narrow as the camera's. One that chance has led has no

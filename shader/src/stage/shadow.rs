@@ -4,7 +4,7 @@ use super::{Found, Path, Segment};
 use crate::buffer::read;
 use crate::data::{Launch, Light};
 use crate::geometry::SurfaceInteraction;
-use crate::light::ray_to_light;
+use crate::light::{at_time, ray_to_light};
 use crate::ray::Hit;
 use crate::real::Scalar;
 use crate::scene::TraceContext;
@@ -53,7 +53,7 @@ pub fn shadow_ray<R: Scalar>(
     let primitive = context.base.placed(found.index, found.instance, found.time);
     let effects = context.base.spec.effects;
     let interaction = SurfaceInteraction::new(effects, &primitive, found.coordinates, path.direction);
-    let light = read(asking.lights, index);
+    let light = at_time::<R>(&context.base, read(asking.lights, index), found.time);
     let (origin, direction, limit) = ray_to_light(effects, &light, &interaction);
     let source_primitive = interaction.source_primitive(direction);
     (Segment { origin, direction, limit, source_primitive }, interaction.faces(direction))

@@ -84,8 +84,12 @@ impl fmt::Display for Outline<'_> {
             let moving = moving(self.scene, motion);
             let steps = plural(motion.poses.len(), "step");
             let cameras = plural(motion.cameras.len(), "camera");
+            let lights = plural(motion.lights.len(), "light");
             let (moving, bent) = (plural(moving, "instance"), plural(motion.bent().count(), "shape"));
-            writeln!(out, "while the shutter is open: {steps}; {moving} and {cameras} that move, {bent} that bend")?;
+            writeln!(
+                out,
+                "while the shutter is open: {steps}; {moving}, {lights} and {cameras} that move, {bent} that bend"
+            )?;
         }
         let materials = &self.scene.materials;
         for (number, material) in materials.iter().enumerate().take(MOST) {

@@ -1,6 +1,5 @@
 //! Meshes that stand in several places.
 
-use glam::Vec3;
 use rayon::prelude::*;
 
 use super::first;
@@ -28,7 +27,7 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
     first(copies.find_map_first(|(number, copy)| Some(format!("copy {number} of a mesh {}", fault(scene, copy)?))))
 }
 
-/// Refuses triangles that have vertices of another part, and those of shared meshes that emit.
+/// Refuses triangles that have vertices of another part.
 fn parts(scene: &Scene) -> Result<()> {
     if scene.shared.is_empty() {
         return Ok(());
@@ -43,12 +42,6 @@ fn parts(scene: &Scene) -> Result<()> {
     first(of(0..scene.own_vertices(), 0..scene.own_triangles()))?;
     for SharedMesh { vertices, triangles } in &scene.shared {
         first(of(vertices.clone(), triangles.clone()))?;
-        let emits = |&&material: &&u32| scene.materials[material as usize].emission != Vec3::ZERO;
-        let shining = scene.mesh.materials[triangles.clone()].iter().find(emits);
-        first(shining.map(|&material| {
-            let name = &scene.materials[material as usize].name;
-            format!("a shared mesh has the material {name:?}, which emits light: flatten it by device_scene::fitted")
-        }))?;
     }
     Ok(())
 }

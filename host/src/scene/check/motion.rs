@@ -2,13 +2,13 @@
 
 use rayon::prelude::*;
 
-use super::{Mesh, camera, of_vertices};
+use super::{Mesh, camera, light, of_vertices};
 use crate::error::{Error, Result};
-use crate::scene::{Instance, Motion, Pose, Scene, Shape};
+use crate::scene::{Instance, Light, Motion, Pose, Scene, Shape};
 
 /// Refuses poses that have other copies, meshes or cameras than the scene, and what is out of range.
 pub(super) fn check(scene: &Scene) -> Result<()> {
-    let Some(Motion { poses, cameras, exposure }) = &scene.motion else { return Ok(()) };
+    let Some(Motion { poses, cameras, lights, exposure }) = &scene.motion else { return Ok(()) };
     let most = Motion::MOST_STEPS;
     if poses.is_empty() || poses.len() > most {
         return Err(Error::new(format!("the motion has {} poses; it must have 1 to {most}", poses.len())));
@@ -30,9 +30,24 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
         if own != others {
             return Err(refuse(format!("has {others} cameras, but {own} move")));
         }
-        pose.cameras.iter().try_for_each(camera).map_err(refuse)?;
+        pose.cameras.iter().try_for_each(camera).map_err(&refuse)?;
+        self::lights(scene, lights, &pose.lights).map_err(refuse)?;
     }
     Ok(())
+}
+
+fn lights(scene: &Scene, numbers: &[u32], there: &[Light]) -> std::result::Result<(), String> {
+    let is_known = |&number: &u32| (number as usize) < scene.lights.len();
+    if !numbers.is_sorted_by(|a, b| a < b) || !numbers.iter().all(is_known) || numbers.len() != there.len() {
+        return Err("moves other lights than the scene has, or not in their order".into());
+    }
+    let mut pairs = numbers.iter().zip(there).enumerate();
+    let fault = pairs.find_map(|(number, (&own, there))| {
+        let is_same = scene.lights[own as usize].is_as(there);
+        let fault = light(number, there).err();
+        (!is_same).then(|| format!("has light {number} of another kind than the scene")).or(fault)
+    });
+    fault.map_or(Ok(()), Err)
 }
 
 fn copies(scene: &Scene, others: &[Instance]) -> std::result::Result<(), String> {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::header::AGAIN;
 use crate::scene::hierarchy::records;
-use crate::scene::{Camera, Instance, Motion, Pose, Scene, Shape, Unplaced};
+use crate::scene::{Camera, Instance, Light, Motion, Pose, Scene, Shape, Unplaced};
 
 /// What the description says of it.
 #[derive(Serialize, Deserialize)]
@@ -15,14 +15,20 @@ pub struct Shutter {
     /// Shared meshes that change their shape.
     bent: Vec<u32>,
     cameras: Vec<Camera>,
+    lights: Vec<u32>,
     poses: Vec<Seen>,
 }
 
-/// Cameras of a pose.
+/// Cameras and lights of a pose.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Seen {
     cameras: Vec<Camera>,
+    lights: Vec<Light>,
+}
+
+fn seen(pose: &Pose) -> Seen {
+    Seen { cameras: pose.cameras.clone(), lights: pose.lights.clone() }
 }
 
 impl Shutter {
@@ -31,7 +37,8 @@ impl Shutter {
             exposure: motion.exposure,
             bent: motion.bent().map(|mesh| mesh as u32).collect(),
             cameras: motion.cameras.clone(),
-            poses: motion.poses.iter().map(|pose| Seen { cameras: pose.cameras.clone() }).collect(),
+            lights: motion.lights.clone(),
+            poses: motion.poses.iter().map(seen).collect(),
         }
     }
 
@@ -40,7 +47,7 @@ impl Shutter {
     /// # Errors
     /// They are not of such a scene.
     pub fn motion(self, scene: &Scene, bytes: &[u8]) -> Unplaced<Motion> {
-        let Shutter { exposure, bent, cameras, poses } = self;
+        let Shutter { exposure, bent, cameras, lights, poses } = self;
         let mut rest = Some(bytes);
         let mesh = &scene.mesh;
         let pose = |seen: Seen| {
@@ -56,12 +63,12 @@ impl Shutter {
                 Some((number, shape))
             };
             let shapes = bent.iter().map(shape).collect::<Option<_>>()?;
-            Some(Pose { instances, shapes, cameras: seen.cameras })
+            Some(Pose { instances, shapes, cameras: seen.cameras, lights: seen.lights })
         };
         let poses = poses.into_iter().map(pose).collect::<Option<Vec<_>>>();
         let poses = poses.filter(|_| rest.is_some_and(<[u8]>::is_empty));
         let poses = poses.ok_or_else(|| format!("its motion is not of as many things as its scene has; {AGAIN}"))?;
-        Ok(Motion { poses, cameras, exposure })
+        Ok(Motion { poses, cameras, lights, exposure })
     }
 }
 

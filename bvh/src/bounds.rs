@@ -70,6 +70,12 @@ impl Bounds {
         self.min.cmple(self.max).all() && whole.contains(self)
     }
 
+    /// The box with so much more room on every side, but for one rounding of each plane.
+    pub fn widened(self, margin: f32) -> Self {
+        let [low, high] = [self.min, self.max].map(|corner| corner.as_dvec3());
+        Bounds { min: (low - f64::from(margin)).as_vec3a(), max: (high + f64::from(margin)).as_vec3a() }
+    }
+
     /// Twice the centre, which spares a rounding.
     pub fn centre(self) -> Vec3A {
         self.min + self.max

@@ -3,7 +3,7 @@
 use eyerays_shader::data::NodeRef;
 use rayon::prelude::*;
 
-use crate::tree::{CHUNK, Children, NESTED, Pair, filled, left_count};
+use crate::tree::{Children, filled};
 
 /// A tree as it grows, whose leaves hold items.
 pub(crate) enum Branch<I> {
@@ -81,43 +81,6 @@ pub(crate) enum Grown<N> {
     Leaf(NodeRef),
     /// A pair of these nodes.
     Pair(N, N),
-}
-
-/// A tree of the same pairs, whose leaves `leaf` adds to the piece that they are in, each as a leaf or as a pair of them.
-pub(crate) fn regrow<P: Pair, T: Send>(
-    pairs: &[P],
-    leaf: &(impl Fn(NodeRef, &mut Piece<Vec<T>>) -> NodeRef + Sync),
-) -> Branch<Vec<T>> {
-    regrow_subtree(0, pairs, leaf, 0)
-}
-
-fn regrow_subtree<P: Pair, T: Send>(
-    first: usize,
-    pairs: &[P],
-    leaf: &(impl Fn(NodeRef, &mut Piece<Vec<T>>) -> NodeRef + Sync),
-    level: u32,
-) -> Branch<Vec<T>> {
-    if pairs.len() <= CHUNK || level == NESTED {
-        return Branch::Piece(Piece::grow(NodeRef::inner(first as u32), |node, piece| {
-            if node.is_leaf() {
-                return Grown::Leaf(leaf(node, piece));
-            }
-            let [left, right] = pairs[node.index() as usize - first].children();
-            Grown::Pair(left, right)
-        }));
-    }
-    let children = pairs[0].children();
-    let left = left_count(children, first, pairs.len());
-    let (left_pairs, right_pairs) = pairs[1..].split_at(left);
-    let go = |child: NodeRef, first, pairs: &[P]| {
-        if !child.is_leaf() {
-            return regrow_subtree(first, pairs, leaf, level + 1);
-        }
-        Branch::Piece(Piece::grow(child, |node, piece| Grown::Leaf(leaf(node, piece))))
-    };
-    let (left, right) =
-        rayon::join(|| go(children[0], first + 1, left_pairs), || go(children[1], first + 1 + left, right_pairs));
-    Branch::Inner(Box::new([left, right]))
 }
 
 impl<I: Items> Branch<I> {
@@ -200,7 +163,7 @@ impl<'b, I: Items> Pieces<'b, I> {
 #[cfg(test)]
 pub(crate) mod tests {
     use super::*;
-    use crate::tree::{height, slots};
+    use crate::tree::height;
 
     /// A tree of so many leaves of one item each, halved, with as many pairs for one thread as `few` leaves have.
     pub fn halved(first: u32, count: u32, few: u32) -> Branch<Vec<u32>> {
@@ -227,13 +190,5 @@ pub(crate) mod tests {
         let [left, right] = pairs[0];
         assert_eq!((left, right), (NodeRef::inner(1), NodeRef::inner(5)));
         assert_eq!(height(&pairs), 4);
-    }
-
-    #[test]
-    fn many_threads_regrow_the_same_tree() {
-        let count = 5 * CHUNK as u32;
-        let (pairs, items) = halved(0, count, 64).flat(0);
-        let same = |leaf: NodeRef, piece: &mut Piece<Vec<u32>>| piece.leaf(slots(leaf));
-        assert_eq!(regrow(&pairs, &same).flat(0), (pairs, items));
     }
 }

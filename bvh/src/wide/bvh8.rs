@@ -3,7 +3,6 @@
 
 use eyerays_shader::bvh8::{Bvh8Node, Bvh8View, MOST, Mixed4, Sphere4, Triangle4};
 use eyerays_shader::data::{Bounds as Record, CentredPair, Primitive};
-use rayon::prelude::*;
 
 use super::{
     binary::Binary,
@@ -11,6 +10,8 @@ use super::{
     fill::Collapse,
 };
 use crate::bounds::Bounds;
+
+const _: () = assert!(CentredPair::MARGIN >= Bvh8Node::MARGIN);
 
 /// The cost of a [`Triangle4`] relative to that of a node, which tests eight boxes.
 const TRIANGLE4: f32 = 0.6;
@@ -39,15 +40,14 @@ impl Bvh8 {
     /// Converts a validated hierarchy of `pairs`, its triangles by slot and their own boxes by slot, none
     /// unless triangles are split.
     pub fn of(pairs: &[CentredPair], primitives: &[Primitive], bounds: &[Record]) -> Self {
-        let bounds: Vec<Bounds> = match bounds {
-            [] => primitives.par_iter().map(Bounds::of).collect(),
-            split => split.par_iter().map(Bounds::read).collect(),
+        // As wide as the pairs' boxes are already.
+        let own = |slot: u32| {
+            let primitive = || Bounds::of(&primitives[slot as usize]);
+            bounds.get(slot as usize).map_or_else(primitive, Bounds::read).widened(Bvh8Node::MARGIN)
         };
         let leaves = Leaves { most: MOST as u32, fixed: TRIANGLE4, triangle: 0.0 };
-        let tree = Binary::of(pairs, &bounds, leaves.most);
-        drop(bounds);
-        let plan = Plan::of(&tree, leaves);
-        Collapse { tree, plan, primitives }.run()
+        let tree = Binary { pairs, count: primitives.len(), own, most: leaves.most };
+        Collapse { plan: Plan::of(tree, leaves), primitives }.run()
     }
 
     /// What a launch borrows.

@@ -5,9 +5,13 @@
 
 use eyerays_shader::data::{CwbvhNode, NodeRef};
 
-use super::binary::{Binary, Kind, Node};
+use super::binary::{Binary, Boxed, Node, Parting};
 use super::layout::MAX_WIDE_DEPTH;
-use crate::tree::{Children, Fold, filled, fold};
+use crate::{
+    MAX_DEPTH,
+    bounds::Bounds,
+    tree::{Fold, filled, fold},
+};
 
 /// Cost of a step through a wide node, which tests eight boxes.
 pub(crate) const NODE: f32 = 1.0;
@@ -27,22 +31,41 @@ impl Leaves {
     /// The leaves of [`CwbvhNode`]; a triangle's cost is the paper's.
     pub const WIDE: Leaves = Leaves { most: CwbvhNode::MAX_LEAF, fixed: 0.0, triangle: 0.3 };
 
-    /// The cost of a leaf of all triangles below a node.
-    fn cost(self, node: &Node) -> f32 {
-        if node.count > self.most {
+    /// The cost of a leaf of so many triangles in a box.
+    fn cost(self, bounds: Bounds, count: u32) -> f32 {
+        if count > self.most {
             return f32::INFINITY;
         }
-        node.bounds.half_area() * (self.fixed + node.count as f32 * self.triangle)
+        bounds.half_area() * (self.fixed + count as f32 * self.triangle)
     }
 }
 
 /// The most children of a node, and the most roots that a subtree can be shown as.
 const ARITY: usize = CwbvhNode::ARITY;
 
-/// Choices for every node of a binary tree.
-pub(crate) struct Plan {
-    choices: Vec<Choices>,
+/// A binary tree with choices for every node.
+pub(crate) struct Plan<'a, P, F> {
+    tree: Binary<'a, P, F>,
+    notes: Vec<Note>,
 }
+
+/// What is noted for a node.
+#[derive(Clone, Copy)]
+struct Note {
+    /// Slots below it.
+    count: u32,
+    /// Inner nodes on the longest path down from it.
+    height: u8,
+    parting: Parting,
+    choices: Choices,
+}
+
+impl Note {
+    const NONE: Note = Note { count: 1, height: 0, parting: Parting::NONE, choices: Choices::NONE };
+}
+
+// A leaf that is two halves adds a level.
+const _: () = assert!(MAX_DEPTH < u8::MAX as u32);
 
 /// How to show a subtree as at most `i + 1` children, at place `i`.
 ///
@@ -53,6 +76,8 @@ pub(crate) struct Plan {
 struct Choices([u8; ARITY]);
 
 impl Choices {
+    /// Those of a leaf.
+    const NONE: Choices = Choices([Choices::LEAF; ARITY]);
     /// All triangles in one leaf.
     const LEAF: u8 = 0;
     /// A wide node.
@@ -62,109 +87,156 @@ impl Choices {
 /// Costs of a subtree as at most 1 to 7 children.
 type Costs = [f32; ARITY - 1];
 
-impl Plan {
-    /// The best choices.
-    pub fn of(tree: &Binary, leaves: Leaves) -> Self {
-        let mut choices = filled(Choices([Choices::LEAF; ARITY]), tree.nodes.len());
-        let costing = Costing { tree, leaves };
-        let (root, below) = choices.split_first_mut().expect("a root");
-        if !tree.pairs.is_empty() {
-            let children = fold(&tree.pairs, below.as_chunks_mut::<2>().0, &costing);
-            *root = costing.node(0, &children).1;
+impl<'a, P: Boxed, F: Fn(u32) -> Bounds + Sync> Plan<'a, P, F> {
+    /// The best choices; leaves of wide nodes have no more slots than those of the tree.
+    pub fn of(tree: Binary<'a, P, F>, leaves: Leaves) -> Self {
+        if tree.count == 1 {
+            return Plan { tree, notes: vec![Note::NONE] };
         }
-        Plan { choices }
+        let mut notes = filled(Note::NONE, 1 + 2 * tree.pairs.len());
+        let costing = Costing { tree: &tree, leaves };
+        let (root, below) = notes.split_first_mut().expect("a root");
+        let all = fold(tree.pairs, below.as_chunks_mut::<2>().0, &costing);
+        *root = costing.node(tree.bounds(Node::ROOT, |_| Parting::NONE), &all).1;
+        Plan { tree, notes }
     }
 
-    /// The children of the wide node that binary node `number` becomes, in depth-first order: their
-    /// numbers, and whether each is a leaf.
-    pub fn children(&self, tree: &Binary, number: u32, children: &mut Vec<(u32, bool)>) {
+    /// The children of the wide node that a binary node becomes, in depth-first order: their numbers, and whether each is
+    /// a leaf.
+    fn children(&self, node: Node, children: &mut Vec<(Node, bool)>) {
         children.clear();
-        self.show(tree, number, ARITY, children);
+        self.show(node, ARITY, children);
     }
 
-    /// The children of the wide node that binary node `number` becomes, `level` wide nodes above it: the
-    /// plan's, or [`three_levels`] if they would make the tree deeper than [`MAX_WIDE_DEPTH`].
-    pub fn children_at(&self, tree: &Binary, number: u32, level: u32, children: &mut Vec<(u32, bool)>) {
+    /// The children of the wide node that a binary node becomes, `level` wide nodes above it, in depth-first order: their
+    /// numbers, and whether each is a leaf. They are the plan's, or those of [`Plan::three_levels`] if the plan's would make
+    /// the tree deeper than [`MAX_WIDE_DEPTH`].
+    pub fn children_at(&self, node: Node, level: u32, children: &mut Vec<(Node, bool)>) {
         // With the plan's children, the remaining tree may be only one level lower.
-        let rest = tree.nodes[number as usize].height.saturating_sub(1).div_ceil(LEVELS);
+        let rest = u32::from(self.notes[node.place()].height).saturating_sub(1).div_ceil(LEVELS);
         if level + 1 + rest <= MAX_WIDE_DEPTH {
-            self.children(tree, number, children);
+            self.children(node, children);
         } else {
-            three_levels(tree, number, children);
+            self.three_levels(node, children);
         }
     }
 
     /// Shows a subtree as at most `most` children, never as its own root.
-    fn show(&self, tree: &Binary, number: u32, most: usize, children: &mut Vec<(u32, bool)>) {
-        let Choices(choices) = self.choices[number as usize];
+    fn show(&self, node: Node, most: usize, children: &mut Vec<(Node, bool)>) {
+        let Choices(choices) = if node.half().is_some() { Choices::NONE } else { self.notes[node.place()].choices };
         let place = (1..most).rev().find(|&place| choices[place] > 0);
-        match (place, tree.nodes[number as usize].kind) {
-            (Some(place), Kind::Inner(left, right)) => {
+        match place.and_then(|place| Some((place, self.tree.children(node)?))) {
+            Some((place, [left, right])) => {
                 let share = usize::from(choices[place]);
-                self.show(tree, left, share, children);
-                self.show(tree, right, place + 1 - share, children);
+                self.show(left, share, children);
+                self.show(right, place + 1 - share, children);
             }
-            _ => children.push((number, choices[0] == Choices::LEAF)),
+            None => children.push((node, choices[0] == Choices::LEAF)),
         }
+    }
+
+    /// As [`Plan::children`], whatever it costs: the nodes three levels below, which lowers what is left of
+    /// the binary tree by three levels.
+    fn three_levels(&self, node: Node, children: &mut Vec<(Node, bool)>) {
+        children.clear();
+        self.show_levels(node, LEVELS, children);
+    }
+
+    fn show_levels(&self, node: Node, levels: u32, children: &mut Vec<(Node, bool)>) {
+        match self.tree.children(node) {
+            Some(below) if levels > 0 => {
+                below.into_iter().for_each(|child| self.show_levels(child, levels - 1, children));
+            }
+            inner => children.push((node, inner.is_none())),
+        }
+    }
+
+    /// A node's box.
+    pub fn bounds(&self, node: Node) -> Bounds {
+        self.tree.bounds(node, |leaf| self.parting(leaf))
+    }
+
+    /// How many slots are below a node.
+    pub fn count(&self, node: Node) -> u32 {
+        match node.half() {
+            Some((leaf, half)) => self.parting(leaf).counts(self.notes[leaf.place()].count)[half],
+            None => self.notes[node.place()].count,
+        }
+    }
+
+    /// Goes through the slots below a node from left to right.
+    pub fn each_slot(&self, node: Node, mut of: impl FnMut(u32)) {
+        self.tree.each_slot(node, |leaf| self.parting(leaf), &mut of);
+    }
+
+    fn parting(&self, leaf: Node) -> Parting {
+        self.notes[leaf.place()].parting
     }
 }
 
 /// Finds costs and choices, from the leaves up.
-struct Costing<'a> {
-    tree: &'a Binary,
+struct Costing<'t, 'a, P, F> {
+    tree: &'t Binary<'a, P, F>,
     leaves: Leaves,
 }
 
-impl Costing<'_> {
-    /// The costs and choices of a node, given its children's costs, if it has any.
-    fn node(&self, number: usize, children: &Option<[Costs; 2]>) -> (Costs, Choices) {
-        let node = &self.tree.nodes[number];
-        let leaf = self.leaves.cost(node);
-        match children {
-            None => ([leaf; ARITY - 1], Choices([Choices::LEAF; ARITY])),
-            Some([left, right]) => best(node, leaf, left, right),
-        }
+/// What is below a node.
+struct Below {
+    /// The costs of its children, if it has any.
+    children: Option<[Costs; 2]>,
+    count: u32,
+    height: u8,
+    parting: Parting,
+}
+
+impl<P: Boxed, F: Fn(u32) -> Bounds> Costing<'_, '_, P, F> {
+    /// The costs of a node and what is noted for it, given what is below.
+    fn node(&self, bounds: Bounds, below: &Below) -> (Costs, Note) {
+        let leaf = self.leaves.cost(bounds, below.count);
+        let (costs, choices) = match &below.children {
+            None => ([leaf; ARITY - 1], Choices::NONE),
+            Some([left, right]) => best(bounds.half_area() * NODE, leaf, left, right),
+        };
+        let Below { count, height, parting, .. } = *below;
+        (costs, Note { count, height, parting, choices })
     }
 }
 
-impl Fold<Children> for Costing<'_> {
-    /// The costs of both children of a pair.
-    type Known = Option<[Costs; 2]>;
-    /// The choices of both.
-    type Note = [Choices; 2];
+impl<P: Boxed, F: Fn(u32) -> Bounds + Sync> Fold<P> for Costing<'_, '_, P, F> {
+    type Known = Below;
+    /// Of both children.
+    type Note = [Note; 2];
 
-    fn leaf(&self, _: NodeRef) -> Self::Known {
-        None
+    fn leaf(&self, leaf: NodeRef) -> Below {
+        let count = leaf.count();
+        if count <= self.tree.most {
+            return Below { children: None, count, height: 0, parting: Parting::NONE };
+        }
+        let parting = self.tree.parting(leaf);
+        let half = |half: usize| {
+            let bounds = self.tree.half(leaf, parting, half);
+            [self.leaves.cost(bounds, parting.counts(count)[half]); ARITY - 1]
+        };
+        Below { children: Some([half(0), half(1)]), count, height: 1, parting }
     }
 
-    fn pair(&self, number: usize, _: &Children, below: [Self::Known; 2], note: &mut [Choices; 2]) -> Self::Known {
-        let [left, right] = [0, 1].map(|side| self.node(2 * number + 1 + side, &below[side]));
+    fn pair(&self, _: usize, pair: &P, below: [Below; 2], note: &mut [Note; 2]) -> Below {
+        let [left, right] = [0, 1].map(|side| self.node(pair.bounds(side), &below[side]));
         *note = [left.1, right.1];
-        Some([left.0, right.0])
-    }
-}
-
-/// As [`Plan::children`], whatever it costs: the nodes three levels below, which lowers what is left of
-/// the binary tree by three levels.
-pub(crate) fn three_levels(tree: &Binary, number: u32, children: &mut Vec<(u32, bool)>) {
-    fn show(tree: &Binary, number: u32, levels: u32, children: &mut Vec<(u32, bool)>) {
-        match tree.nodes[number as usize].kind {
-            Kind::Inner(left, right) if levels > 0 => {
-                show(tree, left, levels - 1, children);
-                show(tree, right, levels - 1, children);
-            }
-            kind => children.push((number, kind == Kind::Leaf)),
+        Below {
+            children: Some([left.0, right.0]),
+            count: below[0].count + below[1].count,
+            height: 1 + below[0].height.max(below[1].height),
+            parting: Parting::NONE,
         }
     }
-    children.clear();
-    show(tree, number, LEVELS, children);
 }
 
 /// Levels of the binary tree that fit into any wide node.
 pub(crate) const LEVELS: u32 = CwbvhNode::ARITY.ilog2();
 
-/// The best choices for an inner node, given its children's costs.
-fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices) {
+/// The best choices for an inner node, given what it costs as a node and as a leaf, and its children's costs.
+fn best(node: f32, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices) {
     let mut choices = [0; ARITY];
     let mut shared = [f32::INFINITY; ARITY];
     for place in 1..ARITY {
@@ -175,7 +247,7 @@ fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices)
             }
         }
     }
-    let inner = shared[ARITY - 1] + node.bounds.half_area() * NODE;
+    let inner = shared[ARITY - 1] + node;
     let mut costs = [leaf.min(inner); ARITY - 1];
     choices[0] = if leaf <= inner { Choices::LEAF } else { Choices::INNER };
     for place in 1..ARITY - 1 {
@@ -192,12 +264,13 @@ fn best(node: &Node, leaf: f32, left: &Costs, right: &Costs) -> (Costs, Choices)
 mod tests {
     use super::*;
     use crate::{
-        bounds::Bounds,
         branch::{Grown, Piece},
+        layout,
     };
+    use eyerays_shader::data::NodePair;
 
-    /// A tree over boxes, as nested lists of two would give it.
-    fn tree(leaves: &[Bounds], halve: impl Fn(usize) -> usize + Copy) -> Binary {
+    /// The pairs of a tree over boxes, as nested lists of two would give it.
+    fn pairs(leaves: &[Bounds], halve: impl Fn(usize) -> usize + Copy) -> Vec<NodePair> {
         let all = (0, leaves.len() as u32);
         let piece = Piece::grow(all, |(first, count): (u32, u32), piece| {
             if count == 1 {
@@ -206,7 +279,13 @@ mod tests {
             let half = halve(count as usize) as u32;
             Grown::Pair((first, half), (first + half, count - half))
         });
-        Binary::of(&piece.pairs, leaves, CwbvhNode::MAX_LEAF)
+        layout::pairs(&piece.pairs, |slot| leaves[slot as usize])
+    }
+
+    type Own<'a> = &'a (dyn Fn(u32) -> Bounds + Sync);
+
+    fn plan<'a>(pairs: &'a [NodePair], count: usize, own: Own<'a>) -> Plan<'a, NodePair, Own<'a>> {
+        Plan::of(Binary { pairs, count, own, most: Leaves::WIDE.most }, Leaves::WIDE)
     }
 
     fn cubes(count: u32, step: f32) -> Vec<Bounds> {
@@ -215,31 +294,36 @@ mod tests {
     }
 
     /// Least costs found so far, by node and most children.
-    type Memory = std::collections::HashMap<(u32, usize), f32>;
+    type Memory = std::collections::HashMap<(usize, usize), f32>;
+    type Planned<'a> = Plan<'a, NodePair, Own<'a>>;
+
+    fn leaf_cost(plan: &Planned<'_>, node: Node) -> f32 {
+        Leaves::WIDE.cost(plan.bounds(node), plan.count(node))
+    }
 
     /// The least cost of showing a subtree as at most `most` children, by trying everything.
-    fn least(tree: &Binary, number: u32, most: usize, memory: &mut Memory) -> f32 {
-        if let Some(&known) = memory.get(&(number, most)) {
+    fn least(plan: &Planned<'_>, node: Node, most: usize, memory: &mut Memory) -> f32 {
+        if let Some(&known) = memory.get(&(node.place(), most)) {
             return known;
         }
-        let node = &tree.nodes[number as usize];
-        let cost = match (node.kind, most) {
-            (Kind::Leaf, _) => Leaves::WIDE.cost(node),
-            (_, 1) => Leaves::WIDE.cost(node).min(least_inner(tree, number, memory)),
-            _ => least_shared(tree, number, most, memory).min(least(tree, number, most - 1, memory)),
+        let leaf = leaf_cost(plan, node);
+        let cost = match (plan.tree.children(node), most) {
+            (None, _) => leaf,
+            (_, 1) => leaf.min(least_inner(plan, node, memory)),
+            _ => least_shared(plan, node, most, memory).min(least(plan, node, most - 1, memory)),
         };
-        memory.insert((number, most), cost);
+        memory.insert((node.place(), most), cost);
         cost
     }
 
     /// The least cost of a subtree whose root is a wide node.
-    fn least_inner(tree: &Binary, number: u32, memory: &mut Memory) -> f32 {
-        least_shared(tree, number, ARITY, memory) + tree.nodes[number as usize].bounds.half_area() * NODE
+    fn least_inner(plan: &Planned<'_>, node: Node, memory: &mut Memory) -> f32 {
+        least_shared(plan, node, ARITY, memory) + plan.bounds(node).half_area() * NODE
     }
 
-    fn least_shared(tree: &Binary, number: u32, most: usize, memory: &mut Memory) -> f32 {
-        let Kind::Inner(left, right) = tree.nodes[number as usize].kind else { unreachable!() };
-        let costs = (1..most).map(|share| least(tree, left, share, memory) + least(tree, right, most - share, memory));
+    fn least_shared(plan: &Planned<'_>, node: Node, most: usize, memory: &mut Memory) -> f32 {
+        let [left, right] = plan.tree.children(node).unwrap();
+        let costs = (1..most).map(|share| least(plan, left, share, memory) + least(plan, right, most - share, memory));
         costs.fold(f32::INFINITY, f32::min)
     }
 
@@ -247,33 +331,35 @@ mod tests {
     fn no_plan_costs_less() {
         for (count, step) in [(2, 2.0), (5, 0.1), (9, 3.0), (40, 0.5), (100, 1.5)] {
             for halve in [|n: usize| n / 2, |_: usize| 1, |n: usize| n.div_ceil(3)] {
-                let tree = tree(&cubes(count, step), halve);
-                let (got, want) =
-                    (cost(&tree, &Plan::of(&tree, Leaves::WIDE), 0), least_inner(&tree, 0, &mut Memory::new()));
+                let leaves = cubes(count, step);
+                let pairs = pairs(&leaves, halve);
+                let own = |slot: u32| leaves[slot as usize];
+                let plan = plan(&pairs, leaves.len(), &own);
+                let (got, want) = (cost(&plan, Node::ROOT), least_inner(&plan, Node::ROOT, &mut Memory::new()));
                 assert!((got - want).abs() < 1e-3 * want, "{count} cubes {step} apart: {got} {want}");
             }
         }
     }
 
     /// The cost of the wide node that a binary node becomes.
-    fn cost(tree: &Binary, plan: &Plan, number: u32) -> f32 {
+    fn cost(plan: &Planned<'_>, node: Node) -> f32 {
         let mut children = Vec::new();
-        plan.children(tree, number, &mut children);
+        plan.children(node, &mut children);
         assert!(children.len() <= ARITY);
-        let below = children.iter().map(|&(child, is_leaf)| {
-            if is_leaf { Leaves::WIDE.cost(&tree.nodes[child as usize]) } else { cost(tree, plan, child) }
-        });
-        below.sum::<f32>() + tree.nodes[number as usize].bounds.half_area() * NODE
+        let below =
+            children.iter().map(|&(child, is_leaf)| if is_leaf { leaf_cost(plan, child) } else { cost(plan, child) });
+        below.sum::<f32>() + plan.bounds(node).half_area() * NODE
     }
 
     #[test]
     fn three_levels_of_a_chain_and_of_a_full_tree() {
-        let mut children = Vec::new();
-        three_levels(&tree(&cubes(32, 1.0), |n| n / 2), 0, &mut children);
-        assert_eq!(children.len(), 8);
-        assert!(children.iter().all(|&(_, is_leaf)| !is_leaf));
-        three_levels(&tree(&cubes(32, 1.0), |_| 1), 0, &mut children);
-        assert_eq!(children.iter().filter(|&&(_, is_leaf)| is_leaf).count(), 3);
-        assert_eq!(children.len(), 4);
+        let (leaves, mut children) = (cubes(32, 1.0), Vec::new());
+        let own = |slot: u32| leaves[slot as usize];
+        let mut show = |halve: fn(usize) -> usize| {
+            plan(&pairs(&leaves, halve), leaves.len(), &own).three_levels(Node::ROOT, &mut children);
+            (children.len(), children.iter().filter(|&&(_, is_leaf)| is_leaf).count())
+        };
+        assert_eq!(show(|n| n / 2), (8, 0));
+        assert_eq!(show(|_| 1), (4, 3));
     }
 }

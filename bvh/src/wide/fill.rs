@@ -6,7 +6,7 @@ use eyerays_shader::data::Primitive;
 use rayon::prelude::*;
 
 use super::{
-    binary::{Binary, Node},
+    binary::{Boxed, Node},
     bvh8::Bvh8,
     collapse::Plan,
 };
@@ -19,21 +19,20 @@ const PART: u32 = 4096;
 type Counts = [usize; 4];
 
 /// What nodes and leaves are made of.
-pub(super) struct Collapse<'a> {
-    pub tree: Binary,
-    pub plan: Plan,
+pub(super) struct Collapse<'a, P, F> {
+    pub plan: Plan<'a, P, F>,
     pub primitives: &'a [Primitive],
 }
 
-impl Collapse<'_> {
+impl<P: Boxed, F: Fn(u32) -> Bounds + Sync> Collapse<'_, P, F> {
     /// All nodes and leaves.
     pub fn run(&self) -> Bvh8 {
-        let top = self.walk((0, 0), PART);
+        let top = self.walk((Node::ROOT, 0), PART);
         let roots = top.children.iter().filter_map(|child| match child.is {
             Is::Part { level } => Some((child.node, level)),
             _ => None,
         });
-        let roots: Vec<(u32, u32)> = roots.collect();
+        let roots: Vec<(Node, u32)> = roots.collect();
         let parts: Vec<Walk> = roots.into_par_iter().map(|root| self.walk(root, 0)).collect();
         let [nodes, triangles, spheres, mixed] = parts.iter().fold(top.counts, |all, part| sum(all, part.counts));
         let mut bvh8 = Bvh8 {
@@ -52,19 +51,21 @@ impl Collapse<'_> {
 
     /// The wide nodes from a binary one on, which has so many wide ones above it, but none below inner children of at most
     /// `few` slots: these are parts.
-    fn walk(&self, root: (u32, u32), few: u32) -> Walk {
+    fn walk(&self, root: (Node, u32), few: u32) -> Walk {
         let mut walk = Walk { nodes: Vec::new(), children: Vec::new(), counts: [1, 0, 0, 0] };
-        let (mut open, mut list) = (vec![(0, root)], Vec::new());
+        let (mut open, mut list, mut sorted) = (vec![(0, root)], Vec::new(), Vec::new());
         while let Some((number, (node, level))) = open.pop() {
-            self.plan.children_at(&self.tree, node, level, &mut list);
-            let area = |child: &(u32, bool)| self.node(child.0).bounds.half_area();
-            list.sort_by(|a, b| area(b).total_cmp(&area(a)));
+            self.plan.children_at(node, level, &mut list);
+            sorted.clear();
+            sorted.extend(list.iter().map(|&(node, is_leaf)| (self.plan.bounds(node).half_area(), node, is_leaf)));
+            sorted.sort_by(|a, b| b.0.total_cmp(&a.0));
             let first = open.len();
-            for &(node, is_leaf) in &list {
+            for &(_, node, is_leaf) in &sorted {
                 let is = if is_leaf {
-                    walk.counts[place(self.leaf(node).1)] += 1;
-                    Is::Leaf
-                } else if self.node(node).count <= few {
+                    let kind = self.kind(node);
+                    walk.counts[place(kind)] += 1;
+                    Is::Leaf(kind)
+                } else if self.plan.count(node) <= few {
                     Is::Part { level: level + 1 }
                 } else {
                     open.push((walk.counts[0], (node, level + 1)));
@@ -79,23 +80,19 @@ impl Collapse<'_> {
         walk
     }
 
-    fn node(&self, number: u32) -> &Node {
-        &self.tree.nodes[number as usize]
-    }
-
-    /// The slots of a leaf, and what it holds.
-    fn leaf(&self, node: u32) -> (&[u32], LeafKind) {
-        let Node { first, count, .. } = *self.node(node);
-        let slots = &self.tree.order[first as usize..(first + count) as usize];
-        let all = |is: fn(&Primitive) -> bool| slots.iter().all(|&slot| is(&self.primitives[slot as usize]));
-        let kind = if all(Primitive::is_triangle) {
-            LeafKind::Triangles
-        } else if all(Primitive::is_sphere) {
-            LeafKind::Spheres
-        } else {
-            LeafKind::Mixed
-        };
-        (slots, kind)
+    /// What a leaf holds.
+    fn kind(&self, leaf: Node) -> LeafKind {
+        let (mut triangles, mut spheres) = (true, true);
+        self.plan.each_slot(leaf, |slot| {
+            let primitive = &self.primitives[slot as usize];
+            triangles &= primitive.is_triangle();
+            spheres &= primitive.is_sphere();
+        });
+        match (triangles, spheres) {
+            (true, _) => LeafKind::Triangles,
+            (_, true) => LeafKind::Spheres,
+            _ => LeafKind::Mixed,
+        }
     }
 }
 
@@ -122,12 +119,12 @@ struct Walk {
 
 /// A child, by its binary node.
 struct Child {
-    node: u32,
+    node: Node,
     is: Is,
 }
 
 enum Is {
-    Leaf,
+    Leaf(LeafKind),
     /// The wide node of this number in the walk.
     Inner(usize),
     /// The root of another walk, so many wide nodes below that of all.
@@ -169,27 +166,35 @@ impl<'r> Room<'r> {
     }
 
     /// Puts nodes here, and their leaves. `roots` are the numbers of parts' first nodes.
-    fn put(&mut self, collapse: &Collapse<'_>, walk: &Walk, roots: &mut dyn Iterator<Item = usize>) {
-        let mut start = 0;
+    fn put<P: Boxed, F: Fn(u32) -> Bounds + Sync>(
+        &mut self,
+        collapse: &Collapse<'_, P, F>,
+        walk: &Walk,
+        roots: &mut dyn Iterator<Item = usize>,
+    ) {
+        let (mut start, mut slots) = (0, Vec::new());
         for &(number, end) in &walk.nodes {
             for (i, child) in walk.children[start..end].iter().enumerate() {
                 let reference = match child.is {
-                    Is::Leaf => self.put_leaf(collapse, child.node),
+                    Is::Leaf(kind) => {
+                        slots.clear();
+                        collapse.plan.each_slot(child.node, |slot| slots.push(slot));
+                        self.put_leaf(kind, &slots, collapse.primitives)
+                    }
                     Is::Inner(number) => Bvh8Ref::inner((self.next[0] + number) as u32),
                     Is::Part { .. } => Bvh8Ref::inner(roots.next().expect("as counted") as u32),
                 };
-                set(&mut self.nodes[number], i, collapse.node(child.node).bounds, reference);
+                set(&mut self.nodes[number], i, collapse.plan.bounds(child.node), reference);
             }
             start = end;
         }
     }
 
-    fn put_leaf(&mut self, collapse: &Collapse<'_>, node: u32) -> Bvh8Ref {
+    fn put_leaf(&mut self, kind: LeafKind, slots: &[u32], primitives: &[Primitive]) -> Bvh8Ref {
         fn put<T>(room: &mut &mut [T], leaf: T) {
             *room.split_off_first_mut().expect("as counted") = leaf;
         }
-        let (slots, kind) = collapse.leaf(node);
-        let numbered = slots.iter().map(|&slot| (slot, &collapse.primitives[slot as usize]));
+        let numbered = slots.iter().map(|&slot| (slot, &primitives[slot as usize]));
         match kind {
             LeafKind::Triangles => put(&mut self.triangles, Triangle4::of(numbered)),
             LeafKind::Spheres => put(&mut self.spheres, Sphere4::of(numbered)),
@@ -203,10 +208,9 @@ impl<'r> Room<'r> {
 
 /// Puts a child into a node.
 fn set(node: &mut Bvh8Node, child: usize, bounds: Bounds, reference: Bvh8Ref) {
-    let margin = f64::from(Bvh8Node::MARGIN);
     for axis in 0..3 {
-        node.planes[axis][0][child] = (f64::from(bounds.min[axis]) - margin) as f32;
-        node.planes[axis][1][child] = (f64::from(bounds.max[axis]) + margin) as f32;
+        node.planes[axis][0][child] = bounds.min[axis];
+        node.planes[axis][1][child] = bounds.max[axis];
     }
     node.children[child] = reference;
 }

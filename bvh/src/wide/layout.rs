@@ -31,8 +31,9 @@ pub(crate) struct Wide {
 /// Makes wide nodes of node pairs, whose slots are in depth-first order: a parent before its children,
 /// the inner children of a node in a row, and what is below one of them before the next. `bounds` are the slots' own boxes.
 pub(crate) fn wide(pairs: &[NodePair], bounds: &[Bounds]) -> Wide {
-    let tree = Binary::of(pairs, bounds, Leaves::WIDE.most);
-    let levels = levels(&tree, &Plan::of(&tree, Leaves::WIDE));
+    let own = |slot: u32| bounds[slot as usize];
+    let plan = Plan::of(Binary { pairs, count: bounds.len(), own, most: Leaves::WIDE.most }, Leaves::WIDE);
+    let levels = levels(&plan);
     let count = levels.iter().map(Vec::len).sum();
     let mut wide = Wide { nodes: vec![nothing(); count], slots: Vec::with_capacity(bounds.len()) };
     let (mut open, mut next) = (vec![(0, 0, 0)], 1);
@@ -41,8 +42,7 @@ pub(crate) fn wide(pairs: &[NodePair], bounds: &[Bounds]) -> Wide {
         let mut record = made.record;
         (record.first_child, record.first_triangle) = (next, wide.slots.len() as u32);
         wide.nodes[number as usize] = record.encode();
-        let places = made.leaves().flat_map(|leaf| run(&tree.nodes[leaf as usize]));
-        wide.slots.extend(places.map(|place| tree.order[place as usize]));
+        made.leaves().for_each(|leaf| plan.each_slot(leaf, |slot| wide.slots.push(slot)));
         let inner = made.inner().count() as u32;
         open.extend((0..inner).rev().map(|i| (level + 1, made.first + i, next + i)));
         next += inner;
@@ -54,17 +54,17 @@ pub(crate) fn wide(pairs: &[NodePair], bounds: &[Bounds]) -> Wide {
 struct Made {
     record: Record,
     /// The binary node in each slot with a child.
-    children: [u32; CwbvhNode::ARITY],
+    children: [Node; CwbvhNode::ARITY],
     /// The place of the first inner child on the next level.
     first: u32,
 }
 
 /// The nodes of every level, those of a parent in a row. Threads share a level.
-fn levels(tree: &Binary, plan: &Plan) -> Vec<Vec<Made>> {
-    let (mut levels, mut open) = (Vec::new(), vec![0]);
+fn levels<F: Fn(u32) -> Bounds + Sync>(plan: &Plan<'_, NodePair, F>) -> Vec<Vec<Made>> {
+    let (mut levels, mut open) = (Vec::new(), vec![Node::ROOT]);
     while !open.is_empty() {
         let level = levels.len() as u32;
-        let make = |list: &mut _, &node: &u32| Made::of(tree, plan, node, level, list);
+        let make = |list: &mut _, &node: &Node| Made::of(plan, node, level, list);
         let mut made: Vec<Made> = open.par_iter().map_init(Vec::new, make).collect();
         open.clear();
         for node in &mut made {
@@ -78,17 +78,21 @@ fn levels(tree: &Binary, plan: &Plan) -> Vec<Vec<Made>> {
 
 impl Made {
     /// The wide node that a binary one becomes, so many wide ones below the root. `list` is for any use.
-    fn of(tree: &Binary, plan: &Plan, number: u32, level: u32, list: &mut Vec<(u32, bool)>) -> Self {
-        plan.children_at(tree, number, level, list);
-        let node = |child: usize| &tree.nodes[list[child].0 as usize];
-        let boxes: Vec<Bounds> = (0..list.len()).map(|i| node(i).bounds).collect();
+    fn of<F: Fn(u32) -> Bounds + Sync>(
+        plan: &Plan<'_, NodePair, F>,
+        node: Node,
+        level: u32,
+        list: &mut Vec<(Node, bool)>,
+    ) -> Self {
+        plan.children_at(node, level, list);
+        let boxes: Vec<Bounds> = list.iter().map(|&(child, _)| plan.bounds(child)).collect();
         let grid = Grid::around(Bounds::around(boxes.iter().copied()));
         let record = Record { grid, first_child: 0, first_triangle: 0, children: [Record::NOWHERE; CwbvhNode::ARITY] };
-        let mut made = Made { record, children: [0; CwbvhNode::ARITY], first: 0 };
+        let mut made = Made { record, children: [Node::ROOT; CwbvhNode::ARITY], first: 0 };
         for (slot, child) in octant::slots(&boxes, |i| list[i].1).into_iter().enumerate() {
             let Some(i) = child else { continue };
             let (binary, is_leaf) = list[i];
-            let what = if is_leaf { Child::Leaf { count: node(i).count } } else { Child::Inner };
+            let what = if is_leaf { Child::Leaf { count: plan.count(binary) } } else { Child::Inner };
             made.record.children[slot] = (what, grid.planes(boxes[i]));
             made.children[slot] = binary;
         }
@@ -96,16 +100,16 @@ impl Made {
     }
 
     /// The binary nodes of inner children, in the order of slots.
-    fn inner(&self) -> impl Iterator<Item = u32> {
+    fn inner(&self) -> impl Iterator<Item = Node> {
         self.of_kind(|child| child == Child::Inner)
     }
 
     /// Those of leaves.
-    fn leaves(&self) -> impl Iterator<Item = u32> {
+    fn leaves(&self) -> impl Iterator<Item = Node> {
         self.of_kind(|child| matches!(child, Child::Leaf { .. }))
     }
 
-    fn of_kind(&self, is: impl Fn(Child) -> bool) -> impl Iterator<Item = u32> {
+    fn of_kind(&self, is: impl Fn(Child) -> bool) -> impl Iterator<Item = Node> {
         self.record.children.iter().zip(self.children).filter(move |((child, _), _)| is(*child)).map(|(_, node)| node)
     }
 }
@@ -129,11 +133,6 @@ impl Wide {
             pair.right_min.w = moved(pair.right_min.w);
         });
     }
-}
-
-/// The slots below a node.
-fn run(node: &Node) -> std::ops::Range<u32> {
-    node.first..node.first + node.count
 }
 
 /// A placeholder for a node until it is made.

@@ -39,23 +39,29 @@ pub(super) fn area(bounds: Bounds) -> f32 {
 pub(super) struct Grid {
     start: Vec3A,
     width: Vec3A,
+    /// Bins a length.
+    density: Vec3A,
 }
 
 impl Grid {
     /// Bins across a box. An axis without extent has all in its first bin.
     pub fn across(bounds: Bounds) -> Self {
         let width = bounds.extent() / BINS as f32;
-        Grid { start: bounds.min, width: Vec3A::select(width.cmpgt(Vec3A::ZERO), width, Vec3A::ONE) }
+        let width = Vec3A::select(width.cmpgt(Vec3A::splat(LEAST)), width, Vec3A::ONE);
+        Grid { start: bounds.min, width, density: width.recip() }
     }
 
     /// A place's bin along each axis.
+    #[inline]
     pub fn bins(&self, place: Vec3A) -> [usize; 3] {
-        ((place - self.start) / self.width).to_array().map(bin)
+        let steps = ((place - self.start) * self.density).clamp(Vec3A::splat(FIRST), Vec3A::splat(LAST));
+        (steps + WHOLE).to_array().map(bin)
     }
 
     /// A coordinate's bin along an axis.
+    #[inline]
     pub fn bin(&self, axis: usize, coordinate: f32) -> usize {
-        bin((coordinate - self.start[axis]) / self.width[axis])
+        bin(((coordinate - self.start[axis]) * self.density[axis]).clamp(FIRST, LAST) + WHOLE)
     }
 
     /// Where a bin starts.
@@ -64,8 +70,19 @@ impl Grid {
     }
 }
 
-fn bin(steps: f32) -> usize {
-    (steps as u32).min(BINS as u32 - 1) as usize
+/// The least width of a bin, whose inverse is finite.
+const LEAST: f32 = f32::MIN_POSITIVE;
+/// The middles of the first bin and of the last.
+const FIRST: f32 = 0.5;
+const LAST: f32 = BINS as f32 - 0.5;
+/// Where a place in bins becomes a number without a fraction, whose last bits are its bin's: Rust's conversion to an integer takes
+/// three times as long. The half makes rounding down of rounding to the nearest.
+const WHOLE: f32 = (1u32 << 23) as f32 - 0.5;
+
+/// The bin of a place in bins behind [`WHOLE`].
+#[inline]
+fn bin(place: f32) -> usize {
+    place.to_bits() as usize % BINS
 }
 
 /// What is in a bin: the box around it, how many parts start here, and how many end.
@@ -120,6 +137,13 @@ impl Bins {
     /// Grows a bin's box, without a part.
     pub fn grow(&mut self, bin: usize, bounds: Bounds) {
         self.add(bin, Bin { bounds, ..Bin::EMPTY });
+    }
+
+    /// Grows a bin's box, if there is anything.
+    pub fn grow_by(&mut self, bin: usize, bounds: Bounds) {
+        if !bounds.is_empty() {
+            self.grow(bin, bounds);
+        }
     }
 
     /// Adds all that is in other bins of the same axis.

@@ -76,7 +76,9 @@ impl<'p> Node<'p> {
     fn halves(self, left: usize, right: usize) -> [Node<'p>; 2] {
         let (Node { parts, level, .. }, count) = (self, left + right);
         let one = share(parts.len() - count, parts[..count].split_at(left));
-        parts.copy_within(left..count, left + one);
+        if one > 0 {
+            parts.copy_within(left..count, left + one);
+        }
         let (first, second) = parts.split_at_mut(left + one);
         [(first, left), (second, right)].map(|(parts, count)| Node { parts, count, level: level + 1 })
     }

@@ -67,7 +67,6 @@ pub(super) fn partition(parts: &mut [Part], space: &mut Vec<Part>, is_left: impl
     let counts: Vec<usize> =
         parts.par_chunks_mut(CHUNK).map_init(Vec::new, |space, parts| partition_some(parts, space, &is_left)).collect();
     let left = counts.iter().sum();
-    space.clear();
     space.resize(parts.len(), Part::NONE);
     let (mut lefts, mut rights) = space.split_at_mut(left);
     let places: Vec<[&mut [Part]; 2]> = parts
@@ -86,19 +85,21 @@ pub(super) fn partition(parts: &mut [Part], space: &mut Vec<Part>, is_left: impl
     left
 }
 
-fn partition_some(parts: &mut [Part], right: &mut Vec<Part>, is_left: impl Fn(&Part) -> bool) -> usize {
-    right.clear();
-    let mut left = 0;
+/// Without a branch that depends on a part, which a processor would guess wrong every other time.
+fn partition_some(parts: &mut [Part], space: &mut Vec<Part>, is_left: impl Fn(&Part) -> bool) -> usize {
+    if space.len() < parts.len() {
+        space.resize(parts.len(), Part::NONE);
+    }
+    let (mut left, rights) = (0, &mut space[..parts.len()]);
     for i in 0..parts.len() {
         let part = parts[i];
-        if is_left(&part) {
-            parts[left] = part;
-            left += 1;
-        } else {
-            right.push(part);
-        }
+        let is_left = is_left(&part);
+        parts[left] = part;
+        rights[i - left] = part;
+        left += usize::from(is_left);
     }
-    parts[left..].copy_from_slice(right);
+    let right = parts.len() - left;
+    parts[left..].copy_from_slice(&rights[..right]);
     left
 }
 

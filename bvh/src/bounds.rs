@@ -102,3 +102,9 @@ pub(crate) fn half_area(extent: Vec3A) -> f32 {
     let [x, y, z] = extent.to_array();
     x * y + y * z + z * x
 }
+
+/// The axis of the greatest extent; the first of equals.
+pub(crate) fn longest(extent: Vec3A) -> usize {
+    let longer = |a: usize, b: usize| if extent[b] > extent[a] { b } else { a };
+    longer(longer(0, 1), 2)
+}

@@ -1,9 +1,7 @@
 //! Median splits, which always halve.
 
+use crate::bounds::{Bounds, longest};
 use eyerays_shader::data::MAX_LEAF;
-use glam::Vec3A;
-
-use crate::bounds::Bounds;
 
 /// Levels of node pairs that median splits need below a subtree's root: 0 for a leaf.
 pub(crate) fn height(primitives: u32) -> u32 {
@@ -34,12 +32,6 @@ fn halve<T>(items: &mut [T], key: impl Fn(&T) -> (f32, u32)) {
         let (a, b) = (key(a), key(b));
         a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
     });
-}
-
-/// The axis of the greatest extent; the first of equals.
-fn longest(extent: Vec3A) -> usize {
-    let longer = |a: usize, b: usize| if extent[b] > extent[a] { b } else { a };
-    longer(longer(0, 1), 2)
 }
 
 #[cfg(test)]

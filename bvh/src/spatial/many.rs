@@ -106,7 +106,7 @@ fn partition_some(parts: &mut [Part], space: &mut Vec<Part>, is_left: impl Fn(&P
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::spatial::bins::Grid;
+    use crate::spatial::bins::{BINS, Grid};
     use eyerays_shader::data::Primitive;
     use glam::{Vec3, Vec3A};
 
@@ -129,7 +129,7 @@ mod tests {
         assert_eq!(all, Bounds::around(parts.iter().map(Part::bounds)));
         assert_eq!(total_area(&parts), parts.chunks(CHUNK).map(total_area).sum::<f64>());
 
-        let grid = Grid::across(all);
+        let grid = Grid::across(all, BINS);
         let put = |bins: &mut [Bins; 1], parts: &[Part]| {
             parts.iter().for_each(|part| bins[0].put(grid.bin(0, part.bounds().min.x), part.bounds()));
         };

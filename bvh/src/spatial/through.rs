@@ -1,87 +1,114 @@
 //! The cheapest plane through triangles, which cuts those that it crosses.
 
 use eyerays_shader::data::{BOX_PADDING, Primitive};
+use glam::Vec3A;
 
 use super::bins::{Bins, Grid, Split};
 use super::many;
-use super::part::{Edges, Part};
-use crate::bounds::Bounds;
+use super::part::Part;
+use crate::bounds::{Bounds, longest};
 
-/// The cheapest split through parts within `bounds`, and its plane, if it costs less than `most`.
-///
-/// An axis is first given a cost that no plane across it goes below: that without the boxes of parts that planes cross.
-/// Where that is too much already, nothing is cut along the axis.
+/// Bins between planes through triangles. With 32, trees cost as much and take a tenth longer to grow.
+const BINS: usize = 16;
+
+/// The cheapest split through parts within `bounds` and across their longest axis, and its plane. With the cheapest of all three axes, trees
+/// cost as much and take a third longer to grow.
 pub(super) fn through(
     bins: &mut [Bins; 3],
     triangles: &[Primitive],
     parts: &[Part],
     bounds: Bounds,
-    most: f32,
 ) -> Option<(Split, f32)> {
-    let grid = Grid::across(bounds);
-    many::sort_into(bins, parts, |bins, parts| put(bins, &grid, parts));
+    let axis = longest(bounds.extent());
     // Slabs thinner than padding would separate nothing.
-    let is_wide = |axis: &usize| bounds.extent()[*axis] > 8.0 * BOX_PADDING;
-    let least = (0..3).filter(is_wide).filter_map(|axis| Some((bins[axis].cheapest(axis)?.cost, axis)));
-    let mut least: Vec<(f32, usize)> = least.collect();
-    least.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let mut best: Option<Split> = None;
-    for (cost, axis) in least {
-        if best.map_or(cost >= most, |best| cost > best.cost) {
-            break;
-        }
-        let bins = std::array::from_mut(&mut bins[axis]);
-        many::grow(bins, parts, |bins, parts| chop(&mut bins[0], &grid, triangles, parts, axis));
-        let split = bins[0].cheapest(axis);
-        // Of equals, that of the first axis.
-        best = match best {
-            Some(best) if best.axis < axis => Split::cheaper(Some(best), split),
-            best => Split::cheaper(split, best),
-        };
+    if bounds.extent()[axis] <= 8.0 * BOX_PADDING {
+        return None;
     }
-    best.map(|split| (split, grid.plane(split.axis, split.bin)))
+    let (grid, bins) = (Grid::across(bounds, BINS), std::array::from_mut(&mut bins[axis]));
+    many::sort_into(bins, parts, |bins, parts| chop(&mut bins[0], &grid, triangles, parts, axis));
+    bins[0].cheapest(axis).map(|split| (split, grid.plane(axis, split.bin)))
 }
 
-/// Puts parts into the bins that they start and end in, those of one bin with their boxes.
-fn put(bins: &mut [Bins; 3], grid: &Grid, parts: &[Part]) {
-    for part in parts {
-        let bounds = part.bounds();
-        let ends = grid.bins(bounds.min).into_iter().zip(grid.bins(bounds.max));
-        for (bins, (first, last)) in bins.iter_mut().zip(ends) {
-            if first == last {
-                bins.put(first, bounds);
-            } else {
-                bins.span(first, last);
-            }
-        }
-    }
-}
-
-/// Grows the bins of parts that lie in several, by the parts cut at the bins' planes.
+/// Puts parts into bins, those of several cut at the planes between.
 fn chop(bins: &mut Bins, grid: &Grid, triangles: &[Primitive], parts: &[Part], axis: usize) {
     for part in parts {
-        let mut rest = part.bounds();
-        let [first, last] = [rest.min, rest.max].map(|corner| grid.bin(axis, corner[axis]));
+        let bounds = part.bounds();
+        let [first, last] = [bounds.min, bounds.max].map(|corner| grid.bin(axis, corner[axis]));
         if first == last {
+            bins.put(first, bounds);
             continue;
         }
+        bins.span(first, last);
         let triangle = &triangles[part.triangle() as usize];
         if !triangle.is_triangle() {
-            (first..=last).for_each(|bin| bins.grow(bin, rest));
+            (first..=last).for_each(|bin| bins.grow(bin, bounds));
             continue;
         }
-        let edges = Edges::of(triangle, axis);
-        for bin in first..=last {
-            if bin == last {
-                bins.grow(bin, rest);
-                break;
-            }
-            let [left, right] = edges.sides(rest, grid.plane(axis, bin + 1));
-            if let Some(left) = left {
-                bins.grow(bin, left);
-            }
-            let Some(right) = right else { break };
-            rest = right;
+        let mut slabs = Slabs::of(triangle, axis);
+        for bin in first..last {
+            bins.grow(bin, slabs.up_to(grid.plane(axis, bin + 1)).intersection(bounds));
         }
+        bins.grow(last, slabs.rest().intersection(bounds));
+    }
+}
+
+/// A triangle between planes across an axis, one after the other. In single precision, which is enough to choose one of them: what is
+/// cut then is cut by [`Part::cut`].
+struct Slabs {
+    axis: usize,
+    /// The corners that are still to come, ascending along the axis.
+    corners: [Vec3A; 3],
+    met: usize,
+    /// Where the last plane cut the triangle.
+    last: Bounds,
+    /// From the first corner to the second, from the second to the third, and from the first to the third.
+    edges: [Edge; 3],
+}
+
+/// An edge: where it starts, and how far it goes a length along the axis.
+struct Edge {
+    from: Vec3A,
+    along: Vec3A,
+}
+
+impl Slabs {
+    fn of(triangle: &Primitive, axis: usize) -> Self {
+        let mut corners = triangle.vertices().map(Vec3A::from);
+        for (i, j) in [(0, 1), (1, 2), (0, 1)] {
+            if corners[j][axis] < corners[i][axis] {
+                corners.swap(i, j);
+            }
+        }
+        let edge = |(from, to): (usize, usize)| {
+            let (from, along) = (corners[from], corners[to] - corners[from]);
+            Edge { from, along: along / along[axis].max(f32::MIN_POSITIVE) }
+        };
+        Slabs { axis, corners, met: 0, last: Bounds::EMPTY, edges: [(0, 1), (1, 2), (0, 2)].map(edge) }
+    }
+
+    /// What lies between the last plane and the next one.
+    fn up_to(&mut self, plane: f32) -> Bounds {
+        let mut slab = self.last;
+        while self.met < 3 && self.corners[self.met][self.axis] <= plane {
+            slab = slab.union(Bounds::point(self.corners[self.met]));
+            self.met += 1;
+        }
+        self.last = Bounds::EMPTY;
+        if let 1 | 2 = self.met {
+            let [a, b] = [self.met - 1, 2].map(|edge| self.edges[edge].at(self.axis, plane));
+            self.last = Bounds::new(a.min(b), a.max(b));
+        }
+        slab.union(self.last)
+    }
+
+    /// What lies behind the last plane.
+    fn rest(&self) -> Bounds {
+        self.corners[self.met..].iter().fold(self.last, |rest, &corner| rest.union(Bounds::point(corner)))
+    }
+}
+
+impl Edge {
+    fn at(&self, axis: usize, plane: f32) -> Vec3A {
+        self.from + self.along * (plane - self.from[axis])
     }
 }

@@ -11,7 +11,7 @@ pub enum Quality {
     /// For most scenes: triangles are split, and large nodes moved to where they cost less.
     #[default]
     Medium,
-    /// For scenes that are traced many times: triangles are split, and every node is tried elsewhere.
+    /// For scenes that are traced many times: triangles are split, and three times as many nodes are tried elsewhere.
     High,
 }
 
@@ -24,12 +24,13 @@ impl Quality {
         }
     }
 
-    /// Which share of the nodes of a tree the first pass of reinsertion tries.
+    /// Which share of the nodes of a tree the first pass of reinsertion tries. All of them take three times as long as 0.3 for trees that cost
+    /// 0.5 % (Conference) and 1.1 % (Sibenik) less.
     pub(crate) fn reinsertion(self) -> f32 {
         match self {
             Quality::Linear | Quality::Fast => 0.0,
             Quality::Medium => 0.1,
-            Quality::High => 1.0,
+            Quality::High => 0.3,
         }
     }
 }

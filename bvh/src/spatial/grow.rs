@@ -128,10 +128,10 @@ impl Grower<'_> {
     fn fill(&self, node: Node<'_>, piece: &mut Piece<usize>, space: &mut Workspace) -> Subtree {
         if node.count == 1 {
             let [part, room @ ..] = node.parts else { unreachable!("a node has its parts") };
-            *part = part.own(&self.triangles[part.triangle() as usize]);
+            *part = part.own();
             room.fill(Part::NONE);
             piece.items += 1;
-            let joins = !self.triangles[part.triangle() as usize].is_instance();
+            let joins = part.is_triangle() || !self.triangles[part.triangle() as usize].is_instance();
             return Subtree { child: NodeRef::leaf(piece.items as u32 - 1, 1), bounds: part.bounds(), joins };
         }
         let (number, is_root) = (piece.pairs.len(), node.level == 0);

@@ -8,7 +8,7 @@ use crate::bounds::Bounds;
 /// The part of a triangle inside a box, which is as tight as the cuts so far allow.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
-    /// The least corner of its extent, without padding, and the triangle's number as bits.
+    /// The least corner of its extent, without padding, and as bits the triangle's number and whether it is one.
     least: Vec4,
     greatest: Vec4,
 }
@@ -16,6 +16,9 @@ pub(super) struct Part {
 /// Makes any triangle's number a normal floating-point number: the lane takes part in all operations, and a division of a
 /// subnormal number takes as long as ten others.
 const NORMAL: u32 = 1 << 30;
+
+/// What is no triangle: the sign.
+const OTHER: u32 = 1 << 31;
 
 const _: () = assert!(NodeRef::MAX_INDEX < NORMAL);
 
@@ -29,22 +32,30 @@ impl Part {
 
     /// All of a primitive.
     pub fn whole(number: u32, primitive: &Primitive) -> Self {
-        let bounds = if primitive.is_triangle() {
-            let [a, b, c] = primitive.vertices().map(Vec3A::from);
-            Bounds::new(a.min(b).min(c), a.max(b).max(c))
-        } else {
-            Bounds::of(primitive)
-        };
-        Part::new(number, bounds)
+        if !primitive.is_triangle() {
+            return Part::new(number | NORMAL | OTHER, Bounds::of(primitive));
+        }
+        let [a, b, c] = primitive.vertices().map(Vec3A::from);
+        Part::new(number | NORMAL, Bounds::new(a.min(b).min(c), a.max(b).max(c)))
     }
 
-    fn new(triangle: u32, bounds: Bounds) -> Self {
-        Part { least: bounds.min.extend(f32::from_bits(triangle | NORMAL)), greatest: bounds.max.extend(1.0) }
+    fn new(bits: u32, bounds: Bounds) -> Self {
+        Part { least: bounds.min.extend(f32::from_bits(bits)), greatest: bounds.max.extend(1.0) }
+    }
+
+    /// The same of another extent.
+    fn within(&self, bounds: Bounds) -> Part {
+        Part::new(self.least.w.to_bits(), bounds)
     }
 
     /// The triangle's number.
     pub fn triangle(&self) -> u32 {
-        self.least.w.to_bits() & !NORMAL
+        self.least.w.to_bits() & !(NORMAL | OTHER)
+    }
+
+    /// Is it of a triangle? Else it is whole.
+    pub fn is_triangle(&self) -> bool {
+        self.least.w.to_bits() & OTHER == 0
     }
 
     /// The part's extent, without padding.
@@ -55,16 +66,17 @@ impl Part {
     /// The parts on either side of a plane across `axis`; `None` for a side without a point. What is no triangle is not cut:
     /// it is whole on both sides, which never pays.
     pub fn cut(self, triangle: &Primitive, axis: usize, plane: f32) -> [Option<Part>; 2] {
-        if !triangle.is_triangle() {
+        if !self.is_triangle() {
             return [Some(self); 2];
         }
-        Edges::of(triangle, axis).sides(self.bounds(), plane).map(|side| side.map(|b| Part::new(self.triangle(), b)))
+        Edges::of(triangle, axis).sides(self.bounds(), plane).map(|side| side.map(|b| self.within(b)))
     }
 
-    /// The part with its own box: its extent with padding, inside the triangle's own.
-    pub fn own(self, triangle: &Primitive) -> Part {
+    /// The part with its own box: its extent with padding. That is inside the triangle's own box, made of a larger extent by the same sums,
+    /// and the triangle itself is not asked, which would take a tenth of growing a tree.
+    pub fn own(self) -> Part {
         let (Bounds { min, max }, padding) = (self.bounds(), Vec3A::splat(BOX_PADDING));
-        Part::new(self.triangle(), Bounds::new(min - padding, max + padding).intersection(Bounds::of(triangle)))
+        if self.is_triangle() { self.within(Bounds::new(min - padding, max + padding)) } else { self }
     }
 
     /// Is it room?
@@ -178,6 +190,6 @@ mod tests {
     #[test]
     fn a_whole_triangle_has_its_own_box() {
         let triangle = Primitive::triangle([Vec3::ZERO, vec3(0.3, 0.1, -0.7), Vec3::Y], 0, 0, 0);
-        assert_eq!(Part::whole(0, &triangle).own(&triangle).bounds(), Bounds::of(&triangle));
+        assert_eq!(Part::whole(0, &triangle).own().bounds(), Bounds::of(&triangle));
     }
 }

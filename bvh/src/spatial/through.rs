@@ -39,12 +39,11 @@ fn chop(bins: &mut Bins, grid: &Grid, triangles: &[Primitive], parts: &[Part], a
             continue;
         }
         bins.span(first, last);
-        let triangle = &triangles[part.triangle() as usize];
-        if !triangle.is_triangle() {
+        if !part.is_triangle() {
             (first..=last).for_each(|bin| bins.grow(bin, bounds));
             continue;
         }
-        let mut slabs = Slabs::of(triangle, axis);
+        let mut slabs = Slabs::of(&triangles[part.triangle() as usize], axis);
         for bin in first..last {
             bins.grow(bin, slabs.up_to(grid.plane(axis, bin + 1)).intersection(bounds));
         }

@@ -1,15 +1,14 @@
 //! What a hierarchy is built over.
 
 use eyerays_shader::data::{Bounds as Record, Primitive};
-use glam::UVec4;
-use rayon::prelude::*;
+use glam::{UVec4, Vec3};
 
 use crate::{
     BuildError,
     bounds::Bounds,
     build::{MOST, check_count},
     spatial,
-    tree::Children,
+    tree::{Children, position},
 };
 
 /// A primitive, or a part of one.
@@ -70,14 +69,13 @@ pub fn split(primitives: &[Primitive], budget: f32) -> Result<References, BuildE
 pub(crate) fn check_coordinates(primitives: &[Primitive]) -> Result<(), BuildError> {
     let normalised = |p: &Primitive| {
         if p.is_triangle() {
-            let coordinates = p.vertices().map(|v| v.to_array());
-            return coordinates.as_flattened().iter().all(|c| c.abs() <= 1.0);
+            return p.vertices().into_iter().all(|v| v.abs().cmple(Vec3::ONE).all());
         }
         let Bounds { min, max } = Bounds::of(p);
         (p.radius() > 0.0 || p.is_instance()) && (0..3).all(|i| -MOST <= min[i] && max[i] <= MOST)
     };
-    match primitives.par_iter().find_first(|p| !normalised(p)) {
-        Some(p) => Err(BuildError::Coordinate { primitive: p.number() }),
+    match position(primitives, |p| !normalised(p)) {
+        Some(place) => Err(BuildError::Coordinate { primitive: primitives[place].number() }),
         None => Ok(()),
     }
 }

@@ -3,9 +3,12 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use eyerays_shader::data::{Bounds as Record, MAX_LEAF, NodePair, NodeRef, numbers};
-use rayon::prelude::*;
 
-use crate::{BuildError, MAX_DEPTH, bounds::Bounds, tree};
+use crate::{
+    BuildError, MAX_DEPTH,
+    bounds::Bounds,
+    tree::{self, position},
+};
 
 /// Subtrees of fewer pairs are left to one thread.
 const FEW: usize = 4096;
@@ -37,9 +40,9 @@ pub fn validate(nodes: &[NodePair], bounds: &[Record]) -> Result<(), BuildError>
 /// Checks that `order` names each of `count` references exactly once.
 pub(crate) fn order(order: &[u32], count: usize) -> Result<(), BuildError> {
     let met = unmet(count);
-    let out = |&&number: &&u32| met.get(number as usize).map(|met| met.store(true, Ordering::Relaxed)).is_none();
-    if let Some(&primitive) = order.par_iter().find_first(out) {
-        return Err(BuildError::PrimitiveTwice { primitive });
+    let is_out = |&number: &u32| met.get(number as usize).map(|met| met.store(true, Ordering::Relaxed)).is_none();
+    if let Some(place) = position(order, is_out) {
+        return Err(BuildError::PrimitiveTwice { primitive: order[place] });
     }
     match missing(&met) {
         Some(primitive) => Err(BuildError::PrimitiveLost { primitive }),
@@ -161,12 +164,12 @@ impl Proof<'_> {
 
 /// Numbers below `count`, none of which was met.
 fn unmet(count: usize) -> Vec<AtomicBool> {
-    (0..count).into_par_iter().map(|_| AtomicBool::new(false)).collect()
+    (0..count).map(|_| AtomicBool::new(false)).collect()
 }
 
 /// The least number that was not met.
 fn missing(met: &[AtomicBool]) -> Option<u32> {
-    met.par_iter().position_first(|met| !met.load(Ordering::Relaxed)).map(|number| number as u32)
+    position(met, |met| !met.load(Ordering::Relaxed)).map(|number| number as u32)
 }
 
 /// Numbers that may each be marked once.

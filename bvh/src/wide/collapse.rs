@@ -220,13 +220,14 @@ impl<P: Boxed, F: Fn(u32) -> Bounds + Sync> Fold<P> for Costing<'_, '_, P, F> {
         Below { children: Some([half(0), half(1)]), count, height: 1, parting }
     }
 
-    fn pair(&self, _: usize, pair: &P, below: [Below; 2], note: &mut [Note; 2]) -> Below {
-        let [left, right] = [0, 1].map(|side| self.node(pair.bounds(side), &below[side]));
-        *note = [left.1, right.1];
+    fn pair(&self, _: usize, pair: &P, [left, right]: [Below; 2], note: &mut [Note; 2]) -> Below {
+        let (left_costs, left_note) = self.node(pair.bounds(0), &left);
+        let (right_costs, right_note) = self.node(pair.bounds(1), &right);
+        *note = [left_note, right_note];
         Below {
-            children: Some([left.0, right.0]),
-            count: below[0].count + below[1].count,
-            height: 1 + below[0].height.max(below[1].height),
+            children: Some([left_costs, right_costs]),
+            count: left.count + right.count,
+            height: 1 + left.height.max(right.height),
             parting: Parting::NONE,
         }
     }

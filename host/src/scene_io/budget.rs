@@ -13,10 +13,10 @@ pub struct Budget {
     round: usize,
 }
 
-/// What a triangle takes of memory from its file to the picture, in bytes. The most that a process held at once,
-/// on a CPU, a triangle: 397 to 406 for a hall and a forest of 1 million, 405 and 436 with `--bvh high`, 352 for a hall of 4
-/// million, 338 for one of 20 million and 16 threads; a sphere, 416 of 1 million.
-const PRIMITIVE: u64 = 480;
+/// What a triangle takes of memory from its file to the picture, in bytes. The most that a process held at once, on a CPU, a triangle,
+/// less what its vertices count: 306 to 330 for a hall and a forest of 1 million by each `--bvh`, 292 and 298 for a hall of 4 million;
+/// a sphere, 343 of 1 million with what is of no sphere.
+const PRIMITIVE: u64 = 340;
 /// What a vertex takes, used or not: its numbers while it is read, in a list that doubles as it grows.
 const VERTEX: u64 = 36;
 /// What a byte of a texture takes: itself, and its levels twice, as colours and as numbers, with a third more than the finest.

@@ -17,6 +17,9 @@ pub struct Budget {
 /// less what its vertices count: 306 to 330 for a hall and a forest of 1 million by each `--bvh`, 292 and 298 for a hall of 4 million;
 /// a sphere, 343 of 1 million with what is of no sphere.
 const PRIMITIVE: u64 = 340;
+/// What a triangle or a sphere takes that is packed of a scene in memory, in bytes, beside that: at most 185 of 9.7 million, measured as above
+/// by each `--bvh`.
+const PACKED: u64 = 220;
 /// What a vertex takes, used or not: its numbers while it is read, in a list that doubles as it grows.
 const VERTEX: u64 = 36;
 /// What a byte of a texture takes: itself, and its levels twice, as colours and as numbers, with a third more than the finest.
@@ -58,6 +61,18 @@ impl Budget {
     pub fn check_textures(&self, bytes: u64) -> Unplaced<()> {
         let fits = self.room.check(bytes.saturating_mul(TEXEL));
         fits.map_err(|why| format!("textures of {bytes} bytes {why}; use smaller ones"))
+    }
+
+    /// Refuses a scene of so many primitives that takes so many bytes in memory, without being read from text.
+    ///
+    /// # Errors
+    /// How many there are, and what they would take of what there is.
+    pub fn check_packed(&self, primitives: usize, bytes: u64) -> Unplaced<()> {
+        if primitives > MAX_PRIMITIVES {
+            return Err(format!("{primitives} are more than the {MAX_PRIMITIVES} primitives that a scene may have"));
+        }
+        let fits = self.room.check(bytes.saturating_add(PACKED * primitives as u64));
+        fits.map_err(|why| format!("{primitives} primitives {why}; end other programs or use a smaller scene"))
     }
 
     /// Refuses so many bytes for anything else.

@@ -32,12 +32,10 @@ pub fn parse(bytes: &[u8], budget: Budget) -> Unplaced<Scene> {
     let all = sections.map(|section| &bytes[section]);
     header.check(&all)?;
     let counts = header.counts;
-    budget.check(counts.triangles as usize, counts.positions as usize)?;
-    budget.check_round(counts.spheres as usize + counts.disks as usize)?;
     budget.check_textures(counts.texels)?;
-    // Sections are copied, and what is of no primitive was not counted.
-    let copies = budget.check_bytes(2 * bytes.len() as u64);
-    copies.map_err(|why| format!("its {} bytes {why}; end other programs or use a smaller scene", bytes.len()))?;
+    // Sections are copied.
+    let primitives = counts.triangles.saturating_add(counts.spheres).saturating_add(counts.disks);
+    budget.check_packed(primitives as usize, 2 * bytes.len() as u64)?;
     let [description, positions, normals, first, second, tangents, colours, rest @ ..] = all;
     let [triangles, materials, spheres, disks, instances, poses, texels, ..] = rest;
     let mesh = Mesh {

@@ -25,7 +25,7 @@ impl Quality {
     }
 
     /// Which share of the nodes of a tree the first pass of reinsertion tries. All of them take three times as long as 0.3 for trees that cost
-    /// 0.5 % (Conference) and 1.1 % (Sibenik) less.
+    /// 0.6 % (Conference) and 1.1 % (Sibenik) less.
     pub(crate) fn reinsertion(self) -> f32 {
         match self {
             Quality::Linear | Quality::Fast => 0.0,

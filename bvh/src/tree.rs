@@ -133,7 +133,7 @@ pub(crate) fn filled<T: Copy + Send + Sync>(value: T, count: usize) -> Vec<T> {
 }
 
 /// The place of the first item that is so, looked for by all threads: chunk by chunk, since asking after each item whether another thread
-/// has found one takes ten times as long as most items do.
+/// has found one takes longer than most items do.
 pub(crate) fn position<T: Sync>(items: &[T], is: impl Fn(&T) -> bool + Sync) -> Option<usize> {
     let in_chunk = |(chunk, items): (usize, &[T])| items.iter().position(&is).map(|place| chunk * CHUNK + place);
     items.par_chunks(CHUNK).enumerate().find_map_first(in_chunk)

@@ -73,7 +73,7 @@ impl Part {
     }
 
     /// The part with its own box: its extent with padding. That is inside the triangle's own box, made of a larger extent by the same sums,
-    /// and the triangle itself is not asked, which would take a tenth of growing a tree.
+    /// and the triangle itself, which lies somewhere in memory, is not asked.
     pub fn own(self) -> Part {
         let (Bounds { min, max }, padding) = (self.bounds(), Vec3A::splat(BOX_PADDING));
         if self.is_triangle() { self.within(Bounds::new(min - padding, max + padding)) } else { self }

@@ -187,6 +187,6 @@ fn spheres_are_counted_before_they_are_placed_and_while_they_are_read() {
     let refuse =
         |name: &str, bytes| load_within(&folder.path(name), budget(bytes), Loading::default()).expect_err("accepted");
     assert_refused(&refuse("twice.toml", 2700), "twice.toml", Some(3), "8 spheres and disks take about 0 MB");
-    assert_refused(&refuse("twice.toml", 1300), "heap.xyzr", Some(3), "3 spheres and disks");
-    assert_refused(&refuse("many.toml", 2700), "many.toml", Some(11), "6 spheres and disks");
+    assert_refused(&refuse("twice.toml", 900), "heap.xyzr", Some(3), "3 spheres and disks");
+    assert_refused(&refuse("many.toml", 1900), "many.toml", Some(11), "6 spheres and disks");
 }

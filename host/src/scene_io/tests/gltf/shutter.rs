@@ -84,14 +84,24 @@ fn what_stands_still_is_as_it_is_without_a_shutter() {
 }
 
 #[test]
-fn lamps_stand_still_and_are_named() {
+fn lamps_and_lights_move_as_all_else() {
     let mut line = moving("translation", "LINEAR", &[0.0, 1.0], &[0.0, 0.0, 0.0, 4.0, 0.0, 0.0]);
     line.json["materials"] = json!([{ "emissiveFactor": [1, 1, 1] }]);
-    line.json["nodes"][0]["name"] = json!("lamp");
+    line.json["nodes"][0]["extensions"] = json!({ "KHR_lights_punctual": { "light": 0 } });
+    line.json["extensions"] = json!({ "KHR_lights_punctual": { "lights": [{ "type": "point" }] } });
     line.primitive()["material"] = json!(0);
-    let (scene, warnings) = over(&line.glb(), "b.glb", 0.0, 1.0);
-    assert_eq!((scene.motion, scene.instances.len()), (None, 0));
-    assert!(warnings[0].contains("\"lamp\" stands still while the shutter is open"), "{warnings:?}");
+    let (scene, motion) = motion(&line, 0.0, 1.0);
+    assert_eq!((scene.instances.len(), &motion.lights[..]), (1, &[0][..]));
+    assert_eq!(motion.poses[0].instances[0].translation, Vec3::X * 4.0);
+    assert_eq!(motion.poses[0].lights[0].stance(), (Vec3::X * 4.0, None));
+}
+
+#[test]
+fn whole_spheres_stand_still_and_are_named() {
+    let toml = "[[mesh]]\nshape = \"sphere\"\n[[mesh.key]]\ntime = 0\n[[mesh.key]]\ntime = 1\ntranslate = [0, 0, 3]\n";
+    let (scene, warnings) = over(toml.as_bytes(), "b.toml", 0.0, 1.0);
+    assert_eq!((scene.motion, scene.spheres.len()), (None, 1));
+    assert!(warnings[0].contains("\"sphere\" stands still while the shutter is open"), "{warnings:?}");
 }
 
 /// A file that a scene places moves there, and keys of the scene move it as a whole.

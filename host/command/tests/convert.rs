@@ -51,7 +51,7 @@ fn a_damaged_file_is_refused_by_every_command_in_a_line_that_names_it_and_what_t
         (damaged(&|bytes| bytes.truncate(20)), "its 20 bytes are less than a header"),
         (damaged(&|bytes| bytes[8] = 1), "version 1 of the binary form"),
         (damaged(&|bytes| bytes[13] = 1), "its header has other than zeros in its spare bytes"),
-        (damaged(&|bytes| bytes[165] = 1), "its byte 165, which belongs to no section, is not zero"),
+        (damaged(&|bytes| bytes[170] = 1), "its byte 170, which belongs to no section, is not zero"),
         (b"[render]\n".to_vec(), "this is no binary scene"),
     ] {
         std::fs::write(place.path("bad.eyerays"), bytes).unwrap();

@@ -103,6 +103,28 @@ pub(crate) struct Way {
     pub bounds: [Vec3; 2],
 }
 
+impl Way {
+    /// Adds the keys of a light to the records.
+    ///
+    /// # Errors
+    /// It is too far away at one of them, or there are too many.
+    fn new(light: u32, keys: Option<Vec<Record>>, records: &mut Vec<Record>) -> Result<Way> {
+        let most = (u32::MAX >> LightRecord::KEYS) as usize;
+        let keys = keys.filter(|keys| records.len() + keys.len() < most).ok_or_else(|| {
+            Error::new(format!(
+                "light {} goes too far away while the shutter is open: move it nearer to the scene",
+                light + 1
+            ))
+        })?;
+        let places = keys.iter().map(|key| key.transform().translation);
+        let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+        let bounds = places.fold(nothing, |[least, greatest], place| [least.min(place), greatest.max(place)]);
+        let first = records.len() as u32;
+        records.extend(keys);
+        Ok(Way { light: light as usize, first, bounds })
+    }
+}
+
 /// What moves of a scene.
 pub(crate) struct Movement {
     /// Steps of the shutter's time, 0 if nothing moves.
@@ -122,7 +144,7 @@ impl Movement {
     const STILL: Movement =
         Movement { steps: 0, exposure: 1.0, things_move: false, ways: Vec::new(), cameras: Vec::new() };
 
-    /// Adds the keys of cameras to the records.
+    /// Adds the keys of cameras and lights to the records.
     ///
     /// # Errors
     /// One is too far away.
@@ -146,19 +168,7 @@ impl Movement {
             let first = &scene.lights[light as usize];
             let later = motion.poses.iter().map(|pose| &pose.lights[number]);
             let keys = [first].into_iter().chain(later).map(|other| light_key(first, other, normalisation));
-            let keys = keys.collect::<Option<Vec<Record>>>();
-            let keys = keys.filter(|keys| records.len() + keys.len() < (u32::MAX >> LightRecord::KEYS) as usize);
-            let keys = keys.ok_or_else(|| {
-                Error::new(format!(
-                    "light {} goes too far away while the shutter is open: move it nearer to the scene",
-                    light + 1
-                ))
-            })?;
-            let places = keys.iter().map(|key| key.transform().translation);
-            let nothing = [Vec3::INFINITY, Vec3::NEG_INFINITY];
-            let way = places.fold(nothing, |[least, greatest], place| [least.min(place), greatest.max(place)]);
-            movement.ways.push(Way { light: light as usize, first: records.len() as u32, bounds: way });
-            records.extend(keys);
+            movement.ways.push(Way::new(light, keys.collect(), records)?);
         }
         Ok(movement)
     }
@@ -181,10 +191,13 @@ fn light_key(first: &Light, light: &Light, normalisation: &Normalisation) -> Opt
     let ((_, from), (place, to)) = (first.stance(), light.stance());
     let turn = from.zip(to).map_or(DQuat::IDENTITY, |(from, to)| DQuat::from_rotation_arc(from, to));
     let rows = DMat3::from_quat(turn).transpose();
-    let place = normalisation.place_anywhere(place)?;
-    let record = |row: DVec3, added: f32| pack(flushed(row.as_vec3()), added.to_bits());
-    let (x, y, z) = (record(rows.x_axis, place.x), record(rows.y_axis, place.y), record(rows.z_axis, place.z));
-    Some(Record { x, y, z, mesh: UVec4::ZERO })
+    Some(turned([rows.x_axis, rows.y_axis, rows.z_axis], normalisation.place_anywhere(place)?))
+}
+
+/// The record of what is turned by a matrix of these rows, at a place.
+fn turned(rows: [DVec3; 3], place: Vec3) -> Record {
+    let record = |axis: usize| pack(flushed(rows[axis].as_vec3()), place[axis].to_bits());
+    Record { x: record(0), y: record(1), z: record(2), mesh: UVec4::ZERO }
 }
 
 /// How a camera is turned against its first key, and where it is.
@@ -194,7 +207,6 @@ fn key(first: &Camera, camera: &Camera, normalisation: &Normalisation) -> Result
         Error::new(format!("camera {name:?} goes too far away while the shutter is open: move it nearer to the scene"))
     })?;
     let (from, to) = (first.axes(), camera.axes());
-    let row = |axis: usize| from.iter().zip(&to).map(|(from, to)| *from * to[axis]).sum::<DVec3>().as_vec3();
-    let record = |axis: usize| pack(flushed(row(axis)), eye[axis].to_bits());
-    Ok(Record { x: record(0), y: record(1), z: record(2), mesh: UVec4::ZERO })
+    let row = |axis: usize| from.iter().zip(&to).map(|(from, to)| *from * to[axis]).sum::<DVec3>();
+    Ok(turned([0, 1, 2].map(row), eye))
 }

@@ -298,7 +298,7 @@ fn opacity_of(opacity: &Opacity) -> f32 {
 }
 
 /// The area of a primitive as rays meet it.
-pub(super) fn area(primitive: &Primitive) -> f64 {
+fn area(primitive: &Primitive) -> f64 {
     let radius = f64::from(primitive.radius());
     if primitive.is_sphere() {
         4.0 * PI * radius * radius

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::copies;
 use super::light_tree::Cone;
-use super::lighting::{area, normal};
+use super::lighting::normal;
 use super::normalisation::Normalisation;
 use crate::error::{Error, Result};
 use crate::memory::Room;
@@ -91,7 +91,6 @@ pub(super) fn of(
         by_mesh[scene.instances[copy].mesh as usize].iter().map(shining).collect::<Vec<_>>()
     };
     all.par_extend(places.firsts.par_iter().enumerate().flat_map_iter(moved));
-    all.retain(|shining| area(&shining.primitive) > 0.0);
     all.sort_unstable_by_key(|shining| (shining.primitive.number(), shining.index));
     all.dedup_by_key(|shining| shining.primitive.number());
     Ok(all)

@@ -1,14 +1,12 @@
 //! Where what a picture shows was in the picture before, and where it is in the one after.
 
-use std::ops::Range;
-
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 
 use super::surface::{Finder, Place};
 use crate::error::{Error, Result};
 use crate::picture::Picture;
-use crate::scene::{Camera, Primitives, Scene};
+use crate::scene::{Camera, ObjectNumbers, Scene};
 use crate::view::Region;
 
 /// What a picture shows, and what those before and after it do.
@@ -40,8 +38,8 @@ pub(super) fn ways(
     (window, size): (Region, (u32, u32)),
     (positions, places): (&Picture, &[Place]),
 ) -> Result<Picture> {
-    let [own, others] = [scene, other].map(|of| (Finder::of(of), Counts::of(of)));
-    if own.1.objects.len() != others.1.objects.len() {
+    let [own, others] = [scene, other].map(|of| (Finder::of(of), ObjectNumbers::of(of)));
+    if own.1.count() != others.1.count() {
         return Err(Error::new("the picture before or after has other objects: its motion can't be told"));
     }
     let way = |i: usize, place: &Place| {
@@ -54,7 +52,7 @@ pub(super) fn ways(
             let far = camera.way_through(middle, size)?;
             return Some(turned.seen_along(far, size)? - camera.seen_along(far, size)?);
         };
-        let there = own.1.find(primitive).and_then(|of| others.1.number(of));
+        let there = own.1.within(primitive).and_then(|of| others.1.number(of));
         let moved = there.map_or(DVec3::ZERO, |there| own.0.moved((primitive, at), (&others.0, there)));
         Some(turned.seen_at(at + moved, size)? - camera.seen_at(at, size)?)
     };
@@ -63,43 +61,4 @@ pub(super) fn ways(
         [x as f32, y as f32, 0.0]
     });
     Picture::from_pixels(positions.width, positions.height, ways.collect())
-}
-
-/// The primitives of each object by their numbers, which another moment may count otherwise: what moves while the shutter is open comes
-/// after what stands still.
-struct Counts {
-    objects: Vec<Range<usize>>,
-    /// Their numbers in the order of those.
-    sorted: Vec<usize>,
-}
-
-impl Counts {
-    fn of(scene: &Scene) -> Self {
-        let firsts = scene.first_numbers();
-        let (triangles, spheres) = (firsts[scene.instances.len()] as usize, scene.spheres.len());
-        let behind = |first: usize, of: &Range<usize>| first + of.start..first + of.end;
-        let numbers = |primitives: &Primitives| match primitives {
-            Primitives::Triangles(range) => range.clone(),
-            Primitives::Instances(range) => firsts[range.start] as usize..firsts[range.end] as usize,
-            Primitives::Spheres(range) => behind(triangles, range),
-            Primitives::Disks(range) => behind(triangles + spheres, range),
-        };
-        let objects: Vec<Range<usize>> = scene.objects.iter().map(|object| numbers(&object.primitives)).collect();
-        let mut sorted: Vec<usize> = (0..objects.len()).collect();
-        sorted.sort_unstable_by_key(|&object| objects[object].start);
-        Counts { objects, sorted }
-    }
-
-    /// The object of a primitive, and which of its primitives that is.
-    fn find(&self, primitive: usize) -> Option<(usize, usize)> {
-        let after = self.sorted.partition_point(|&object| self.objects[object].start <= primitive);
-        let object = self.sorted[after.checked_sub(1)?];
-        self.objects[object].contains(&primitive).then(|| (object, primitive - self.objects[object].start))
-    }
-
-    /// The number of a primitive of an object.
-    fn number(&self, (object, within): (usize, usize)) -> Option<usize> {
-        let of = &self.objects[object];
-        (within < of.len()).then(|| of.start + within)
-    }
 }

@@ -4,7 +4,6 @@
 use super::{CameraRay, Pixel, key};
 use crate::buffer::read;
 use crate::data::{Frame, Instance, numbers};
-use crate::geometry::Transform;
 use crate::real::{Scalar, TINY, V3};
 use crate::sampler;
 
@@ -24,12 +23,10 @@ pub fn panned<R: Scalar>(frame: &Frame, instances: &[Instance], time: f32, ray: 
     }
     let (step, share) = frame.step(time);
     let key = |number: u32| read(instances, frame.keys + number);
-    let Transform { x, y, z, translation, .. } = key(step).towards(&key(step + 1), share).transform();
-    let (x, y, z) = (V3::<R>::splat(x), V3::splat(y), V3::splat(z));
-    let turned = |v: V3<R>| V3::new(v.dot(x), v.dot(y), v.dot(z)).map(|c| c.flush(TINY));
+    let key = key(step).towards(&key(step + 1), share).transform();
     let from_eye = (ray.origin - V3::splat(numbers(frame.camera.eye))).map(|c| c.flush(TINY));
-    let origin = (turned(from_eye) + V3::splat(translation)).map(|c| c.flush(TINY));
-    CameraRay { origin, direction: turned(ray.direction).normalised().0, ..ray }
+    let origin = (key.turned(from_eye) + V3::splat(key.translation)).map(|c| c.flush(TINY));
+    CameraRay { origin, direction: key.turned(ray.direction).normalised().0, ..ray }
 }
 
 #[cfg(test)]

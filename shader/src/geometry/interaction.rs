@@ -144,6 +144,14 @@ impl<R: Scalar> SurfaceInteraction<R> {
     }
 }
 
+/// The unit normal of a triangle's front, and twice its area.
+#[inline(always)]
+pub(crate) fn across<R: Scalar>([a, b, c]: [V3<R>; 3]) -> (V3<R>, R) {
+    // Edges below 2^-40 are zero, so that the normal's products do not underflow.
+    let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
+    edge(a, b).cross(edge(a, c)).normalised()
+}
+
 /// Position, error offset and the front's normal of a point on a triangle.
 #[inline(always)]
 fn on_triangle<R: Scalar>(triangle: &Primitive, (first, (u, v)): (R, (R, R)), direction: V3<R>) -> (V3<R>, R, V3<R>) {
@@ -152,9 +160,7 @@ fn on_triangle<R: Scalar>(triangle: &Primitive, (first, (u, v)): (R, (R, R)), di
     let position = a * first + b * u + c * v;
     let reach = a.abs().max(b.abs()).max(c.abs());
     let span = (a - position).abs().max((b - position).abs()).max((c - position).abs());
-    // Edges below 2^-40 are zero, so that the normal's products do not underflow.
-    let edge = |from: V3<R>, to: V3<R>| (to - from).map(|x| x.flush(SMALL));
-    let (normal, length) = edge(a, b).cross(edge(a, c)).normalised();
+    let (normal, length) = across([a, b, c]);
     let normal = V3::select(length.eq(R::splat(0.0)), -direction, normal);
     // The position's error across the surface grows with its coordinates along the normal; the triangle
     // test's error grows with the triangle's extent in every direction.

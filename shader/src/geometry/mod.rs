@@ -14,6 +14,7 @@ mod triangle;
 pub use disk::{Crossing, intersect_disk};
 pub(crate) use disk::{coordinates, tangents};
 pub use interaction::SurfaceInteraction;
+pub(crate) use interaction::across;
 pub use moller_trumbore::intersect_moller_trumbore;
 pub use slab::{Span, slab};
 pub use sphere::{Chord, intersect_sphere};

@@ -5,7 +5,7 @@
 
 use glam::Vec3;
 
-use crate::real::{Real, V3};
+use crate::real::{Real, Scalar, TINY, V3};
 
 /// An affine map: rows of a matrix, and what is added.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,6 +68,13 @@ impl Transform {
     pub fn around(&self, half: Vec3) -> Vec3 {
         let size = |row: Vec3| Vec3::new(Real::abs(row.x), Real::abs(row.y), Real::abs(row.z));
         Vec3::new(row(size(self.x), half), row(size(self.y), half), row(size(self.z), half))
+    }
+
+    /// A vector turned by its rows alone, in another arithmetic: what a key says of a camera or a light.
+    #[inline(always)]
+    pub fn turned<R: Scalar>(&self, vector: V3<R>) -> V3<R> {
+        let by = |row: Vec3| vector.dot(V3::splat(row)).flush(TINY);
+        V3::new(by(self.x), by(self.y), by(self.z))
     }
 
     /// Rows of the matrix of cofactors.

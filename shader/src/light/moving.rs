@@ -2,9 +2,9 @@
 
 use crate::buffer::read;
 use crate::data::{Instance, Launch, Light, numbers, pack};
-use crate::geometry::Transform;
+use crate::geometry::across;
 use crate::ray::Hit;
-use crate::real::{FAINT, SMALL, Scalar, TINY, V3};
+use crate::real::{FAINT, Scalar, TINY, V3};
 use crate::scene::LaunchContext;
 use glam::{UVec4, Vec3};
 
@@ -24,18 +24,16 @@ pub fn at_time<R: Scalar>(launch: &LaunchContext<'_>, light: Light, time: f32) -
 #[cfg_attr(target_arch = "spirv", inline(never))]
 #[cfg_attr(not(target_arch = "spirv"), inline(always))]
 fn moved<R: Scalar>(light: Light, from: Instance, to: Instance, share: f32) -> Light {
-    let Transform { x, y, z, translation, .. } = from.towards(&to, share).transform();
-    let (x, y, z) = (V3::<R>::splat(x), V3::splat(y), V3::splat(z));
+    let key = from.towards(&to, share).transform();
     let turned = |of: UVec4| {
-        let way = V3::<R>::splat(numbers(of));
-        let way = V3::new(way.dot(x), way.dot(y), way.dot(z)).map(|c| c.flush(TINY)).normalised().0;
+        let way = key.turned(V3::<R>::splat(numbers(of))).normalised().0;
         Vec3::new(way.x.to_f32(), way.y.to_f32(), way.z.to_f32())
     };
     let (kind, outer) = (light.position.w & Light::KINDS, light.axis.w);
     if kind == Light::DIRECTIONAL {
         return Light { position: pack(turned(light.position), kind), ..light };
     }
-    let position = pack(translation, kind);
+    let position = pack(key.translation, kind);
     if kind == Light::POINT {
         Light { position, ..light }
     } else {
@@ -56,8 +54,7 @@ pub(super) fn over_area_at<R: Scalar>(
     }
     let area = |time: f32| {
         let [a, b, c] = launch.placed(index, instance, time).vertices();
-        let edge = |from: Vec3, to: Vec3| (V3::<R>::splat(to) - V3::splat(from)).map(|x| x.flush(SMALL));
-        edge(a, b).cross(edge(a, c)).normalised().1
+        across([V3::<R>::splat(a), V3::splat(b), V3::splat(c)]).1
     };
     let (then, now) = (area(0.0), area(time));
     let is_none = now.lt(R::splat(TINY));

@@ -19,7 +19,9 @@ pub use eyerays_shader::data::Aovs;
 pub(crate) use kept::can_be_named;
 pub use kept::{all_of_film, asked, check, check_room, names, of_film};
 pub use motion::Shown;
-use studio::{Studio, middles, seen};
+pub(crate) use studio::middles;
+use studio::{Studio, seen};
+pub(crate) use surface::Finder;
 use surface::Place;
 
 choices! {
@@ -72,6 +74,12 @@ choices! {
         Error = "error",
         /// How many samples the pixel has
         Samples = "samples",
+        /// How many nodes the ray through the middle of the pixel visits: pairs of boxes, or nodes of eight
+        Visits = "visits",
+        /// How many primitives that ray is tested against
+        Tests = "tests",
+        /// How many nodes are above the deepest that it visits
+        Deepest = "deepest",
         /// The picture as it was before it was denoised
         Noisy = "noisy",
         /// Cryptomatte of objects by their names, over the pixel's first 64 samples

@@ -12,6 +12,7 @@ use crate::job::Job;
 use crate::picture::Picture;
 use crate::render::{Rendering, Session};
 use crate::scene::{Camera, ObjectNumbers, Sampler, Scene, Settings};
+use crate::trail::{self, Counts};
 use crate::view::{Region, View};
 
 /// What all layers are rendered with, and what several of them take.
@@ -30,6 +31,8 @@ pub(super) struct Studio<'a> {
     positions: Option<Picture>,
     /// Of objects and of materials.
     mattes: Option<[Cryptomatte; 2]>,
+    /// The work of the rays through the middles.
+    counts: Option<Vec<Counts>>,
 }
 
 /// Samples of a pixel that count for its Cryptomattes: each is a picture of its own.
@@ -38,7 +41,8 @@ const COUNTED: u32 = 64;
 impl<'a> Studio<'a> {
     pub fn new(session: &'a mut Session, shown: Shown<'a>, window: Region, settings: Settings) -> Self {
         let kept = names(session.job());
-        Studio { session, shown, window, settings, kept, direct: None, places: None, positions: None, mattes: None }
+        let (direct, places, positions, mattes, counts) = (None, None, None, None, None);
+        Studio { session, shown, window, settings, kept, direct, places, positions, mattes, counts }
     }
 
     pub fn layer(&mut self, layer: Layer, rendering: &Rendering) -> Result<Values> {
@@ -85,6 +89,9 @@ impl<'a> Studio<'a> {
                 let finder = Finder::of(scene);
                 self.numbers(|primitive| finder.material(primitive) + 1)?
             }
+            Layer::Visits => self.work(|counts| counts.visits)?,
+            Layer::Tests => self.work(|counts| counts.tests)?,
+            Layer::Deepest => self.work(|counts| counts.deepest)?,
             Layer::CryptoObject => Values::Shares(self.mattes(scene)?[0].clone()),
             Layer::CryptoMaterial => Values::Shares(self.mattes(scene)?[1].clone()),
         })
@@ -93,6 +100,19 @@ impl<'a> Studio<'a> {
     fn numbers(&mut self, of: impl Fn(usize) -> u32) -> Result<Values> {
         let numbers = self.places()?.iter().map(|place| place.primitive.map_or(0, &of));
         Ok(Values::Numbers(numbers.collect()))
+    }
+
+    /// Something of the work of the rays through the middles, as a CPU follows them by the method that was chosen.
+    fn work(&mut self, of: impl Fn(&Counts) -> u32) -> Result<Values> {
+        if self.counts.is_none() {
+            let (middle, pinhole) = middles(&self.settings, self.shown.camera);
+            let job = self.session.job().with(middle)?.showing(Some(Feature::Place));
+            let view = seen(&job, &pinhole, self.window)?.as_it_opens();
+            let choice = self.session.choice();
+            self.counts = Some(trail::counts(&job, &view, choice.traversal, choice.threads)?);
+        }
+        let counts = self.counts.as_deref().expect("they were just made");
+        Ok(Values::Numbers(counts.iter().map(of).collect()))
     }
 
     /// To the picture before, or to the one after.
@@ -203,7 +223,7 @@ fn not_kept(layer: Layer) -> Error {
 }
 
 /// Settings and a camera that see the middle of each pixel once.
-pub(super) fn middles(settings: &Settings, camera: &Camera) -> (Settings, Camera) {
+pub(crate) fn middles(settings: &Settings, camera: &Camera) -> (Settings, Camera) {
     let middle = Settings { spp: 1, sampler: Sampler::Regular, ..*settings };
     (middle, Camera { lens: None, ..camera.clone() })
 }

@@ -62,6 +62,18 @@ impl<'s> Finder<'s> {
         }
     }
 
+    /// The word for a primitive; and of a triangle in a copy, the copy and which triangle of its mesh it is.
+    pub fn stands_for(&self, primitive: usize) -> (&'static str, Option<(usize, usize)>) {
+        match self.find(primitive) {
+            Primitive::Triangle(triangle, copy) => {
+                let first = |copy: usize| self.scene.shared[self.scene.instances[copy].mesh as usize].triangles.start;
+                ("triangle", copy.map(|copy| (copy, triangle - first(copy))))
+            }
+            Primitive::Round(round) if round < self.scene.spheres.len() => ("sphere", None),
+            Primitive::Round(_) => ("disk", None),
+        }
+    }
+
     /// The corners of a triangle in the world, or of one in a copy.
     fn corners(&self, triangle: usize, copy: Option<usize>) -> [DVec3; 3] {
         let transform = copy.map(|copy| self.scene.instances[copy].transform());

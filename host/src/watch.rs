@@ -5,7 +5,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::film::{Film, Part};
+use crate::film::{Film, Leasts, Part};
 use crate::job::Job;
 use crate::noise::{CellSums, Lot};
 use crate::picture::Picture;
@@ -135,6 +135,11 @@ pub(crate) trait Grows: Send {
 
     /// The film so far.
     fn film(&mut self) -> Result<Film>;
+
+    /// What a screen shows of the film so far, where that need not leave the device.
+    fn show(&mut self, _leasts: Leasts) -> Option<Result<wgpu::Texture>> {
+        None
+    }
 
     /// The film, to which nothing is added any more.
     fn end(&mut self) -> Result<Film> {

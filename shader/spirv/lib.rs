@@ -15,6 +15,9 @@ pub const NUMERICS: &[u8] = include_bytes!("numerics.spv");
 /// The kernels `refit::*`: hierarchies whose triangles move, see `refit` of the kernels' own crate.
 pub const REFIT: &[u8] = include_bytes!("refit.spv");
 
+/// The kernel `screen::show`: what a screen shows of a film, see `screen` of the kernels' own crate.
+pub const SCREEN: &[u8] = include_bytes!("screen.spv");
+
 /// A hash of the sources that the modules were made of.
 pub const SOURCE: &str = env!("EYERAYS_SOURCE");
 

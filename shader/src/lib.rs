@@ -21,6 +21,7 @@ pub mod refit;
 pub mod resources;
 pub mod sampler;
 pub mod scene;
+pub mod screen;
 pub mod stage;
 pub mod texture;
 pub mod traverse;

@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 
 use eyerays::compare::compare;
 use eyerays::cpu;
-use eyerays::gpu::{AdapterRequest, Gpu};
+use eyerays::gpu::{AdapterRequest, Gpu, wgpu};
 use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::picture::Picture;
@@ -115,6 +115,17 @@ pub fn gpu(want: &AdapterRequest) -> Option<Gpu> {
             None
         }
     }
+}
+
+/// The adapter that a GPU was opened of, to open a device as a window does.
+///
+/// # Panics
+/// If it is there no more.
+pub fn adapter(of: &Gpu) -> wgpu::Adapter {
+    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
+    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+    let own = adapters.into_iter().find(|adapter| adapter.get_info().name == of.report.name);
+    own.expect("it was there to be opened")
 }
 
 /// One that has exact precision, and whose compiler is quick: lavapipe's optimizer needs minutes for the kernels of paths unless

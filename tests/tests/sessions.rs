@@ -75,9 +75,7 @@ fn a_session_owns_all_that_it_takes_and_works_on_any_thread() {
 #[test]
 fn a_device_that_a_window_has_opened_renders_the_same() {
     let Some(own) = eyerays_tests::gpu(&AdapterRequest { exact: true, ..AdapterRequest::default() }) else { return };
-    let instance = wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
-    let adapters = pollster::block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
-    let adapter = adapters.iter().find(|adapter| adapter.get_info().name == own.report.name).unwrap();
+    let adapter = &eyerays_tests::adapter(&own);
     let open = |descriptor| pollster::block_on(adapter.request_device(&descriptor)).unwrap();
     let (device, queue) = open(Gpu::descriptor(adapter));
     let shared = Gpu::from_wgpu(adapter, device, queue).unwrap();

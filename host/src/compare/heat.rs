@@ -37,9 +37,20 @@ pub fn heat_map(a: &Picture, b: &Picture) -> Result<Picture> {
 
 /// The linear colour of a difference of at least 0.
 fn colour(difference: f64) -> [f32; 3] {
-    let last = COLOURS.len() - 1;
-    let place = (math::log10(difference) - FIRST_DECADE).clamp(0.0, last as f64);
-    let below = (place as usize).min(last - 1);
+    let last = (COLOURS.len() - 1) as f64;
+    mixed((math::log10(difference) - FIRST_DECADE).clamp(0.0, last))
+}
+
+/// The linear colour of a share of the greatest number, from 0 to 1: black, dark violet, red, orange, pale yellow.
+pub fn ramp(share: f64) -> [f32; 3] {
+    // Below the first colour it fades to black.
+    let place = share.clamp(0.0, 1.0) * COLOURS.len() as f64 - 1.0;
+    if place < 0.0 { mixed(0.0).map(|channel| channel * (place + 1.0) as f32) } else { mixed(place) }
+}
+
+/// Between two colours.
+fn mixed(place: f64) -> [f32; 3] {
+    let below = (place as usize).min(COLOURS.len() - 2);
     let share = place - below as f64;
     // Mixed as sRGB, where even steps look even.
     [16, 8, 0].map(|shift| {

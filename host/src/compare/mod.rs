@@ -11,7 +11,7 @@ use crate::error::{Error, Result};
 use crate::math;
 use crate::picture::{Picture, bits_differ};
 
-pub use heat::heat_map;
+pub use heat::{heat_map, ramp};
 pub use ulp::ulp_distance;
 
 /// What [`compare`] found. As JSON, infinite numbers are `null`.

@@ -235,8 +235,12 @@ impl Mean {
 
 /// Linear RGB, rounded to double precision as a sum and as a quotient.
 pub(super) fn mean_light(sums: &PixelSums, count: u32) -> [f64; 3] {
-    let count = f64::from(count.max(1));
-    [sums.red, sums.green, sums.blue].map(|sum| light(sum) / count)
+    [sums.red, sums.green, sums.blue].map(|sum| mean(sum, count))
+}
+
+/// A channel in the mean of so many samples.
+pub(super) fn mean(sum: Quanta, count: u32) -> f64 {
+    light(sum) / f64::from(count.max(1))
 }
 
 /// A sum of 96 bits.

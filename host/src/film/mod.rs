@@ -6,6 +6,7 @@ mod coverage;
 mod develop;
 mod file;
 mod identity;
+mod screen;
 #[cfg(test)]
 mod tests;
 
@@ -16,6 +17,7 @@ pub use cells::Cells;
 pub use coverage::{Coverage, Part};
 pub(crate) use develop::Developer;
 pub use identity::Identity;
+pub use screen::Leasts;
 
 use crate::error::{Error, Result};
 use crate::view::{Region, View};

@@ -104,6 +104,12 @@ impl Gpu {
         Ok(Gpu::on(report, route, device, queue, None))
     }
 
+    /// The same device, with this held around the work of its driver.
+    #[must_use]
+    pub fn with_around(self, around: Option<Around>) -> Gpu {
+        Gpu { around, ..self }
+    }
+
     fn on(
         report: AdapterReport,
         route: Route,

@@ -1,5 +1,6 @@
 //! Hierarchies that a GPU builds over the triangles that it has.
 
+use eyerays_modules::REFIT;
 use eyerays_shader::linear::{CODE, DIGIT, Linear as Told, RUN, level, levels, runs};
 use eyerays_shader::refit::{Refit, blocks};
 use eyerays_shader::resources::binding;
@@ -52,12 +53,12 @@ impl Linear {
         gpu.check()?;
         let told = Told { slots, ..Told::default() };
         let first = uniform(gpu, &told);
-        let code = Kernel::new(gpu, "refit::code", &[false, true, true]);
+        let code = Kernel::new(gpu, REFIT, "refit::code", &[false, true, true]);
         let mut build = vec![code.step(gpu, &first, &[primitives, &keys[0], &values[0]], slots)];
         build.extend(sorting(gpu, &told, (&keys, &values, &counts)));
-        let tree = Kernel::new(gpu, "refit::tree", &[false, false, true, true]);
+        let tree = Kernel::new(gpu, REFIT, "refit::tree", &[false, false, true, true]);
         build.push(tree.step(gpu, &first, &[&keys[0], &values[0], &runs, &nodes], pairs));
-        let leaves = Kernel::new(gpu, "refit::leaves", &[false, false, true]);
+        let leaves = Kernel::new(gpu, REFIT, "refit::leaves", &[false, false, true]);
         let mut fit = vec![leaves.step(gpu, &first, &[&values[0], primitives, &all], slots)];
         fit.extend(fitting(gpu, &Refit { slots, pairs, ..Refit::default() }, (&runs, &all, &nodes)));
         gpu.check()?;
@@ -91,7 +92,7 @@ fn sorting(
 ) -> Vec<Step> {
     const { assert!(CODE.div_ceil(DIGIT).is_multiple_of(2)) };
     let slots = told.slots;
-    let kernel = |name, writes: &[bool]| Kernel::new(gpu, name, writes);
+    let kernel = |name, writes: &[bool]| Kernel::new(gpu, REFIT, name, writes);
     let (count, scatter) =
         (kernel("refit::count", &[false, true]), kernel("refit::scatter", &[false, false, true, true, true]));
     let (sum, spread) = (kernel("refit::sum", &[true]), kernel("refit::spread", &[true]));

@@ -17,6 +17,7 @@ mod recipe;
 mod refit;
 mod render;
 mod scene;
+mod screen;
 mod step;
 mod timer;
 mod warm;

@@ -1,6 +1,7 @@
 //! Scenes on a GPU whose triangles move: vertices are uploaded, and the hierarchy is fitted to them there.
 
 use eyerays_bvh::refit::runs;
+use eyerays_modules::REFIT;
 use eyerays_shader::data::Effects;
 use eyerays_shader::refit::{Refit, blocks, level, levels};
 use eyerays_shader::resources::binding;
@@ -61,7 +62,7 @@ impl Moving {
         let told = Refit { slots, pairs, level: 0, unused: 0 };
         let (positions, turned) = (vectors("positions"), normals.map(|_| vectors("vertex normals")));
         gpu.check()?;
-        let kernel = |name, writes: &[bool]| Kernel::new(gpu, name, writes);
+        let kernel = |name, writes: &[bool]| Kernel::new(gpu, REFIT, name, writes);
         let uniform = uniform(gpu, &told);
         let place = kernel("refit::place", &[false, false, true, true]);
         let mut gather = vec![place.step(gpu, &uniform, &[&corners, &positions, primitives, &all], slots)];
@@ -119,12 +120,12 @@ pub(super) fn fitting(
     told: &Refit,
     (runs, blocks, nodes): (&wgpu::Buffer, &wgpu::Buffer, &wgpu::Buffer),
 ) -> Vec<Step> {
-    let merge = Kernel::new(gpu, "refit::merge", &[true]);
+    let merge = Kernel::new(gpu, REFIT, "refit::merge", &[true]);
     let merged = (1..levels(told.slots)).map(|number| {
         let record = uniform(gpu, &Refit { level: number, ..*told });
         merge.step(gpu, &record, &[blocks], level(told.slots, number).1)
     });
-    let fit = Kernel::new(gpu, "refit::fit", &[false, false, true]);
+    let fit = Kernel::new(gpu, REFIT, "refit::fit", &[false, false, true]);
     let fit = fit.step(gpu, &uniform(gpu, told), &[runs, blocks, nodes], told.pairs);
     merged.chain([fit]).collect()
 }

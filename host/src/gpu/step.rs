@@ -15,6 +15,15 @@ pub(super) struct Step {
     threads: u32,
 }
 
+impl Step {
+    /// Records it.
+    pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
+        pass.set_pipeline(&self.pipeline);
+        pass.set_bind_group(0, &self.group, &[]);
+        pass.dispatch_workgroups(self.threads.min(ROW).div_ceil(WORKGROUP), self.threads.div_ceil(ROW), 1);
+    }
+}
+
 /// Submits dispatches, one after the other.
 ///
 /// # Errors
@@ -22,11 +31,7 @@ pub(super) struct Step {
 pub(super) fn run<'s>(gpu: &Gpu, steps: impl IntoIterator<Item = &'s Step>) -> Result<()> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     let mut pass = encoder.begin_compute_pass(&Default::default());
-    for Step { pipeline, group, threads } in steps {
-        pass.set_pipeline(pipeline);
-        pass.set_bind_group(0, group, &[]);
-        pass.dispatch_workgroups((*threads).min(ROW).div_ceil(WORKGROUP), threads.div_ceil(ROW), 1);
-    }
+    steps.into_iter().for_each(|step| step.record(&mut pass));
     drop(pass);
     gpu.queue.submit([encoder.finish()]);
     gpu.check()
@@ -60,8 +65,8 @@ pub(super) struct Kernel {
 }
 
 impl Kernel {
-    /// By its name, with whether it writes each of its buffers.
-    pub fn new(gpu: &Gpu, name: &str, writes: &[bool]) -> Kernel {
+    /// By its name in a module, with whether it writes each of its buffers.
+    pub fn new(gpu: &Gpu, module: &[u8], name: &str, writes: &[bool]) -> Kernel {
         let storage = |&writes: &bool| wgpu::BufferBindingType::Storage { read_only: !writes };
         let types = [wgpu::BufferBindingType::Uniform].into_iter().chain(writes.iter().map(storage));
         let entries: Vec<_> = types
@@ -80,7 +85,7 @@ impl Kernel {
             bind_group_layouts: &[Some(&layout)],
             immediate_size: 0,
         });
-        let words: Vec<u32> = readback::words(eyerays_modules::REFIT).collect();
+        let words: Vec<u32> = readback::words(module).collect();
         let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(name),
             layout: Some(&pipeline_layout),

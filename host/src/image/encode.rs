@@ -75,6 +75,26 @@ pub fn encode_layers(
     writer.write_all(&bytes).map_err(|e| Error::writing(&e))
 }
 
+/// What a screen shows of a picture: the values of a PNG of 8 bits, with how opaque each pixel is (255 where the picture does not tell),
+/// row by row.
+///
+/// # Errors
+/// An invalid picture, and those of [`Encoding::scale`].
+pub fn screen(picture: &Picture, encoding: &Encoding) -> Result<Vec<[u8; 4]>> {
+    picture.validate()?;
+    let scale = encoding.scale()?;
+    let bytes = bytes(&balanced(picture, encoding.white), encoding.tone, scale);
+    Ok(match picture.alpha {
+        Some(_) => bytes.as_chunks().0.to_vec(),
+        None => bytes.as_chunks().0.iter().map(|&[red, green, blue]| [red, green, blue, 255]).collect(),
+    })
+}
+
+/// The values of a PNG of 8 bits.
+fn bytes(picture: &Picture, tone: ToneMap, scale: f64) -> Vec<u8> {
+    samples(picture, (tone, scale), quantise_to_byte, |alpha| (alpha * 255.0).round() as u8)
+}
+
 /// Every channel of every pixel, exposed, mapped to the screen and converted; with how opaque it is, converted by `share`, if the picture
 /// tells that.
 fn samples<T: Send>(
@@ -97,11 +117,7 @@ fn samples<T: Send>(
 
 fn png(picture: &Picture, encoding: &Encoding, scale: f64) -> std::result::Result<Vec<u8>, EncodingError> {
     match encoding.bits {
-        BitDepth::Eight => {
-            let share = |alpha: f64| (alpha * 255.0).round() as u8;
-            let values = samples(picture, (encoding.tone, scale), quantise_to_byte, share);
-            png_of(picture, &values, png::BitDepth::Eight)
-        }
+        BitDepth::Eight => png_of(picture, &bytes(picture, encoding.tone, scale), png::BitDepth::Eight),
         BitDepth::Sixteen => {
             let share = |alpha: f64| (alpha * 65_535.0).round() as u16;
             let values = samples(picture, (encoding.tone, scale), |v| quantise(v, 65_535.0) as u16, share);

@@ -28,12 +28,12 @@ use std::path::Path;
 use crate::error::{Error, Result};
 use crate::math;
 
-pub use encode::{encode, encode_layers};
+pub use encode::{encode, encode_layers, screen};
 pub use layer::{decode_layer, read_layer};
 pub use read::{decode, read};
 pub use texels::{TextureBudget, decode_texture, read_texture};
 pub use tone::ToneMap;
-pub(crate) use transfer::byte_to_linear;
+pub(crate) use transfer::{byte_to_linear, least_of_byte};
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
 pub use white::WhiteBalance;
 

@@ -35,6 +35,11 @@ pub fn quantise_to_byte(linear: f64) -> u8 {
     LEAST_OF_VALUE.partition_point(|&least| least <= linear) as u8
 }
 
+/// The least linear light that becomes a value of 8 bits or more, which is not 0.
+pub(crate) fn least_of_byte(value: u8) -> f64 {
+    LEAST_OF_VALUE[usize::from(value) - 1]
+}
+
 /// The least linear light that becomes `value` of `steps` or more; the bits of positive numbers have their order.
 fn least(value: u32, steps: f64) -> f64 {
     let (mut below, mut above) = (0.0f64.to_bits(), 1.0f64.to_bits());

@@ -11,6 +11,7 @@ use crate::picture::Picture;
 /// The light that looks white, by its temperature. Light of Rec. 709's white, which is what pictures have without it, is 6504 kelvins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WhiteBalance {
+    kelvins: f64,
     /// Rows that a colour is multiplied with.
     matrix: Matrix,
 }
@@ -61,7 +62,12 @@ impl WhiteBalance {
             times(&FROM_XYZ, times(&inverse(&TO_CONES), [0, 1, 2].map(|k| cones[k] * gain[k])))
         };
         let columns = [0, 1, 2].map(column);
-        Ok(WhiteBalance { matrix: [0, 1, 2].map(|row| columns.map(|column| column[row])) })
+        Ok(WhiteBalance { kelvins, matrix: [0, 1, 2].map(|row| columns.map(|column| column[row])) })
+    }
+
+    /// The temperature of the light that looks white.
+    pub fn kelvins(self) -> f64 {
+        self.kelvins
     }
 
     /// A colour of linear Rec. 709 as it looks then. Colours that no screen shows have channels below 0; one that is not finite stays as

@@ -8,14 +8,14 @@ mod several;
 use std::time::{Duration, Instant};
 
 use crate::error::{Error, Result};
-use crate::gpu::{AdapterRequest, Gpu};
+use crate::gpu::{AdapterRequest, Gpu, Route};
 use crate::job::Job;
 use crate::method::Traversal;
 use crate::view::View;
 
 pub use self::choice::{Choice, DeviceName, DeviceWish, Precision, Several};
 pub use self::rendering::Rendering;
-pub use self::session::Session;
+pub use self::session::{Display, Session};
 use self::several::Devices;
 pub use crate::team::Lost;
 pub use crate::why::Why;
@@ -74,6 +74,22 @@ impl Backend {
             Err(error) if asked || choice.adapter.is_some() => Err(error),
             Err(error) => Ok(cpu(Why::Instead(error))),
         }
+    }
+
+    /// A GPU that is open, such as that of a window ([`Gpu::from_wgpu`]), instead of one that is opened for the choice.
+    ///
+    /// # Errors
+    /// Exact precision is asked for, which it has not; or double precision.
+    pub fn on(gpu: Gpu, choice: &Choice) -> Result<Backend> {
+        match choice.precision {
+            Precision::Reference => return Err(Error::ReferenceOnGpu),
+            Precision::Exact if gpu.route == Route::Naga || !gpu.report.exact => {
+                return Err(Error::Inexact { device: gpu.report.name, by_naga: false });
+            }
+            Precision::Exact | Precision::Fast => {}
+        }
+        let device = Opened::Gpu(Box::new(gpu));
+        Ok(Backend { device, choice: choice.clone(), why: Why::Asked, open_time: Duration::ZERO })
     }
 
     /// The GPU, if it is one and no other device.

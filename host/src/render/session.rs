@@ -1,12 +1,14 @@
 //! A scene on a device, ready for any number of pictures.
 
+mod live;
+
 use std::cell::RefCell;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use super::rendering::{Rendering, Taken, repeated};
 use super::several::{Devices, cpu_name};
-use super::{Backend, DeviceWish, Opened, Precision, Why};
+use super::{Backend, Choice, DeviceWish, Opened, Precision, Why};
 use crate::choice;
 use crate::cpu::{self, OnCpu};
 use crate::error::{Error, Result};
@@ -21,6 +23,8 @@ use crate::picture::Picture;
 use crate::rays::Rays;
 use crate::view::View;
 use crate::watch::{self, Grows, Watch};
+
+pub use self::live::Display;
 
 /// Pictures, with pauses to read them, raise a GPU's clocks in so long.
 const LEAST_WARMING: Duration = Duration::from_millis(500);
@@ -70,6 +74,11 @@ impl Session {
                 Ok(session(device, devices.names(), Processor::Gpu))
             }
         }
+    }
+
+    /// What was asked of devices.
+    pub(crate) fn choice(&self) -> &Choice {
+        &self.backend.choice
     }
 
     /// What is rendered.

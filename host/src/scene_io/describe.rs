@@ -52,6 +52,14 @@ pub fn describe(scene: &Scene, mesh: &str) -> String {
     text.0
 }
 
+/// A camera as a table of a TOML scene.
+pub fn describe_camera(camera: &Camera) -> String {
+    let mut text = Text::default();
+    text.list("camera");
+    self::camera(&mut text, camera);
+    text.0
+}
+
 /// What is written so far.
 #[derive(Default)]
 struct Text(String);

@@ -51,7 +51,7 @@ mod tests;
 
 pub use binary::{ENDING, fingerprint, write};
 pub use copies::Instancing;
-pub use describe::describe;
+pub use describe::{describe, describe_camera};
 pub use light_unit::LightUnit;
 pub use load::{Loading, load, load_as, read_as, read_table};
 pub use moment::{AnimationWish, Instant, Moment, Shutter};

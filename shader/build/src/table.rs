@@ -47,9 +47,10 @@ impl Module {
 const TRIANGLES: &[&str] = &["triangle::intersect_watertight", "edge_on::cut"];
 
 /// Every committed module. A kernel that is cut out of one asks a device only for what it uses itself.
-pub const MODULES: [Module; 4] = [
+pub const MODULES: [Module; 5] = [
     Module { name: "exact", prefixes: &["exact::", "subgroup_exact::"], policy: Policy::Exact, protects: &[] },
     Module { name: "fast", prefixes: &["fast::", "subgroup_fast::"], policy: Policy::Fast, protects: TRIANGLES },
     Module { name: "numerics", prefixes: &["numerics::"], policy: Policy::Exact, protects: &[] },
     Module { name: "refit", prefixes: &["refit::"], policy: Policy::Exact, protects: &[] },
+    Module { name: "screen", prefixes: &["screen::"], policy: Policy::Exact, protects: &[] },
 ];

@@ -3,6 +3,7 @@
 mod cells;
 mod moved;
 mod read;
+mod show;
 
 use std::ops::Range;
 use std::panic::resume_unwind;
@@ -26,8 +27,9 @@ use super::memory::{LaunchBuffers, buffer, most_slots};
 use super::recipe::Recipe;
 use super::refit::Moving;
 use super::scene::SceneBuffers;
+use super::screen::Screen;
 use crate::error::Result;
-use crate::film::{Coverage, Film, Part};
+use crate::film::{Coverage, Film, Leasts, Part};
 use crate::job::Job;
 use crate::method::Traversal;
 use crate::noise::{CellSums, Lot};
@@ -70,6 +72,8 @@ pub struct Renderer {
     memory: Option<Memory>,
     growing: Option<Growing>,
     cells: Option<Cells>,
+    /// Once a film was shown.
+    screen: Option<Screen>,
     queue: Queue,
 }
 
@@ -140,6 +144,10 @@ impl Grows for Renderer {
         Renderer::film(self)
     }
 
+    fn show(&mut self, leasts: Leasts) -> Option<Result<wgpu::Texture>> {
+        Some(Renderer::show(self, leasts))
+    }
+
     fn picture(&mut self, view: &View, done: &(dyn Fn(u64) + Sync)) -> Result<(Picture, Rays)> {
         Renderer::start(self, view)?;
         self.add_part(view.whole(), done)?;
@@ -175,6 +183,7 @@ impl Renderer {
             memory: None,
             growing: None,
             cells: None,
+            screen: None,
             queue: Queue::new(gpu),
         })
     }

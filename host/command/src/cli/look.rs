@@ -102,7 +102,7 @@ impl Look {
     }
 }
 
-fn white_balance(text: &str) -> std::result::Result<WhiteBalance, String> {
+pub(super) fn white_balance(text: &str) -> std::result::Result<WhiteBalance, String> {
     let kelvins = text
         .strip_suffix(['k', 'K'])
         .unwrap_or(text)

@@ -35,11 +35,15 @@ mod shot;
 mod shutter;
 #[cfg(unix)]
 mod signals;
+mod steps;
 mod summary;
 mod threads;
 mod tip;
+mod trace_pixel;
 mod tradeoff;
 mod transport;
+#[cfg(feature = "view")]
+mod view;
 mod watching;
 
 use std::fmt::Display;
@@ -78,6 +82,10 @@ enum Command {
     /// Render a scene to a picture
     #[command(after_help = render::EXAMPLES, allow_negative_numbers = true)]
     Render(Box<render::Render>),
+    /// Open a window on a scene
+    #[cfg(feature = "view")]
+    #[command(after_help = view::EXAMPLES, allow_negative_numbers = true)]
+    View(Box<view::View>),
     /// Put the parts of a picture together
     #[command(after_help = merge::EXAMPLES, allow_negative_numbers = true)]
     Merge(merge::Merge),
@@ -93,6 +101,9 @@ enum Command {
     /// Measure what speed costs a scene's picture, and recommend a setting
     #[command(after_help = tradeoff::EXAMPLES, allow_negative_numbers = true)]
     Tradeoff(Box<tradeoff::Tradeoff>),
+    /// Follow the ray of a pixel: what it shows, and every node and triangle that is tested for it
+    #[command(after_help = trace_pixel::EXAMPLES, allow_negative_numbers = true)]
+    TracePixel(Box<trace_pixel::TracePixel>),
     /// List the GPUs of this machine, or tell a scene's figures
     Info(info::Info),
     /// Validate a scene and render nothing
@@ -135,11 +146,14 @@ fn execute(cli: Cli) -> Result<ExitCode> {
         .map_err(|e| Error::new(format!("no thread can be started: {e}; allow more of them (ulimit -u)")))?;
     match cli.command {
         Command::Render(command) => command.run(cli.quiet),
+        #[cfg(feature = "view")]
+        Command::View(command) => command.run(),
         Command::Merge(command) => command.run(cli.quiet),
         Command::Farm(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),
         Command::Bench(command) => command.run(cli.quiet),
         Command::Tradeoff(command) => command.run(cli.quiet),
+        Command::TracePixel(command) => command.run(cli.quiet),
         Command::Info(command) => command.run(cli.quiet),
         Command::Check(command) => command.run(cli.quiet),
         Command::Convert(command) => command.run(cli.quiet),

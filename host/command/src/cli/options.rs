@@ -121,6 +121,11 @@ impl Effort {
         Ok(Effort { samples: None, spp: self.spp.or(Some(most)), ..self })
     }
 
+    /// The samples of a pixel that are asked for, by their number.
+    pub fn spp(&self) -> Option<u32> {
+        self.spp
+    }
+
     /// The integrator that is asked for.
     pub fn integrator(&self) -> Option<Integrator> {
         self.transport.integrator()
@@ -128,7 +133,7 @@ impl Effort {
 
     /// That of the hierarchy of a scene by some settings: what is asked for, or what the scene brings along, or what its picture is
     /// worth.
-    fn quality(&self, scene: &Scene, settings: &Settings, choice: &Choice) -> Quality {
+    pub fn quality(&self, scene: &Scene, settings: &Settings, choice: &Choice) -> Quality {
         if let Some(bvh) = self.bvh.or(scene.hierarchy.as_ref().map(|kept| kept.quality())) {
             return bvh.quality();
         }
@@ -150,9 +155,14 @@ pub(super) struct Loaded {
 }
 
 impl View {
-    /// Was a size asked for?
-    pub fn has_size(&self) -> bool {
-        self.size.is_some()
+    /// The size that is asked for.
+    pub fn size(&self) -> Option<(u32, u32)> {
+        self.size
+    }
+
+    /// Is a pixel to be sharp?
+    pub fn has_focus_on(&self) -> bool {
+        self.lens.focus_on().is_some()
     }
 
     /// Packs a scene for these options and what traces it.

@@ -1,0 +1,48 @@
+//! Pictures of what tells how a picture is made, by the CPU: of the middles of pixels.
+
+use eyerays::device_scene::{DeviceScene, Feature};
+use eyerays::error::Result;
+use eyerays::job::Job;
+use eyerays::layers::{self, Layer};
+use eyerays::render::{Backend, Choice, DeviceWish, Session};
+use eyerays::scene::{Scene, Settings};
+use eyerays::view::View;
+
+use super::colours::{Coloured, coloured};
+use super::growth::Subject;
+
+/// A scene laid out for the CPU.
+pub(super) struct Inspector {
+    session: Session,
+}
+
+impl Inspector {
+    /// Of a job's scene, by so many threads.
+    pub fn new(job: &Job, threads: usize) -> Result<Inspector> {
+        let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+        Ok(Inspector { session: backend.open(&colours(job, *job.settings())?)? })
+    }
+
+    /// Is it of this scene?
+    pub fn is_of(&self, job: &Job) -> bool {
+        std::ptr::eq::<DeviceScene>(&**self.session.job(), &**job)
+    }
+
+    /// A layer of what is to be seen.
+    pub fn layer(&mut self, (job, scene): (&Job, &Scene), subject: &Subject, layer: Layer) -> Result<Coloured> {
+        let settings = Settings { size: subject.size, samples: 1, spp: 1, ..*job.settings() };
+        let job = colours(job, settings)?;
+        self.session.turn(&job)?;
+        let view = View::new(&job, &subject.camera)?;
+        // The colours of surfaces, which take one ray a pixel.
+        let rendering = self.session.expose(&view, &|_| ())?;
+        let shown = layers::Shown { scene, camera: &subject.camera, neighbours: None };
+        let values = layers::render(&mut self.session, shown, &rendering, &[layer])?;
+        let (_, values) = values.first().expect("one layer was asked for");
+        coloured(layer, values)
+    }
+}
+
+fn colours(job: &Job, settings: Settings) -> Result<Job> {
+    Ok(job.with(settings)?.showing(Some(Feature::Albedo)))
+}

@@ -1,0 +1,327 @@
+//! Where pictures are made for a window: what is wished for becomes a picture by steps of some hundredths of a second, so that another
+//! wish is soon heard.
+
+mod answer;
+mod colours;
+mod growth;
+mod inspector;
+mod pace;
+mod rate;
+mod seat;
+mod set;
+
+use std::time::{Duration, Instant};
+
+use eyerays::device_scene::DeviceScene;
+use eyerays::error::{Error, Result};
+use eyerays::gpu::{Around, Gpu};
+use eyerays::job::Job;
+use eyerays::layers::{self, Layer};
+use eyerays::render::{DeviceWish, Display, Session};
+use eyerays::scene::Settings;
+use eyerays::view::View;
+
+use self::growth::{Growth, Subject};
+use self::inspector::Inspector;
+use self::pace::Pace;
+use self::rate::Meter;
+use self::seat::Seat;
+use self::set::Set;
+use crate::news::{Answer, Ask, Doing, News, Picture};
+use crate::reader::Reader;
+use crate::shows::Shows;
+use crate::wish::{Device, Source, Wish};
+
+/// Noise of a film on a GPU is told that often: the film has to be read for it.
+const TELL_NOISE: Duration = Duration::from_secs(1);
+
+/// Makes the pictures of a window.
+pub struct Studio {
+    reader: Box<dyn Reader>,
+    /// The window's own GPU.
+    shared: Option<Gpu>,
+    around: Option<Around>,
+    /// The scene that was read last, or could not be.
+    source: Option<Source>,
+    set: Option<Set>,
+    seat: Seat,
+    /// What the session is for.
+    seated: Option<Seated>,
+    /// The device of the last wish failed while it was left to us: the CPU goes on.
+    is_gpu_lost: bool,
+    growth: Option<Growth>,
+    /// What a preview was last drawn of.
+    previewed: Option<Subject>,
+    inspector: Option<Inspector>,
+    /// What was last shown in the place of light.
+    inspected: Option<(Subject, Shows)>,
+    pace: Pace,
+    meter: Meter,
+    noise_told: Option<Instant>,
+    /// The wish that can't be had.
+    refused: Option<Wish>,
+    news: News,
+}
+
+/// What a session is for.
+struct Seated {
+    device: Device,
+    settings: Settings,
+    /// The scene that it is of.
+    job: Job,
+}
+
+/// What a step has come to.
+pub struct Step {
+    /// A picture to be shown.
+    pub picture: Option<Picture>,
+    /// Is there more to do without another wish?
+    pub goes_on: bool,
+}
+
+const NOTHING: Step = Step { picture: None, goes_on: false };
+
+impl Studio {
+    /// Without a scene. Pictures of `shared`, the window's own GPU, stay there; `around` is held around the work of other GPUs' drivers.
+    pub fn new(reader: Box<dyn Reader>, shared: Option<Gpu>, around: Option<Around>) -> Studio {
+        Studio {
+            reader,
+            shared,
+            around,
+            source: None,
+            set: None,
+            seat: Seat::Empty,
+            seated: None,
+            is_gpu_lost: false,
+            growth: None,
+            previewed: None,
+            inspector: None,
+            inspected: None,
+            pace: Pace::new(),
+            meter: Meter::new(),
+            noise_told: None,
+            refused: None,
+            news: News::default(),
+        }
+    }
+
+    /// Where it stands.
+    pub fn news(&self) -> &News {
+        &self.news
+    }
+
+    /// Does a part of what a wish takes, some hundredths of a second at most unless it reads and packs a scene. `told` hears before
+    /// that which of them it is.
+    pub fn step(&mut self, wish: &Wish, told: &dyn Fn(&News)) -> Step {
+        if self.refused.as_ref() == Some(wish) {
+            return NOTHING;
+        }
+        self.refused = None;
+        match self.go(wish, told) {
+            Ok(step) => step,
+            Err(error) => {
+                self.news.fault = Some(error.to_string());
+                self.growth = None;
+                // Left to us, what a GPU can't do is a CPU's.
+                let falls_back =
+                    wish.device.wish == DeviceWish::Auto && wish.device.several.is_none() && self.is_on_gpu();
+                if falls_back {
+                    (self.is_gpu_lost, self.seat, self.seated) = (true, Seat::Empty, None);
+                } else {
+                    self.refused = Some(wish.clone());
+                    self.news.doing = Doing::Nothing;
+                }
+                Step { picture: None, goes_on: falls_back }
+            }
+        }
+    }
+
+    fn go(&mut self, wish: &Wish, told: &dyn Fn(&News)) -> Result<Step> {
+        self.read(wish, told)?;
+        let Some(set) = &mut self.set else { return Ok(NOTHING) };
+        set.change(wish)?;
+        let job = set.job(wish)?;
+        if let Shows::Layer(layer) = wish.shows
+            && !wish.shows.is_of_film()
+        {
+            return self.inspect(wish, &job, layer);
+        }
+        self.inspected = None;
+        self.seat(wish, &job)?;
+        match &self.seat {
+            Seat::Ready(..) => self.grow(wish, &job),
+            Seat::Opening(_, since) => {
+                self.news.doing = Doing::Opening(since.elapsed());
+                self.preview(wish, &job)
+            }
+            Seat::Empty => Ok(NOTHING),
+        }
+    }
+
+    /// Reads and packs the scene of a wish, unless it is there or can't be had.
+    fn read(&mut self, wish: &Wish, told: &dyn Fn(&News)) -> Result<()> {
+        if self.source.as_ref() == Some(&wish.source) || wish.source.path.as_os_str().is_empty() {
+            return Ok(());
+        }
+        let before = self.source.replace(wish.source.clone());
+        let is_same = before.is_some_and(|before| before.path == wish.source.path);
+        self.tell(Doing::Reading, told);
+        let read = self.reader.read(&wish.source).map_err(Error::new)?;
+        self.tell(Doing::Building, told);
+        let set = Set::new(read, &wish.source, wish, self.set.as_ref().filter(|_| is_same))?;
+        self.news.facts = Some(set.facts.clone());
+        (self.set, self.growth, self.news.fault) = (Some(set), None, None);
+        Ok(())
+    }
+
+    fn tell(&mut self, doing: Doing, told: &dyn Fn(&News)) {
+        self.news.doing = doing;
+        told(&self.news);
+    }
+
+    /// Has a session for the job, or one on its way.
+    fn seat(&mut self, wish: &Wish, job: &Job) -> Result<()> {
+        let device = match self.is_gpu_lost {
+            true => Device { wish: DeviceWish::Cpu, ..wish.device.clone() },
+            false => wish.device.clone(),
+        };
+        self.seat.look()?;
+        if matches!(self.seat, Seat::Opening(..)) {
+            return Ok(());
+        }
+        let settings = *job.settings();
+        let is_same = |seated: &Seated| {
+            seated.device == device && seated.settings == settings && std::ptr::eq::<DeviceScene>(&*seated.job, &**job)
+        };
+        if self.seated.as_ref().is_some_and(is_same) {
+            return Ok(());
+        }
+        match &self.seated {
+            Some(seated) if seated.device == device && matches!(self.seat, Seat::Ready(..)) => self.seat.turn(job),
+            _ => self.seat.open((&device, self.around), self.shared.as_ref(), job),
+        }
+        self.seated = Some(Seated { device, settings, job: job.clone() });
+        (self.growth, self.previewed) = (None, None);
+        self.pace.forget();
+        Ok(())
+    }
+
+    /// A layer of the picture, by the CPU.
+    fn inspect(&mut self, wish: &Wish, job: &Job, layer: Layer) -> Result<Step> {
+        let set = self.set.as_ref().expect("there is a job");
+        let divisor = if wish.is_moving { 4 } else { 1 };
+        let subject = Subject { camera: set.camera(wish).clone(), size: divided(wish.size, divisor) };
+        let now = (subject, wish.shows);
+        let inspector = match self.inspector.take() {
+            Some(inspector) if inspector.is_of(job) => inspector,
+            _ => {
+                self.inspected = None;
+                Inspector::new(job, wish.device.threads)?
+            }
+        };
+        let inspector = self.inspector.insert(inspector);
+        if self.inspected.as_ref() == Some(&now) {
+            return Ok(NOTHING);
+        }
+        let (subject, _) = &now;
+        let shown = inspector.layer((job, set.scene()), subject, layer)?;
+        let display = Display::Pixels { size: subject.size, bytes: shown.bytes };
+        let picture = Picture { display, size: subject.size, samples: 0, camera: subject.camera.clone() };
+        (self.news.scale, self.news.doing, self.inspected) = (shown.scale, Doing::Done, Some(now));
+        Ok(Step { picture: Some(picture), goes_on: false })
+    }
+
+    fn is_on_gpu(&self) -> bool {
+        self.seated.as_ref().is_some_and(|seated| seated.device.wish != DeviceWish::Cpu) && !self.is_gpu_lost
+    }
+
+    /// What is there by a CPU until kernels are: the colours of surfaces, of a quarter of the columns and rows.
+    fn preview(&mut self, wish: &Wish, job: &Job) -> Result<Step> {
+        let size = divided(wish.size, 2);
+        let camera = self.set.as_ref().expect("there is a job").camera(wish).clone();
+        let subject = Subject { camera, size };
+        if self.previewed.as_ref() == Some(&subject) {
+            std::thread::sleep(Duration::from_millis(5));
+            return Ok(Step { picture: None, goes_on: true });
+        }
+        let job = job.with(Settings { size, ..*job.settings() })?;
+        let view = View::new(&job, &subject.camera)?;
+        let picture = layers::preview(&job, &subject.camera, view.region(), 0)?;
+        let display = Display::of(&picture, &wish.look)?;
+        let picture = Picture { display, size, samples: 0, camera: subject.camera.clone() };
+        self.previewed = Some(subject);
+        Ok(Step { picture: Some(picture), goes_on: true })
+    }
+
+    /// Adds samples, of another film where something else is to be seen.
+    fn grow(&mut self, wish: &Wish, job: &Job) -> Result<Step> {
+        let Seat::Ready(session, is_shared) = &mut self.seat else { unreachable!("it was just ready") };
+        let camera = self.set.as_ref().expect("there is a job").camera(wish);
+        let divisor = match wish.is_moving {
+            true => self.pace.divisor(u64::from(wish.size.0) * u64::from(wish.size.1)),
+            false => 1,
+        };
+        let subject = Subject { camera: camera.clone(), size: divided(wish.size, divisor) };
+        if self.growth.as_ref().is_none_or(|growth| growth.subject != subject) {
+            let job = job.with(Settings { size: subject.size, ..*job.settings() })?;
+            let view = View::new(&job, &subject.camera)?;
+            self.growth = Some(Growth::new(session, view, subject, &self.pace)?);
+            (self.news.noise, self.noise_told) = (None, None);
+        }
+        let growth = self.growth.as_mut().expect("it was just made");
+        let most = if wish.is_moving || (wish.is_paused && growth.samples() == 0) { 1 } else { wish.most };
+        let before = growth.samples();
+        let added = (!wish.is_paused || before == 0) && growth.add(session, most, &mut self.pace)?;
+        let samples = growth.samples();
+        let pixels = u64::from(growth.subject.size.0) * u64::from(growth.subject.size.1);
+        (before..samples).for_each(|_| self.meter.count(pixels));
+        let (size, camera) = (growth.subject.size, growth.subject.camera.clone());
+        let display = growth.display((session, *is_shared), (wish.look, wish.shows), !added)?;
+        self.news.scale = growth.scale();
+        session.device_name().clone_into(&mut self.news.device);
+        if let Some(rates) = self.meter.rates(session.device_time()) {
+            self.news.rates = rates;
+        }
+        self.news.samples = samples;
+        self.news.doing = if added { Doing::Rendering } else { Doing::Done };
+        self.tell_noise(!added)?;
+        let picture = display.map(|display| Picture { display, size, samples, camera });
+        Ok(Step { picture, goes_on: added })
+    }
+
+    /// Finds out how noisy the picture is, now and then.
+    fn tell_noise(&mut self, is_done: bool) -> Result<()> {
+        let Seat::Ready(session, _) = &mut self.seat else { return Ok(()) };
+        let has_any = session.job().settings().transport.integrator.samples() && self.news.samples > 1;
+        let is_due = self.noise_told.is_none_or(|told| told.elapsed() >= TELL_NOISE) || is_done;
+        if has_any && is_due && self.growth.as_ref().is_some_and(Growth::is_even) {
+            let film = session.film()?;
+            self.news.noise = session.develop(&film)?.noise();
+            self.noise_told = Some(Instant::now());
+        }
+        Ok(())
+    }
+
+    /// Answers a question about the picture of a wish.
+    pub fn answer(&self, wish: &Wish, ask: Ask) -> Answer {
+        let Some(set) = &self.set else { return Answer::Nothing("there is no scene yet".to_owned()) };
+        let job = set.job(wish).and_then(|job| job.with(Settings { size: wish.size, ..*job.settings() }));
+        match job {
+            Ok(job) => answer::answer(&job, set.scene(), set.camera(wish), ask),
+            Err(error) => Answer::Nothing(error.to_string()),
+        }
+    }
+
+    /// What renders, if it is ready.
+    pub fn session(&mut self) -> Option<&mut Session> {
+        match &mut self.seat {
+            Seat::Ready(session, _) => Some(session),
+            Seat::Empty | Seat::Opening(..) => None,
+        }
+    }
+}
+
+/// Columns and rows of a picture that is so many times smaller.
+fn divided((width, height): (u32, u32), divisor: u32) -> (u32, u32) {
+    (width.div_ceil(divisor).max(1), height.div_ceil(divisor).max(1))
+}

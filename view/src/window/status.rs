@@ -1,0 +1,88 @@
+//! The line below the picture.
+
+use eframe::egui::{Color32, Panel, RichText, Ui};
+
+use super::{STATUS_HEIGHT, Window};
+use crate::news::{Doing, News};
+
+/// So long it is told what was done, in seconds.
+const TOLD: f32 = 4.0;
+
+impl Window {
+    /// Samples, noise and speed, and what went wrong.
+    pub(super) fn status(&mut self, ui: &mut Ui) {
+        if self.show.said.as_ref().is_some_and(|(at, _)| at.elapsed().as_secs_f32() > TOLD) {
+            self.show.said = None;
+        }
+        Panel::bottom("status").exact_size(STATUS_HEIGHT).show(ui, |ui| {
+            ui.horizontal_wrapped(|ui| {
+                if let Some(fault) = &self.news.fault {
+                    ui.label(RichText::new(format!("error: {fault}")).color(Color32::LIGHT_RED));
+                    return;
+                }
+                ui.label(line(&self.news, self.wish.is_paused));
+                if let Some((_, said)) = &self.show.said {
+                    ui.label(RichText::new(said).strong());
+                } else if !self.show.panel {
+                    ui.weak("tab: settings and keys");
+                }
+            });
+        });
+    }
+}
+
+/// What a studio has told, in a line.
+fn line(news: &News, is_paused: bool) -> String {
+    let doing = match &news.doing {
+        Doing::Nothing if news.facts.is_none() => {
+            return "drop a scene here: .toml, .gltf, .glb, .obj, .ply, .eyerays".to_owned();
+        }
+        Doing::Nothing => "nothing to do".to_owned(),
+        Doing::Reading => "reading".to_owned(),
+        Doing::Building => "building the hierarchy".to_owned(),
+        Doing::Opening(since) => format!("compiling kernels, {:.1} s", since.as_secs_f64()),
+        Doing::Rendering | Doing::Done => samples(news),
+    };
+    let paused = if is_paused { "paused, " } else { "" };
+    if news.device.is_empty() { format!("{paused}{doing}") } else { format!("{paused}{doing} | {}", news.device) }
+}
+
+fn samples(news: &News) -> String {
+    let News { samples, noise, rates, .. } = news;
+    let mut parts = vec![format!("{samples} sample{}", if *samples == 1 { "" } else { "s" })];
+    parts.extend(noise.map(|noise| format!("noise {:.2} %", 100.0 * noise)));
+    if news.doing == Doing::Rendering {
+        parts.push(format!("{:.0} frames/s", rates.frames));
+        parts.push(format!("{:.1} Mrays/s from the camera", rates.rays / 1e6));
+        parts.extend(rates.device.map(|share| format!("device {:.0} % busy", 100.0 * share)));
+    }
+    parts.extend(news.scale.map(|[dark, bright]| format!("black is {dark:.4}, the brightest {bright:.4}")));
+    parts.join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::news::Rates;
+
+    #[test]
+    fn what_is_told_of_a_picture_that_grows() {
+        let rates = Rates { frames: 59.7, rays: 12.34e6, device: Some(0.875) };
+        let news = News {
+            doing: Doing::Rendering,
+            device: "CPU (2 threads)".to_owned(),
+            samples: 16,
+            noise: Some(0.0123),
+            rates,
+            ..News::default()
+        };
+        let told =
+            "16 samples, noise 1.23 %, 60 frames/s, 12.3 Mrays/s from the camera, device 88 % busy | CPU (2 threads)";
+        assert_eq!(line(&news, false), told);
+        assert_eq!(
+            line(&News { doing: Doing::Done, ..news }, true),
+            "paused, 16 samples, noise 1.23 % | CPU (2 threads)"
+        );
+        assert!(line(&News::default(), false).starts_with("drop a scene here"));
+    }
+}

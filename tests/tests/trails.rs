@@ -7,16 +7,17 @@ use eyerays::method::{Layout, Method, Traversal};
 use eyerays::pick::{Names, pick, pick_by};
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish};
-use eyerays::scene::{Sampler, Scene, Settings};
+use eyerays::scene::{Camera, Object, Primitives, Projection, Sampler, Scene, Settings, Visibility};
+use eyerays::scene_io::{self, Instancing, Loading};
 use eyerays::stream::{Stream, StreamRay};
-use eyerays::trail::{Aim, Outcome, Step, Target, Trail, follow};
+use eyerays::trail::{Aim, Contact, Outcome, Step, Target, Trail, follow};
 use eyerays::view::View;
 use eyerays_shader::camera::{self, Pixel};
 use eyerays_shader::data::{Launch, Order, Tuning};
 use eyerays_shader::ray::Ray;
 use eyerays_shader::real::V3;
 use eyerays_tests::brute_force::brute_force;
-use eyerays_tests::shipped;
+use eyerays_tests::{model, shipped};
 use glam::Vec3;
 
 const SIZE: (u32, u32) = (21, 14);
@@ -187,6 +188,70 @@ fn a_pick_is_what_layers_have_of_its_pixel() {
             assert!(seen.error > 0.0 && seen.error < 1e-3 * size, "{name} {x},{y}: {}", seen.error);
         }
     }
+}
+
+/// Pieces of chess, each held once or as often as it stands there: the same surfaces at the same places.
+#[test]
+fn rays_go_into_copies_of_meshes_by_every_method() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/chess.glb");
+    let [copied, flat] = [Instancing::Always, Instancing::Never].map(|instancing| {
+        let loading = Loading { instancing, ..Loading::default() };
+        scene_io::load_as(path.as_ref(), loading).unwrap().0
+    });
+    let (jobs, mut inside) = ([&copied, &flat].map(packed), 0);
+    for at in pixels().step_by(7) {
+        let want = trail(&jobs[1], &flat, at, Method::IfIf).hit;
+        for traversal in traversals() {
+            let hit = trail(&jobs[0], &copied, at, traversal).hit;
+            inside += usize::from(hit.as_ref().is_some_and(|hit| hit.surface.shared.is_some()));
+            let seen = |hit: Option<Contact>| hit.map(|hit| (hit.place.t, hit.surface.object, hit.surface.material));
+            assert_eq!(seen(hit), seen(want.clone()), "{at:?} {traversal:?}");
+        }
+    }
+    assert!(inside > 100, "{inside}");
+}
+
+/// A box that goes to the right before a wall.
+fn passing(time: f32) -> Scene {
+    let mut scene = model::empty();
+    model::add_wall(&mut scene, model::matt(Vec3::ONE), Vec3::new(0.0, 0.0, -2.0), 4.0);
+    let first = scene.mesh.triangles.len();
+    let least = Vec3::new(2.0 * time - 1.5, -0.5, -0.5);
+    model::add_box(&mut scene, model::matt(Vec3::X), least, least + 1.0);
+    let object = |name: &str, triangles| Object {
+        name: name.into(),
+        primitives: Primitives::Triangles(triangles),
+        bounds: [Vec3::ZERO; 2],
+        visibility: Visibility::default(),
+    };
+    scene.objects = vec![object("wall", 0..first), object("box", first..scene.mesh.triangles.len())];
+    let (eye, projection) = (Vec3::new(0.0, 0.5, 5.0), Projection::Perspective { fov: 45.0 });
+    scene.cameras = vec![Camera::new("front", eye, Vec3::ZERO, projection)];
+    scene
+}
+
+/// Each has its own, so that no two of a block are followed together.
+#[test]
+fn rays_at_their_times_go_alone_and_see_what_is_there_then() {
+    let scene = passing(0.0).over(&[passing(0.5), passing(1.0)], 1.0).unwrap().scene;
+    let settings = Settings { size: SIZE, spp: 16, sampler: Sampler::Sobol, ..scene.settings };
+    let job = Job::new(&scene, settings, Bvh::Fast.quality()).unwrap();
+    let (names, camera) = (Names::of(&scene), &scene.cameras[0]);
+    let mut seen = [0, 0];
+    for sample in 0..16 {
+        let aim = Aim { sample: Some(sample), ..Aim::middle(10, 6) };
+        let pick = pick_by(&job, &names, camera, aim).unwrap().unwrap();
+        seen[usize::from(pick.surface.object.as_ref().unwrap().name == "box")] += 1;
+        for method in Method::ALL {
+            let trail = follow(&job, &scene, camera, aim, method).unwrap();
+            let hit = trail.hit.unwrap();
+            assert_eq!((hit.surface, hit.place.t), (pick.surface.clone(), pick.distance), "{method} {sample}");
+            assert_eq!(trail.packet, None);
+        }
+    }
+    assert!(seen[0] > 2 && seen[1] > 2, "{seen:?}");
+    let opening = trail(&job, &scene, (10, 6), Method::Auto);
+    assert_eq!((opening.method, opening.hit.unwrap().surface.object.unwrap().name), (Method::IfIf, "wall".into()));
 }
 
 /// Samples lie elsewhere in their pixel than its middle, and are those of the picture.

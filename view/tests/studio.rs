@@ -81,7 +81,7 @@ fn after_so_many_samples_the_film_is_that_of_a_picture_of_so_many() {
 #[test]
 fn a_camera_that_moves_has_smaller_pictures_and_one_that_stands_still_all_of_them() {
     let mut studio = studio();
-    let still = Wish { most: 2, ..wish("whitted", (64, 48)) };
+    let still = Wish { most: 2, ..wish("cornell_path", (64, 48)) };
     assert_eq!(done(&mut studio, &still).unwrap().size, (64, 48));
     let facts = studio.news().facts.clone().unwrap();
     let mut camera = facts.camera.clone();

@@ -34,7 +34,7 @@ fn a_pixel_is_told_with_what_it_shows_first_and_the_steps_behind() {
     let outcome = place.succeed(&["trace-pixel", "scene.toml", "4", "3", "--method", "if-if"]);
     let lines: Vec<&str> = outcome.text().lines().collect();
     assert_eq!(lines[0], "scene.toml: the middle of pixel 4,3 of 9x7, camera \"front\"");
-    assert!(lines[1].starts_with("sees triangle ") && lines[1].ends_with(", material 2 \"red\""), "{}", lines[1]);
+    assert!(lines[1].starts_with("sees triangle ") && lines[1].ends_with(", material 1 \"red\""), "{}", lines[1]);
     for want in ["  distance  4.000000", "  position  0.000000, 0.000000, 0.000000", "  error     "] {
         assert!(lines.iter().any(|line| line.starts_with(want)), "{want}: {}", outcome.text());
     }

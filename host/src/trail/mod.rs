@@ -119,12 +119,8 @@ impl Follower<'_> {
         let mut record = Record::new(lane, self.names, ruler);
         let hit = Walk::new(scene, block, &mut record).follow(method, lane);
         let (events, found) = tape::of(method, scene, block, lane);
-        let traced = Found::<f32>::load(&scene.base, slot, &records.hits);
-        let same = |a: &Hit<f32>, t: f32, index: u32| {
-            a.primitive_index == index && (index == Hit::<f32>::NOTHING || a.t.to_bits() == t.to_bits())
-        };
-        if events != record.events || !same(&hit, found.t, found.primitive_index) || !same(&hit, traced.t, traced.index)
-        {
+        let rendered = Found::<f32>::load(&scene.base, slot, &records.hits);
+        if events != record.events || !is_same(&hit, &found) || !is_rendered(scene, &hit, &rendered) {
             return Err(Error::new(format!(
                 "the steps that are told of {method} are not those of its kernel: this is a fault of the program; report it with the scene"
             )));
@@ -133,6 +129,20 @@ impl Follower<'_> {
         let contact = ruler.place(&hit).map(|place| Contact { surface: surface(), place });
         Ok(Trail { method, packet: None, steps: record.steps, hit: contact })
     }
+}
+
+fn is_same(a: &Hit<f32>, b: &Hit<f32>) -> bool {
+    (a.t.to_bits(), a.primitive_index, a.instance) == (b.t.to_bits(), b.primitive_index, b.instance)
+}
+
+/// Is a hit what a launch has found? That has followed the ray with as many others as its vectors hold: of a split triangle it may have met
+/// another part.
+fn is_rendered(scene: &TraceContext<'_>, hit: &Hit<f32>, found: &Found<f32>) -> bool {
+    if found.is_nothing() {
+        return hit.primitive_index == Hit::<f32>::NOTHING;
+    }
+    let primitive = scene.base.placed(found.index, found.instance, found.time).number();
+    (hit.t.to_bits(), hit.primitive, hit.instance) == (found.t.to_bits(), primitive, found.instance)
 }
 
 /// The slot of a launch that follows the ray of a pixel.

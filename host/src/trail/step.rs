@@ -94,7 +94,7 @@ pub enum Target {
     Node(u32),
     /// A leaf.
     Leaf {
-        /// The place of its first primitive in the order of leaves, or the number of its block.
+        /// The place of its first primitive in the order of leaves, or the number of its block among those of its kind.
         number: u32,
         /// How many primitives it has.
         primitives: u32,

@@ -55,7 +55,8 @@ fn depth(levels: u32, ratio: f32) -> u32 {
 #[test]
 fn chains() {
     let halves = [63, 64, 65, 1000].map(|levels| depth(levels, 0.5));
-    let slow = [(63, 0.82), (64, 0.82), (65, 0.82), (1000, 0.7), (1000, 0.987)].map(|(levels, ratio)| depth(levels, ratio));
+    let slow =
+        [(63, 0.82), (64, 0.82), (65, 0.82), (1000, 0.7), (1000, 0.987)].map(|(levels, ratio)| depth(levels, ratio));
     let deepest = halves.into_iter().chain(slow).max();
     assert_eq!(deepest, Some(MAX_DEPTH), "no chain fills a traversal's stack");
 }

@@ -58,6 +58,8 @@ pub struct Studio {
     pace: Pace,
     meter: Meter,
     noise_told: Option<Instant>,
+    /// Why the scene of the last wish could not be read: what is shown is the one before.
+    unread: Option<String>,
     /// The wish that can't be had.
     refused: Option<Wish>,
     news: News,
@@ -100,6 +102,7 @@ impl Studio {
             pace: Pace::new(),
             meter: Meter::new(),
             noise_told: None,
+            unread: None,
             refused: None,
             news: News::default(),
         }
@@ -118,7 +121,10 @@ impl Studio {
         }
         self.refused = None;
         match self.go(wish, told) {
-            Ok(step) => step,
+            Ok(step) => {
+                self.news.fault.clone_from(&self.unread);
+                step
+            }
             Err(error) => {
                 self.news.fault = Some(error.to_string());
                 self.growth = None;
@@ -166,12 +172,18 @@ impl Studio {
         let before = self.source.replace(wish.source.clone());
         let is_same = before.is_some_and(|before| before.path == wish.source.path);
         self.tell(Doing::Reading, told);
+        let set = self.packed(wish, is_same, told);
+        self.unread = set.as_ref().err().map(ToString::to_string);
+        let set = set?;
+        self.news.facts = Some(set.facts.clone());
+        (self.set, self.growth) = (Some(set), None);
+        Ok(())
+    }
+
+    fn packed(&mut self, wish: &Wish, is_same: bool, told: &dyn Fn(&News)) -> Result<Set> {
         let read = self.reader.read(&wish.source).map_err(Error::new)?;
         self.tell(Doing::Building, told);
-        let set = Set::new(read, &wish.source, wish, self.set.as_ref().filter(|_| is_same))?;
-        self.news.facts = Some(set.facts.clone());
-        (self.set, self.growth, self.news.fault) = (Some(set), None, None);
-        Ok(())
+        Set::new(read, &wish.source, wish, self.set.as_ref().filter(|_| is_same))
     }
 
     fn tell(&mut self, doing: Doing, told: &dyn Fn(&News)) {

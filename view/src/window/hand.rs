@@ -17,8 +17,9 @@ const CROSSING: f64 = 1.5;
 pub(super) fn moved(camera: &mut Camera, response: &Response, height: f32) -> bool {
     let before = camera.clone();
     let share = |by: Vec2| DVec2::new(by.x.into(), by.y.into()) / f64::from(height.max(1.0));
-    let (shift, wheel, seconds) =
-        response.ctx.input(|input| (input.modifiers.shift, input.smooth_scroll_delta().y, input.stable_dt));
+    let (modifiers, wheel, seconds) =
+        response.ctx.input(|input| (input.modifiers, input.smooth_scroll_delta().y, input.stable_dt));
+    let shift = modifiers.shift;
     let drag = share(response.drag_delta());
     if response.dragged_by(PointerButton::Middle) || response.dragged_by(PointerButton::Primary) && shift {
         motion::pan(camera, drag);
@@ -30,7 +31,8 @@ pub(super) fn moved(camera: &mut Camera, response: &Response, height: f32) -> bo
     if response.hovered() && wheel != 0.0 {
         motion::dolly(camera, f64::from(wheel) * WHEEL);
     }
-    if !response.ctx.egui_wants_keyboard_input() {
+    // With ctrl held, keys mean something else.
+    if !response.ctx.egui_wants_keyboard_input() && !modifiers.command {
         let way = keys(&response.ctx);
         if way != DVec3::ZERO {
             let faster = if shift { 4.0 } else { 1.0 };

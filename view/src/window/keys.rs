@@ -25,7 +25,7 @@ pub(super) const KEYS: [(&str, &str); 17] = [
     ("space", "play, stand still"),
     ("P", "pause, go on"),
     ("G", "the GPU, the CPU"),
-    ("tab", "all that may be changed"),
+    ("N", "all that may be changed"),
     ("ctrl + Q", "close the window"),
 ];
 
@@ -43,7 +43,7 @@ impl Window {
             return;
         }
         let pressed = |key: Key| context.input(|input| input.modifiers.is_none() && input.key_pressed(key));
-        if pressed(Key::Tab) {
+        if pressed(Key::N) {
             self.show.panel = !self.show.panel;
         }
         if pressed(Key::P) {

@@ -1,6 +1,6 @@
 //! The line below the picture.
 
-use eframe::egui::{Color32, Panel, RichText, Ui};
+use eframe::egui::{Color32, Label, Panel, RichText, Ui};
 
 use super::{STATUS_HEIGHT, Window};
 use crate::news::{Doing, News};
@@ -14,18 +14,15 @@ impl Window {
         if self.show.said.as_ref().is_some_and(|(at, _)| at.elapsed().as_secs_f32() > TOLD) {
             self.show.said = None;
         }
-        Panel::bottom("status").exact_size(STATUS_HEIGHT).show(ui, |ui| {
-            ui.horizontal_wrapped(|ui| {
-                if let Some(fault) = &self.news.fault {
-                    ui.label(RichText::new(format!("error: {fault}")).color(Color32::LIGHT_RED));
-                    return;
-                }
-                ui.label(line(&self.news, self.wish.is_paused));
-                if let Some((_, said)) = &self.show.said {
-                    ui.label(RichText::new(said).strong());
-                } else if !self.show.panel {
-                    ui.weak("tab: settings and keys");
-                }
+        Panel::bottom("status").exact_size(STATUS_HEIGHT).show_separator_line(false).show(ui, |ui| {
+            // One line, whatever there is to say: the picture above must not move.
+            ui.horizontal_centered(|ui| {
+                let text = match (&self.news.fault, &self.show.said) {
+                    (Some(fault), _) => RichText::new(format!("error: {fault}")).color(Color32::LIGHT_RED),
+                    (None, Some((_, said))) => RichText::new(said).strong(),
+                    (None, None) => RichText::new(line(&self.news, self.wish.is_paused)),
+                };
+                ui.add(Label::new(text.clone()).truncate()).on_hover_text(text);
             });
         });
     }
@@ -44,7 +41,8 @@ fn line(news: &News, is_paused: bool) -> String {
         Doing::Rendering | Doing::Done => samples(news),
     };
     let paused = if is_paused { "paused, " } else { "" };
-    if news.device.is_empty() { format!("{paused}{doing}") } else { format!("{paused}{doing} | {}", news.device) }
+    let device = if news.device.is_empty() { "" } else { " | " };
+    format!("{paused}{doing}{device}{} | N: settings and keys", news.device)
 }
 
 fn samples(news: &News) -> String {
@@ -76,12 +74,11 @@ mod tests {
             rates,
             ..News::default()
         };
-        let told =
-            "16 samples, noise 1.23 %, 60 frames/s, 12.3 Mrays/s from the camera, device 88 % busy | CPU (2 threads)";
+        let told = "16 samples, noise 1.23 %, 60 frames/s, 12.3 Mrays/s from the camera, device 88 % busy | CPU (2 threads) | N: settings and keys";
         assert_eq!(line(&news, false), told);
         assert_eq!(
             line(&News { doing: Doing::Done, ..news }, true),
-            "paused, 16 samples, noise 1.23 % | CPU (2 threads)"
+            "paused, 16 samples, noise 1.23 % | CPU (2 threads) | N: settings and keys"
         );
         assert!(line(&News::default(), false).starts_with("drop a scene here"));
     }

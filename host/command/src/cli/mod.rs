@@ -85,7 +85,7 @@ enum Command {
     /// Open a window on a scene
     #[cfg(feature = "view")]
     #[command(after_help = view::EXAMPLES, allow_negative_numbers = true)]
-    View(Box<view::View>),
+    View(Box<view::Window>),
     /// Put the parts of a picture together
     #[command(after_help = merge::EXAMPLES, allow_negative_numbers = true)]
     Merge(merge::Merge),

@@ -17,7 +17,7 @@ use super::device::DeviceArgs;
 use super::devices::Devices;
 use super::hush;
 use super::look::white_balance;
-use super::options::{Effort, View as Seen};
+use super::options::{Effort, View};
 use super::reading::{self, Reading};
 use super::sequence::Instant;
 use crate::error::{Error, Result};
@@ -28,10 +28,10 @@ Examples:
   eyerays view model.glb --device cpu
   eyerays view scenes/room.toml --size 640x360 --tone agx
 
-Drag to orbit, turn the wheel to come nearer, press tab for all that may be changed and for the other keys.";
+Drag to orbit, turn the wheel to come nearer, press N for all that may be changed and for the other keys.";
 
 #[derive(Args)]
-pub(super) struct View {
+pub(super) struct Window {
     /// A scene, as render takes it; without one the window waits for a file to be dropped
     scene: Option<PathBuf>,
     /// Where to render: auto is a GPU when one works, else the CPU; gpu; cpu; all of them together; or several by their numbers or
@@ -57,14 +57,14 @@ pub(super) struct View {
 #[derive(Args)]
 struct Scenes {
     #[command(flatten)]
-    seen: Seen,
+    seen: View,
     #[command(flatten)]
     reading: Reading,
     #[command(flatten)]
     effort: Effort,
 }
 
-impl View {
+impl Window {
     pub fn run(self) -> Result<ExitCode> {
         if self.scene.as_deref().is_some_and(reading::is_standard_input) {
             return Err(Error::new("a window reads its scene again when it changes: name its file"));

@@ -17,9 +17,8 @@ use x11rb::wrapper::ConnectionExt as _;
 /// Many times what anything takes on a busy machine.
 const PATIENCE: Duration = Duration::from_secs(90);
 
-/// Latin letters are their own symbols.
-pub const TAB: u32 = 0xff09;
-pub const CTRL: u32 = 0xffe3;
+/// Its symbol; Latin letters are their own.
+const CTRL: u32 = 0xffe3;
 
 pub struct Screen {
     server: Child,
@@ -89,7 +88,7 @@ impl Screen {
 
     fn fake(&self, kind: u8, detail: u8, x: i16, y: i16) {
         self.connection.xtest_fake_input(kind, detail, 0, self.root, x, y, 0).unwrap().check().unwrap();
-        self.connection.sync();
+        self.connection.sync().unwrap();
         // A frame of the window lies between what a hand does.
         thread::sleep(Duration::from_millis(30));
     }

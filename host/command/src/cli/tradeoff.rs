@@ -258,7 +258,7 @@ impl Tradeoff {
     fn subject(&self, quiet: bool) -> Result<Subject> {
         let mut scene = Read::scene(&self.scene, &self.destinations(), self.reading.flat()?, quiet)?.unbuilt();
         let mut settings = self.view.settings(&scene, &Effort::default())?;
-        if self.quick && !self.view.size().is_some() {
+        if self.quick && self.view.size().is_none() {
             settings.size = (256, 256);
         }
         let name = self.scene.file_stem().unwrap_or_default().to_string_lossy().into_owned();

@@ -67,11 +67,11 @@ impl Growth {
         self.samples
     }
 
-    /// Adds what takes little time, at most up to so many samples of a pixel, and tells whether there was anything to add.
-    pub fn add(&mut self, session: &mut Session, most: u32, pace: &mut Pace) -> Result<bool> {
+    /// Adds what takes little time, at most up to so many samples of a pixel, and tells how many samples of pixels that were.
+    pub fn add(&mut self, session: &mut Session, most: u32, pace: &mut Pace) -> Result<u64> {
         let most = most.min(self.view.samples());
         if self.samples >= most {
-            return Ok(false);
+            return Ok(0);
         }
         let region = self.strips[self.next];
         let batch = match self.strips.len() {
@@ -82,12 +82,13 @@ impl Growth {
         let start = Instant::now();
         session.add(Part { region, samples: self.samples..self.samples + batch })?;
         session.wait()?;
-        pace.learn(region.pixels() * u64::from(batch), start.elapsed());
+        let added = region.pixels() * u64::from(batch);
+        pace.learn(added, start.elapsed());
         self.next += 1;
         if self.next == self.strips.len() {
             (self.next, self.samples) = (0, self.samples + batch);
         }
-        Ok(true)
+        Ok(added)
     }
 
     /// The picture, where it is time to show another: not while some pixels have a sample more than others. It stays on a device that is

@@ -283,10 +283,9 @@ impl Studio {
         let growth = self.growth.as_mut().expect("it was just made");
         let most = if wish.is_moving || (wish.is_paused && growth.samples() == 0) { 1 } else { wish.most };
         let before = growth.samples();
-        let added = (!wish.is_paused || before == 0) && growth.add(session, most, &mut self.pace)?;
-        let samples = growth.samples();
-        let pixels = u64::from(growth.subject.size.0) * u64::from(growth.subject.size.1);
-        (before..samples).for_each(|_| self.meter.count(pixels));
+        let rays = if wish.is_paused && before > 0 { 0 } else { growth.add(session, most, &mut self.pace)? };
+        let (samples, added) = (growth.samples(), rays > 0);
+        self.meter.count(samples - before, rays);
         let (size, camera) = (growth.subject.size, growth.subject.camera.clone());
         let display = growth.display((session, *is_shared), (wish.look, wish.shows), !added)?;
         self.news.scale = growth.scale();

@@ -6,6 +6,8 @@ use crate::news::Rates;
 
 /// So long is counted before it is told.
 const WHILE: Duration = Duration::from_millis(500);
+/// And so long where not even one picture is done.
+const LONG: Duration = Duration::from_secs(4);
 
 /// Counts since some moment.
 pub(super) struct Meter {
@@ -21,16 +23,16 @@ impl Meter {
         Meter { since: Instant::now(), frames: 0, samples: 0, clock: None }
     }
 
-    /// Counts a frame of so many samples.
-    pub fn count(&mut self, samples: u64) {
-        self.frames += 1;
+    /// Counts samples of pixels, and pictures that they complete.
+    pub fn count(&mut self, frames: u32, samples: u64) {
+        self.frames += frames;
         self.samples += samples;
     }
 
     /// What it has come to, every while; `clock` is the time that the device has been at work until now.
     pub fn rates(&mut self, clock: Option<Duration>) -> Option<Rates> {
         let seconds = self.since.elapsed();
-        if seconds < WHILE {
+        if seconds < if self.frames > 0 { WHILE } else { LONG } {
             return None;
         }
         let each = |count: f64| count / seconds.as_secs_f64();

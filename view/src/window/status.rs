@@ -50,7 +50,8 @@ fn samples(news: &News) -> String {
     let mut parts = vec![format!("{samples} sample{}", if *samples == 1 { "" } else { "s" })];
     parts.extend(noise.map(|noise| format!("noise {:.2} %", 100.0 * noise)));
     if news.doing == Doing::Rendering {
-        parts.push(format!("{:.0} frames/s", rates.frames));
+        let digits = if rates.frames < 10.0 { 1 } else { 0 };
+        parts.push(format!("{:.digits$} frames/s", rates.frames));
         parts.push(format!("{:.1} Mrays/s from the camera", rates.rays / 1e6));
         parts.extend(rates.device.map(|share| format!("device {:.0} % busy", 100.0 * share)));
     }

@@ -5,12 +5,14 @@ use std::time::{Duration, Instant};
 
 use eyerays::image::{self, Encoding};
 use eyerays::job::Job;
+use eyerays::layers::{self, Layer, Values};
+use eyerays::method::Method;
 use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish, Display};
 use eyerays::scene::{Integrator, Material, Settings};
 use eyerays::scene_io;
 use eyerays::view::View;
-use eyerays_view::{AsTheyAre, Device, Doing, Edits, Picture, Studio, Wish};
+use eyerays_view::{Answer, AsTheyAre, Ask, Device, Doing, Edits, Picture, Shows, Studio, Wish};
 use glam::Vec3;
 
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -179,4 +181,52 @@ fn no_scene_is_nothing_to_do() {
     let mut studio = studio();
     assert!(done(&mut studio, &Wish::new(PathBuf::new(), cpu(), (16, 16))).is_none());
     assert_eq!((studio.news().fault.clone(), studio.news().doing.clone()), (None, Doing::Nothing));
+}
+
+#[test]
+fn a_layer_takes_the_place_of_light_and_goes_again() {
+    let size = (40, 30);
+    let mut studio = studio();
+    let plain = wish("whitted", size);
+    let light = done(&mut studio, &plain).unwrap();
+    let (scene, _) = scene_io::load(&scene("whitted")).unwrap();
+    let settings = Settings { size, samples: 1, spp: 1, ..scene.settings };
+    let job = Job::new(&scene, settings, Bvh::Medium.quality()).unwrap();
+    let choice = Choice { device: DeviceWish::Cpu, traversal: Method::IfIf.into(), ..Choice::default() };
+    let mut session = Backend::new(&choice).unwrap().open(&job).unwrap();
+    let rendering = session.expose(&View::new(&job, &scene.cameras[0]).unwrap(), &|_| ()).unwrap();
+    for layer in [Layer::Visits, Layer::Tests] {
+        let neighbours = None;
+        let shown = layers::Shown { scene: &scene, camera: &scene.cameras[0], neighbours };
+        let values = layers::render(&mut session, shown, &rendering, &[layer]).unwrap();
+        let Values::Numbers(numbers) = &values[0].1 else { panic!("they are counts") };
+        let device = Device { traversal: Method::IfIf.into(), ..cpu() };
+        let shown = done(&mut studio, &Wish { shows: Shows::Layer(layer), device, ..plain.clone() }).unwrap();
+        let most = f64::from(*numbers.iter().max().unwrap());
+        assert_eq!(studio.news().scale, Some([0.0, most]), "{layer}");
+        let brightness = |pixel: &[u8; 4]| pixel[..3].iter().map(|&v| u32::from(v)).sum::<u32>();
+        let brightest = bytes(&shown).iter().map(brightness).enumerate().max_by_key(|(_, bright)| *bright).unwrap().0;
+        assert_eq!(f64::from(numbers[brightest]), most, "{layer}");
+    }
+    for layer in [Layer::Albedo, Layer::Normal, Layer::Depth, Layer::Object, Layer::Material, Layer::Samples] {
+        let shown = done(&mut studio, &Wish { shows: Shows::Layer(layer), ..plain.clone() }).unwrap();
+        assert_eq!(bytes(&shown).len(), 40 * 30, "{layer}");
+        assert_ne!(bytes(&shown), bytes(&light), "{layer}");
+    }
+    assert_eq!(bytes(&done(&mut studio, &plain).unwrap()), bytes(&light));
+}
+
+#[test]
+fn a_pixel_tells_what_is_there_and_how_far_it_is() {
+    let mut studio = studio();
+    let plain = Wish { most: 1, ..wish("whitted", (64, 48)) };
+    assert!(matches!(studio.answer(&plain, Ask::What(1, 1)), Answer::Nothing(_)));
+    done(&mut studio, &plain);
+    let Answer::What(line) = studio.answer(&plain, Ask::What(32, 44)) else { panic!("the floor is there") };
+    for told in ["material \"", " t ", "within", "normal ("] {
+        assert!(line.contains(told) && !line.contains('\n'), "{line}");
+    }
+    let Answer::Focus(distance) = studio.answer(&plain, Ask::Focus(32, 44)) else { panic!("it is somewhere") };
+    assert!(distance > 0.1 && distance.is_finite(), "{distance}");
+    assert!(matches!(studio.answer(&plain, Ask::What(64, 0)), Answer::Nothing(_)));
 }

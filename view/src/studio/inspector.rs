@@ -10,22 +10,25 @@ use eyerays::view::View;
 
 use super::colours::{Coloured, coloured};
 use super::growth::Subject;
+use crate::wish::Device;
 
 /// A scene laid out for the CPU.
 pub(super) struct Inspector {
     session: Session,
+    device: Device,
 }
 
 impl Inspector {
-    /// Of a job's scene, by so many threads.
-    pub fn new(job: &Job, threads: usize) -> Result<Inspector> {
-        let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
-        Ok(Inspector { session: backend.open(&colours(job, *job.settings())?)? })
+    /// Of a job's scene, by the threads of a device and as it follows rays.
+    pub fn new(job: &Job, of: &Device) -> Result<Inspector> {
+        let (threads, traversal) = (of.threads, of.traversal);
+        let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, traversal, ..Choice::default() })?;
+        Ok(Inspector { session: backend.open(&colours(job, *job.settings())?)?, device: of.clone() })
     }
 
-    /// Is it of this scene?
-    pub fn is_of(&self, job: &Job) -> bool {
-        std::ptr::eq::<DeviceScene>(&**self.session.job(), &**job)
+    /// Is it of this scene, and as this device follows rays?
+    pub fn is_of(&self, job: &Job, device: &Device) -> bool {
+        self.device == *device && std::ptr::eq::<DeviceScene>(&**self.session.job(), &**job)
     }
 
     /// A layer of what is to be seen.

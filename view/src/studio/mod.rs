@@ -225,10 +225,10 @@ impl Studio {
         let subject = Subject { camera: set.camera(wish).clone(), size: divided(wish.size, divisor) };
         let now = (subject, wish.shows);
         let inspector = match self.inspector.take() {
-            Some(inspector) if inspector.is_of(job) => inspector,
+            Some(inspector) if inspector.is_of(job, &wish.device) => inspector,
             _ => {
                 self.inspected = None;
-                Inspector::new(job, wish.device.threads)?
+                Inspector::new(job, &wish.device)?
             }
         };
         let inspector = self.inspector.insert(inspector);

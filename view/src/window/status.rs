@@ -55,7 +55,10 @@ fn samples(news: &News) -> String {
         parts.push(format!("{:.1} Mrays/s from the camera", rates.rays / 1e6));
         parts.extend(rates.device.map(|share| format!("device {:.0} % busy", 100.0 * share)));
     }
-    parts.extend(news.scale.map(|[dark, bright]| format!("black is {dark:.4}, the brightest {bright:.4}")));
+    let number = |of: f64| if of.fract() == 0.0 { format!("{of}") } else { format!("{of:.4}") };
+    parts.extend(
+        news.scale.map(|[dark, bright]| format!("black is {}, the brightest {}", number(dark), number(bright))),
+    );
     parts.join(", ")
 }
 

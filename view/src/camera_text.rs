@@ -84,7 +84,7 @@ mod tests {
         let (_folder, path) = copy();
         let camera = scene_io::load(&path).unwrap().0.cameras[0].clone();
         for (text, fault) in
-            [("camera = [{ eye = [0, 0, 5], target = [0, 0, 0] }]\n", "camera"), ("= no TOML", "line 1")]
+            [("camera = [{ eye = [0, 0, 5], target = [0, 0, 0] }]\n", "camera"), ("= no TOML", "unquoted keys")]
         {
             fs::write(&path, text).unwrap();
             let error = add(&path, &camera).unwrap_err().to_string();

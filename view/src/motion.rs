@@ -33,13 +33,15 @@ fn turned(camera: &Camera, vector: DVec3, DVec2 { x: around, y: down }: DVec2) -
 /// turns the scene to the right.
 pub fn orbit(camera: &mut Camera, by: DVec2) {
     let view = turned(camera, towards(camera), DVec2::new(-by.x, by.y));
-    camera.eye = (camera.target.as_dvec3() - view).as_vec3();
+    let target = camera.target.as_dvec3();
+    stand(camera, target - view, target);
 }
 
 /// Turns the view around the eye, by these angles in radians: looking to the right and down.
 pub fn look(camera: &mut Camera, by: DVec2) {
     let view = turned(camera, towards(camera), DVec2::new(-by.x, by.y));
-    camera.target = (camera.eye.as_dvec3() + view).as_vec3();
+    let eye = camera.eye.as_dvec3();
+    stand(camera, eye, eye + view);
 }
 
 /// Moves the camera so that what is as far away as what it looks at goes by these shares of the picture's height, to the right and
@@ -67,11 +69,8 @@ pub fn dolly(camera: &mut Camera, by: f64) {
         *height = (f64::from(*height) * factor).clamp(1e-20, 1e20) as f32;
         return;
     }
-    let eye = (camera.target.as_dvec3() - towards(camera) * factor).as_vec3();
-    // So near that numbers do not tell them apart, it stays.
-    if eye != camera.target {
-        camera.eye = eye;
-    }
+    let target = camera.target.as_dvec3();
+    stand(camera, target - towards(camera) * factor, target);
 }
 
 /// Moves the camera by so many world units to the right, up, and along the view.
@@ -82,9 +81,17 @@ pub fn fly(camera: &mut Camera, by: DVec3) {
 
 fn shift_by(camera: &mut Camera, shift: DVec3) {
     let (eye, target) = (camera.eye.as_dvec3() + shift, camera.target.as_dvec3() + shift);
-    let (eye, target) = (eye.as_vec3(), target.as_vec3());
-    if eye != target {
-        (camera.eye, camera.target) = (eye, target);
+    stand(camera, eye, target);
+}
+
+/// Has the camera stand and look there, unless single precision leaves no view of that: so near, or so steep, that numbers do not tell
+/// points apart.
+fn stand(camera: &mut Camera, eye: DVec3, target: DVec3) {
+    let moved = Camera { eye: eye.as_vec3(), target: target.as_vec3(), ..camera.clone() };
+    let steep = towards(&moved).angle_between(moved.up.as_dvec3());
+    let is_finite = moved.eye.is_finite() && moved.target.is_finite();
+    if is_finite && (STEEPEST / 2.0..=std::f64::consts::PI - STEEPEST / 2.0).contains(&steep) {
+        *camera = moved;
     }
 }
 
@@ -105,7 +112,7 @@ pub fn fit(camera: &mut Camera, [least, greatest]: [DVec3; 2], aspect: f64) {
         }
         Projection::Equirectangular | Projection::Fisheye { .. } => 2.0 * radius,
     };
-    (camera.eye, camera.target) = ((middle - forward * distance).as_vec3(), middle.as_vec3());
+    stand(camera, middle - forward * distance, middle);
 }
 
 #[cfg(test)]

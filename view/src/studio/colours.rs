@@ -100,7 +100,7 @@ mod tests {
     fn near_is_brighter_than_far_and_nothing_is_black() {
         let lengths = vec![1.0, 2.0, 4.0, f32::INFINITY];
         let Coloured { bytes, scale } = coloured(Layer::Depth, &Values::Lengths(lengths)).unwrap();
-        assert_eq!(bytes.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [255, 140, 26, 0]);
+        assert_eq!(bytes.iter().map(|pixel| pixel[0]).collect::<Vec<_>>(), [255, 140, 25, 0]);
         assert_eq!(scale, Some([4.0, 1.0]));
     }
 }

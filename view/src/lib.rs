@@ -107,6 +107,12 @@ fn setup() -> WgpuSetupCreateNew {
 /// Why there is no window, in a line.
 fn not_opened(error: &eframe::Error) -> Error {
     let said = error.to_string().lines().map(str::trim).filter(|line| !line.is_empty()).collect::<Vec<_>>().join("; ");
+    // The line of a library's source that found it out tells nobody anything.
+    let said = match said.rsplit_once(".rs:") {
+        Some((_, found)) => found.trim_start_matches(|c: char| c.is_ascii_digit()).trim_start_matches(": "),
+        None => &said,
+    };
+    let said = said.trim_end_matches('.');
     let remedy = "a window takes a screen (DISPLAY or WAYLAND_DISPLAY) and a driver of Vulkan, Metal or Direct3D 12 (Debian: mesa-vulkan-drivers); `eyerays render` takes neither";
     Error::new(format!("the window can't be opened: {said}: {remedy}"))
 }

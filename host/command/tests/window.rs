@@ -61,6 +61,8 @@ impl<'a> Open<'a> {
     fn new(screen: &'a Screen, place: &Place, arguments: &[&str]) -> Open<'a> {
         let mut command: Command = place.command(arguments);
         command.env("DISPLAY", &screen.display).env_remove("WAYLAND_DISPLAY");
+        // Lavapipe optimizes kernels for as long as others let it.
+        command.env("GALLIVM_PERF", "nopt");
         let process = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         Open { screen, window: screen.window(), process }
     }
@@ -150,11 +152,13 @@ fn used(device: &str) {
 }
 
 #[test]
+#[ignore = "on a busy machine keys come before frames: .ci/release runs it alone"]
 fn a_window_of_the_cpu_does_all_that_a_hand_asks() {
     used("cpu");
 }
 
 #[test]
+#[ignore = "on a busy machine keys come before frames: .ci/release runs it alone"]
 fn a_window_of_a_gpu_does_all_that_a_hand_asks() {
     if has_gpu() {
         used("gpu");
@@ -179,7 +183,8 @@ fn without_a_screen_there_is_one_line() {
     let place = Place::new(&[("scene.toml", SCENE)]);
     let mut command = place.command(&["view", "scene.toml"]);
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("WAYLAND_SOCKET");
-    place.refuse_run(&mut command, &["the window can't be opened", "eyerays render"]);
+    place
+        .refuse_run(&mut command, &["the window can't be opened: neither", "is set: a window takes", "eyerays render"]);
     let mut command = place.command(&["view", "-"]);
     place.refuse_run(&mut command, &["name its file"]);
 }

@@ -158,7 +158,11 @@ impl Window {
         let (width, height) = self.wish.size;
         let pixel = |share: f32, count: u32| ((share * count as f32) as u32).min(count - 1);
         let (x, y) = (pixel(share.x, width), pixel(share.y, height));
-        let has_ctrl = ui.input(|input| input.modifiers.command);
+        // As it was held then: keys may have changed since, in the same frame.
+        let has_ctrl = ui.input(|input| {
+            let held = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.command);
+            input.events.iter().any(held)
+        });
         self.worker.ask(if has_ctrl { Ask::Focus(x, y) } else { Ask::What(x, y) });
     }
 
@@ -210,7 +214,6 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
-        self.keys(&context);
         self.play(&context);
         self.status(ui);
         if self.show.panel {
@@ -218,6 +221,8 @@ impl eframe::App for Window {
         }
         let dark = Frame::NONE.fill(Color32::from_gray(24));
         CentralPanel::default().frame(dark).show(ui, |ui| self.picture(ui));
+        // After the mouse: who drags and then presses a key, perhaps in one frame, means the key.
+        self.keys(&context);
         self.exchange(&context);
     }
 

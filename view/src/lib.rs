@@ -24,8 +24,7 @@ use std::sync::Arc;
 use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, egui};
 use eyerays::error::{Error, Result};
-use eyerays::gpu::wgpu;
-use eyerays::gpu::{Around, Gpu};
+use eyerays::gpu::{self, Around, Gpu, wgpu};
 use eyerays::image::Encoding;
 
 pub use edits::{Edits, Own};
@@ -97,8 +96,7 @@ pub fn open(opening: Opening) -> Result<()> {
 fn setup() -> WgpuSetupCreateNew {
     let mut setup = WgpuSetupCreateNew::without_display_handle();
     setup.instance_descriptor.backends = wgpu::Backends::PRIMARY;
-    // The dispatches' sizes come from our own kernel; wgpu's check of each costs a dispatch more.
-    setup.instance_descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
+    setup.instance_descriptor.flags = gpu::flags(setup.instance_descriptor.flags);
     setup.power_preference = wgpu::PowerPreference::HighPerformance;
     setup.device_descriptor = Arc::new(Gpu::descriptor);
     setup

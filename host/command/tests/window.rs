@@ -152,13 +152,11 @@ fn used(device: &str) {
 }
 
 #[test]
-#[ignore = "on a busy machine keys come before frames: .ci/release runs it alone"]
 fn a_window_of_the_cpu_does_all_that_a_hand_asks() {
     used("cpu");
 }
 
 #[test]
-#[ignore = "on a busy machine keys come before frames: .ci/release runs it alone"]
 fn a_window_of_a_gpu_does_all_that_a_hand_asks() {
     if has_gpu() {
         used("gpu");

@@ -97,10 +97,14 @@ fn kind(device: wgpu::DeviceType) -> &'static str {
 
 /// The connection to the machine's graphics interfaces.
 pub(super) fn instance() -> wgpu::Instance {
-    let mut descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    let descriptor = wgpu::InstanceDescriptor::new_without_display_handle_from_env();
+    wgpu::Instance::new(wgpu::InstanceDescriptor { flags: flags(descriptor.flags), ..descriptor })
+}
+
+/// What a connection is opened with that has these flags otherwise, such as that of a window.
+pub fn flags(flags: wgpu::InstanceFlags) -> wgpu::InstanceFlags {
     // The dispatches' sizes come from our own kernel; wgpu's check of each costs a dispatch more.
-    descriptor.flags.remove(wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL);
-    wgpu::Instance::new(descriptor)
+    flags - wgpu::InstanceFlags::VALIDATION_INDIRECT_CALL
 }
 
 /// Every adapter of this machine, best first: hardware before software, discrete before integrated.

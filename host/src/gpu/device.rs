@@ -119,7 +119,12 @@ impl Gpu {
     ) -> Gpu {
         let fault = Arc::new(Mutex::new(None));
         let (first, lost) = (fault.clone(), fault.clone());
-        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| note(&first, e.to_string())));
+        device.on_uncaptured_error(Arc::new(move |e: wgpu::Error| {
+            let message = e.to_string();
+            if !is_of_surface(&message) {
+                note(&first, message);
+            }
+        }));
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
                 note(&lost, format!("the device was lost: {message}"));
@@ -207,6 +212,12 @@ fn descriptor(adapter: &wgpu::Adapter, route: Route) -> wgpu::DeviceDescriptor<'
     }
 }
 
+/// Is a fault the business of a window that has the device, too? It can't have its surface as it wants it while kernels are under way,
+/// and asks again with its next frame.
+fn is_of_surface(message: &str) -> bool {
+    message.contains("In Surface::")
+}
+
 /// Keeps the first fault, its lines made one.
 fn note(fault: &Mutex<Option<String>>, message: String) {
     let lines: Vec<&str> = message.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
@@ -218,6 +229,14 @@ mod tests {
     use std::sync::atomic::{AtomicU32, Ordering};
 
     use super::*;
+
+    #[test]
+    fn what_a_window_does_with_its_surface_is_no_fault_of_a_picture() {
+        let of_window =
+            "Validation Error\n\nCaused by:\n  In Surface::configure\n    Failed to wait for GPU to come idle";
+        assert!(is_of_surface(of_window));
+        assert!(!is_of_surface("Validation Error\n\nCaused by:\n  In Queue::submit\n    a buffer is destroyed"));
+    }
 
     /// How many were made, and how many of them are gone.
     static MADE: [AtomicU32; 2] = [AtomicU32::new(0), AtomicU32::new(0)];

@@ -25,7 +25,7 @@ mod warm;
 /// Of the version that devices are of.
 pub use wgpu;
 
-pub use adapter::{AdapterReport, adapters};
+pub use adapter::{AdapterReport, adapters, flags};
 pub use cast::{Cast, Caster};
 pub use cost::{Cost, KernelCost};
 pub use device::{AdapterRequest, Around, Gpu, Route};

@@ -30,16 +30,11 @@ impl Set {
         let facts = Arc::new(Facts::of(&read, own.clone(), files(source, &read.scene)));
         wish.edits.apply(&own, &mut read.scene);
         let (camera, settings) = (read.camera.clone(), read.settings);
-        let job = {
-            let cameras = cameras(&read.scene, [&camera, wish.camera.as_ref().unwrap_or(&camera)]);
-            let own_cameras = std::mem::replace(&mut read.scene.cameras, cameras);
-            let job = match before {
-                Some(before) => before.job.moved(&read.scene, settings),
-                None => Job::new(&read.scene, settings, read.quality),
-            };
-            read.scene.cameras = own_cameras;
-            job?
-        };
+        let seen = wish.camera.as_ref().unwrap_or(&camera);
+        let job = packed(&mut read.scene, [&camera, seen], |scene| match before {
+            Some(before) => before.job.moved(scene, settings),
+            None => Job::new(scene, settings, read.quality),
+        })?;
         Ok(Set { scene: read.scene, own, edits: wish.edits.clone(), camera, settings, job, facts })
     }
 
@@ -62,11 +57,8 @@ impl Set {
         }
         wish.edits.apply(&self.own, &mut self.scene);
         self.edits = wish.edits.clone();
-        let cameras = cameras(&self.scene, [&self.camera, &camera]);
-        let own = std::mem::replace(&mut self.scene.cameras, cameras);
-        let job = self.job.moved(&self.scene, self.settings);
-        self.scene.cameras = own;
-        self.job = job?;
+        let (job, settings) = (&self.job, self.settings);
+        self.job = packed(&mut self.scene, [&self.camera, &camera], |scene| job.moved(scene, settings))?;
         Ok(())
     }
 
@@ -79,7 +71,11 @@ impl Set {
     }
 }
 
-/// Those of a scene with others: kernels are of the kinds of cameras that there are.
-fn cameras(scene: &Scene, others: [&Camera; 2]) -> Vec<Camera> {
-    scene.cameras.iter().chain(others).cloned().collect()
+/// Packs a scene with other cameras beside its own: kernels are of the kinds of cameras that there are.
+fn packed(scene: &mut Scene, others: [&Camera; 2], pack: impl FnOnce(&Scene) -> Result<Job>) -> Result<Job> {
+    let own = scene.cameras.len();
+    scene.cameras.extend(others.into_iter().cloned());
+    let job = pack(scene);
+    scene.cameras.truncate(own);
+    job
 }

@@ -1,7 +1,6 @@
 //! What keys do beside moving the camera.
 
-use eframe::egui::{self, Key};
-
+use eframe::egui::{self, Key, Modifiers};
 use eyerays::render::DeviceWish;
 
 use super::Window;
@@ -36,13 +35,15 @@ const NUMBERS: [Key; 9] =
 impl Window {
     /// Does what was pressed.
     pub(super) fn keys(&mut self, context: &egui::Context) {
-        if context.input(|input| input.modifiers.command && input.key_pressed(Key::Q)) {
+        // By what was held then: keys may have changed since, in the same frame.
+        let pressed = |held: Modifiers, key: Key| context.input_mut(|input| input.consume_key(held, key));
+        if pressed(Modifiers::COMMAND, Key::Q) {
             context.send_viewport_cmd(egui::ViewportCommand::Close);
         }
         if context.egui_wants_keyboard_input() {
             return;
         }
-        let pressed = |key: Key| context.input(|input| input.modifiers.is_none() && input.key_pressed(key));
+        let (with_ctrl, pressed) = (|key| pressed(Modifiers::COMMAND, key), |key| pressed(Modifiers::NONE, key));
         if pressed(Key::N) {
             self.show.panel = !self.show.panel;
         }
@@ -77,7 +78,7 @@ impl Window {
             context.copy_text(text);
             self.say("copied the camera");
         }
-        if context.input(|input| input.modifiers.command && input.key_pressed(Key::S)) {
+        if with_ctrl(Key::S) {
             match camera_text::add(&self.wish.source.path, &camera) {
                 Ok(name) => self.say(format!("added the camera {name:?} to {}", self.wish.source.path.display())),
                 Err(error) => self.say(format!("error: {error}")),

@@ -7,6 +7,7 @@ mod panel;
 mod status;
 
 use std::path::PathBuf;
+use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Color32, Frame, Rect, Sense, Ui};
@@ -104,19 +105,24 @@ impl Window {
         self.show.said = Some((Instant::now(), what.into()));
     }
 
-    /// Takes what has come, and says what is wished for now.
-    fn exchange(&mut self, context: &egui::Context) {
+    /// Takes what has come, before it is drawn: nothing may call for another frame.
+    fn receive(&mut self) {
         if let Some(answer) = self.worker.answer() {
             self.answer(answer);
         }
         let (news, picture) = self.worker.take();
+        let is_known = |facts| self.news.facts.as_ref().is_some_and(|before| Arc::ptr_eq(before, facts));
+        if let Some(facts) = news.facts.as_ref().filter(|&facts| !is_known(facts)) {
+            self.files.watch(&facts.files);
+        }
         self.news = news;
         if let Some(picture) = picture {
             self.canvas.take(picture);
         }
-        if let Some(facts) = &self.news.facts {
-            self.files.watch(&facts.files);
-        }
+    }
+
+    /// Says what is wished for now.
+    fn send(&mut self, context: &egui::Context) {
         match self.files.due() {
             Some(Duration::ZERO) => self.wish.source.version += 1,
             Some(left) => context.request_repaint_after(left),
@@ -130,6 +136,8 @@ impl Window {
         if self.sent.as_ref() != Some(&self.wish) {
             self.worker.wish(&self.wish);
             self.sent = Some(self.wish.clone());
+            // It may be there before this frame ends.
+            context.request_repaint();
         }
     }
 
@@ -214,6 +222,7 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        self.receive();
         self.play(&context);
         self.status(ui);
         if self.show.panel {
@@ -223,7 +232,7 @@ impl eframe::App for Window {
         CentralPanel::default().frame(dark).show(ui, |ui| self.picture(ui));
         // After the mouse: who drags and then presses a key, perhaps in one frame, means the key.
         self.keys(&context);
-        self.exchange(&context);
+        self.send(&context);
     }
 
     fn clear_color(&self, _: &egui::Visuals) -> [f32; 4] {

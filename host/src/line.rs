@@ -33,6 +33,23 @@ pub fn printable(text: &str) -> String {
         .collect()
 }
 
+/// A count with its noun.
+pub fn plural(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
+/// A number with seven digits, which is what single precision has.
+pub fn seven_digits(x: f64) -> String {
+    const DIGITS: i32 = 6;
+    let scientific = format!("{x:.6e}");
+    let power = scientific.split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
+    match power {
+        // What is rounded to zero has no sign.
+        Some(power) if (-4..=DIGITS).contains(&power) => format!("{:.*}", (DIGITS - power) as usize, x + 0.0),
+        _ => scientific,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use std::path::Path;
@@ -61,5 +78,22 @@ mod tests {
         }
         let whole = "a".repeat(MOST_SHOWN);
         assert_eq!(Error::new(whole.as_str()).to_string(), whole);
+    }
+
+    #[test]
+    fn numbers_have_seven_digits_and_powers_of_ten_where_they_are_far_from_one() {
+        for (x, want) in [
+            (0.0, "0.000000"),
+            (-0.0, "0.000000"),
+            (4.0, "4.000000"),
+            (-12.345_678_9, "-12.34568"),
+            (999_999.96, "1000000"),
+            (0.000_123_456_78, "0.0001234568"),
+            (1.5e-5, "1.500000e-5"),
+            (123_456_789.0, "1.234568e8"),
+            (f64::INFINITY, "inf"),
+        ] {
+            assert_eq!(seven_digits(x), want);
+        }
     }
 }

@@ -18,13 +18,14 @@ use glam::{Vec2, Vec3};
 const SIZE: (u32, u32) = (48, 36);
 
 /// What a picture is rendered for here, mostly.
-const ALL: [Layer; 8] = [
+const ALL: [Layer; 9] = [
     Layer::Colour,
     Layer::Albedo,
     Layer::Normal,
     Layer::Depth,
     Layer::Object,
     Layer::Material,
+    Layer::Primitive,
     Layer::Direct,
     Layer::Indirect,
 ];
@@ -148,6 +149,7 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
     let batch = Batch::new(&packed, &rays);
     let (answers, _) = cpu::cast(&packed, Method::Wide.into(), 1, batch.stream(), Question::Closest).unwrap();
     let (objects, materials) = (numbers(&layers, Layer::Object), numbers(&layers, Layer::Material));
+    let primitives = numbers(&layers, Layer::Primitive);
     let (mut seen, mut others) = (std::collections::BTreeSet::new(), 0);
     for (i, hit) in batch.hits(&packed, &answers).into_iter().enumerate() {
         let (depth, expected) = (f64::from(depths(&layers)[i]), hit.map(|hit| part(&scene, hit.primitive as usize)));
@@ -157,9 +159,10 @@ fn depth_object_and_material_are_those_of_rays_through_the_middles_of_pixels() {
             continue;
         }
         assert_eq!(depth.is_infinite(), expected.is_none(), "pixel {i}");
-        assert_eq!(materials[i] == 0, expected.is_none(), "pixel {i}");
+        assert_eq!((materials[i] == 0, primitives[i] == 0), (expected.is_none(), expected.is_none()), "pixel {i}");
         let Some(hit) = hit else { continue };
         seen.insert(objects[i]);
+        assert_eq!(primitives[i], hit.primitive + 1, "pixel {i}");
         let far = hit.distance * forward[i];
         assert!((depth - far).abs() <= 1e-4 * far, "pixel {i}: {depth} and {far}");
         let triangle = scene.mesh.materials.get(hit.primitive as usize);

@@ -105,9 +105,9 @@ fn layers_count_the_steps_that_trails_have() {
         let view = View::new(&job, &scene.cameras[0]).unwrap();
         let mut session = Backend::new(&choice).unwrap().open(&job).unwrap();
         let picture = session.render(&view, 1, &|_| ()).unwrap();
-        let wanted = [Layer::Visits, Layer::Tests, Layer::Deepest];
+        let wanted = [Layer::Visits, Layer::Tests, Layer::Deepest, Layer::Idle];
         let layers = layers::render(&mut session, Shown::of(&scene), &picture, &wanted).unwrap();
-        let [visits, tests, deepest] = [0, 1, 2].map(|i| match &layers[i].1 {
+        let [visits, tests, deepest, idle] = [0, 1, 2, 3].map(|i| match &layers[i].1 {
             Values::Numbers(numbers) => numbers.clone(),
             other => panic!("{other:?}"),
         });
@@ -115,6 +115,13 @@ fn layers_count_the_steps_that_trails_have() {
             let trail = trail(&job, &scene, at, traversal);
             let counts = (trail.visits() as u32, trail.tests() as u32, trail.deepest());
             assert_eq!((visits[i], tests[i], deepest[i]), counts, "{name} {at:?} {traversal:?}");
+        }
+        // Nobody waits for who goes farther.
+        let steps: Vec<u32> = visits.iter().zip(&tests).map(|(visits, tests)| visits + tests).collect();
+        for (i, (x, y)) in pixels().enumerate() {
+            let block = pixels().zip(&steps).filter(|((a, b), _)| (a / 8, b / 4) == (x / 8, y / 4));
+            let longest = block.map(|(_, &steps)| steps).max().unwrap();
+            assert_eq!(idle[i], longest - steps[i], "{name} {x},{y} {traversal:?}");
         }
     }
 }

@@ -9,6 +9,7 @@
 mod camera_text;
 mod edits;
 mod files;
+mod live;
 pub mod motion;
 mod news;
 mod reader;
@@ -21,18 +22,19 @@ mod worker;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use eframe::egui_wgpu::{WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
+use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, egui};
 use eyerays::error::{Error, Result};
 use eyerays::gpu::{self, Around, Gpu, wgpu};
 use eyerays::image::Encoding;
 
 pub use edits::{Edits, Own};
-pub use news::{Answer, Ask, Doing, Facts, News, Picture, Rates};
+pub use live::listen;
+pub use news::{Answer, Ask, Doing, Facts, News, Picture, Rates, Told, Way};
 pub use reader::{AsTheyAre, Read, Reader};
 pub use shows::Shows;
 pub use studio::{Step, Studio};
-pub use wish::{Device, Source, Wish};
+pub use wish::{Device, Lesson, Source, Wish};
 pub use worker::Worker;
 
 use window::{Asked, Window};
@@ -71,7 +73,23 @@ pub fn open(opening: Opening) -> Result<()> {
     let title = title.map_or("Eyerays".to_owned(), |name| format!("{name} - Eyerays"));
     let wish = Wish::new(path.unwrap_or_default(), device, (width, height));
     let wish = Wish { look, most: most.unwrap_or(wish.most), ..wish };
-    let viewport = egui::ViewportBuilder::default().with_title(title.clone()).with_app_id("eyerays");
+    run(&title, (width, height), around, move |context, state| {
+        let gpu = Gpu::from_wgpu(&state.adapter, state.device.clone(), state.queue.clone());
+        let shared = gpu.ok().map(|gpu| gpu.with_around(around));
+        let studio = Studio::new(reader, shared, around);
+        Box::new(Window::new(context, state, studio, Asked { wish, size, told }))
+    })
+}
+
+/// Opens a window around a picture of so many columns and rows, and returns when it is closed. `around` is held while a driver opens a
+/// device.
+fn run(
+    title: &str,
+    (width, height): (u32, u32),
+    around: Option<Around>,
+    create: impl FnOnce(&egui::Context, RenderState) -> Box<dyn eframe::App>,
+) -> Result<()> {
+    let viewport = egui::ViewportBuilder::default().with_title(title).with_app_id("eyerays");
     let options = NativeOptions {
         viewport: viewport.with_inner_size([width as f32, height as f32 + window::STATUS_HEIGHT]),
         renderer: Renderer::Wgpu,
@@ -84,12 +102,9 @@ pub fn open(opening: Opening) -> Result<()> {
     let create: eframe::AppCreator<'_> = Box::new(move |context| {
         let _held = held;
         let state = context.wgpu_render_state.clone().ok_or("the window has no device of wgpu")?;
-        let gpu = Gpu::from_wgpu(&state.adapter, state.device.clone(), state.queue.clone());
-        let shared = gpu.ok().map(|gpu| gpu.with_around(around));
-        let studio = Studio::new(reader, shared, around);
-        Ok(Box::new(Window::new(&context.egui_ctx, state, studio, Asked { wish, size, told })))
+        Ok(create(&context.egui_ctx, state))
     });
-    eframe::run_native(&title, options, create).map_err(|error| not_opened(&error))
+    eframe::run_native(title, options, create).map_err(|error| not_opened(&error))
 }
 
 /// A device for both the window and the kernels.

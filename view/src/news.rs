@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::time::Duration;
 
+use eyerays::device_scene::NodeBox;
 use eyerays::render::Display;
 use eyerays::scene::{Animation, Camera, Scene, Settings};
 use glam::DVec3;
@@ -92,6 +93,25 @@ pub enum Doing {
     Done,
 }
 
+/// How rays are followed.
+#[derive(Default)]
+pub struct Told {
+    /// Boxes of the hierarchy.
+    pub boxes: Vec<NodeBox>,
+    /// The way of one ray.
+    pub way: Option<Way>,
+}
+
+/// The way of a ray, for people.
+pub struct Way {
+    /// Its pixel.
+    pub pixel: (u32, u32),
+    /// A line a step, or why it can't be told.
+    pub text: String,
+    /// The boxes that it enters, with how many nodes are above each; none of nodes of eight children, or in copies of meshes.
+    pub entered: Vec<(NodeBox, u32)>,
+}
+
 /// Where a studio stands.
 #[derive(Clone, Default)]
 pub struct News {
@@ -103,12 +123,16 @@ pub struct News {
     pub device: String,
     /// Samples of each pixel.
     pub samples: u32,
+    /// Samples of the picture whose noise was taken off, where that is shown.
+    pub denoised: Option<u32>,
     /// The standard error of a pixel over the mean of all, once it is known.
     pub noise: Option<f64>,
     /// How fast that is.
     pub rates: Rates,
     /// What the darkest and the brightest colour of a layer stand for.
     pub scale: Option<[f64; 2]>,
+    /// What was asked of how rays are followed.
+    pub lesson: Arc<Told>,
     /// What went wrong with the last wish: the picture is of the one before.
     pub fault: Option<String>,
 }

@@ -35,6 +35,17 @@ pub struct Wish {
     pub look: Encoding,
     /// What is shown in its place.
     pub shows: Shows,
+    /// What is told of how rays are followed.
+    pub lesson: Lesson,
+}
+
+/// What is told of how rays are followed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Lesson {
+    /// The boxes of the hierarchy so many levels below those of the root's children.
+    pub level: Option<u32>,
+    /// The way of the ray through the middle of this pixel, its column and row in a picture of the size that is asked for.
+    pub pixel: Option<(u32, u32)>,
 }
 
 /// Where a scene comes from, and when.
@@ -98,6 +109,7 @@ impl Wish {
             device,
             look: Encoding::default(),
             shows: Shows::Light,
+            lesson: Lesson::default(),
         }
     }
 }

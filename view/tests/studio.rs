@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use eyerays::choice::Named;
+use eyerays::denoise::{self, Guides};
 use eyerays::image::{self, Encoding};
 use eyerays::job::Job;
 use eyerays::layers::{self, Layer, Values};
@@ -11,8 +13,9 @@ use eyerays::quality::Bvh;
 use eyerays::render::{Backend, Choice, DeviceWish, Display};
 use eyerays::scene::{Integrator, Material, Settings};
 use eyerays::scene_io;
+use eyerays::trail::{self, Aim};
 use eyerays::view::View;
-use eyerays_view::{Answer, AsTheyAre, Ask, Device, Doing, Edits, Picture, Shows, Studio, Wish};
+use eyerays_view::{Answer, AsTheyAre, Ask, Device, Doing, Edits, Lesson, Picture, Shows, Studio, Wish};
 use glam::Vec3;
 
 const PATIENCE: Duration = Duration::from_secs(120);
@@ -208,12 +211,71 @@ fn a_layer_takes_the_place_of_light_and_goes_again() {
         let brightest = bytes(&shown).iter().map(brightness).enumerate().max_by_key(|(_, bright)| *bright).unwrap().0;
         assert_eq!(f64::from(numbers[brightest]), most, "{layer}");
     }
-    for layer in [Layer::Albedo, Layer::Normal, Layer::Depth, Layer::Object, Layer::Material, Layer::Samples] {
-        let shown = done(&mut studio, &Wish { shows: Shows::Layer(layer), ..plain.clone() }).unwrap();
-        assert_eq!(bytes(&shown).len(), 40 * 30, "{layer}");
-        assert_ne!(bytes(&shown), bytes(&light), "{layer}");
+    for &shows in Shows::VARIANTS.iter().filter(|shows| !matches!(shows, Shows::Light | Shows::Denoised)) {
+        let shown = done(&mut studio, &Wish { shows, ..plain.clone() }).unwrap();
+        assert_eq!(bytes(&shown).len(), 40 * 30, "{shows}");
+        assert_ne!(bytes(&shown), bytes(&light), "{shows}");
     }
     assert_eq!(bytes(&done(&mut studio, &plain).unwrap()), bytes(&light));
+}
+
+#[test]
+fn a_denoised_picture_has_the_bytes_of_a_file_and_the_noisy_one_comes_back() {
+    let (mut studio, size, spp) = (studio(), (33, 21), 9);
+    let plain = Wish { most: spp, ..wish("cornell_path", size) };
+    let noisy = done(&mut studio, &plain).unwrap();
+    let (scene, _) = scene_io::load(&scene("cornell_path")).unwrap();
+    let job = Job::new(&scene, Settings { size, spp, ..scene.settings }, Bvh::Fast.quality()).unwrap();
+    let choice = Choice { device: DeviceWish::Cpu, ..Choice::default() };
+    let mut session = Backend::new(&choice).unwrap().open(&job).unwrap();
+    let rendering = session.expose(&View::new(&job, &scene.cameras[0]).unwrap(), &|_| ()).unwrap();
+    let wanted = [Layer::Albedo, Layer::Normal, Layer::Depth, Layer::Error];
+    let shown = layers::Shown { scene: &scene, camera: &scene.cameras[0], neighbours: None };
+    let layers = layers::render(&mut session, shown, &rendering, &wanted).unwrap();
+    let [
+        (_, Values::Colours(albedo)),
+        (_, Values::Vectors(normal)),
+        (_, Values::Lengths(depth)),
+        (_, Values::Lengths(error)),
+    ] = &layers[..]
+    else {
+        panic!("they are what they are")
+    };
+    let guides = Guides { albedo, normal, depth, error, opacity_error: None };
+    let polished = denoise::denoise(&rendering.picture, &guides).unwrap();
+    let denoised = Wish { shows: Shows::Denoised, ..plain.clone() };
+    for look in [Encoding::default(), Encoding { exposure_ev: 1.0, ..Encoding::default() }] {
+        let shown = done(&mut studio, &Wish { look, ..denoised.clone() }).unwrap();
+        assert_eq!(bytes(&shown), image::screen(&polished, &look).unwrap());
+        assert_eq!((studio.news().denoised, studio.news().samples), (Some(spp), spp));
+    }
+    assert_eq!(bytes(&done(&mut studio, &plain).unwrap()), bytes(&noisy));
+    assert_ne!(bytes(&done(&mut studio, &denoised).unwrap()), bytes(&noisy));
+}
+
+#[test]
+fn rays_are_followed_as_trails_tell_and_boxes_are_those_of_their_level() {
+    let (mut studio, size) = (studio(), (40, 30));
+    let device = Device { traversal: Method::IfIf.into(), ..cpu() };
+    let plain = Wish { most: 1, device, ..wish("whitted", size) };
+    let (scene, _) = scene_io::load(&scene("whitted")).unwrap();
+    let job = Job::new(&scene, Settings { size, ..scene.settings }, Bvh::Fast.quality()).unwrap();
+    let lesson = Lesson { level: Some(2), pixel: Some((20, 22)) };
+    done(&mut studio, &Wish { lesson, ..plain.clone() }).unwrap();
+    let told = studio.news().lesson.clone();
+    let trail = trail::follow(&job, &scene, &scene.cameras[0], Aim::middle(20, 22), Method::IfIf).unwrap();
+    let way = told.way.as_ref().unwrap();
+    assert_eq!((way.text.clone(), way.pixel), (trail.to_string(), (20, 22)));
+    // Each is visited, or begins behind a hit; the root's children are in front.
+    assert!(way.entered.len() >= trail.deepest() as usize && way.entered[0].1 == 0, "{}", way.entered.len());
+    assert_eq!(told.boxes, job.boxes(2));
+    assert!(!told.boxes.is_empty());
+    let outside = Lesson { level: None, pixel: Some((40, 0)) };
+    done(&mut studio, &Wish { lesson: outside, ..plain.clone() });
+    let told = studio.news().lesson.clone();
+    assert!(told.boxes.is_empty() && told.way.as_ref().unwrap().text.contains("40"), "it tells what is wrong");
+    done(&mut studio, &plain);
+    assert!(studio.news().lesson.way.is_none());
 }
 
 #[test]

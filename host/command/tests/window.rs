@@ -5,10 +5,9 @@ mod program;
 mod screen;
 
 use std::fs;
-use std::path::Path;
 use std::process::{Child, Command, Stdio};
 
-use program::{Place, has_gpu};
+use program::{Place, decoded, has_gpu};
 use screen::{Screen, until};
 
 const SIZE: (u32, u32) = (320, 240);
@@ -97,14 +96,6 @@ fn rendered(place: &Place, more: &[&str]) -> Vec<[u8; 3]> {
     let arguments = [&["render", "scene.toml", "--device", "cpu", "-q", "-o", "want.png"], more].concat();
     place.succeed(&arguments);
     decoded(&place.path("want.png"))
-}
-
-fn decoded(path: &Path) -> Vec<[u8; 3]> {
-    let file = std::io::BufReader::new(fs::File::open(path).unwrap());
-    let mut reader = png::Decoder::new(file).read_info().unwrap();
-    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
-    reader.next_frame(&mut bytes).unwrap();
-    bytes.as_chunks().0.to_vec()
 }
 
 /// All that a hand does, on one device first and then on the other.

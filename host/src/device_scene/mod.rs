@@ -10,6 +10,7 @@ use eyerays_shader::data::{
 };
 
 mod alias;
+mod boxes;
 mod copies;
 mod environment;
 mod feature;
@@ -30,6 +31,7 @@ mod two_levels;
 mod view;
 mod words;
 
+pub use boxes::NodeBox;
 pub use copies::fitted;
 pub(crate) use copies::{unfit_objects, unfit_triangles};
 pub use feature::Feature;

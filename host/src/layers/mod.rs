@@ -13,7 +13,7 @@ use crate::job::Job;
 use crate::picture::Picture;
 use crate::render::{Backend, Choice, DeviceWish, Rendering, Session};
 use crate::scene::{Camera, Settings};
-use crate::view::Region;
+use crate::view::{Region, View};
 
 pub use eyerays_shader::data::Aovs;
 pub(crate) use kept::can_be_named;
@@ -48,6 +48,8 @@ choices! {
         Object = "object",
         /// The number of the material there, likewise
         Material = "material",
+        /// The number of the primitive there, from 1: triangles, then those of copies, spheres and disks; 0 for nothing
+        Primitive = "primitive",
         /// What a picture of 0 bounces shows: the background, what shines, and light that was scattered once
         Direct = "direct",
         /// All other light
@@ -80,6 +82,8 @@ choices! {
         Tests = "tests",
         /// How many nodes are above the deepest that it visits
         Deepest = "deepest",
+        /// How many steps more than it the longest ray of its block of 8x4 pixels takes: a lane of a GPU's subgroup waits for it
+        Idle = "idle",
         /// The picture as it was before it was denoised
         Noisy = "noisy",
         /// Cryptomatte of objects by their names, over the pixel's first 64 samples
@@ -168,6 +172,33 @@ pub fn depth(job: &Job, camera: &Camera, (x, y): (u32, u32)) -> Result<Option<f3
     let seen = at_middles(job, camera, Feature::Place, pixel, 1)?.pixels[0];
     let place = Place::of(seen, job.normalisation().scale);
     Ok(place.primitive.map(|_| place.depth))
+}
+
+/// What tells neighbours apart where noise is taken off a picture, see [`Guides`](crate::denoise::Guides).
+#[derive(Debug, Clone)]
+pub struct Surfaces {
+    /// [`Layer::Albedo`].
+    pub albedo: Picture,
+    /// [`Layer::Normal`].
+    pub normal: Picture,
+    /// [`Layer::Depth`].
+    pub depth: Vec<f32>,
+}
+
+/// The surfaces that a camera sees of a job, each pixel by the job's samples, by this many threads of the CPU, 0 for one a core.
+///
+/// # Errors
+/// As [`Backend::open`] and [`Session::render`].
+pub fn surfaces(job: &Job, camera: &Camera, threads: usize) -> Result<Surfaces> {
+    let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+    let of = |feature| {
+        let job = job.showing(Some(feature));
+        Ok(backend.open(&job)?.render(&View::new(&job, camera)?, 1, &|_| ())?.picture)
+    };
+    let (albedo, normal) = (of(Feature::Albedo)?, of(Feature::Normal)?);
+    let places = at_middles(job, camera, Feature::Place, View::new(job, camera)?.region(), threads)?;
+    let depth = |pixel| Place::of(pixel, job.normalisation().scale).depth;
+    Ok(Surfaces { albedo, normal, depth: places.pixels.into_iter().map(depth).collect() })
 }
 
 /// A feature at the middle of each pixel of a part of the image, by this many threads of the CPU.

@@ -89,9 +89,11 @@ impl<'a> Studio<'a> {
                 let finder = Finder::of(scene);
                 self.numbers(|primitive| finder.material(primitive) + 1)?
             }
+            Layer::Primitive => self.numbers(|primitive| primitive as u32 + 1)?,
             Layer::Visits => self.work(|counts| counts.visits)?,
             Layer::Tests => self.work(|counts| counts.tests)?,
             Layer::Deepest => self.work(|counts| counts.deepest)?,
+            Layer::Idle => self.work(|counts| counts.idle)?,
             Layer::CryptoObject => Values::Shares(self.mattes(scene)?[0].clone()),
             Layer::CryptoMaterial => Values::Shares(self.mattes(scene)?[1].clone()),
         })

@@ -1,6 +1,7 @@
 //! What a pixel shows: the object, its material and the place, for those who point at a picture.
 
 mod names;
+mod text;
 
 use std::sync::Mutex;
 

@@ -25,6 +25,14 @@ pub struct Counts {
     pub tests: u32,
     /// How many nodes are above the deepest that it visits.
     pub deepest: u32,
+    /// How many steps more the longest ray of its block takes: the lanes of a GPU's subgroup wait for the last of them.
+    pub idle: u32,
+}
+
+impl Counts {
+    fn steps(&self) -> u32 {
+        self.visits + self.tests
+    }
 }
 
 /// The work of the ray of each pixel of a view of a job, by a method with `threads` threads (0: one a core): what
@@ -78,7 +86,8 @@ impl Counter<'_> {
                 walk.follow(self.method, lane);
             }
         }
-        tally.0
+        let longest = tally.0.iter().map(Counts::steps).max().unwrap_or(0);
+        tally.0.map(|counts| Counts { idle: longest - counts.steps(), ..counts })
     }
 }
 

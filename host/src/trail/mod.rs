@@ -11,6 +11,7 @@ mod parting;
 mod record;
 mod step;
 mod tape;
+mod text;
 mod walk;
 mod wide;
 

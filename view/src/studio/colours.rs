@@ -5,6 +5,7 @@ use eyerays::error::Result;
 use eyerays::image::{self, Encoding, quantise_to_byte};
 use eyerays::layers::{Layer, Values};
 use eyerays::math;
+use eyerays::picture::Picture;
 
 /// A picture of a layer, and what its colours mean where they have a scale.
 pub(super) struct Coloured {
@@ -25,7 +26,7 @@ pub(super) fn coloured(layer: Layer, values: &Values) -> Result<Coloured> {
             let bytes = picture.pixels.iter().map(|&[x, y, z]| [byte(x), byte(y), byte(z), 255]);
             Coloured { bytes: bytes.collect(), scale: None }
         }
-        Values::Numbers(numbers) if matches!(layer, Layer::Object | Layer::Material) => {
+        Values::Numbers(numbers) if matches!(layer, Layer::Object | Layer::Material | Layer::Primitive) => {
             Coloured { bytes: numbers.iter().map(|&number| apart(number)).collect(), scale: None }
         }
         Values::Numbers(numbers) => heat(numbers.iter().map(|&number| f64::from(number))),
@@ -33,6 +34,23 @@ pub(super) fn coloured(layer: Layer, values: &Values) -> Result<Coloured> {
         Values::Lengths(lengths) => heat(lengths.iter().map(|&length| f64::from(length))),
         Values::Shares(_) | Values::Parts(_) => Coloured { bytes: Vec::new(), scale: None },
     })
+}
+
+/// Bright lines between the primitives that are seen, on grey that tells how they are turned.
+pub(super) fn wires(normals: &Picture, primitives: &[u32]) -> Coloured {
+    let width = normals.width as usize;
+    let of = |(at, (&primitive, &[x, y, z])): (usize, (&u32, &[f32; 3]))| {
+        let is_last = (at + 1).is_multiple_of(width);
+        let right = primitives.get(at + 1).filter(|_| !is_last).unwrap_or(&primitive);
+        let below = primitives.get(at + width).unwrap_or(&primitive);
+        if (right, below) != (&primitive, &primitive) {
+            return [235, 235, 235, 255];
+        }
+        // Axes apart from each other, and nothing is black.
+        opaque([((0.3 * x.abs() + 0.5 * y.abs() + 0.2 * z.abs()) * 160.0) as u8; 3])
+    };
+    let bytes = primitives.iter().zip(&normals.pixels).enumerate().map(of).collect();
+    Coloured { bytes, scale: None }
 }
 
 /// From black for 0 to the brightest for the greatest that is finite.
@@ -94,6 +112,17 @@ mod tests {
         assert_eq!(scale, Some([0.0, 20.0]));
         let Coloured { bytes, .. } = coloured(Layer::Visits, &Values::Numbers(vec![0; 4])).unwrap();
         assert_eq!(bytes, [[0, 0, 0, 255]; 4]);
+    }
+
+    #[test]
+    fn lines_are_where_one_primitive_is_beside_another() {
+        let normals = Picture::from_pixels(3, 2, vec![[0.0, 1.0, 0.0]; 6]).unwrap();
+        // The last of a row and the first of the next are not beside each other.
+        let bytes = wires(&normals, &[1, 1, 2, 1, 1, 1]).bytes;
+        assert_eq!(
+            bytes.iter().map(|pixel| pixel[0] > 200).collect::<Vec<_>>(),
+            [false, true, true, false, false, false]
+        );
     }
 
     #[test]

@@ -126,7 +126,7 @@ impl Growth {
         is_shared: bool,
         (look, shows): (Encoding, Shows),
     ) -> Result<(Display, Option<[f64; 2]>)> {
-        if shows == Shows::Light && is_shared {
+        if matches!(shows, Shows::Light | Shows::Denoised) && is_shared {
             return Ok((session.display(&look, self.samples)?, None));
         }
         let film = session.film()?;

@@ -1,15 +1,16 @@
 //! Pictures of what tells how a picture is made, by the CPU: of the middles of pixels.
 
 use eyerays::device_scene::{DeviceScene, Feature};
-use eyerays::error::Result;
+use eyerays::error::{Error, Result};
 use eyerays::job::Job;
-use eyerays::layers::{self, Layer};
+use eyerays::layers::{self, Values};
 use eyerays::render::{Backend, Choice, DeviceWish, Session};
 use eyerays::scene::{Scene, Settings};
 use eyerays::view::View;
 
-use super::colours::{Coloured, coloured};
+use super::colours::{Coloured, coloured, wires};
 use super::growth::Subject;
+use crate::shows::Shows;
 use crate::wish::Device;
 
 /// A scene laid out for the CPU.
@@ -31,8 +32,8 @@ impl Inspector {
         self.device == *device && std::ptr::eq::<DeviceScene>(&**self.session.job(), &**job)
     }
 
-    /// A layer of what is to be seen.
-    pub fn layer(&mut self, (job, scene): (&Job, &Scene), subject: &Subject, layer: Layer) -> Result<Coloured> {
+    /// What is to be seen, in the place of light.
+    pub fn look(&mut self, (job, scene): (&Job, &Scene), subject: &Subject, shows: Shows) -> Result<Coloured> {
         let settings = Settings { size: subject.size, samples: 1, spp: 1, ..*job.settings() };
         let job = colours(job, settings)?;
         self.session.turn(&job)?;
@@ -40,9 +41,12 @@ impl Inspector {
         // The colours of surfaces, which take one ray a pixel.
         let rendering = self.session.expose(&view, &|_| ())?;
         let shown = layers::Shown { scene, camera: &subject.camera, neighbours: None };
-        let values = layers::render(&mut self.session, shown, &rendering, &[layer])?;
-        let (_, values) = values.first().expect("one layer was asked for");
-        coloured(layer, values)
+        let layers = layers::render(&mut self.session, shown, &rendering, &shows.layers())?;
+        match &layers[..] {
+            [(_, Values::Vectors(normals)), (_, Values::Numbers(primitives))] => Ok(wires(normals, primitives)),
+            [(layer, values)] => coloured(*layer, values),
+            _ => Err(Error::new(format!("{shows} is no picture of layers: this is a fault of the program"))),
+        }
     }
 }
 

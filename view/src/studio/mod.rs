@@ -6,9 +6,11 @@ mod colours;
 mod growth;
 mod inspector;
 mod pace;
+mod polisher;
 mod rate;
 mod seat;
 mod set;
+mod teacher;
 
 use std::time::{Duration, Instant};
 
@@ -16,7 +18,7 @@ use eyerays::device_scene::DeviceScene;
 use eyerays::error::{Error, Result};
 use eyerays::gpu::{Around, Gpu};
 use eyerays::job::Job;
-use eyerays::layers::{self, Layer};
+use eyerays::layers;
 use eyerays::render::{DeviceWish, Display, Session};
 use eyerays::scene::Settings;
 use eyerays::view::View;
@@ -24,9 +26,11 @@ use eyerays::view::View;
 use self::growth::{Growth, Subject};
 use self::inspector::Inspector;
 use self::pace::Pace;
+use self::polisher::Polisher;
 use self::rate::Meter;
 use self::seat::Seat;
 use self::set::Set;
+use self::teacher::Teacher;
 use crate::news::{Answer, Ask, Doing, News, Picture};
 use crate::reader::Reader;
 use crate::shows::Shows;
@@ -50,9 +54,11 @@ pub struct Studio {
     /// The device of the last wish failed while it was left to us: the CPU goes on.
     is_gpu_lost: bool,
     growth: Option<Growth>,
+    polisher: Polisher,
     /// What a preview was last drawn of.
     previewed: Option<Subject>,
     inspector: Option<Inspector>,
+    teacher: Teacher,
     /// What was last shown in the place of light.
     inspected: Option<(Subject, Shows)>,
     pace: Pace,
@@ -96,8 +102,10 @@ impl Studio {
             seated: None,
             is_gpu_lost: false,
             growth: None,
+            polisher: Polisher::default(),
             previewed: None,
             inspector: None,
+            teacher: Teacher::default(),
             inspected: None,
             pace: Pace::new(),
             meter: Meter::new(),
@@ -147,10 +155,9 @@ impl Studio {
         let Some(set) = &mut self.set else { return Ok(NOTHING) };
         set.change(wish)?;
         let job = set.job(wish)?;
-        if let Shows::Layer(layer) = wish.shows
-            && !wish.shows.is_of_film()
-        {
-            return self.inspect(wish, &job, layer);
+        self.news.lesson = self.teacher.tell(wish, &job, (set.scene(), set.camera(wish)));
+        if !wish.shows.is_of_film() {
+            return self.inspect(wish, &job);
         }
         self.inspected = None;
         self.seat(wish, &job)?;
@@ -177,6 +184,7 @@ impl Studio {
         let set = set?;
         self.news.facts = Some(set.facts.clone());
         (self.set, self.growth) = (Some(set), None);
+        self.polisher.forget();
         Ok(())
     }
 
@@ -214,12 +222,13 @@ impl Studio {
         }
         self.seated = Some(Seated { device, settings, job: job.clone() });
         (self.growth, self.previewed) = (None, None);
+        self.polisher.forget();
         self.pace.forget();
         Ok(())
     }
 
     /// A layer of the picture, by the CPU.
-    fn inspect(&mut self, wish: &Wish, job: &Job, layer: Layer) -> Result<Step> {
+    fn inspect(&mut self, wish: &Wish, job: &Job) -> Result<Step> {
         let set = self.set.as_ref().expect("there is a job");
         let divisor = if wish.is_moving { 4 } else { 1 };
         let subject = Subject { camera: set.camera(wish).clone(), size: divided(wish.size, divisor) };
@@ -235,8 +244,8 @@ impl Studio {
         if self.inspected.as_ref() == Some(&now) {
             return Ok(NOTHING);
         }
-        let (subject, _) = &now;
-        let shown = inspector.layer((job, set.scene()), subject, layer)?;
+        let (subject, shows) = &now;
+        let shown = inspector.look((job, set.scene()), subject, *shows)?;
         let display = Display::Pixels { size: subject.size, bytes: shown.bytes };
         let picture = Picture { display, size: subject.size, samples: 0, camera: subject.camera.clone() };
         (self.news.scale, self.news.doing, self.inspected) = (shown.scale, Doing::Done, Some(now));
@@ -287,7 +296,7 @@ impl Studio {
         let (samples, added) = (growth.samples(), rays > 0);
         self.meter.count(samples - before, rays);
         let (size, camera) = (growth.subject.size, growth.subject.camera.clone());
-        let display = growth.display((session, *is_shared), (wish.look, wish.shows), !added)?;
+        let light = growth.display((session, *is_shared), (wish.look, wish.shows), !added)?;
         self.news.scale = growth.scale();
         session.device_name().clone_into(&mut self.news.device);
         if let Some(rates) = self.meter.rates(session.device_time()) {
@@ -296,8 +305,34 @@ impl Studio {
         self.news.samples = samples;
         self.news.doing = if added { Doing::Rendering } else { Doing::Done };
         self.tell_noise(!added)?;
+        let display = self.polish(wish, job, light, !added)?;
         let picture = display.map(|display| Picture { display, size, samples, camera });
-        Ok(Step { picture, goes_on: added })
+        if !added && self.polisher.is_busy() {
+            std::thread::sleep(Duration::from_millis(5));
+        }
+        Ok(Step { picture, goes_on: added || self.polisher.is_busy() })
+    }
+
+    /// The picture without its noise in the place of its light, where that is wished for and there is one.
+    fn polish(&mut self, wish: &Wish, job: &Job, light: Option<Display>, is_done: bool) -> Result<Option<Display>> {
+        self.polisher.look()?;
+        self.news.denoised = None;
+        let (Seat::Ready(session, _), Some(growth)) = (&mut self.seat, &self.growth) else { return Ok(light) };
+        let (subject, samples) = (&growth.subject, growth.samples());
+        let is_wished = wish.shows == Shows::Denoised && !wish.is_moving;
+        if is_wished && job.settings().transport.integrator.samples() {
+            if growth.is_even() && self.polisher.is_due(subject, samples, is_done) {
+                self.polisher.start(session.film()?, (job, wish.device.threads), (subject.clone(), samples));
+            }
+            if let Some(polished) = self.polisher.polished(subject) {
+                self.news.denoised = Some(polished.samples);
+                return self.polisher.display(subject, wish.look);
+            }
+        }
+        if light.is_some() {
+            self.polisher.cover();
+        }
+        Ok(light)
     }
 
     /// Finds out how noisy the picture is, now and then.

@@ -5,13 +5,11 @@ use eframe::egui_wgpu::RenderState;
 use eframe::wgpu::{FilterMode, Texture};
 use eyerays::render::Display;
 
-use crate::news::Picture;
-
 /// The picture that is shown.
-pub(super) struct Canvas {
+pub(crate) struct Canvas {
     state: RenderState,
     /// One that has not been drawn yet.
-    next: Option<Picture>,
+    next: Option<Display>,
     shown: Shown,
     /// Columns and rows of the picture.
     size: (u32, u32),
@@ -34,17 +32,21 @@ impl Canvas {
     }
 
     /// Takes a new picture.
-    pub fn take(&mut self, picture: Picture) {
-        self.size = picture.size;
-        self.next = Some(picture);
+    pub fn take(&mut self, display: Display, size: (u32, u32)) {
+        (self.size, self.next) = (size, Some(display));
+    }
+
+    /// Columns and rows of the picture.
+    pub fn size(&self) -> (u32, u32) {
+        self.size
     }
 
     /// Draws it over a rectangle of the window, pixel by pixel where it has as many as that.
     pub fn draw(&mut self, ui: &egui::Ui, place: Rect) {
         let pixels = Vec2::new(self.size.0 as f32, self.size.1 as f32);
         let is_exact = (place.size() * ui.ctx().pixels_per_point() - pixels).abs().max_elem() < 0.5;
-        if let Some(picture) = self.next.take() {
-            self.show(ui.ctx(), picture.display, is_exact);
+        if let Some(display) = self.next.take() {
+            self.show(ui.ctx(), display, is_exact);
         }
         let id = match &self.shown {
             Shown::Nothing => return,
@@ -98,7 +100,7 @@ fn filter_of(is_exact: bool) -> FilterMode {
 
 /// The largest place for a picture of this aspect in the middle of a rectangle, from whole pixel to whole pixel; one of as many pixels as
 /// the picture where that fits.
-pub(super) fn place(within: Rect, size: (u32, u32), scale: f32) -> Rect {
+pub(crate) fn place(within: Rect, size: (u32, u32), scale: f32) -> Rect {
     let picture = Vec2::new(size.0 as f32, size.1 as f32) / scale;
     let factor = (within.size() / picture).min_elem().min(1.0);
     let shown = picture * factor;

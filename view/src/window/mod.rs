@@ -1,10 +1,12 @@
 //! The window: a picture, what is told of it, and what may be changed.
 
-mod canvas;
+pub(crate) mod canvas;
 mod hand;
 mod keys;
+mod overlay;
 mod panel;
 mod status;
+mod way;
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,6 +17,7 @@ use eframe::egui_wgpu::RenderState;
 use eyerays::scene::{Camera, Focus, Lens};
 
 use self::canvas::Canvas;
+pub(crate) use self::panel::look;
 use crate::files::Files;
 use crate::news::{Answer, Ask, News};
 use crate::studio::Studio;
@@ -27,11 +30,16 @@ const SETTLING: Duration = Duration::from_millis(200);
 /// The height of the line below the picture, in points.
 pub(crate) const STATUS_HEIGHT: f32 = 24.0;
 
+/// What is beside the picture.
+pub(crate) const DARK: Color32 = Color32::from_gray(24);
+
 /// What is shown in the window beside the picture.
 struct Show {
     panel: bool,
     /// Seconds of the animation go by.
     playing: bool,
+    /// Is the ray of a click followed?
+    follows: bool,
     /// Said for a while: when, and what.
     said: Option<(Instant, String)>,
 }
@@ -69,7 +77,7 @@ impl Window {
             let context = context.clone();
             move || context.request_repaint()
         };
-        let show = Show { panel: false, playing: false, said: None };
+        let show = Show { panel: false, playing: false, follows: false, said: None };
         Window {
             worker: Worker::new(studio, repaint.clone()),
             canvas: Canvas::new(state),
@@ -117,7 +125,7 @@ impl Window {
         }
         self.news = news;
         if let Some(picture) = picture {
-            self.canvas.take(picture);
+            self.canvas.take(picture.display, picture.size);
         }
     }
 
@@ -148,6 +156,9 @@ impl Window {
         self.wish.size = self.fixed.unwrap_or((pixels(within.width()), pixels(within.height())));
         let place = canvas::place(within, self.wish.size, scale);
         self.canvas.draw(ui, place);
+        if let Some(camera) = self.camera() {
+            overlay::draw(ui.painter(), (place, self.wish.size), &camera, &self.news.lesson);
+        }
         let response = ui.allocate_rect(within, Sense::click_and_drag());
         if let Some(mut camera) = self.camera()
             && hand::moved(&mut camera, &response, place.height())
@@ -156,10 +167,11 @@ impl Window {
         }
         self.ask(ui, &response, place);
         self.drop_files(ui, within);
+        self.way(ui.ctx());
     }
 
     /// Asks what is clicked on, or for the camera to be sharp there.
-    fn ask(&self, ui: &Ui, response: &egui::Response, place: Rect) {
+    fn ask(&mut self, ui: &Ui, response: &egui::Response, place: Rect) {
         let at = response.interact_pointer_pos().filter(|at| response.clicked() && place.contains(*at));
         let Some(at) = at else { return };
         let share = (at - place.min) / place.size();
@@ -171,6 +183,9 @@ impl Window {
             let held = |event: &egui::Event| matches!(event, egui::Event::PointerButton { pressed: false, modifiers, .. } if modifiers.command);
             input.events.iter().any(held)
         });
+        if self.show.follows && !has_ctrl {
+            self.wish.lesson.pixel = Some((x, y));
+        }
         self.worker.ask(if has_ctrl { Ask::Focus(x, y) } else { Ask::What(x, y) });
     }
 
@@ -228,8 +243,7 @@ impl eframe::App for Window {
         if self.show.panel {
             self.panel(ui);
         }
-        let dark = Frame::NONE.fill(Color32::from_gray(24));
-        CentralPanel::default().frame(dark).show(ui, |ui| self.picture(ui));
+        CentralPanel::default().frame(Frame::NONE.fill(DARK)).show(ui, |ui| self.picture(ui));
         // After the mouse: who drags and then presses a key, perhaps in one frame, means the key.
         self.keys(&context);
         self.send(&context);

@@ -15,6 +15,9 @@ use super::keys::KEYS;
 use crate::news::Facts;
 use crate::wish::Device;
 
+/// Boxes of deeper levels are too many to be drawn and told apart.
+const DEEPEST: u32 = 11;
+
 /// What an aperture is at first, as a share of the distance to what is looked at.
 const APERTURE: f64 = 0.01;
 
@@ -29,6 +32,7 @@ impl Window {
                     look(ui, &mut self.wish.look);
                 });
                 if let Some(facts) = self.news.facts.clone() {
+                    section(ui, "How rays are followed", true, |ui| self.lesson(ui));
                     section(ui, "Camera", true, |ui| self.lens(ui, &facts));
                     section(ui, "Rendering", true, |ui| self.rendering(ui, &facts));
                     section(ui, "Animation", !facts.animations.is_empty(), |ui| self.animation(ui, &facts));
@@ -63,6 +67,22 @@ impl Window {
         pick(ui, "precision", precision);
         pick(ui, "method", &mut traversal.method);
         ui.checkbox(&mut self.wish.is_paused, "paused");
+    }
+
+    fn lesson(&mut self, ui: &mut Ui) {
+        let lesson = &mut self.wish.lesson;
+        let mut has_boxes = lesson.level.is_some();
+        ui.checkbox(&mut has_boxes, "boxes of the hierarchy");
+        let mut level = lesson.level.unwrap_or(0);
+        if has_boxes {
+            ui.add(Slider::new(&mut level, 0..=DEEPEST).text("level"));
+            ui.weak(format!("{} of them", self.news.lesson.boxes.len()));
+        }
+        lesson.level = has_boxes.then_some(level);
+        ui.checkbox(&mut self.show.follows, "a click follows its ray");
+        if !self.show.follows {
+            lesson.pixel = None;
+        }
     }
 
     fn lens(&mut self, ui: &mut Ui, facts: &Facts) {
@@ -190,7 +210,8 @@ fn number(ui: &mut Ui, label: &str, value: &mut f32, least: f32) {
     });
 }
 
-fn look(ui: &mut Ui, look: &mut Encoding) {
+/// How light is shown.
+pub(crate) fn look(ui: &mut Ui, look: &mut Encoding) {
     slide(ui, "exposure in stops", &mut look.exposure_ev, -10.0..=10.0);
     pick(ui, "tone map", &mut look.tone);
     let mut is_balanced = look.white.is_some();

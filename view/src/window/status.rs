@@ -46,8 +46,9 @@ fn line(news: &News, is_paused: bool) -> String {
 }
 
 fn samples(news: &News) -> String {
-    let News { samples, noise, rates, .. } = news;
+    let News { samples, denoised, noise, rates, .. } = news;
     let mut parts = vec![format!("{samples} sample{}", if *samples == 1 { "" } else { "s" })];
+    parts.extend(denoised.map(|samples| format!("denoised at {samples}")));
     parts.extend(noise.map(|noise| format!("noise {:.2} %", 100.0 * noise)));
     if news.doing == Doing::Rendering {
         let digits = if rates.frames < 10.0 { 1 } else { 0 };

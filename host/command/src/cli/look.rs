@@ -71,6 +71,14 @@ impl Look {
         }
     }
 
+    /// The same for a window, which is told how bright a picture is before there is one.
+    #[cfg(feature = "view")]
+    pub fn arguments(&self) -> Vec<String> {
+        let white = self.white_balance.map(|white| format!("--white-balance={}", white.kelvins()));
+        let shown = [format!("--exposure={}", self.exposure.stops()), format!("--tone={}", self.tone)];
+        shown.into_iter().chain(white).collect()
+    }
+
     fn plain(&self) -> Result<Encoding> {
         let bits = BitDepth::from_bits(self.bits)?;
         let (exposure_ev, white) = (self.exposure.stops(), self.white_balance);

@@ -21,7 +21,9 @@ mod generate;
 mod hush;
 mod info;
 mod lens;
+mod live;
 mod look;
+mod manual;
 mod merge;
 mod noise;
 mod options;
@@ -51,6 +53,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use eyerays::line::plural;
 
 use crate::error::{Error, Result};
 use crate::output::Destination;
@@ -114,6 +117,12 @@ enum Command {
     /// Make a scene of any number of triangles or spheres to measure with
     #[command(after_help = generate::EXAMPLES)]
     Generate(generate::Generate),
+    /// Print what a shell needs to complete this program's commands and options
+    #[command(after_help = manual::COMPLETIONS)]
+    Completions(manual::Completions),
+    /// Write the manual's pages, one a command
+    #[command(after_help = manual::MANUAL)]
+    Manual(manual::Manual),
 }
 
 /// Runs the command line of this process.
@@ -158,6 +167,8 @@ fn execute(cli: Cli) -> Result<ExitCode> {
         Command::Check(command) => command.run(cli.quiet),
         Command::Convert(command) => command.run(cli.quiet),
         Command::Generate(command) => command.run(cli.quiet),
+        Command::Completions(command) => command.run(),
+        Command::Manual(command) => command.run(cli.quiet),
     }
 }
 
@@ -175,11 +186,6 @@ fn warn(warnings: &[impl Display], quiet: bool) {
     for warning in warnings.iter().filter(|_| !quiet) {
         console::say(format_args!("warning: {warning}"));
     }
-}
-
-/// A count with its noun.
-fn plural(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
 }
 
 /// A time of at most a year.

@@ -16,6 +16,7 @@ use super::choice::choice;
 use super::denoising;
 use super::device::DeviceArgs;
 use super::devices::Devices;
+use super::live::{self, Live};
 use super::look::Look;
 use super::noise::NoiseArgs;
 use super::options::{Effort, Loaded, View};
@@ -47,6 +48,7 @@ Examples:
   eyerays render scenes/cornell.toml --settings fast.toml
   eyerays render scenes/room.toml --spp 4096 --checkpoint room.film --resume
   eyerays render scenes/room.toml --noise 0.02 -o room.png
+  eyerays render scenes/room.toml --live
   eyerays render scenes/room.toml --tile 0,0,256,128 -o corner.film
   eyerays render model.glb --turntable 36 -o 'turn-{frame:04}.png'
   eyerays render fox.glb --animation Run --frames 0..24 --fps 24 -o 'fox-{frame:04}.png'
@@ -96,6 +98,9 @@ pub(super) struct Render {
     /// Write the picture so far to the output every so many seconds, 0 for never [default: 10, of what takes longer than 20]
     #[arg(long, value_name = "S", value_parser = seconds, conflicts_with = "repeat")]
     pub preview_every: Option<Duration>,
+    /// Show the picture while it is rendered: in a window, or in tev, which listens at HOST:PORT (its own port is 14158)
+    #[arg(long, value_name = "HOST:PORT", value_parser = live::viewer, num_args = 0..=1, default_missing_value = live::WINDOW, conflicts_with = "repeat")]
+    live: Option<String>,
     /// Leave out of the file what differs from run to run: the device and the seconds
     #[arg(long)]
     pub reproducible: bool,
@@ -124,6 +129,8 @@ struct Task<'a> {
     effort: Effort,
     choice: Choice,
     quiet: bool,
+    /// Who watches.
+    live: Option<Live>,
     /// Opened once, and not closed: the end of the process takes everything back at once, and a driver takes 70 ms for it one by one
     /// (an H200).
     backend: OnceCell<ManuallyDrop<Backend>>,
@@ -138,7 +145,8 @@ struct Task<'a> {
 impl Render {
     pub fn run(&self, quiet: bool) -> Result<ExitCode> {
         let scenes = sequence::scenes(&self.scenes)?;
-        let task = self.task(quiet)?;
+        let live = self.live.as_deref().map(|viewer| Live::open(viewer, &self.look, self.view.size())).transpose()?;
+        let task = Task { live, ..self.task(quiet)? };
         let instants = self.sequence.instants()?;
         if scenes.len() > 1 || instants.len() > 1 {
             self.check_many()?;
@@ -177,7 +185,8 @@ impl Render {
         self.noise.target(&self.look)?;
         let choice = Choice { several, ..self.on.over(&preset, device).choice(device)? };
         let (backend, session, before, places) = Default::default();
-        Ok(Task { of: self, effort: self.effort.over(&preset), choice, quiet, backend, session, before, places })
+        let effort = self.effort.over(&preset);
+        Ok(Task { of: self, effort, choice, quiet, live: None, backend, session, before, places })
     }
 
     /// Refuses what is for one picture.
@@ -323,8 +332,8 @@ impl Task<'_> {
         }
         let hash = self.opened(&scene, path)?;
         let backend = self.backend.get().expect("it was opened");
-        let studio =
-            Studio { of: self.of, path, scene: &scene, hash, choice: &self.choice, backend, quiet: self.quiet };
+        let (choice, live, quiet) = (&self.choice, self.live.as_ref(), self.quiet);
+        let studio = Studio { of: self.of, path, scene: &scene, hash, choice, backend, live, quiet };
         let mut session = studio.session(self.session.take(), &loaded)?;
         let code = studio.pictures(&mut session, &loaded, &places)?;
         self.session.replace(moves.then_some(session));

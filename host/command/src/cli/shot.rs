@@ -9,6 +9,7 @@ use super::checkpoint::{self, Checkpoint};
 use super::console;
 use super::denoising;
 use super::facts::Facts;
+use super::live::Live;
 use super::options::Loaded;
 use super::progress;
 use super::render::Render;
@@ -43,6 +44,8 @@ pub(super) struct Studio<'a> {
     pub hash: [u8; 32],
     pub choice: &'a Choice,
     pub backend: &'a Backend,
+    /// Who watches.
+    pub live: Option<&'a Live>,
     pub quiet: bool,
 }
 
@@ -119,6 +122,7 @@ impl Studio<'_> {
                 limit: self.of.time_limit,
                 checkpoint: checkpoint.as_ref(),
                 identity,
+                live: self.live,
                 quiet: self.quiet,
             };
             watching.follow(|watch| match &target {
@@ -217,6 +221,9 @@ impl Studio<'_> {
             reproducible,
         };
         rendering.picture.about = facts.about();
+        if let Some(Err(gone)) = self.live.map(|live| live.send(&destination.to_string(), &rendering.picture)) {
+            super::warn(&[gone], self.quiet);
+        }
         let start = Instant::now();
         progress::stage("writing", self.quiet, || self.write(destination, &rendering, &layers.all))?;
         let times = Times::new(loaded, &rendering, layers.time, start.elapsed());

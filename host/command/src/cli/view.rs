@@ -1,5 +1,6 @@
 //! `eyerays view`.
 
+use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -34,6 +35,9 @@ Drag to orbit, turn the wheel to come nearer, press N for all that may be change
 pub(super) struct Window {
     /// A scene, as render takes it; without one the window waits for a file to be dropped
     scene: Option<PathBuf>,
+    /// Show what renderers send to tev instead: at this address of the machine, whose port is printed; port 0 takes any that is free
+    #[arg(long, value_name = "HOST:PORT", conflicts_with = "scene")]
+    listen: Option<String>,
     /// Where to render: auto is a GPU when one works, else the CPU; gpu; cpu; all of them together; or several by their numbers or
     /// names, such as gpu:0,gpu:1,cpu
     #[arg(long, value_parser = Devices::parse, default_value = "auto")]
@@ -72,14 +76,17 @@ impl Window {
         if self.of.seen.has_focus_on() {
             return Err(Error::new("--focus-on is a click in the window, with ctrl held: leave it out"));
         }
+        let (exposure_ev, tone, white) = (self.exposure, self.tone, self.white_balance);
+        let look = Encoding { exposure_ev, tone, white, ..Encoding::default() };
+        look.scale()?;
+        if let Some(place) = &self.listen {
+            return listen(place, self.of.seen.size(), look);
+        }
         let (wish, several) = match self.device {
             Devices::Several(several) => (DeviceWish::Auto, Some(several)),
             Devices::One(device) => (device, None),
         };
         let choice = Choice { several, ..self.on.choice(wish)? };
-        let (exposure_ev, tone, white) = (self.exposure, self.tone, self.white_balance);
-        let look = Encoding { exposure_ev, tone, white, ..Encoding::default() };
-        look.scale()?;
         let (size, most, device) = (self.of.seen.size(), self.of.effort.spp(), Device::of(&choice));
         let reader = Box::new(Asked { of: self.of, choice });
         // Nobody may read them.
@@ -88,6 +95,20 @@ impl Window {
         eyerays_view::open(Opening { path: self.scene, reader, device, size, most, look, around, told })?;
         Ok(ExitCode::SUCCESS)
     }
+}
+
+/// Opens a window on what others send.
+fn listen(place: &str, size: Option<(u32, u32)>, look: Encoding) -> Result<ExitCode> {
+    let listener = TcpListener::bind(place);
+    let bound = listener.and_then(|listener| Ok((listener.local_addr()?, listener)));
+    let (address, listener) = bound.map_err(|error| {
+        Error::new(format!(
+            "--listen {place}: {error}: name an address of this machine and a free port, such as 127.0.0.1:14158"
+        ))
+    })?;
+    console::print_line(address)?;
+    eyerays_view::listen(listener, size, look, Some(hush::around as Around))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 /// Reads scenes as the command line asks.

@@ -8,6 +8,7 @@ use indicatif::ProgressBar;
 
 use super::checkpoint::Checkpoint;
 use super::console;
+use super::live::Live;
 use super::look::Look;
 use crate::error::Result;
 use crate::output::{self, Destination};
@@ -57,7 +58,20 @@ pub(super) struct Watching<'a> {
     pub checkpoint: Option<&'a Checkpoint>,
     /// What the film is of.
     pub identity: &'a Identity,
+    /// Who sees the picture so far.
+    pub live: Option<&'a Live>,
     pub quiet: bool,
+}
+
+/// What is done with a film so far.
+#[derive(Clone, Copy)]
+struct Due {
+    /// Its picture is written.
+    shows: bool,
+    /// The film is.
+    keeps: bool,
+    /// The picture is sent to who watches.
+    sends: bool,
 }
 
 /// When what was written last, and whether a fault of writing was told.
@@ -102,8 +116,9 @@ impl Watching<'_> {
             let every = interval(self.every, whole).filter(|_| can_write);
             let shows = every.is_some_and(|every| written.picture.get().elapsed() >= every);
             let keeps = self.checkpoint.is_some_and(|to| to.is_due(written.film.get().elapsed(), whole));
-            if !is_over && (shows || keeps) {
-                self.write(growth, (shows, keeps), &written);
+            let sends = self.live.is_some_and(Live::is_due);
+            if !is_over && (shows || keeps || sends) {
+                self.write(growth, Due { shows, keeps, sends }, &written);
             }
         };
         WATCHED.store(true, Ordering::SeqCst);
@@ -114,10 +129,12 @@ impl Watching<'_> {
     }
 
     /// What can't be written now may be later, and the rendering goes on.
-    fn write(&self, growth: Growth<'_>, (shows, keeps): (bool, bool), written: &Written) {
+    fn write(&self, growth: Growth<'_>, due: Due, written: &Written) {
         let samples = growth.samples;
-        let done = growth.film().map_err(Into::into).and_then(|film| self.write_film(film, (shows, keeps), written));
-        for (_, last) in [(shows, &written.picture), (keeps, &written.film)].iter().filter(|(is_done, _)| *is_done) {
+        let done = growth.film().map_err(Into::into).and_then(|film| self.write_film(film, due, written));
+        for (_, last) in
+            [(due.shows, &written.picture), (due.keeps, &written.film)].iter().filter(|(is_done, _)| *is_done)
+        {
             last.set(Instant::now());
         }
         if let Err(error) = done
@@ -128,16 +145,20 @@ impl Watching<'_> {
         }
     }
 
-    fn write_film(&self, mut film: Film, (shows, keeps): (bool, bool), written: &Written) -> Result<()> {
+    fn write_film(&self, mut film: Film, due: Due, written: &Written) -> Result<()> {
         film.identity = self.identity.clone();
-        if let Some(checkpoint) = self.checkpoint.filter(|_| keeps) {
+        if let Some(checkpoint) = self.checkpoint.filter(|_| due.keeps) {
             checkpoint.keep(&film)?;
         }
         let (picture, rays) = film.developed()?;
         let before = written.rays.replace((Instant::now(), rays.total()));
         let asked = film.cells().map_or(String::new(), |cells| format!(" with noise {}", cells.target().noise()));
         self.bar.set_message(asked + &told(picture.noise(), before, written.rays.get()));
-        if shows { self.look.write(&picture, self.destination) } else { Ok(()) }
+        let sent = self.live.filter(|_| due.sends).map(|live| live.send(&self.destination.to_string(), &picture));
+        if let Some(Err(gone)) = sent.filter(|_| !self.quiet) {
+            self.bar.suspend(|| console::say(format_args!("warning: {gone}")));
+        }
+        if due.shows { self.look.write(&picture, self.destination) } else { Ok(()) }
     }
 }
 

@@ -123,6 +123,15 @@ impl Place {
     }
 }
 
+/// The pixels of a PNG of 8 bits: red, green, blue.
+pub fn decoded(path: &Path) -> Vec<[u8; 3]> {
+    let file = BufReader::new(File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut bytes).unwrap();
+    bytes.as_chunks().0.to_vec()
+}
+
 /// A scene that the project ships.
 pub fn shipped(name: &str) -> String {
     format!("{}/../../scenes/{name}.toml", env!("CARGO_MANIFEST_DIR"))

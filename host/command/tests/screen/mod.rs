@@ -1,5 +1,8 @@
 //! A screen that nobody sees, with a hand on its mouse and keys: Xvfb, and what X calls XTEST.
 
+// Every test program compiles this file and uses its own share of it.
+#![allow(dead_code)]
+
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::thread;
@@ -70,6 +73,11 @@ impl Screen {
     pub fn size(&self, window: Window) -> (u32, u32) {
         let told = self.connection.get_geometry(window).unwrap().reply();
         told.map_or((0, 0), |told| (told.width.into(), told.height.into()))
+    }
+
+    /// Has it gone?
+    pub fn is_closed(&self, window: Window) -> bool {
+        self.connection.get_geometry(window).unwrap().reply().is_err()
     }
 
     /// Asks for another size.

@@ -20,7 +20,7 @@ mod wish;
 mod worker;
 
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, Mutex};
 
 use eframe::egui_wgpu::{RenderState, WgpuConfiguration, WgpuSetup, WgpuSetupCreateNew};
 use eframe::{NativeOptions, Renderer, egui};
@@ -29,15 +29,15 @@ use eyerays::gpu::{self, Around, Gpu, wgpu};
 use eyerays::image::Encoding;
 
 pub use edits::{Edits, Own};
-pub use live::listen;
-pub use news::{Answer, Ask, Doing, Facts, News, Picture, Rates, Told, Way};
+pub use live::{Listening, listen};
+pub use news::{Answer, Ask, Doing, Facts, Light, News, Picture, Rates, Told, Way};
 pub use reader::{AsTheyAre, Read, Reader};
 pub use shows::Shows;
 pub use studio::{Step, Studio};
 pub use wish::{Device, Lesson, Source, Wish};
 pub use worker::Worker;
 
-use window::{Asked, Window};
+use window::{Asked, Ended, Window};
 
 /// What a window is opened with.
 pub struct Opening {
@@ -73,12 +73,16 @@ pub fn open(opening: Opening) -> Result<()> {
     let title = title.map_or("Eyerays".to_owned(), |name| format!("{name} - Eyerays"));
     let wish = Wish::new(path.unwrap_or_default(), device, (width, height));
     let wish = Wish { look, most: most.unwrap_or(wish.most), ..wish };
+    let ended = Ended::default();
+    let told_end = ended.clone();
     run(&title, (width, height), around, move |context, state| {
         let gpu = Gpu::from_wgpu(&state.adapter, state.device.clone(), state.queue.clone());
         let shared = gpu.ok().map(|gpu| gpu.with_around(around));
-        let studio = Studio::new(reader, shared, around);
-        Box::new(Window::new(context, state, studio, Asked { wish, size, told }))
-    })
+        let (reader, renders) = (Arc::new(Mutex::new(reader)), shared.clone());
+        let studio = move || Studio::new(Box::new(reader.clone()), renders.clone(), around);
+        Box::new(Window::new(context, state, studio, Asked { shared, ended: told_end, wish, size, told }))
+    })?;
+    ended.take().map_or(Ok(()), Err)
 }
 
 /// Opens a window around a picture of so many columns and rows, and returns when it is closed. `around` is held while a driver opens a

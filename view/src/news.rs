@@ -10,6 +10,7 @@ use glam::DVec3;
 
 use crate::edits::Own;
 use crate::reader::Read;
+use crate::wish::Wish;
 
 /// A picture that is shown.
 pub struct Picture {
@@ -137,22 +138,35 @@ pub struct News {
     pub fault: Option<String>,
 }
 
-/// A question about a pixel of the picture: its column and row in what was asked for, whatever is shown meanwhile.
+/// A question about the picture. Pixels are told by their column and row in what was asked for, whatever is shown meanwhile.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Ask {
     /// What is there?
     What(u32, u32),
     /// How far is it, for the camera to be sharp there?
     Focus(u32, u32),
+    /// The light of all pixels.
+    Light,
+}
+
+/// The light of a picture.
+pub struct Light {
+    /// What was wished for.
+    pub wish: Wish,
+    /// Samples of each pixel.
+    pub samples: u32,
+    /// All of it.
+    pub picture: eyerays::picture::Picture,
 }
 
 /// What is there.
-#[derive(Debug, Clone, PartialEq)]
 pub enum Answer {
     /// In a line.
     What(String),
     /// In front of the camera, in the scene's units.
     Focus(f32),
+    /// What so many samples have come to, and of which wish.
+    Light(Box<Light>),
     /// Nothing is there, or it can't be told.
     Nothing(String),
 }

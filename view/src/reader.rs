@@ -1,6 +1,7 @@
 //! Who reads scenes for a window.
 
 use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use eyerays::quality::Bvh;
 use eyerays::scene::{Camera, Scene, Settings};
@@ -30,6 +31,13 @@ pub trait Reader: Send {
     /// # Errors
     /// What can't be read: a line with the file's name and the remedy.
     fn read(&mut self, source: &Source) -> Result<Read, String>;
+}
+
+/// Several who read by one.
+impl Reader for Arc<Mutex<Box<dyn Reader>>> {
+    fn read(&mut self, source: &Source) -> Result<Read, String> {
+        self.lock().unwrap_or_else(PoisonError::into_inner).read(source)
+    }
 }
 
 /// Reads scenes as they are.

@@ -1,5 +1,6 @@
 //! A studio on a thread of its own: the window says what it wishes, and never waits.
 
+use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
@@ -18,8 +19,8 @@ struct Post {
     news: News,
     /// One that the window has not taken yet.
     picture: Option<Picture>,
-    ask: Option<Ask>,
-    answer: Option<Answer>,
+    asks: VecDeque<Ask>,
+    answers: VecDeque<Answer>,
 }
 
 #[derive(Default)]
@@ -62,15 +63,15 @@ impl Worker {
         self.mailbox.changed.notify_one();
     }
 
-    /// Asks what a pixel of the picture shows.
+    /// Asks something of the picture.
     pub fn ask(&self, ask: Ask) {
-        self.mailbox.open().ask = Some(ask);
+        self.mailbox.open().asks.push_back(ask);
         self.mailbox.changed.notify_one();
     }
 
-    /// What was asked for, once it is known.
+    /// What was asked for, once it is known, one after the other.
     pub fn answer(&self) -> Option<Answer> {
-        self.mailbox.open().answer.take()
+        self.mailbox.open().answers.pop_front()
     }
 
     /// Where the studio stands, and a picture that is newer than the last that was taken.
@@ -100,11 +101,12 @@ fn work(mut studio: Studio, mailbox: &Mailbox, repaint: &dyn Fn()) {
         };
         let Step { picture, goes_on: more } = studio.step(&wish, &told);
         goes_on = more;
-        let mut post = mailbox.open();
         let is_news = picture.is_some() || !goes_on || ask.is_some();
         if let Some(ask) = ask {
-            post.answer = Some(studio.answer(&wish, ask));
+            let answer = studio.answer(&wish, ask);
+            mailbox.open().answers.push_back(answer);
         }
+        let mut post = mailbox.open();
         post.news = studio.news().clone();
         post.picture = picture.or(post.picture.take());
         drop(post);
@@ -121,9 +123,9 @@ fn next(mailbox: &Mailbox, goes_on: bool) -> Option<(Wish, Option<Ask>)> {
         if post.has_quit {
             return None;
         }
-        if post.is_new || goes_on || post.ask.is_some() {
+        if post.is_new || goes_on || !post.asks.is_empty() {
             post.is_new = false;
-            let ask = post.ask.take();
+            let ask = post.asks.pop_front();
             if let Some(wish) = &post.wish {
                 return Some((wish.clone(), ask));
             }

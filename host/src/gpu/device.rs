@@ -1,6 +1,7 @@
 //! One GPU, opened.
 
 use std::any::Any;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
 use super::adapter::{self, AdapterReport};
@@ -47,6 +48,7 @@ pub struct Gpu {
     pub(super) queue: wgpu::Queue,
     pub(super) around: Option<Around>,
     fault: Arc<Mutex<Option<String>>>,
+    is_lost: Arc<AtomicBool>,
 }
 
 impl Gpu {
@@ -125,12 +127,15 @@ impl Gpu {
                 note(&first, message);
             }
         }));
+        let is_lost = Arc::new(AtomicBool::new(false));
+        let gone = is_lost.clone();
         device.set_device_lost_callback(move |reason, message| {
+            gone.store(true, Ordering::SeqCst);
             if reason != wgpu::DeviceLostReason::Destroyed {
                 note(&lost, format!("the device was lost: {message}"));
             }
         });
-        Gpu { report, route, device, queue, around, fault }
+        Gpu { report, route, device, queue, around, fault, is_lost }
     }
 
     /// The method and scheduling for rays of some coherence.
@@ -169,6 +174,11 @@ impl Gpu {
             Some(message) => Err(Error::DeviceFailed { device: self.report.name.clone(), message }),
             None => Ok(()),
         }
+    }
+
+    /// Is the device gone? Nothing is rendered by it any more, nor drawn.
+    pub fn is_lost(&self) -> bool {
+        self.is_lost.load(Ordering::SeqCst)
     }
 
     /// Waits until all that was submitted is done.

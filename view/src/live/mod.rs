@@ -16,20 +16,34 @@ use eyerays::render::Display;
 use self::desk::Desk;
 use crate::window::{self, STATUS_HEIGHT, canvas, canvas::Canvas};
 
-/// Opens a window on what is sent by tev's protocol to a port that is listened to, and returns when it is closed. Its picture
-/// has a size at first; `around` is held while a driver opens a device.
+/// What a window on pictures of others is opened with.
+pub struct Listening {
+    /// Where they are sent to, by tev's protocol.
+    pub listener: TcpListener,
+    /// Columns and rows that there is room for at first.
+    pub size: Option<(u32, u32)>,
+    /// How light is shown.
+    pub look: Encoding,
+    /// What is held while a driver opens a device.
+    pub around: Option<Around>,
+    /// Hears that the window is open.
+    pub opened: Box<dyn FnOnce()>,
+}
+
+/// Opens a window on what is sent, and returns when it is closed.
 ///
 /// # Errors
 /// There is no screen, or nothing that draws on it.
-pub fn listen(listener: TcpListener, size: Option<(u32, u32)>, look: Encoding, around: Option<Around>) -> Result<()> {
-    let place = listener.local_addr().map_err(|error| Error::new(format!("nobody can connect: {error}")))?;
+pub fn listen(listening: Listening) -> Result<()> {
+    let Listening { listener, size, look, around, opened } = listening;
     let desk = Arc::new(Desk::default());
-    crate::run(&format!("Eyerays: {place}"), size.unwrap_or(crate::SIZE), around, move |context, state| {
+    crate::run("Eyerays", size.unwrap_or(crate::SIZE), around, move |context, state| {
         let repaint = {
             let context = context.clone();
             move || context.request_repaint()
         };
         desk.receive(listener, repaint);
+        opened();
         Box::new(Viewer { desk, canvas: Canvas::new(state), look, shown: None, has_panel: false })
     })
 }

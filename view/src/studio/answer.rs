@@ -7,22 +7,16 @@ use eyerays::line::one_line;
 use eyerays::pick::{self, Pick};
 use eyerays::scene::{Camera, Scene};
 
-use crate::news::{Answer, Ask};
+use crate::news::Answer;
 
-/// Answers a question about a pixel of a camera's picture.
-pub(super) fn answer(job: &Job, scene: &Scene, camera: &Camera, ask: Ask) -> Answer {
-    match told(job, scene, camera, ask) {
-        Ok(Some(answer)) => answer,
-        Ok(None) => Answer::Nothing("nothing is there".to_owned()),
-        Err(error) => Answer::Nothing(error.to_string()),
-    }
+/// What a pixel of a camera's picture shows, if it shows anything.
+pub(super) fn what((job, scene): (&Job, &Scene), camera: &Camera, (x, y): (u32, u32)) -> Result<Option<Answer>> {
+    Ok(pick::pick(job, scene, camera, x, y)?.map(|pick| Answer::What(line(&pick))))
 }
 
-fn told(job: &Job, scene: &Scene, camera: &Camera, ask: Ask) -> Result<Option<Answer>> {
-    Ok(match ask {
-        Ask::What(x, y) => pick::pick(job, scene, camera, x, y)?.map(|pick| Answer::What(line(&pick))),
-        Ask::Focus(x, y) => layers::depth(job, camera, (x, y))?.map(Answer::Focus),
-    })
+/// How far that is.
+pub(super) fn focus(job: &Job, camera: &Camera, at: (u32, u32)) -> Result<Option<Answer>> {
+    Ok(layers::depth(job, camera, at)?.map(Answer::Focus))
 }
 
 /// Object, material, primitive, distance and place, in a line.

@@ -19,6 +19,7 @@ use eyerays::error::{Error, Result};
 use eyerays::gpu::{Around, Gpu};
 use eyerays::job::Job;
 use eyerays::layers;
+use eyerays::line::one_line;
 use eyerays::render::{DeviceWish, Display, Session};
 use eyerays::scene::Settings;
 use eyerays::view::View;
@@ -31,7 +32,7 @@ use self::rate::Meter;
 use self::seat::Seat;
 use self::set::Set;
 use self::teacher::Teacher;
-use crate::news::{Answer, Ask, Doing, News, Picture};
+use crate::news::{Answer, Ask, Doing, Light, News, Picture};
 use crate::reader::Reader;
 use crate::shows::Shows;
 use crate::wish::{Device, Source, Wish};
@@ -51,8 +52,8 @@ pub struct Studio {
     seat: Seat,
     /// What the session is for.
     seated: Option<Seated>,
-    /// The device of the last wish failed while it was left to us: the CPU goes on.
-    is_gpu_lost: bool,
+    /// What the GPU of the last wish failed by while it was left to us: the CPU goes on.
+    gpu_fault: Option<String>,
     growth: Option<Growth>,
     polisher: Polisher,
     /// What a preview was last drawn of.
@@ -100,7 +101,7 @@ impl Studio {
             set: None,
             seat: Seat::Empty,
             seated: None,
-            is_gpu_lost: false,
+            gpu_fault: None,
             growth: None,
             polisher: Polisher::default(),
             previewed: None,
@@ -140,7 +141,7 @@ impl Studio {
                 let falls_back =
                     wish.device.wish == DeviceWish::Auto && wish.device.several.is_none() && self.is_on_gpu();
                 if falls_back {
-                    (self.is_gpu_lost, self.seat, self.seated) = (true, Seat::Empty, None);
+                    (self.gpu_fault, self.seat, self.seated) = (self.news.fault.clone(), Seat::Empty, None);
                 } else {
                     self.refused = Some(wish.clone());
                     self.news.doing = Doing::Nothing;
@@ -201,9 +202,9 @@ impl Studio {
 
     /// Has a session for the job, or one on its way.
     fn seat(&mut self, wish: &Wish, job: &Job) -> Result<()> {
-        let device = match self.is_gpu_lost {
-            true => Device { wish: DeviceWish::Cpu, ..wish.device.clone() },
-            false => wish.device.clone(),
+        let device = match self.gpu_fault {
+            Some(_) if wish.device.wish == DeviceWish::Auto => Device { wish: DeviceWish::Cpu, ..wish.device.clone() },
+            _ => wish.device.clone(),
         };
         self.seat.look()?;
         if matches!(self.seat, Seat::Opening(..)) {
@@ -253,7 +254,7 @@ impl Studio {
     }
 
     fn is_on_gpu(&self) -> bool {
-        self.seated.as_ref().is_some_and(|seated| seated.device.wish != DeviceWish::Cpu) && !self.is_gpu_lost
+        self.seated.as_ref().is_some_and(|seated| seated.device.wish != DeviceWish::Cpu) && self.gpu_fault.is_none()
     }
 
     /// What is there by a CPU until kernels are: the colours of surfaces, of a quarter of the columns and rows.
@@ -298,7 +299,13 @@ impl Studio {
         let (size, camera) = (growth.subject.size, growth.subject.camera.clone());
         let light = growth.display((session, *is_shared), (wish.look, wish.shows), !added)?;
         self.news.scale = growth.scale();
-        session.device_name().clone_into(&mut self.news.device);
+        let name = session.device_name();
+        self.news.device = match &self.gpu_fault {
+            Some(fault) if wish.device.wish == DeviceWish::Auto => {
+                format!("{name}, since a GPU failed: {}", one_line(fault))
+            }
+            _ => name.to_owned(),
+        };
         if let Some(rates) = self.meter.rates(session.device_time()) {
             self.news.rates = rates;
         }
@@ -349,13 +356,32 @@ impl Studio {
     }
 
     /// Answers a question about the picture of a wish.
-    pub fn answer(&self, wish: &Wish, ask: Ask) -> Answer {
-        let Some(set) = &self.set else { return Answer::Nothing("there is no scene yet".to_owned()) };
-        let job = set.job(wish).and_then(|job| job.with(Settings { size: wish.size, ..*job.settings() }));
-        match job {
-            Ok(job) => answer::answer(&job, set.scene(), set.camera(wish), ask),
+    pub fn answer(&mut self, wish: &Wish, ask: Ask) -> Answer {
+        match self.answered(wish, ask) {
+            Ok(Some(answer)) => answer,
+            Ok(None) => Answer::Nothing("nothing is there".to_owned()),
             Err(error) => Answer::Nothing(error.to_string()),
         }
+    }
+
+    fn answered(&mut self, wish: &Wish, ask: Ask) -> Result<Option<Answer>> {
+        let set = self.set.as_ref().ok_or_else(|| Error::new("there is no scene yet"))?;
+        let job = || set.job(wish).and_then(|job| job.with(Settings { size: wish.size, ..*job.settings() }));
+        match ask {
+            Ask::What(x, y) => answer::what((&job()?, set.scene()), set.camera(wish), (x, y)),
+            Ask::Focus(x, y) => answer::focus(&job()?, set.camera(wish), (x, y)),
+            Ask::Light => self.light(wish).map(|light| Some(Answer::Light(Box::new(light)))),
+        }
+    }
+
+    /// What the samples have come to.
+    fn light(&mut self, wish: &Wish) -> Result<Light> {
+        let not_yet = || Error::new("there is no picture yet");
+        let growth = self.growth.as_ref().filter(|growth| growth.is_even() && growth.samples() > 0);
+        let samples = growth.ok_or_else(not_yet)?.samples();
+        let session = self.session().ok_or_else(not_yet)?;
+        let film = session.film()?;
+        Ok(Light { wish: wish.clone(), samples, picture: session.develop(&film)? })
     }
 
     /// What renders, if it is ready.

@@ -93,6 +93,14 @@ impl Canvas {
     }
 }
 
+impl Drop for Canvas {
+    fn drop(&mut self) {
+        if let Some(id) = self.registered {
+            self.state.renderer.write().free_texture(&id);
+        }
+    }
+}
+
 /// Pixels as they are, or the means of those beside each other.
 fn filter_of(is_exact: bool) -> FilterMode {
     if is_exact { FilterMode::Nearest } else { FilterMode::Linear }

@@ -1,5 +1,6 @@
 //! The window: a picture, what is told of it, and what may be changed.
 
+mod beside;
 pub(crate) mod canvas;
 mod hand;
 mod keys;
@@ -8,14 +9,19 @@ mod panel;
 mod status;
 mod way;
 
+use std::cell::RefCell;
 use std::path::PathBuf;
+use std::rc::Rc;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use eframe::egui::{self, CentralPanel, Color32, Frame, Rect, Sense, Ui};
 use eframe::egui_wgpu::RenderState;
+use eyerays::error::Error;
+use eyerays::gpu::Gpu;
 use eyerays::scene::{Camera, Focus, Lens};
 
+use self::beside::Beside;
 use self::canvas::Canvas;
 pub(crate) use self::panel::look;
 use crate::files::Files;
@@ -44,8 +50,14 @@ struct Show {
     said: Option<(Instant, String)>,
 }
 
+/// Why a window was closed by itself.
+pub(crate) type Ended = Rc<RefCell<Option<Error>>>;
+
 /// What a window is asked for.
 pub(crate) struct Asked {
+    /// The device that draws it, where that renders, too.
+    pub shared: Option<Gpu>,
+    pub ended: Ended,
     pub wish: Wish,
     /// A size that pictures have whatever the window's is.
     pub size: Option<(u32, u32)>,
@@ -57,6 +69,15 @@ pub(crate) struct Asked {
 pub(crate) struct Window {
     worker: Worker,
     canvas: Canvas,
+    /// Another setting at the right.
+    beside: Option<Beside>,
+    /// Makes a studio for that.
+    another: Box<dyn Fn() -> Studio>,
+    state: RenderState,
+    /// The device that draws it, where that renders, too.
+    shared: Option<Gpu>,
+    /// Why it was closed, where nobody wished that.
+    ended: Ended,
     files: Files,
     wish: Wish,
     /// What was said to the worker last.
@@ -71,16 +92,26 @@ pub(crate) struct Window {
 
 impl Window {
     /// Over the device that a window draws with.
-    pub fn new(context: &egui::Context, state: RenderState, studio: Studio, asked: Asked) -> Window {
-        let Asked { wish, size: fixed, told } = asked;
+    pub fn new(
+        context: &egui::Context,
+        state: RenderState,
+        studio: impl Fn() -> Studio + 'static,
+        asked: Asked,
+    ) -> Window {
+        let Asked { shared, ended, wish, size: fixed, told } = asked;
         let repaint = {
             let context = context.clone();
             move || context.request_repaint()
         };
         let show = Show { panel: false, playing: false, follows: false, said: None };
         Window {
-            worker: Worker::new(studio, repaint.clone()),
-            canvas: Canvas::new(state),
+            worker: Worker::new(studio(), repaint.clone()),
+            canvas: Canvas::new(state.clone()),
+            beside: None,
+            another: Box::new(studio),
+            state,
+            shared,
+            ended,
             files: Files::new(repaint),
             wish,
             sent: None,
@@ -115,7 +146,7 @@ impl Window {
 
     /// Takes what has come, before it is drawn: nothing may call for another frame.
     fn receive(&mut self) {
-        if let Some(answer) = self.worker.answer() {
+        while let Some(answer) = self.worker.answer() {
             self.answer(answer);
         }
         let (news, picture) = self.worker.take();
@@ -126,6 +157,9 @@ impl Window {
         self.news = news;
         if let Some(picture) = picture {
             self.canvas.take(picture.display, picture.size);
+        }
+        if let Some(beside) = &mut self.beside {
+            beside.receive();
         }
     }
 
@@ -141,9 +175,15 @@ impl Window {
         if let Some(left) = since.and_then(|since| SETTLING.checked_sub(since)) {
             context.request_repaint_after(left);
         }
-        if self.sent.as_ref() != Some(&self.wish) {
-            self.worker.wish(&self.wish);
-            self.sent = Some(self.wish.clone());
+        // As many samples as that beside it.
+        let most = self.beside.as_ref().map_or(self.wish.most, |beside| beside.samples().min(self.wish.most));
+        let wish = Wish { most, ..self.wish.clone() };
+        if let Some(beside) = &mut self.beside {
+            beside.send((&wish, &self.worker, &self.news));
+        }
+        if self.sent.as_ref() != Some(&wish) {
+            self.worker.wish(&wish);
+            self.sent = Some(wish);
             // It may be there before this frame ends.
             context.request_repaint();
         }
@@ -156,10 +196,16 @@ impl Window {
         self.wish.size = self.fixed.unwrap_or((pixels(within.width()), pixels(within.height())));
         let place = canvas::place(within, self.wish.size, scale);
         self.canvas.draw(ui, place);
+        if let Some(beside) = &mut self.beside {
+            beside.draw(ui, place);
+        }
         if let Some(camera) = self.camera() {
             overlay::draw(ui.painter(), (place, self.wish.size), &camera, &self.news.lesson);
         }
         let response = ui.allocate_rect(within, Sense::click_and_drag());
+        if let Some(beside) = &mut self.beside {
+            beside.divide(ui, place);
+        }
         if let Some(mut camera) = self.camera()
             && hand::moved(&mut camera, &response, place.height())
         {
@@ -195,6 +241,11 @@ impl Window {
             Answer::What(line) => {
                 (self.told)(&line);
                 self.say(line);
+            }
+            Answer::Light(light) => {
+                if let Some(beside) = &mut self.beside {
+                    beside.light(light);
+                }
             }
             Answer::Nothing(why) => self.say(why),
             Answer::Focus(distance) => {
@@ -237,6 +288,13 @@ impl Window {
 impl eframe::App for Window {
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let context = ui.ctx().clone();
+        if self.shared.as_ref().is_some_and(Gpu::is_lost) {
+            let why =
+                "the device that draws the window was lost: open it again, with --device cpu if that happens again";
+            *self.ended.borrow_mut() = Some(Error::new(why));
+            context.send_viewport_cmd(egui::ViewportCommand::Close);
+            return;
+        }
         self.receive();
         self.play(&context);
         self.status(ui);

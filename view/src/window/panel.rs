@@ -26,7 +26,10 @@ impl Window {
     pub(super) fn panel(&mut self, ui: &mut Ui) {
         Panel::right("panel").default_size(300.0).show(ui, |ui| {
             ScrollArea::vertical().show(ui, |ui| {
-                section(ui, "Device", true, |ui| self.device(ui));
+                section(ui, "Device", true, |ui| {
+                    device(ui, &mut self.wish.device);
+                    ui.checkbox(&mut self.wish.is_paused, "paused");
+                });
                 section(ui, "What is shown", true, |ui| {
                     pick(ui, "shown", &mut self.wish.shows);
                     look(ui, &mut self.wish.look);
@@ -35,6 +38,8 @@ impl Window {
                     section(ui, "How rays are followed", true, |ui| self.lesson(ui));
                     section(ui, "Camera", true, |ui| self.lens(ui, &facts));
                     section(ui, "Rendering", true, |ui| self.rendering(ui, &facts));
+                    let settings = self.wish.settings.unwrap_or(facts.settings);
+                    section(ui, "Beside it", true, |ui| self.beside_panel(ui, settings));
                     section(ui, "Animation", !facts.animations.is_empty(), |ui| self.animation(ui, &facts));
                     section(ui, "Lights", false, |ui| self.lights(ui, &facts));
                     section(ui, "Materials", false, |ui| self.materials(ui, &facts));
@@ -45,28 +50,6 @@ impl Window {
                 section(ui, "Keys", true, keys);
             });
         });
-    }
-
-    fn device(&mut self, ui: &mut Ui) {
-        let Device { wish, several, precision, traversal, .. } = &mut self.wish.device;
-        ui.horizontal_wrapped(|ui| {
-            for &one in DeviceWish::VARIANTS {
-                if ui
-                    .selectable_label(several.is_none() && *wish == one, one.name())
-                    .on_hover_text(one.help())
-                    .clicked()
-                {
-                    (*wish, *several) = (one, None);
-                }
-            }
-            let all = ui.selectable_label(several.is_some(), "all").on_hover_text("Every GPU and the CPU together");
-            if all.clicked() {
-                (*several, *precision) = (Some(Several::All), Precision::Exact);
-            }
-        });
-        pick(ui, "precision", precision);
-        pick(ui, "method", &mut traversal.method);
-        ui.checkbox(&mut self.wish.is_paused, "paused");
     }
 
     fn lesson(&mut self, ui: &mut Ui) {
@@ -111,16 +94,7 @@ impl Window {
 
     fn rendering(&mut self, ui: &mut Ui, facts: &Facts) {
         let mut settings = self.wish.settings.unwrap_or(facts.settings);
-        let Settings { transport, bounces, sampler, .. } = &mut settings;
-        pick(ui, "integrator", &mut transport.integrator);
-        pick(ui, "sampler", sampler);
-        ui.add(Slider::new(bounces, 0..=32).text("bounces"));
-        if transport.integrator == Integrator::Path {
-            slide(ui, "clamp", &mut transport.clamp, 0.0..=100.0);
-        }
-        if transport.integrator.samples() && sampler.has_cells() {
-            *sampler = Sampler::Sobol;
-        }
+        transport(ui, &mut settings);
         self.wish.settings = (settings != facts.settings).then_some(settings);
         ui.add(Slider::new(&mut self.wish.most, 1..=Settings::MOST_SPP).logarithmic(true).text("samples at most"));
         if ui.button("as the scene says").clicked() {
@@ -172,6 +146,38 @@ impl Window {
         if !self.wish.edits.is_none() && ui.button("as the files say").clicked() {
             self.wish.edits = Default::default();
         }
+    }
+}
+
+/// Where it is rendered, and how numbers and rays are.
+pub(super) fn device(ui: &mut Ui, device: &mut Device) {
+    let Device { wish, several, precision, traversal, .. } = device;
+    ui.horizontal_wrapped(|ui| {
+        for &one in DeviceWish::VARIANTS {
+            if ui.selectable_label(several.is_none() && *wish == one, one.name()).on_hover_text(one.help()).clicked() {
+                (*wish, *several) = (one, None);
+            }
+        }
+        let all = ui.selectable_label(several.is_some(), "all").on_hover_text("Every GPU and the CPU together");
+        if all.clicked() {
+            (*several, *precision) = (Some(Several::All), Precision::Exact);
+        }
+    });
+    pick(ui, "precision", precision);
+    pick(ui, "method", &mut traversal.method);
+}
+
+/// How light is followed.
+pub(super) fn transport(ui: &mut Ui, settings: &mut Settings) {
+    let Settings { transport, bounces, sampler, .. } = settings;
+    pick(ui, "integrator", &mut transport.integrator);
+    pick(ui, "sampler", sampler);
+    ui.add(Slider::new(bounces, 0..=32).text("bounces"));
+    if transport.integrator == Integrator::Path {
+        slide(ui, "clamp", &mut transport.clamp, 0.0..=100.0);
+    }
+    if transport.integrator.samples() && sampler.has_cells() {
+        *sampler = Sampler::Sobol;
     }
 }
 

@@ -10,7 +10,7 @@ use eyerays::image::{Encoding, ToneMap, WhiteBalance};
 use eyerays::render::{Choice, DeviceWish};
 use eyerays::scene;
 use eyerays::scene_io;
-use eyerays_view::{Device, Opening, Read, Reader, Source};
+use eyerays_view::{Device, Listening, Opening, Read, Reader, Source};
 
 use super::choice::choice;
 use super::console;
@@ -106,8 +106,9 @@ fn listen(place: &str, size: Option<(u32, u32)>, look: Encoding) -> Result<ExitC
             "--listen {place}: {error}: name an address of this machine and a free port, such as 127.0.0.1:14158"
         ))
     })?;
-    console::print_line(address)?;
-    eyerays_view::listen(listener, size, look, Some(hush::around as Around))?;
+    // Nobody may read it.
+    let opened = Box::new(move || drop(console::print_line(address)));
+    eyerays_view::listen(Listening { listener, size, look, around: Some(hush::around as Around), opened })?;
     Ok(ExitCode::SUCCESS)
 }
 

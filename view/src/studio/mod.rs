@@ -161,7 +161,7 @@ impl Studio {
             return self.inspect(wish, &job);
         }
         self.inspected = None;
-        self.seat(wish, &job)?;
+        self.seat(wish, &job, told)?;
         match &self.seat {
             Seat::Ready(..) => self.grow(wish, &job),
             Seat::Opening(_, since) => {
@@ -201,7 +201,7 @@ impl Studio {
     }
 
     /// Has a session for the job, or one on its way.
-    fn seat(&mut self, wish: &Wish, job: &Job) -> Result<()> {
+    fn seat(&mut self, wish: &Wish, job: &Job, told: &dyn Fn(&News)) -> Result<()> {
         let device = match self.gpu_fault {
             Some(_) if wish.device.wish == DeviceWish::Auto => Device { wish: DeviceWish::Cpu, ..wish.device.clone() },
             _ => wish.device.clone(),
@@ -217,6 +217,7 @@ impl Studio {
         if self.seated.as_ref().is_some_and(is_same) {
             return Ok(());
         }
+        self.tell(Doing::Opening(Duration::ZERO), told);
         match &self.seated {
             Some(seated) if seated.device == device && matches!(self.seat, Seat::Ready(..)) => self.seat.turn(job),
             _ => self.seat.open((&device, self.around), self.shared.as_ref(), job),

@@ -75,9 +75,9 @@ impl Beside {
         }
     }
 
-    /// Samples that the first picture gets.
-    pub fn samples(&self) -> u32 {
-        self.samples
+    /// Samples that both pictures get: no fewer than one of them has.
+    pub fn samples(&self, first: &News) -> u32 {
+        self.samples.max(first.samples).max(self.news.samples)
     }
 
     /// Takes what has come.
@@ -148,6 +148,11 @@ impl Beside {
         }
     }
 
+    /// How many samples it has, and how it differs from the first.
+    pub fn line(&self) -> String {
+        format!("at the right {} samples, {}", self.news.samples, self.comparing.line())
+    }
+
     /// What may be changed of it, and what is different.
     pub fn panel(&mut self, ui: &mut Ui, first: Settings) {
         panel::device(ui, &mut self.device);
@@ -165,6 +170,19 @@ impl Beside {
 }
 
 impl Comparing {
+    fn line(&self) -> String {
+        match &self.found {
+            None => "compared once both are done".to_owned(),
+            Some(Err(why)) => one_line(why),
+            Some(Ok(found)) if found.bit_equal => "all bits are equal".to_owned(),
+            Some(Ok(found)) => {
+                let Comparison { differing_pixels, largest_difference, width, height, .. } = found;
+                let of = u64::from(*width) * u64::from(*height);
+                format!("{differing_pixels} of {of} pixels differ, by {largest_difference:.3e} at most")
+            }
+        }
+    }
+
     fn take(&mut self, number: usize, light: Box<Light>) {
         let is_asked = |(wishes, samples): &([Wish; 2], u32)| wishes[number] == light.wish && *samples == light.samples;
         if !self.asked.as_ref().is_some_and(is_asked) {
@@ -184,15 +202,12 @@ impl Comparing {
     }
 
     fn told(&self) -> RichText {
+        let line = RichText::new(self.line());
         match &self.found {
-            None => RichText::new("compared once both are done").weak(),
-            Some(Err(why)) => RichText::new(why).color(egui::Color32::LIGHT_RED),
-            Some(Ok(found)) if found.bit_equal => RichText::new("all bits are equal").color(egui::Color32::LIGHT_GREEN),
-            Some(Ok(found)) => {
-                let Comparison { differing_pixels, largest_difference, width, height, .. } = found;
-                let of = u64::from(*width) * u64::from(*height);
-                RichText::new(format!("{differing_pixels} of {of} pixels differ, by {largest_difference:.3e} at most"))
-            }
+            None => line.weak(),
+            Some(Err(_)) => line.color(egui::Color32::LIGHT_RED),
+            Some(Ok(found)) if found.bit_equal => line.color(egui::Color32::LIGHT_GREEN),
+            Some(Ok(_)) => line.strong(),
         }
     }
 }

@@ -176,7 +176,7 @@ impl Window {
             context.request_repaint_after(left);
         }
         // As many samples as that beside it.
-        let most = self.beside.as_ref().map_or(self.wish.most, |beside| beside.samples().min(self.wish.most));
+        let most = self.beside.as_ref().map_or(self.wish.most, |beside| beside.samples(&self.news).min(self.wish.most));
         let wish = Wish { most, ..self.wish.clone() };
         if let Some(beside) = &mut self.beside {
             beside.send((&wish, &self.worker, &self.news));

@@ -20,7 +20,11 @@ impl Window {
                 let text = match (&self.news.fault, &self.show.said) {
                     (Some(fault), _) => RichText::new(format!("error: {fault}")).color(Color32::LIGHT_RED),
                     (None, Some((_, said))) => RichText::new(said).strong(),
-                    (None, None) => RichText::new(line(&self.news, self.wish.is_paused)),
+                    (None, None) => {
+                        let beside =
+                            self.beside.as_ref().map_or(String::new(), |beside| format!(" | {}", beside.line()));
+                        RichText::new(line(&self.news, self.wish.is_paused) + &beside)
+                    }
                 };
                 ui.add(Label::new(text.clone()).truncate()).on_hover_text(text);
             });

@@ -12,7 +12,7 @@ impl Window {
         let (mut is_open, (x, y)) = (true, way.pixel);
         let window =
             egui::Window::new(format!("The ray of pixel {x}, {y}")).id(egui::Id::unique("way")).open(&mut is_open);
-        window.default_size([520.0, 360.0]).vscroll(false).show(context, |ui| {
+        window.default_size([680.0, 400.0]).vscroll(false).show(context, |ui| {
             let lines: Vec<&str> = way.text.lines().collect();
             let height = ui.text_style_height(&TextStyle::Monospace);
             ScrollArea::both().auto_shrink(false).show_rows(ui, height, lines.len(), |ui, rows| {

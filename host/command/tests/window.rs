@@ -155,7 +155,7 @@ fn a_window_of_a_gpu_does_all_that_a_hand_asks() {
 }
 
 #[test]
-fn two_hundred_sizes_and_an_end_in_the_middle_of_a_picture_leave_nothing_behind() {
+fn two_hundred_sizes_ten_minimisings_and_an_end_in_the_middle_of_a_picture_leave_nothing_behind() {
     let Some(screen) = Screen::new() else { return };
     let place = Place::new(&[("scene.toml", SCENE)]);
     let mut open = Open::new(&screen, &place, &["view", "scene.toml", "--device", "cpu", "--samples", "16"]);
@@ -163,6 +163,11 @@ fn two_hundred_sizes_and_an_end_in_the_middle_of_a_picture_leave_nothing_behind(
         screen.resize(open.window, 200 + step * 37 % 400, 150 + step * 53 % 400);
         std::thread::sleep(std::time::Duration::from_millis(10));
         assert!(open.process.try_wait().unwrap().is_none(), "it has ended at size {step}");
+        if step.is_multiple_of(20) {
+            screen.minimise(open.window, true);
+            std::thread::sleep(std::time::Duration::from_millis(50));
+            screen.minimise(open.window, false);
+        }
     }
     open.close();
 }

@@ -27,6 +27,7 @@ mod sampler;
 mod seen;
 mod stereo;
 pub(crate) mod studio;
+pub mod subdivide;
 mod texture;
 mod transport;
 mod visibility;

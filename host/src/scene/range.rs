@@ -21,6 +21,8 @@ impl Range {
     /// A full angle of view or of a cone, in degrees.
     pub const CONE: Range =
         Range { holds: |x| x > 0.0 && x < 180.0, says: "between 0 and 180 degrees, both exclusive" };
+    /// How far something turns.
+    pub const TURN: Range = Range { holds: |x| (0.0..=180.0).contains(&x), says: "an angle between 0 and 180 degrees" };
     /// How far an image is moved, as a share of its side.
     pub const SHIFT: Range = Range { holds: |x| (-100.0..=100.0).contains(&x), says: "between -100 and 100" };
     /// A full angle that may go all around, in degrees.

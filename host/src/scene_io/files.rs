@@ -140,13 +140,13 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
     if !is(path, "ply") {
         return obj::load(path, budget, images, is_covered);
     }
-    let Ply { mesh, warnings } = ply::load(path, budget)?;
+    let Ply { mesh, faces, warnings } = ply::load(path, budget)?;
     let mut materials = mesh_table::plain();
     if !mesh.colours.is_empty() {
         // Vertices say what colour it is.
         materials[0].1.diffuse = Some(Vec3::ONE);
     }
-    Ok(Obj { mesh, materials, warnings, ..Obj::default() })
+    Ok(Obj { mesh, faces, materials, warnings, ..Obj::default() })
 }
 
 /// The meshes of a scene, with a warning of what else it has and the scene file has not.

@@ -147,7 +147,7 @@ fn of_paths() -> Settings {
 
 /// A scene of one mesh without a camera, and the warnings of it.
 fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Scene, Vec<Warning>)> {
-    let Obj { mesh, copies, materials, warnings, libraries, objects } = obj;
+    let Obj { mesh, copies, materials, warnings, libraries, objects, .. } = obj;
     let name = match &*objects {
         [only] => only.name.clone(),
         _ => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),

@@ -2,6 +2,7 @@
 
 use super::budget::Budget;
 use super::copies::Copies;
+use super::face_sizes::FaceSizes;
 use super::files::{Files, is, is_gltf};
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
@@ -11,7 +12,8 @@ use super::object_table::Worlds;
 use super::table::Table;
 use super::{Instant, visible};
 use crate::error::Result;
-use crate::scene::{Instance, Mesh, Object, Primitives, Unplaced, Visibility, extent, normal};
+use crate::scene::subdivide::{self, Subdivision};
+use crate::scene::{Instance, Mesh, Object, Primitives, Range, Unplaced, Visibility, extent, normal};
 use glam::DMat4;
 
 /// Geometry in place, and the materials that it numbers.
@@ -91,7 +93,14 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     let wish = Wish { smooth, transform };
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
-    let Source { name, mut geometry, mut copies, materials, mut objects } = source(table, &wish, files)?;
+    let subdivision = subdivision(table)?;
+    let Source { name, mut geometry, faces, mut copies, materials, mut objects } = source(table, &wish, files)?;
+    if let Some(how) = subdivision {
+        let fault = |fault| table.fault_of("subdivide", fault);
+        subdivide((&mut geometry, &faces), &mut copies, how, &files.budget).map_err(fault)?;
+        // Their numbers of triangles are others now.
+        objects.clear();
+    }
     let shade = |mesh: &mut Mesh| match smooth {
         Some(true) => normal::smooth(mesh),
         Some(false) => mesh.normals.clear(),
@@ -120,6 +129,40 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     Ok(Placed { name, geometry, copies, repeated, materials, material, objects, visibility, lit_by })
 }
 
+/// What a table says of how its surface is divided.
+fn subdivision(table: &mut Table) -> Result<Option<Subdivision>> {
+    let levels = table.whole("subdivide", 1, 8)?;
+    let crease = table.number("crease", Range::TURN)?;
+    match (levels, crease) {
+        (None, Some(_)) => {
+            Err(table.fault_of("crease", "\"crease\" is of a surface that is divided; add \"subdivide\""))
+        }
+        (levels, crease) => Ok(levels.map(|levels| Subdivision { levels, crease })),
+    }
+}
+
+/// Puts surfaces in the places of meshes, of which they are the cages.
+fn subdivide(
+    (geometry, faces): (&mut Geometry, &FaceSizes),
+    copies: &mut Copies,
+    how: Subdivision,
+    budget: &Budget,
+) -> Unplaced<()> {
+    let divided = |mesh: &mut Mesh, faces: &[u32]| {
+        let (triangles, vertices) = subdivide::size(mesh, faces, how.levels);
+        budget.check(triangles, vertices)?;
+        *mesh = subdivide::subdivided(mesh, faces, how);
+        Ok(())
+    };
+    match geometry {
+        Geometry::Mesh(mesh) => divided(mesh, faces.sizes())?,
+        Geometry::Spheres(_) | Geometry::Disks(_) => {
+            return Err("it is round already; leave \"subdivide\" out, or \"tessellate\" it".into());
+        }
+    }
+    copies.meshes.iter_mut().try_for_each(|mesh| divided(mesh, &[]))
+}
+
 /// Refuses what takes too much memory at so many places.
 fn check_room(geometry: &Geometry, copies: &Copies, places: usize, budget: &Budget) -> Unplaced<()> {
     let round = match geometry {
@@ -137,6 +180,8 @@ fn check_room(geometry: &Geometry, copies: &Copies, places: usize, budget: &Budg
 struct Source {
     name: String,
     geometry: Geometry,
+    /// Those that a mesh is of.
+    faces: FaceSizes,
     copies: Copies,
     materials: Vec<(String, Fields)>,
     objects: Vec<Object>,
@@ -145,7 +190,8 @@ struct Source {
 impl Source {
     /// Of what names no material.
     fn plain(name: impl Into<String>, geometry: Geometry) -> Source {
-        Source { name: name.into(), geometry, copies: Copies::default(), materials: plain(), objects: Vec::new() }
+        let (faces, copies, objects) = Default::default();
+        Source { name: name.into(), geometry, faces, copies, materials: plain(), objects }
     }
 }
 
@@ -154,7 +200,11 @@ fn source(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
         (true, false) => from_file(table, wish, files),
         (false, true) => {
             let (word, geometry) = named::read(table, wish, files.budget, files.is_covered)?;
-            Ok(Source::plain(word, geometry))
+            let mut source = Source::plain(word, geometry);
+            if let ("quad" | "box", Geometry::Mesh(mesh)) = (word, &source.geometry) {
+                (0..mesh.triangles.len() / 2).for_each(|_| source.faces.push(2));
+            }
+            Ok(source)
         }
         (true, true) => Err(table.fault_of("shape", "a mesh is a file or a shape; remove the one")),
         (false, false) => Err(table.fault("[[mesh]] needs \"file\" or \"shape\"; add one")),
@@ -176,10 +226,11 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
         return Err(table.fault_of("file", fault));
     }
-    let Obj { mesh, copies, materials, objects, .. } = files.mesh(&path)?;
+    let Obj { mesh, faces, copies, materials, objects, .. } = files.mesh(&path)?;
     budget.check(mesh.triangles.len(), mesh.positions.len()).map_err(|fault| table.fault(fault))?;
     let geometry = Geometry::Mesh(mesh.clone());
-    Ok(Source { name, geometry, copies: copies.clone(), materials: materials.clone(), objects: objects.clone() })
+    let (faces, copies) = (faces.clone(), copies.clone());
+    Ok(Source { name, geometry, faces, copies, materials: materials.clone(), objects: objects.clone() })
 }
 
 /// The materials of what names none.

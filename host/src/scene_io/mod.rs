@@ -12,6 +12,7 @@ mod camera_table;
 mod copies;
 mod describe;
 mod document;
+mod face_sizes;
 mod file;
 mod files;
 mod geometry;

@@ -75,6 +75,15 @@ impl Screen {
         told.map_or((0, 0), |told| (told.width.into(), told.height.into()))
     }
 
+    /// Takes a window off the screen, or puts it there again.
+    pub fn minimise(&self, window: Window, is_small: bool) {
+        let cookie = if is_small { self.connection.unmap_window(window) } else { self.connection.map_window(window) };
+        cookie.unwrap().check().unwrap();
+        if !is_small {
+            self.connection.set_input_focus(InputFocus::PARENT, window, 0u32).unwrap().check().unwrap();
+        }
+    }
+
     /// Has it gone?
     pub fn is_closed(&self, window: Window) -> bool {
         self.connection.get_geometry(window).unwrap().reply().is_err()

@@ -133,7 +133,7 @@ fn read(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Unplaced
     let is_drawn = loading.instant != Instant::Later;
     let (materials, pictures) = materials((document, &buffers), (&mesh, &copies), neighbours, is_drawn, &mut notes)?;
     let libraries = buffers.paths.iter().cloned().chain(pictures).collect();
-    let obj = Obj { mesh, copies, materials, warnings: notes.finish(), libraries, objects };
+    let obj = Obj { mesh, copies, materials, warnings: notes.finish(), libraries, objects, ..Obj::default() };
     let animations = animation::list(document, &Accessors::new(document, &buffers));
     Ok(Gltf { obj, lights, aspect: cameras.aspect, cameras: cameras.all, animations })
 }

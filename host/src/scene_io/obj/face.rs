@@ -58,6 +58,11 @@ impl Faces {
         self.faces.len()
     }
 
+    /// Where the triangles of each end, once they are [`cut`](Faces::cut).
+    pub fn ends(&self) -> impl Iterator<Item = usize> {
+        self.faces.iter().map(|face| face.triangles)
+    }
+
     /// How many triangles the first faces make.
     pub fn triangles_before(&self, faces: usize) -> usize {
         faces.checked_sub(1).map_or(0, |last| self.faces[last].triangles)

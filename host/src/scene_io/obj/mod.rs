@@ -24,6 +24,7 @@ use self::vertices::{Attributes, Corners};
 use super::Warning;
 use super::budget::Budget;
 use super::copies::Copies;
+use super::face_sizes::FaceSizes;
 use super::file;
 use super::lines::MOST_LINE;
 #[cfg(test)]
@@ -38,6 +39,8 @@ use crate::scene::{Mesh, Object};
 #[derive(Debug, Default)]
 pub struct Obj {
     pub mesh: Mesh,
+    /// The faces that the mesh is of.
+    pub faces: FaceSizes,
     /// Meshes of it that stand in several places.
     pub copies: Copies,
     pub materials: Vec<(String, Fields)>,
@@ -100,6 +103,7 @@ struct Found<'p> {
     normals: Vec<Vec3>,
     coordinates: Vec<Vec2>,
     corners: Corners,
+    faces: FaceSizes,
     /// The smoothing group of the next faces.
     group: u32,
     /// Of every triangle.
@@ -123,6 +127,7 @@ impl<'p> Found<'p> {
             normals: Vec::new(),
             coordinates: Vec::new(),
             corners: Corners::default(),
+            faces: FaceSizes::default(),
             group: 0,
             materials: Vec::new(),
             material: 0,
@@ -174,6 +179,7 @@ impl<'p> Found<'p> {
             block.end_where_full(self.path, text, before, fits);
         }
         self.corners.extend(&block.faces.triangles);
+        self.faces.extend(block.faces.ends());
         for Event { line, face, what } in std::mem::take(&mut block.events) {
             // Those of the faces before.
             let triangles = self.corners.len() - triangles + block.faces.triangles_before(face);
@@ -202,6 +208,7 @@ impl<'p> Found<'p> {
             mut normals,
             coordinates,
             mut corners,
+            faces,
             materials,
             libraries,
             notes,
@@ -227,6 +234,7 @@ impl<'p> Found<'p> {
         let [missing, nameless] = of_libraries.faults;
         let warnings = [latin, missing, nameless].into_iter().chain(others).flatten();
         Ok(Obj {
+            faces,
             copies: Copies::default(),
             mesh: corners.mesh(attributes, materials),
             materials: libraries.materials,

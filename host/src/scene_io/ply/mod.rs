@@ -18,6 +18,7 @@ use self::records::Records;
 use super::Warning;
 use super::WarningKind::{self, LeftOut};
 use super::budget::Budget;
+use super::face_sizes::FaceSizes;
 use super::file;
 use super::polygon::{Cut, Effort};
 use crate::error::{Error, Result};
@@ -28,6 +29,8 @@ use crate::scene::{Mesh, Unplaced};
 #[derive(Debug)]
 pub struct Ply {
     pub mesh: Mesh,
+    /// The faces that it is of.
+    pub faces: FaceSizes,
     pub warnings: Vec<Warning>,
 }
 
@@ -47,8 +50,9 @@ pub(super) fn parse(path: &Path, source: impl Read, budget: Budget) -> Result<Pl
     found.read(BufReader::new(source)).map_err(|fault| fault.of(path))?;
     let said = std::mem::take(&mut found.warnings);
     let warnings = said.into_iter().map(|(kind, message)| Warning::new(kind, path, message)).collect();
+    let faces = std::mem::take(&mut found.sizes);
     let mesh = found.mesh().map_err(|fault| Error::file(path, fault))?;
-    Ok(Ply { mesh, warnings })
+    Ok(Ply { mesh, faces, warnings })
 }
 
 /// What a file holds.
@@ -57,6 +61,7 @@ struct Found {
     vertices: Vec<Vertex>,
     has: Has,
     triangles: Vec<[u32; 3]>,
+    sizes: FaceSizes,
     /// Of every triangle, where faces have colours.
     colours: Vec<[f32; 4]>,
     /// Faces and strips, of which there may be none.
@@ -74,8 +79,8 @@ impl Found {
     fn new(budget: Budget) -> Self {
         let (vertices, triangles, warnings) = (Vec::new(), Vec::new(), Vec::new());
         let (has, effort) = (Has::default(), Effort::default());
-        let (colours, bad) = (Vec::new(), (0, None));
-        Found { budget, vertices, has, triangles, colours, faces: 0, bad, effort, crossing: 0, warnings }
+        let (colours, bad, sizes) = (Vec::new(), (0, None), FaceSizes::default());
+        Found { budget, vertices, has, triangles, sizes, colours, faces: 0, bad, effort, crossing: 0, warnings }
     }
 
     fn read(&mut self, mut reader: impl BufRead) -> Checked<()> {
@@ -173,12 +178,14 @@ impl Found {
     }
 
     fn cut(&mut self, corners: &[u32]) -> Unplaced<()> {
+        let before = self.triangles.len();
         let place = |&corner: &u32| DVec3::from(self.vertices[corner as usize].position.map(f64::from));
         match self.effort.cut(&corners.iter().map(place).collect::<Vec<_>>()) {
             Cut::Fan => self.triangles.extend(corners[1..].windows(2).map(|edge| [corners[0], edge[0], edge[1]])),
             Cut::Triangles(all) => self.triangles.extend(all.iter().map(|t| t.map(|corner| corners[corner as usize]))),
             Cut::Impossible => self.crossing += 1,
         }
+        self.sizes.push(self.triangles.len() - before);
         self.effort.check()?;
         self.budget.check(self.triangles.len(), self.vertices.len())
     }
@@ -199,6 +206,7 @@ impl Found {
                 // Strips turn by corners that come twice.
                 if a != b && b != c && c != a {
                     self.triangles.push(if place % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                    self.sizes.push(1);
                 }
             }
             self.budget.check(self.triangles.len(), self.vertices.len())?;

@@ -10,6 +10,7 @@ mod object;
 mod ply;
 mod round;
 mod shipped;
+mod subdivide;
 mod textures;
 mod toml;
 

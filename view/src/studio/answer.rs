@@ -1,21 +1,44 @@
-//! What a pixel shows, in words.
+//! What is asked of a picture, and what a pixel shows in words.
 
-use eyerays::error::Result;
+use eyerays::error::{Error, Result};
 use eyerays::job::Job;
 use eyerays::layers;
 use eyerays::line::one_line;
 use eyerays::pick::{self, Pick};
-use eyerays::scene::{Camera, Scene};
+use eyerays::scene::{Camera, Scene, Settings};
 
-use crate::news::Answer;
+use super::Studio;
+use crate::news::{Answer, Ask};
+use crate::wish::Wish;
+
+impl Studio {
+    /// Answers a question about the picture of a wish.
+    pub fn answer(&mut self, wish: &Wish, ask: Ask) -> Answer {
+        match self.answered(wish, ask) {
+            Ok(Some(answer)) => answer,
+            Ok(None) => Answer::Nothing("nothing is there".to_owned()),
+            Err(error) => Answer::Nothing(error.to_string()),
+        }
+    }
+
+    fn answered(&mut self, wish: &Wish, ask: Ask) -> Result<Option<Answer>> {
+        let set = self.set.as_ref().ok_or_else(|| Error::new("there is no scene yet"))?;
+        let job = || set.job(wish).and_then(|job| job.with(Settings { size: wish.size, ..*job.settings() }));
+        match ask {
+            Ask::What(x, y) => what((&job()?, set.scene()), set.camera(wish), (x, y)),
+            Ask::Focus(x, y) => focus(&job()?, set.camera(wish), (x, y)),
+            Ask::Light => self.light(wish).map(|light| Some(Answer::Light(Box::new(light)))),
+        }
+    }
+}
 
 /// What a pixel of a camera's picture shows, if it shows anything.
-pub(super) fn what((job, scene): (&Job, &Scene), camera: &Camera, (x, y): (u32, u32)) -> Result<Option<Answer>> {
+fn what((job, scene): (&Job, &Scene), camera: &Camera, (x, y): (u32, u32)) -> Result<Option<Answer>> {
     Ok(pick::pick(job, scene, camera, x, y)?.map(|pick| Answer::What(line(&pick))))
 }
 
 /// How far that is.
-pub(super) fn focus(job: &Job, camera: &Camera, at: (u32, u32)) -> Result<Option<Answer>> {
+fn focus(job: &Job, camera: &Camera, at: (u32, u32)) -> Result<Option<Answer>> {
     Ok(layers::depth(job, camera, at)?.map(Answer::Focus))
 }
 

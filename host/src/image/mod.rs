@@ -31,7 +31,7 @@ use crate::math;
 pub use encode::{encode, encode_layers, screen};
 pub use layer::{decode_layer, read_layer};
 pub use read::{decode, read};
-pub use texels::{TextureBudget, decode_texture, read_texture};
+pub use texels::{TextureBudget, decode_texture, read_heights, read_texture};
 pub use tone::ToneMap;
 pub(crate) use transfer::{byte_to_linear, least_of_byte};
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};

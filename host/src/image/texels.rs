@@ -7,6 +7,7 @@ use image::{DynamicImage, ImageFormat};
 
 use super::read::{Kinds, Size, distrusting, most_per_pixel, open, pixels_of};
 use crate::error::{Error, Result};
+use crate::scene::displace::Heights;
 use crate::scene::{Texels, Texture};
 
 /// What the pictures of a file may take, and what those before have left of it.
@@ -67,17 +68,34 @@ pub fn read_texture(path: &Path, budget: &mut TextureBudget) -> Result<Texture> 
 /// What is none of these, damaged, truncated, larger than a texture may be, or more than the budget or memory has room for. They
 /// name no file.
 pub fn decode_texture(name: &str, reader: impl BufRead + Seek, budget: &mut TextureBudget) -> Result<Texture> {
+    let (Size { width, height, .. }, image) = decoded(name, reader, budget)?;
+    Ok(Texture { name: name.to_owned(), width, height, texels: distrusting(|| Ok(texels(image)))? })
+}
+
+/// Reads a picture of heights, its first channel: whole numbers are shares of the greatest, and what is not finite is 0.
+///
+/// # Errors
+/// As [`read_texture`].
+pub fn read_heights(path: &Path, budget: &mut TextureBudget) -> Result<Heights> {
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    let (Size { width, height, .. }, image) =
+        decoded(&name, BufReader::new(open(path)?), budget).map_err(|error| error.of(path))?;
+    let height_of = |pixel: &image::Rgba<f32>| if pixel.0[0].is_finite() { pixel.0[0] } else { 0.0 };
+    let values = distrusting(|| Ok(image.into_rgba32f().pixels().map(height_of).collect()))?;
+    Ok(Heights { width, height, values })
+}
+
+fn decoded(name: &str, reader: impl BufRead + Seek, budget: &mut TextureBudget) -> Result<(Size, DynamicImage)> {
     const MOST: u64 = Texture::MOST_SIDE as u64;
     distrusting(|| {
         // Files of this kind have no first bytes to be told by.
         let otherwise = name.to_ascii_lowercase().ends_with(".tga").then_some(ImageFormat::Tga);
         let names = "PNG, JPEG, TGA, BMP, TIFF, EXR or HDR";
         let kinds = Kinds { names, most_per_pixel: most_per_texel, most_pixels: MOST * MOST, otherwise };
-        let (Size { width, height, .. }, decoded) = pixels_of(reader, &kinds, |size| {
+        pixels_of(reader, &kinds, |size| {
             Texture::check_size(size.width, size.height)?;
             budget.take(size)
-        })?;
-        Ok(Texture { name: name.to_owned(), width, height, texels: texels(decoded) })
+        })
     })
 }
 

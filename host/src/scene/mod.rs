@@ -5,6 +5,7 @@ mod animation;
 mod camera;
 mod check;
 mod copies;
+pub mod displace;
 mod environment;
 pub(crate) mod extent;
 mod falloff;

@@ -259,7 +259,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         let fault = "there is no [[mesh]]; add one with a file or a shape";
         return Err(Error::file(path, fault));
     }
-    files.is_covered = overrides.values().any(Override::has_maps);
+    files.is_covered = overrides.values().any(Override::has_maps) || meshes.iter().any(|mesh| mesh.has("displace"));
     let Merged { mesh, spheres, disks, shared, instances, objects, materials } =
         merge(meshes, &overrides, &mut files)?.finish();
     let animations = files.take_animations();

@@ -11,9 +11,10 @@ use super::load::Loading;
 use super::moment::Instant;
 use super::table::Table;
 use crate::error::Result;
-use crate::image::{TextureBudget, read_texture};
+use crate::image::{TextureBudget, read_heights, read_texture};
 #[cfg(test)]
 use crate::memory::Room;
+use crate::scene::displace::Heights;
 use crate::scene::{Map, Maps, Placement, Texture, Wrap};
 use crate::scene::{Range, studio};
 
@@ -70,6 +71,15 @@ impl Images {
         let texture = Arc::new(read_texture(path, &mut self.budget)?);
         self.textures.insert(path.to_owned(), texture.clone());
         Ok(texture)
+    }
+
+    /// The picture of a name, relative to the folder, as heights, and its path. It is not kept.
+    ///
+    /// # Errors
+    /// Those of [`read_heights`].
+    pub fn heights(&self, name: &str) -> Result<(Heights, PathBuf)> {
+        let path = self.folder.join(name);
+        Ok((read_heights(&path, &mut self.budget.clone())?, path))
     }
 
     /// The [opacity](Texture::opacity) of the picture of a path.

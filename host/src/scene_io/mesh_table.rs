@@ -9,11 +9,11 @@ use super::material::{DEFAULT, Fields};
 use super::named::{self, Wish};
 use super::obj::Obj;
 use super::object_table::Worlds;
+use super::surface::Surface;
 use super::table::Table;
 use super::{Instant, visible};
 use crate::error::Result;
-use crate::scene::subdivide::{self, Subdivision};
-use crate::scene::{Instance, Mesh, Object, Primitives, Range, Unplaced, Visibility, extent, normal};
+use crate::scene::{Instance, Mesh, Object, Primitives, Unplaced, Visibility, extent, normal};
 use glam::DMat4;
 
 /// Geometry in place, and the materials that it numbers.
@@ -93,11 +93,12 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     let wish = Wish { smooth, transform };
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
-    let subdivision = subdivision(table)?;
+    let surface = Surface::read(table, files)?;
     let Source { name, mut geometry, faces, mut copies, materials, mut objects } = source(table, &wish, files)?;
-    if let Some(how) = subdivision {
-        let fault = |fault| table.fault_of("subdivide", fault);
-        subdivide((&mut geometry, &faces), &mut copies, how, &files.budget).map_err(fault)?;
+    if surface
+        .put((&mut geometry, &faces), &mut copies, &files.budget)
+        .map_err(|(key, why)| table.fault_of(key, why))?
+    {
         // Their numbers of triangles are others now.
         objects.clear();
     }
@@ -127,40 +128,6 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
         copies.meshes.iter().for_each(|mesh| files.budget.take_mesh(mesh));
     }
     Ok(Placed { name, geometry, copies, repeated, materials, material, objects, visibility, lit_by })
-}
-
-/// What a table says of how its surface is divided.
-fn subdivision(table: &mut Table) -> Result<Option<Subdivision>> {
-    let levels = table.whole("subdivide", 1, 8)?;
-    let crease = table.number("crease", Range::TURN)?;
-    match (levels, crease) {
-        (None, Some(_)) => {
-            Err(table.fault_of("crease", "\"crease\" is of a surface that is divided; add \"subdivide\""))
-        }
-        (levels, crease) => Ok(levels.map(|levels| Subdivision { levels, crease })),
-    }
-}
-
-/// Puts surfaces in the places of meshes, of which they are the cages.
-fn subdivide(
-    (geometry, faces): (&mut Geometry, &FaceSizes),
-    copies: &mut Copies,
-    how: Subdivision,
-    budget: &Budget,
-) -> Unplaced<()> {
-    let divided = |mesh: &mut Mesh, faces: &[u32]| {
-        let (triangles, vertices) = subdivide::size(mesh, faces, how.levels);
-        budget.check(triangles, vertices)?;
-        *mesh = subdivide::subdivided(mesh, faces, how);
-        Ok(())
-    };
-    match geometry {
-        Geometry::Mesh(mesh) => divided(mesh, faces.sizes())?,
-        Geometry::Spheres(_) | Geometry::Disks(_) => {
-            return Err("it is round already; leave \"subdivide\" out, or \"tessellate\" it".into());
-        }
-    }
-    copies.meshes.iter_mut().try_for_each(|mesh| divided(mesh, &[]))
 }
 
 /// Refuses what takes too much memory at so many places.

@@ -40,6 +40,7 @@ mod shape;
 mod shutter;
 mod source;
 mod suggest;
+mod surface;
 mod table;
 mod tally;
 mod transform;

@@ -37,7 +37,8 @@ fn resource() -> Edit {
     ("src/resources.rs", TABLE_END, line.leak())
 }
 
-/// An effect that asks for it, and what it does: the dummy's light for a surface's.
+/// An effect that asks for it, and what it does: the dummy's light for a surface's. All bits are taken: it shares that of copies of meshes,
+/// which none of these scenes has.
 const DUMMY: [Edit; 5] = [
     (
         "src/data/specialisation.rs",
@@ -90,9 +91,7 @@ fn copied(folder: &Path, edits: &[Edit]) -> PathBuf {
     fs::copy(shader.join("Cargo.toml"), copy.join("Cargo.toml")).unwrap();
     fs::copy(root.join("Cargo.lock"), folder.join("Cargo.lock")).unwrap();
     let workspace = fs::read_to_string(root.join("Cargo.toml")).unwrap();
-    let members = "members = [\"shader\", \"shader/build\", \"shader/passes\", \"shader/spirv\", \"kernels-cpu\", \"bvh\", \"host\", \"host/command\", \"tests\"]";
     let rest = workspace.split_once("[workspace.package]").expect("the workspace's own keys").1;
-    assert!(workspace.contains(members), "the members have changed");
     fs::write(
         folder.join("Cargo.toml"),
         format!("[workspace]\nresolver = \"3\"\nmembers = [\"shader\"]\n[workspace.package]{rest}"),

@@ -88,7 +88,7 @@ impl Live {
     fn window(look: &Look, size: Option<(u32, u32)>) -> Result<Live> {
         let cannot = |error: io::Error| Error::new(format!("--live: the window can't be opened: {error}"));
         let mut command = Command::new(std::env::current_exe().map_err(cannot)?);
-        command.args(["view", "--listen", "127.0.0.1:0"]).args(look.arguments());
+        command.args(["listen", "127.0.0.1:0"]).args(look.arguments());
         command.args(size.map(|(width, height)| format!("--size={width}x{height}")));
         // What ends the rendering leaves the window open.
         #[cfg(unix)]

@@ -29,6 +29,35 @@ pub(super) struct Look {
     half: bool,
 }
 
+/// The options of what shows pictures in a window.
+#[cfg(feature = "view")]
+#[derive(Args, Clone, Copy)]
+pub(super) struct Shown {
+    /// Brighten the picture by this many stops
+    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
+    exposure: f32,
+    /// The light that looks white, in kelvins: 2900 of light bulbs, 5000 of the sun [default: 6504, a screen's white]
+    #[arg(long, value_name = "K", value_parser = white_balance)]
+    white_balance: Option<WhiteBalance>,
+    /// How light brighter than a screen's white is shown
+    #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
+    tone: ToneMap,
+}
+
+#[cfg(feature = "view")]
+impl Shown {
+    /// As pixels show it.
+    ///
+    /// # Errors
+    /// More stops than there are.
+    pub fn encoding(&self) -> Result<Encoding> {
+        let Shown { exposure: exposure_ev, white_balance: white, tone } = *self;
+        let look = Encoding { exposure_ev, tone, white, ..Encoding::default() };
+        look.scale()?;
+        Ok(look)
+    }
+}
+
 /// The share of the pixels with light that may be beyond white before it is said.
 const MOST_BEYOND_WHITE: f64 = 1.0 / 3.0;
 

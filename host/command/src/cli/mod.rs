@@ -21,6 +21,8 @@ mod generate;
 mod hush;
 mod info;
 mod lens;
+#[cfg(feature = "view")]
+mod listen;
 mod live;
 mod look;
 mod manual;
@@ -89,6 +91,10 @@ enum Command {
     #[cfg(feature = "view")]
     #[command(after_help = view::EXAMPLES, allow_negative_numbers = true)]
     View(Box<view::Window>),
+    /// Open a window on what renderers send to tev, such as render --live
+    #[cfg(feature = "view")]
+    #[command(after_help = listen::EXAMPLES, allow_negative_numbers = true)]
+    Listen(listen::Listen),
     /// Put the parts of a picture together
     #[command(after_help = merge::EXAMPLES, allow_negative_numbers = true)]
     Merge(merge::Merge),
@@ -157,6 +163,8 @@ fn execute(cli: Cli) -> Result<ExitCode> {
         Command::Render(command) => command.run(cli.quiet),
         #[cfg(feature = "view")]
         Command::View(command) => command.run(),
+        #[cfg(feature = "view")]
+        Command::Listen(command) => command.run(),
         Command::Merge(command) => command.run(cli.quiet),
         Command::Farm(command) => command.run(cli.quiet),
         Command::Diff(command) => command.run(cli.quiet),

@@ -1,23 +1,20 @@
 //! `eyerays view`.
 
-use std::net::TcpListener;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
 use clap::Args;
 use eyerays::gpu::Around;
-use eyerays::image::{Encoding, ToneMap, WhiteBalance};
 use eyerays::render::{Choice, DeviceWish};
 use eyerays::scene;
 use eyerays::scene_io;
-use eyerays_view::{Device, Listening, Opening, Read, Reader, Source};
+use eyerays_view::{Device, Opening, Read, Reader, Source};
 
-use super::choice::choice;
 use super::console;
 use super::device::DeviceArgs;
 use super::devices::Devices;
 use super::hush;
-use super::look::white_balance;
+use super::look::Shown;
 use super::options::{Effort, View};
 use super::reading::{self, Reading};
 use super::sequence::Instant;
@@ -35,22 +32,12 @@ Drag to orbit, turn the wheel to come nearer, press N for all that may be change
 pub(super) struct Window {
     /// A scene, as render takes it; without one the window waits for a file to be dropped
     scene: Option<PathBuf>,
-    /// Show what renderers send to tev instead: at this address of the machine, whose port is printed; port 0 takes any that is free
-    #[arg(long, value_name = "HOST:PORT", conflicts_with = "scene")]
-    listen: Option<String>,
     /// Where to render: auto is a GPU when one works, else the CPU; gpu; cpu; all of them together; or several by their numbers or
     /// names, such as gpu:0,gpu:1,cpu
     #[arg(long, value_parser = Devices::parse, default_value = "auto")]
     device: Devices,
-    /// Brighten the picture by this many stops
-    #[arg(long, value_name = "EV", default_value_t = 0.0, allow_hyphen_values = true)]
-    exposure: f32,
-    /// The light that looks white, in kelvins: 2900 of light bulbs, 5000 of the sun [default: 6504, a screen's white]
-    #[arg(long, value_name = "K", value_parser = white_balance)]
-    white_balance: Option<WhiteBalance>,
-    /// How light brighter than a screen's white is shown
-    #[arg(long, value_name = "MAP", value_parser = choice::<ToneMap>(), default_value_t = ToneMap::None)]
-    tone: ToneMap,
+    #[command(flatten)]
+    shown: Shown,
     #[command(flatten)]
     on: DeviceArgs,
     #[command(flatten)]
@@ -76,12 +63,7 @@ impl Window {
         if self.of.seen.has_focus_on() {
             return Err(Error::new("--focus-on is a click in the window, with ctrl held: leave it out"));
         }
-        let (exposure_ev, tone, white) = (self.exposure, self.tone, self.white_balance);
-        let look = Encoding { exposure_ev, tone, white, ..Encoding::default() };
-        look.scale()?;
-        if let Some(place) = &self.listen {
-            return listen(place, self.of.seen.size(), look);
-        }
+        let look = self.shown.encoding()?;
         let (wish, several) = match self.device {
             Devices::Several(several) => (DeviceWish::Auto, Some(several)),
             Devices::One(device) => (device, None),
@@ -95,21 +77,6 @@ impl Window {
         eyerays_view::open(Opening { path: self.scene, reader, device, size, most, look, around, told })?;
         Ok(ExitCode::SUCCESS)
     }
-}
-
-/// Opens a window on what others send.
-fn listen(place: &str, size: Option<(u32, u32)>, look: Encoding) -> Result<ExitCode> {
-    let listener = TcpListener::bind(place);
-    let bound = listener.and_then(|listener| Ok((listener.local_addr()?, listener)));
-    let (address, listener) = bound.map_err(|error| {
-        Error::new(format!(
-            "--listen {place}: {error}: name an address of this machine and a free port, such as 127.0.0.1:14158"
-        ))
-    })?;
-    // Nobody may read it.
-    let opened = Box::new(move || drop(console::print_line(address)));
-    eyerays_view::listen(Listening { listener, size, look, around: Some(hush::around as Around), opened })?;
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Reads scenes as the command line asks.

@@ -112,6 +112,7 @@ impl Beside {
             self.worker.wish(&other);
             self.sent = Some(other.clone());
         }
+        self.comparing.forget_unless(wish, &other);
         let is_done = |news: &News| news.doing == Doing::Done && news.samples > 0;
         let both = Some(([wish.clone(), other], news.samples));
         if is_done(news) && is_done(&self.news) && news.samples == self.news.samples && self.comparing.asked != both {
@@ -170,6 +171,13 @@ impl Beside {
 }
 
 impl Comparing {
+    /// What was found of other wishes says nothing of these.
+    fn forget_unless(&mut self, first: &Wish, other: &Wish) {
+        if self.asked.as_ref().is_some_and(|([a, b], _)| (a, b) != (first, other)) {
+            (self.asked, self.lights, self.found) = Default::default();
+        }
+    }
+
     fn line(&self) -> String {
         match &self.found {
             None => "compared once both are done".to_owned(),

@@ -53,11 +53,12 @@ impl Seen<'_> {
     /// The edges of a box, as far as they are before the camera.
     fn edges(&self, bounds: &NodeBox) -> impl Iterator<Item = [Pos2; 2]> {
         edges(bounds).flat_map(move |[start, end]| {
-            let is_straight = self.camera.projection.is_flat() && self.at(start).is_some() && self.at(end).is_some();
+            let is_flat = self.camera.projection.is_flat();
+            let is_straight = is_flat && self.at(start).is_some() && self.at(end).is_some();
             let pieces = if is_straight { 1 } else { PIECES };
             let at = move |piece: u32| self.at(start.lerp(end, f64::from(piece) / f64::from(pieces)));
             // An image of all around has its ends far apart.
-            let is_whole = move |[a, b]: &[Pos2; 2]| is_straight || (*a - *b).length() < self.place.width() / 2.0;
+            let is_whole = move |[a, b]: &[Pos2; 2]| is_flat || (*a - *b).length() < self.place.width() / 2.0;
             (0..pieces).filter_map(move |piece| Some([at(piece)?, at(piece + 1)?])).filter(is_whole)
         })
     }

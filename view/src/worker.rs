@@ -5,6 +5,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 
+use eframe::egui;
+
 use crate::news::{Answer, Ask, Doing, News, Picture};
 use crate::studio::{Step, Studio};
 use crate::wish::Wish;
@@ -33,6 +35,12 @@ impl Mailbox {
     fn open(&self) -> MutexGuard<'_, Post> {
         self.post.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Calls for another frame of a window, from any thread.
+pub(crate) fn repaint(context: &egui::Context) -> impl Fn() + Clone + Send + Sync + 'static {
+    let context = context.clone();
+    move || context.request_repaint()
 }
 
 /// A thread that makes pictures.

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec2, Vec3};
+use glam::{DVec3, Vec2};
 
 use super::Mesh;
-use super::normal;
+use super::normal::{self, place};
 
 /// A picture of heights.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,11 +57,6 @@ pub fn displaced(mesh: &mut Mesh, height: impl Fn(Vec2) -> f32) {
     mesh.normals.clear();
     mesh.tangents.clear();
     normal::smooth(mesh);
-}
-
-/// The bits of a position; adding zero makes -0 and 0 equal.
-fn place(position: Vec3) -> [u32; 3] {
-    (position + Vec3::ZERO).to_array().map(f32::to_bits)
 }
 
 #[cfg(test)]

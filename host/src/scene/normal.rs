@@ -33,6 +33,6 @@ pub fn smooth(mesh: &mut Mesh) {
 }
 
 /// The bits of a position; adding zero makes -0 and 0 equal.
-fn place(position: Vec3) -> [u32; 3] {
+pub(in crate::scene) fn place(position: Vec3) -> [u32; 3] {
     (position + Vec3::ZERO).to_array().map(f32::to_bits)
 }

@@ -8,7 +8,7 @@ use super::geometry::Geometry;
 use super::table::Table;
 use crate::error::Result;
 use crate::scene::displace::{self, Heights};
-use crate::scene::subdivide::{self, Subdivision};
+use crate::scene::subdivide::{self, Cage, Subdivision};
 use crate::scene::{Mesh, Range, Unplaced};
 
 /// What is said of a surface.
@@ -76,9 +76,10 @@ impl Surface {
 }
 
 fn divide(mesh: &mut Mesh, faces: &[u32], how: Subdivision, budget: &Budget) -> Unplaced<()> {
-    let (triangles, vertices) = subdivide::size(mesh, faces, how.levels);
+    let cage = Cage::of(mesh, faces);
+    let (triangles, vertices) = subdivide::size(&cage, how.levels);
     budget.check(triangles, vertices)?;
-    *mesh = subdivide::subdivided(mesh, faces, how);
+    *mesh = subdivide::subdivided(cage, mesh, how);
     Ok(())
 }
 

@@ -15,6 +15,7 @@ use eyerays::render::Display;
 
 use self::desk::Desk;
 use crate::window::{self, STATUS_HEIGHT, canvas, canvas::Canvas};
+use crate::worker::repaint;
 
 /// What a window on pictures of others is opened with.
 pub struct Listening {
@@ -38,11 +39,7 @@ pub fn listen(listening: Listening) -> Result<()> {
     let Listening { listener, size, look, around, opened } = listening;
     let desk = Arc::new(Desk::default());
     crate::run("Eyerays", size.unwrap_or(crate::SIZE), around, move |context, state| {
-        let repaint = {
-            let context = context.clone();
-            move || context.request_repaint()
-        };
-        desk.receive(listener, repaint);
+        desk.receive(listener, repaint(context));
         opened();
         Box::new(Viewer { desk, canvas: Canvas::new(state), look, shown: None, has_panel: false })
     })

@@ -41,6 +41,13 @@ impl Teacher {
     /// Tells what a wish asks, seen by a camera; while that moves, what was told before.
     pub fn tell(&mut self, wish: &Wish, job: &Job, (scene, camera): (&Scene, &Camera)) -> Arc<Told> {
         let Wish { lesson, size, device, is_moving, .. } = wish;
+        if *lesson == Lesson::default() {
+            // Nothing is asked, mostly: pictures of a moving camera come by the thousand.
+            if self.asked.take().is_some() {
+                self.told = Arc::default();
+            }
+            return self.told.clone();
+        }
         let (camera, traversal) = (camera.clone(), device.traversal);
         let asked = Asked { lesson: *lesson, camera, size: *size, traversal, job: job.clone() };
         let is_told = |before: &Asked| before.is_same(&asked) || *is_moving && before.lesson == *lesson;

@@ -15,7 +15,7 @@ use super::{DARK, Window};
 use crate::news::{Answer, Ask, Doing, Light, News};
 use crate::studio::Studio;
 use crate::wish::{Device, Lesson, Wish};
-use crate::worker::Worker;
+use crate::worker::{Worker, repaint};
 
 /// Both pictures get so many samples, unless another number is chosen: then they can be compared.
 const SAMPLES: u32 = 16;
@@ -55,15 +55,11 @@ struct Comparing {
 impl Beside {
     /// Of a studio of its own, rendering as the first picture is.
     pub fn new(context: &egui::Context, state: RenderState, studio: Studio, first: &Wish) -> Beside {
-        let repaint = {
-            let context = context.clone();
-            move || context.request_repaint()
-        };
         let canvas = Canvas::new(state.clone());
         let (asked, lights, found) = Default::default();
         let comparing = Comparing { canvas: Canvas::new(state), is_shown: false, asked, lights, found };
         Beside {
-            worker: Worker::new(studio, repaint),
+            worker: Worker::new(studio, repaint(context)),
             canvas,
             news: News::default(),
             device: first.device.clone(),

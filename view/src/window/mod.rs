@@ -28,7 +28,7 @@ use crate::files::Files;
 use crate::news::{Answer, Ask, News};
 use crate::studio::Studio;
 use crate::wish::Wish;
-use crate::worker::Worker;
+use crate::worker::{Worker, repaint};
 
 /// So long after a camera was moved it is taken for moving.
 const SETTLING: Duration = Duration::from_millis(200);
@@ -99,10 +99,7 @@ impl Window {
         asked: Asked,
     ) -> Window {
         let Asked { shared, ended, wish, size: fixed, told } = asked;
-        let repaint = {
-            let context = context.clone();
-            move || context.request_repaint()
-        };
+        let repaint = repaint(context);
         let show = Show { panel: false, playing: false, follows: false, said: None };
         Window {
             worker: Worker::new(studio(), repaint.clone()),

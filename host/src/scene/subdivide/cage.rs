@@ -1,11 +1,12 @@
 //! Faces of any number of corners, and one step from them to quads.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
-use glam::{DVec3, Vec2, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
-use super::edges::{Edge, Edges};
+use super::edges::{Around, Edge, Edges, Kind};
 use crate::scene::Mesh;
+use crate::scene::normal::place;
 
 /// A corner of a face: where it is, and what it carries, which is interpolated linearly.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,15 +21,15 @@ pub struct Corner {
 /// Faces, which share vertices where they are at the same place.
 #[derive(Debug, Default)]
 pub struct Cage {
-    pub positions: Vec<DVec3>,
+    pub(super) positions: Vec<DVec3>,
     /// Those of all faces, one face after the other.
-    pub corners: Vec<Corner>,
+    pub(super) corners: Vec<Corner>,
     /// Where the corners of each face end.
-    pub ends: Vec<usize>,
+    pub(super) ends: Vec<usize>,
     /// Of each face.
-    pub materials: Vec<u32>,
+    pub(super) materials: Vec<u32>,
     /// Edges that stay sharp, by their vertices, the lesser first; sorted.
-    pub sharp: Vec<[u32; 2]>,
+    pub(super) sharp: Vec<[u32; 2]>,
 }
 
 impl Cage {
@@ -62,10 +63,8 @@ impl Cage {
     /// Vertices at the same place are one; the number of each of the mesh's.
     fn weld(&mut self, mesh: &Mesh) -> Vec<u32> {
         let mut known: HashMap<[u32; 3], u32> = HashMap::new();
-        let number = |position: &glam::Vec3| {
-            // Adding zero makes -0 and 0 equal.
-            let bits = (*position + glam::Vec3::ZERO).to_array().map(f32::to_bits);
-            *known.entry(bits).or_insert_with(|| {
+        let number = |position: &Vec3| {
+            *known.entry(place(*position)).or_insert_with(|| {
                 self.positions.push(position.as_dvec3());
                 self.positions.len() as u32 - 1
             })
@@ -74,7 +73,7 @@ impl Cage {
     }
 
     /// The corners of each face.
-    pub fn faces(&self) -> impl Iterator<Item = &[Corner]> + Clone {
+    pub(super) fn faces(&self) -> impl Iterator<Item = &[Corner]> + Clone {
         let starts = std::iter::once(0).chain(self.ends.iter().copied());
         starts.zip(&self.ends).map(|(start, &end)| &self.corners[start..end])
     }
@@ -82,7 +81,7 @@ impl Cage {
     /// The next finer cage: a quad for each corner of each face (Catmull and Clark, Recursively generated B-spline surfaces on arbitrary
     /// topological meshes, 1978). Edges of one face, or of more than two, and those that are sharp are creases; a vertex where more than two
     /// of them meet stays, and so does the vertex of a single face.
-    pub fn refined(&self) -> Cage {
+    pub(super) fn refined(&self) -> Cage {
         let edges = Edges::of(self);
         let (vertices, faces) = (self.positions.len() as u32, self.ends.len() as u32);
         let middles: Vec<DVec3> = self.faces().map(|face| self.mean(face)).collect();
@@ -127,10 +126,10 @@ impl Cage {
     /// Where the vertices go.
     fn moved(&self, edges: &Edges, middles: &[DVec3]) -> Vec<DVec3> {
         let around = edges.around(self, |face| middles[face]);
-        let of = |(&at, around): (&DVec3, &super::edges::Around)| match around.kind() {
-            super::edges::Kind::Stays => at,
-            super::edges::Kind::Crease => (6.0 * at + around.creased) / 8.0,
-            super::edges::Kind::Smooth => {
+        let of = |(&at, around): (&DVec3, &Around)| match around.kind() {
+            Kind::Stays => at,
+            Kind::Crease => (6.0 * at + around.creased) / 8.0,
+            Kind::Smooth => {
                 let count = f64::from(around.edges);
                 // The means of the faces around and of the middles of the edges.
                 let faces = around.faces / f64::from(around.face_count);
@@ -152,7 +151,7 @@ fn mean_of(corners: &[Corner]) -> Corner {
 /// The outline of a face that was cut into triangles; none where that has holes, or touches itself.
 fn outline(triangles: &[[u32; 3]]) -> Option<Vec<u32>> {
     let sides = || triangles.iter().flat_map(|&[a, b, c]| [(a, b), (b, c), (c, a)]);
-    let all: std::collections::HashSet<(u32, u32)> = sides().collect();
+    let all: HashSet<(u32, u32)> = sides().collect();
     let mut next = HashMap::new();
     for (from, to) in sides().filter(|&(from, to)| !all.contains(&(to, from))) {
         if next.insert(from, to).is_some() {

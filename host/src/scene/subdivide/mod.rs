@@ -9,7 +9,8 @@ use std::collections::HashMap;
 
 use glam::{DVec3, Vec3};
 
-use self::cage::{Cage, Corner};
+pub use self::cage::Cage;
+use self::cage::Corner;
 use self::edges::{Around, Edges, Kind};
 use super::Mesh;
 use super::normal::unit;
@@ -23,15 +24,13 @@ pub struct Subdivision {
     pub crease: Option<f32>,
 }
 
-/// The Catmull-Clark surface of a mesh as triangles, with smooth normals but over sharp edges: vertices lie on the surface itself, at its
-/// limit. Faces have so many triangles of the mesh each, one after the other; without, each triangle is a face. Texture coordinates and
-/// colours are interpolated linearly.
+/// The Catmull-Clark surface of a cage as triangles, with smooth normals but over sharp edges: vertices lie on the surface itself, at its
+/// limit. It has texture coordinates and colours where the mesh has them that the cage is of, interpolated linearly.
 ///
 /// # Panics
 /// If there are no levels.
-pub fn subdivided(mesh: &Mesh, faces: &[u32], how: Subdivision) -> Mesh {
+pub fn subdivided(mut cage: Cage, of: &Mesh, how: Subdivision) -> Mesh {
     assert!(how.levels > 0, "a surface is divided once at least");
-    let mut cage = Cage::of(mesh, faces);
     if let Some(angle) = how.crease {
         cage.sharp = sharp(&cage, angle);
     }
@@ -41,13 +40,12 @@ pub fn subdivided(mesh: &Mesh, faces: &[u32], how: Subdivision) -> Mesh {
     let edges = Edges::of(&cage);
     let normals = normals(&cage, &edges);
     cage.positions = limits(&cage, &edges);
-    triangles(&cage, &normals, mesh)
+    triangles(&cage, &normals, of)
 }
 
 /// How many triangles and, at most, vertices there will be.
-pub fn size(mesh: &Mesh, faces: &[u32], levels: u32) -> (usize, usize) {
-    let corners = Cage::of(mesh, faces).corners.len();
-    let quads = corners.saturating_mul(1_usize.checked_shl(2 * (levels - 1)).unwrap_or(usize::MAX));
+pub fn size(cage: &Cage, levels: u32) -> (usize, usize) {
+    let quads = cage.corners.len().saturating_mul(1_usize.checked_shl(2 * (levels - 1)).unwrap_or(usize::MAX));
     (quads.saturating_mul(2), quads.saturating_mul(4))
 }
 

@@ -2,6 +2,14 @@ use glam::{Vec2, Vec3};
 
 use super::*;
 
+fn subdivided(mesh: &Mesh, faces: &[u32], how: Subdivision) -> Mesh {
+    super::subdivided(Cage::of(mesh, faces), mesh, how)
+}
+
+fn size(mesh: &Mesh, faces: &[u32], levels: u32) -> (usize, usize) {
+    super::size(&Cage::of(mesh, faces), levels)
+}
+
 /// A cube of edge 2 in the middle, of quads that share their vertices.
 fn cube() -> (Mesh, Vec<u32>) {
     let corner =

@@ -80,6 +80,7 @@ fn scene() -> Scene {
         settings: Settings { size: (320, 240), samples: 2, ..Settings::default() },
         motion: None,
         hierarchy: None,
+        fog: None,
         environment: None,
     }
 }

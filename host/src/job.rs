@@ -4,8 +4,9 @@ use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Aovs, Effects, Frame, Launch, Layout, Specialisation, pack};
+use eyerays_shader::data::{Aovs, Effects, Frame, Launch, Layout, Media, Specialisation, pack};
 use eyerays_shader::material::ALBEDOS;
+use eyerays_shader::medium::Inside;
 use glam::Vec3;
 
 use crate::device_scene::{DeviceScene, Feature, flushed};
@@ -77,6 +78,11 @@ impl Job {
         if scene.is_linked() && lights {
             return Err(Error::new(
                 "some materials are lit by some lamps alone (lit_by), which paths alone tell apart: set the integrator to \"path\"",
+            ));
+        }
+        if scene.media_bits() != Media::default() && lights {
+            return Err(Error::new(
+                "the scene has media (volume, fog), which paths alone go through: set the integrator to \"path\"",
             ));
         }
         Ok(Job { scene, settings, feature: None, aovs: Aovs(0), optic_tables: Arc::default() })
@@ -169,7 +175,14 @@ impl Job {
             order: traversal.order.bits(),
             tuning: traversal.tuning,
             aovs: self.aovs,
+            media: self.media_bits(),
         }
+    }
+
+    /// What of the media its kernels know: only paths go through them.
+    pub fn media_bits(&self) -> Media {
+        let follows_paths = self.feature.is_none() && self.settings.transport.integrator == Integrator::Path;
+        if follows_paths { self.scene.media_bits() } else { Media::default() }
     }
 
     /// What cameras and the film need.
@@ -240,6 +253,7 @@ impl Job {
             vertices: self.primitives().len() as u32,
             aovs: self.aov_count(),
             group: self.background_group(),
+            media: self.fog() << Inside::BITS,
             steps: self.movement().steps,
             exposure: self.movement().exposure,
             ..Frame::default()

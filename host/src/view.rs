@@ -148,7 +148,7 @@ impl View {
 
     /// All that its rays of the camera depend on beside the image and tables.
     pub(crate) fn camera_bytes(&self) -> Vec<u8> {
-        let CameraRecord { camera, spread, angle, aperture, clip, eyes, keys } = &self.record;
+        let CameraRecord { camera, spread, angle, aperture, clip, eyes, keys, .. } = &self.record;
         // How it moves is told by the scene; whether it does, by what stands in the place of nothing.
         let moves = if *keys == Frame::STILL { 0.0 } else { 1.0 };
         [bytemuck::bytes_of(camera), bytemuck::cast_slice(&[[*spread, *angle], [*aperture, moves], *clip, *eyes])]
@@ -188,8 +188,16 @@ impl View {
     /// The record of a launch in a scene: `count` samples of a region, from sample `first` on.
     pub fn launch(&self, scene: &Job, region: Region, first: u32, count: u32, order: Order) -> Frame {
         let pixel_slots = camera::slots(region.width, region.height, order);
-        let CameraRecord { camera, spread, angle, aperture, clip: [near, farthest], eyes: [eyes, converging], keys } =
-            self.record;
+        let CameraRecord {
+            camera,
+            spread,
+            angle,
+            aperture,
+            clip: [near, farthest],
+            eyes: [eyes, converging],
+            keys,
+            inside,
+        } = self.record;
         let frame = scene.frame();
         let (exposure, delayed) = if self.opens { (0.0, 0.0) } else { (frame.exposure, 1.0 - frame.exposure) };
         Frame {
@@ -202,6 +210,7 @@ impl View {
             eyes,
             converging,
             keys,
+            media: frame.media | inside,
             exposure,
             row_delay: delayed / self.height as f32,
             filter_steps: FILTER_STEPS as f32 / (2 * self.grid) as f32,

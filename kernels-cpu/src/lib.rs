@@ -11,6 +11,6 @@ mod way;
 
 pub use follow::Query;
 pub use isa::Isa;
-pub use number::{Number, Queues, Shown};
+pub use number::{Between, Number, Queues, Shown};
 pub use records::Records;
 pub use way::Way;

@@ -1,11 +1,13 @@
 //! The numbers that pictures are rendered with, and the stages over them.
 
 use eyerays_shader::camera;
-use eyerays_shader::data::{Frame, Launch, Light, Specialisation};
+use eyerays_shader::data::{Frame, Launch, Light, Material, Medium, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
-use eyerays_shader::stage::{self, CameraTables, FilmWords};
+use eyerays_shader::stage::{self, CameraTables, FilmWords, Found, TransmitInputs};
+use eyerays_shader::traverse::{Primitives, WhileWhile};
+use eyerays_shader::warp::Alone;
 
 use crate::follow::{Query, follow};
 use crate::isa::Isa;
@@ -30,6 +32,16 @@ pub struct Shown<'a> {
     pub lights: &'a [Light],
     /// Light from far away.
     pub environment: &'a [u32],
+}
+
+/// What is between surfaces.
+pub struct Between<'a> {
+    /// What surfaces are filled with.
+    pub materials: &'a [Material],
+    /// Media by their numbers.
+    pub media: &'a [Medium],
+    /// Where they are denser.
+    pub grids: &'a [u32],
 }
 
 /// A number that every stage is compiled for: `f32` and, for references, `f64`. A CPU has no faster division or root to give up
@@ -60,6 +72,9 @@ pub trait Number: Scalar<Record: Send + Sync> {
         queues: Queues<'_>,
         records: &mut Records<Self>,
     );
+
+    /// Dims the light of a wave's shadow rays by what is between surfaces.
+    fn transmit(scene: &TraceContext<'_>, of: &Between<'_>, slots: &[u32], records: &mut Records<Self>);
 
     /// Adds what slots have summed to the film.
     fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]);
@@ -105,6 +120,19 @@ macro_rules! number {
                 records: &mut Records<Self>,
             ) {
                 isa.run(Scatter { launch, context, queues, records });
+            }
+
+            fn transmit(
+                scene: &TraceContext<'_>,
+                &Between { materials, media, grids }: &Between<'_>,
+                slots: &[u32],
+                Records { hits, shadows, segments, .. }: &mut Records<Self>,
+            ) {
+                for &slot in slots {
+                    let time = Found::<Self>::time(&scene.base, slot, hits);
+                    let inputs = TransmitInputs { shadows, materials, media, grids };
+                    stage::transmit::<Self, WhileWhile<Alone>, Primitives>(scene, inputs, (slot, time), segments);
+                }
             }
 
             fn gather(frame: &Frame, spec: Specialisation, records: &Records<Self>, film: &mut [u32]) {

@@ -13,6 +13,7 @@ pub mod launch;
 pub mod light;
 pub mod linear;
 pub mod material;
+pub mod medium;
 pub mod methods;
 pub mod numerics;
 pub mod ray;

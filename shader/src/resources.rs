@@ -62,6 +62,8 @@ macro_rules! resources {
             30 light_nodes LIGHT_NODES: Read LightNode, "hierarchy of lights";
             31 cells CELLS: Read u32, "table of cells";
             32 instances INSTANCES: Read Instance, "instances";
+            33 media MEDIA: Read Medium, "media";
+            34 grids GRIDS: Read u32, "grids";
         }
     };
 }

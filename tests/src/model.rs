@@ -23,6 +23,7 @@ pub fn empty() -> Scene {
         settings: Settings { size: (1, 1), min_contribution: 0.0, ..Settings::default() },
         motion: None,
         hierarchy: None,
+        fog: None,
         environment: None,
     }
 }

@@ -8,12 +8,12 @@ use eyerays::device_scene::Feature;
 use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
-    Absorption, Alpha, Conductor, Direct, Environment, Filter, Integrator, Map, Maps, Material, Physical, Placement,
-    Sampler, Scene, Settings, Texels, Texture, Transport, Wall, Wrap,
+    Absorption, Alpha, Conductor, Direct, Environment, Filter, Grid, Integrator, Map, Maps, Material, Medium, Physical,
+    Placement, Sampler, Scene, Settings, Texels, Texture, Transport, Volume, Wall, Wrap,
 };
 use eyerays_tests::random::Random;
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
-use glam::{Vec2, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 const SCENES: u64 = 1500;
 
@@ -99,10 +99,34 @@ fn physical(random: &mut Random) -> Physical {
     }
 }
 
+fn medium(random: &mut Random) -> Medium {
+    let absorption = one(random, &[0.0, 1.0, 1e12]) * colour(random);
+    let sends = |c: f32| if c > 0.0 { 3.0 } else { 0.0 };
+    Medium {
+        scattering: one(random, &[0.0, 1e-6, 2.0, 1e12]) * colour(random),
+        absorption,
+        anisotropy: one(random, &[-0.999, -0.4, 0.0, 0.8, 0.999]),
+        emission: if chance(random, 0.3) { absorption.map(sends) } else { Vec3::ZERO },
+    }
+}
+
+/// Of any kind, as dense everywhere or as a grid says.
+fn volume(random: &mut Random, may_be_open: bool) -> Volume {
+    let numbers: Vec<f32> = (0..9 * 9 * 10).map(|_| one(random, &[0.0, 0.0, 0.3, 1e-30, 40.0])).collect();
+    let grid = Grid::dense("grid", [9, 9, 10], &numbers, [DVec3::splat(-1.5), DVec3::new(1.0, 0.5, 1.5)]);
+    Volume {
+        medium: medium(random),
+        interface: !may_be_open || chance(random, 0.4),
+        priority: one(random, &[0, 0, 7]),
+        density: chance(random, 0.4).then(|| Arc::new(grid)),
+    }
+}
+
 fn change(random: &mut Random, material: &mut Material, pictures: &[Arc<Texture>]) {
     material.physical = chance(random, 0.7).then(|| physical(random));
     material.maps = maps(random, pictures);
     material.emission = one(random, &[0.0, 0.0, 1e-6, 1e3]) * colour(random);
+    material.volume = chance(random, 0.3).then(|| volume(random, material.emission == Vec3::ZERO));
     material.two_sided = chance(random, 0.5);
     material.alpha = one(random, &[Alpha::Opaque, Alpha::Mask(0.0), Alpha::Mask(0.5), Alpha::Mask(1.0), Alpha::Blend]);
     material.opacity = one(random, &[0.0, 0.5, 1.0]);
@@ -137,6 +161,12 @@ fn any_scene(random: &mut Random) -> Scene {
     scene.environment =
         chance(random, 0.5).then_some(Environment { texture: far, rotation: 33.0, scale: 2.0, visible });
     scene.settings = any_settings(random, &scene);
+    scene.fog = chance(random, 0.2).then(|| medium(random));
+    if !matches!(scene.settings.transport.integrator, Integrator::Path | Integrator::Ao) {
+        // Nothing else goes through media.
+        scene.fog = None;
+        scene.materials.iter_mut().for_each(|material| material.volume = None);
+    }
     scene
 }
 

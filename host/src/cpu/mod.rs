@@ -2,6 +2,7 @@
 
 mod cast;
 mod cells;
+mod enclosing;
 mod pool;
 mod render;
 mod tile;
@@ -10,6 +11,7 @@ mod watched;
 pub use eyerays_kernels_cpu::{Isa, Number, Records};
 
 pub use cast::{cast, cast_by, closest};
+pub(crate) use enclosing::enclosing;
 pub use pool::pool;
 pub use render::{Renderer, render};
 pub use tile::{Observer, Planned};

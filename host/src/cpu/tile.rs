@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use eyerays_kernels_cpu::{Isa, Number, Query, Queues, Records, Shown};
+use eyerays_kernels_cpu::{Between, Isa, Number, Query, Queues, Records, Shown};
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
 use eyerays_shader::real::V3;
@@ -152,6 +152,7 @@ impl<R: Number> Executor for Launch<'_, R> {
             }
             Stage::Trace => self.trace(&scene, method),
             Stage::Shadow => self.shadow(&scene, method),
+            Stage::Transmit => self.transmit(&scene),
             Stage::Shade => self.shade(&scene),
             Stage::Generate => {
                 let job = &self.planned.laid.job;
@@ -194,6 +195,12 @@ impl<R: Number> Launch<'_, R> {
                 shadows[(light * self.frame.slots + slot) as usize] = answer;
             }
         }
+    }
+
+    fn transmit(&mut self, scene: &TraceContext<'_>) {
+        let job = &self.planned.laid.job;
+        let between = Between { materials: job.materials(), media: job.media(), grids: job.grids() };
+        R::transmit(scene, &between, &self.queue, &mut self.records);
     }
 
     /// Puts the slots that go on in the next queue.

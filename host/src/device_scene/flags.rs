@@ -2,7 +2,7 @@
 
 use eyerays_shader::data::Primitive;
 
-use super::records::{is_cutout, is_transparent};
+use super::records::{is_cutout, is_open, is_transparent};
 use crate::scene::{Material, Matte, ObjectNumbers, Scene, Visibility};
 
 /// All that its materials and objects say of who sees them.
@@ -35,7 +35,9 @@ fn of_material(m: &Material) -> u32 {
     let flag = |flag, holds: bool| if holds { flag } else { 0 };
     flag(Primitive::TRANSPARENT, is_transparent(m))
         | flag(Primitive::CUTOUT, is_cutout(m))
-        | flag(Primitive::TWO_SIDED, m.two_sided)
+        | flag(Primitive::OPEN, is_open(m))
+        // Culling would leave a medium without an end.
+        | flag(Primitive::TWO_SIDED, m.two_sided || m.volume.is_some())
 }
 
 /// The flags of primitives of each material, whichever object they are of.

@@ -5,8 +5,9 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, CwbvhNode, Effects, Instance as InstanceRecord, Light as LightRecord,
-    Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive,
+    Bounds, CentredPair, CwbvhNode, Effects, Filling, Instance as InstanceRecord, Light as LightRecord,
+    Material as MaterialRecord, Media as MediaBits, Medium as MediumRecord, Normals, Physical as PhysicalRecord,
+    Primitive,
 };
 
 mod alias;
@@ -16,11 +17,13 @@ mod environment;
 mod feature;
 mod flags;
 mod frame;
+mod grids;
 mod hierarchy;
 mod keys;
 mod levels;
 mod light_tree;
 mod lighting;
+mod media;
 mod moved;
 mod normalisation;
 mod records;
@@ -48,6 +51,7 @@ use hierarchy::{centred, gathered};
 pub(crate) use keys::Movement;
 use keys::Way;
 use lighting::Lamps;
+use media::Media;
 use two_levels::Levels;
 
 use crate::error::{Error, Result};
@@ -71,6 +75,7 @@ pub struct DeviceScene {
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
     physicals: Vec<PhysicalRecord>,
+    media: Media,
     lights: Vec<LightRecord>,
     lighting: Lighting,
     textures: Textures,
@@ -143,7 +148,9 @@ impl DeviceScene {
         let movement = Movement::new(scene, &normalisation, &mut instances)?;
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
-        let material = |m| records::material(m, groups.unlit(m), scene.ambient, normalisation.scale);
+        let media = Media::of(scene, &normalisation)?;
+        let material =
+            |(m, &filling)| records::material(m, filling, groups.unlit(m), (scene.ambient, normalisation.scale));
         // One thing after the other, so that no more lies in memory than must.
         let nodes = centred(bvh.nodes);
         let mut primitives = gathered(primitives, &bvh.order);
@@ -180,7 +187,8 @@ impl DeviceScene {
             nodes: if nodes.is_empty() { OnceLock::new() } else { OnceLock::from(nodes) },
             wide: bvh.wide,
             bounds: if is_split { bvh.bounds } else { Vec::new() },
-            materials: scene.materials.iter().map(material).collect(),
+            materials: scene.materials.iter().zip(&media.fillings).map(material).collect(),
+            media,
             physicals,
             lights,
             lighting,
@@ -279,6 +287,31 @@ impl DeviceScene {
     /// Materials by microfacets; empty if there are none.
     pub fn physicals(&self) -> &[PhysicalRecord] {
         &self.physicals
+    }
+
+    /// What is between surfaces: media by their numbers, from 1 on.
+    pub fn media(&self) -> &[MediumRecord] {
+        &self.media.records
+    }
+
+    /// Words of the grids in which some are denser.
+    pub fn grids(&self) -> &[u32] {
+        &self.media.grids
+    }
+
+    /// What is inside of surfaces, by material.
+    pub(crate) fn fillings(&self) -> &[Filling] {
+        &self.media.fillings
+    }
+
+    /// The number of the medium outside of all surfaces; 0 for none.
+    pub(crate) fn fog(&self) -> u32 {
+        self.media.fog
+    }
+
+    /// What kernels are compiled for that know what is between surfaces.
+    pub(crate) fn media_bits(&self) -> MediaBits {
+        self.media.bits
     }
 
     /// What covers surfaces.

@@ -1,7 +1,7 @@
 //! From world units to the numbers of the kernels, which lie in [-1, 1].
 
 use eyerays_shader::real::TINY;
-use glam::{DVec3, Vec3};
+use glam::{DAffine3, DVec3, Vec3};
 
 use crate::math;
 
@@ -49,6 +49,11 @@ impl Normalisation {
     /// A place of the normalised scene, in world units.
     pub fn in_world(&self, p: Vec3) -> Vec3 {
         (p.as_dvec3() / self.scale + self.origin.as_dvec3()).as_vec3()
+    }
+
+    /// Takes places of the normalised scene to world units.
+    pub fn inverse(&self) -> DAffine3 {
+        DAffine3::from_translation(self.origin.as_dvec3()) * DAffine3::from_scale(DVec3::splat(1.0 / self.scale))
     }
 
     /// A place as a kernel takes it; coordinates below 2^-60 are zero (no subnormals).

@@ -2,7 +2,7 @@
 
 use bytemuck::Zeroable;
 use eyerays_shader::data::{
-    Effects, Instance, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord,
+    Effects, Filling, Instance, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord,
     Primitive, pack,
 };
 use eyerays_shader::material::conductor_mean;
@@ -15,8 +15,8 @@ use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
-    Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, Physical, Scene, Settings, Visibility,
-    Wall,
+    Absorption, Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, Physical, Scene, Settings,
+    Visibility, Wall,
 };
 
 /// A colour and an integer.
@@ -85,7 +85,7 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     ask(Effects::PHYSICAL, physical(&|_| true));
     ask(Effects::CONDUCTOR, physical(&|p| p.conductor.is_some()));
     ask(Effects::THIN, physical(&|p| p.is_transparent() && p.wall != Wall::Body));
-    ask(Effects::ABSORBING, physical(&absorbs));
+    ask(Effects::ABSORBING, used(&|m| absorption(m).is_some()));
     ask(Effects::REFRACTION, physical(&|p| p.is_transparent() && p.wall == Wall::Body));
     ask(Effects::ANISOTROPIC, physical(&|p| p.anisotropy > 0.0));
     ask(Effects::TEXTURED, used(&|m| m.maps.all().next().is_some()));
@@ -99,7 +99,9 @@ pub(super) fn effects(scene: &Scene) -> Effects {
     let hides = |of: Visibility| Visibility { matte: Matte::Shown, ..of } != Visibility::default();
     ask(
         Effects::HIDDEN,
-        flags::visibilities(scene).any(hides) || flags::mattes(scene).any(|matte| matte == Matte::Catcher),
+        flags::visibilities(scene).any(hides)
+            || flags::mattes(scene).any(|matte| matte == Matte::Catcher)
+            || used(&is_open),
     );
     ask(Effects::LINKED, used(&|m| m.lit_by.is_some()));
     ask(Effects::HOLDOUT, flags::mattes(scene).any(|matte| matte == Matte::Holdout));
@@ -115,8 +117,14 @@ pub(super) fn is_cutout(m: &Material) -> bool {
     !matches!(m.alpha, Alpha::Opaque | Alpha::Mask(0.0))
 }
 
-fn absorbs(p: &Physical) -> bool {
-    p.is_transparent() && p.wall == Wall::Body && p.absorption.is_some()
+/// Does light pass a surface that bends it, around something inside?
+pub(super) fn is_body(m: &Material) -> bool {
+    is_transparent(m) && m.physical.is_none_or(|p| p.is_transparent() && p.wall == Wall::Body)
+}
+
+/// What a body takes of light on its way inside, unless that is a medium's.
+fn absorption(m: &Material) -> Option<Absorption> {
+    m.physical?.absorption.filter(|_| is_body(m) && m.volume.is_none())
 }
 
 /// Its primitives: triangles, those of shared meshes each in its own cube and with its number there; spheres and disks.
@@ -177,8 +185,13 @@ pub(super) fn normals(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     by_slot(scene, order, |_, [a, b, c]| Normals { a: at(a), b: at(b), c: at(c) })
 }
 
+/// Are its surfaces not there, but what is inside of them?
+pub(super) fn is_open(m: &Material) -> bool {
+    m.volume.as_ref().is_some_and(|volume| !volume.interface)
+}
+
 /// A material's record.
-pub(super) fn material(m: &Material, unlit: u32, ambient: Vec3, scale: f64) -> MaterialRecord {
+pub(super) fn material(m: &Material, filling: Filling, unlit: u32, (ambient, scale): (Vec3, f64)) -> MaterialRecord {
     let ior = if is_transparent(m) { m.ior } else { 0.0 };
     // Cells much larger than the scene are one cell, whatever their exact size.
     let cells = |size: f32| (1.0 / (f64::from(size) * scale)).clamp(1e-6, 1e30) as f32;
@@ -191,7 +204,7 @@ pub(super) fn material(m: &Material, unlit: u32, ambient: Vec3, scale: f64) -> M
         diffuse: colour(m.diffuse, 0),
         specular: colour(m.specular, flushed_number(m.shininess).to_bits()),
         reflection: colour(m.reflection, ior.to_bits()),
-        transmission: colour(m.transmission, 0),
+        transmission: colour(m.transmission, filling.0),
         checker,
         checker_ambient,
     }
@@ -210,7 +223,7 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
     // A conductor's facets do not ask for its base, which is what it looks like.
     let base = p.conductor.map_or(p.base, |conductor| conductor.reflectance());
     let conductor = p.conductor.unwrap_or(Conductor { eta: Vec3::ZERO, k: Vec3::ZERO });
-    let absorption = p.absorption.filter(|_| absorbs(&p));
+    let absorption = absorption(m);
     let lengths = absorption.map_or(0.0, |a| (1.0 / (f64::from(a.distance) * scale)).clamp(1e-9, 1e9) as f32);
     PhysicalRecord {
         base: colour(base, flags),

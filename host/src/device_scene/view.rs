@@ -1,7 +1,7 @@
 //! A scene as the kernels of a processor see it.
 
 use eyerays_shader::bvh8::Bvh8View;
-use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Specialisation};
+use eyerays_shader::data::{Frame, Launch, Light as LightRecord, Media, Specialisation};
 use eyerays_shader::integrator::ScatterContext;
 use eyerays_shader::light as shading;
 use eyerays_shader::material::Albedos;
@@ -86,7 +86,15 @@ impl SceneView {
     /// What scatters where integrators sample.
     pub fn scattering(&self) -> ScatterContext<'_> {
         let (physicals, albedos) = (self.job.physicals(), Albedos(self.job.albedos()));
-        ScatterContext { shading: self.shading(), physicals, albedos, lighting: self.lighting() }
+        let media = self.job.media();
+        ScatterContext {
+            shading: self.shading(),
+            physicals,
+            albedos,
+            lighting: self.lighting(),
+            media,
+            grids: self.job.grids(),
+        }
     }
 
     /// Takes other lights.
@@ -119,8 +127,15 @@ impl SceneView {
         }
     }
 
+    /// The same for rays that meet surfaces, too, which are not there themselves.
+    pub(crate) fn stream_through_media<'g>(&'g self, frame: &'g Frame) -> TraceContext<'g> {
+        self.context(frame, self.specialisation().with_launch(Launch::STREAM))
+    }
+
     /// The scene for a launch of a stream's rays, see [`DeviceScene::stream_frame`](super::DeviceScene::stream_frame).
     pub fn stream<'g>(&'g self, frame: &'g Frame) -> TraceContext<'g> {
-        self.context(frame, self.specialisation().with_launch(Launch::STREAM))
+        // Rays of their own meet what is there.
+        let spec = Specialisation { media: Media::default(), ..self.specialisation() };
+        self.context(frame, spec.with_launch(Launch::STREAM))
     }
 }

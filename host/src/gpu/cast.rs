@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::rc::Rc;
 use std::time::Duration;
 
-use eyerays_shader::data::Launch;
+use eyerays_shader::data::{Launch, Media, Specialisation};
 use eyerays_shader::launch::{ROW, WORKGROUP};
 use eyerays_shader::resources::binding;
 use eyerays_shader::stage::Found;
@@ -174,7 +174,8 @@ impl<'a> Caster<'a> {
         };
         let traversal = self.gpu.resolved(traversal, Coherence::Scattered)?;
         self.packed.check_walks(traversal.method)?;
-        let spec = self.packed.specialisation(&traversal).with_launch(Launch::STREAM);
+        let own = self.packed.specialisation(&traversal);
+        let spec = Specialisation { media: Media::default(), ..own }.with_launch(Launch::STREAM);
         let step = Step { stage, traversal: Some(traversal), spec };
         let recipe = Recipe::new(step, self.gpu.target(exact));
         let kernel = Known::default().compile(self.gpu, vec![recipe]).pop().map(Rc::new);

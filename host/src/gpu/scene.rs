@@ -30,7 +30,7 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 21] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 23] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
@@ -58,6 +58,8 @@ impl<'a> SceneRecords<'a> {
             (binding::OPACITIES, bytemuck::cast_slice(&textures.opacities)),
             (binding::ENVIRONMENT, bytemuck::cast_slice(packed.environment())),
             (binding::ALBEDOS, bytemuck::cast_slice(packed.albedos())),
+            (binding::MEDIA, bytemuck::cast_slice(packed.media())),
+            (binding::GRIDS, bytemuck::cast_slice(packed.grids())),
             (binding::OPTICS, bytemuck::cast_slice(packed.optic_tables())),
         ]
     }

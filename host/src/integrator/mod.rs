@@ -24,7 +24,7 @@ pub fn needs(packed: &Job) -> Needs {
 }
 
 /// What an integrator asks for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub struct Needs {
     /// Shadow rays of a hit: one a light, or one in all where a light is chosen at random. Their answers are kept for the
     /// shading of the wave.
@@ -42,6 +42,6 @@ pub struct Needs {
 pub enum Waves {
     /// At most so many: a ray goes on as one ray.
     AtMost(u32),
-    /// Until no ray is left: rays branch.
+    /// Until no ray is left: rays branch, or go on through what is no vertex.
     Branching,
 }

@@ -1,5 +1,7 @@
 //! Integrators that sample: one light at each vertex, and one direction in which to go on.
 
+use eyerays_shader::data::Media;
+
 use super::{Needs, SAMPLED, Waves, whitted};
 use crate::job::Job;
 
@@ -14,9 +16,12 @@ pub fn distributed(packed: &Job) -> Needs {
     Needs { paths: paths.max(1), waves, ..once(0) }
 }
 
-/// The last ray finds only what emits.
+/// The last ray finds only what emits. Through surfaces that are not there a path may go as often as it likes.
 pub fn path(packed: &Job) -> Needs {
-    once(packed.settings().bounces + u32::from(packed.found_light().is_some()))
+    let waves = packed.settings().bounces + u32::from(packed.found_light().is_some());
+    // What goes straight on is no bounce.
+    let is_open = packed.media_bits().has(Media::OPEN);
+    Needs { waves: if is_open { Waves::Branching } else { Waves::AtMost(waves) }, ..once(waves) }
 }
 
 /// One path a slot, and one shadow ray at each of its vertices.

@@ -1,13 +1,13 @@
 //! Tables of stages: what each kind of integrator runs, and what its records take. A plan is made of one of them.
 
-use eyerays_shader::data::Launch;
-use eyerays_shader::stage::{RECORDS, SHADOW_RECORDS, STATE_RECORDS};
+use eyerays_shader::data::{Launch, Media};
+use eyerays_shader::stage::{RECORDS, shadow_records, state_records};
 
 use crate::method::Coherence;
 use crate::plan::Stage;
 
 /// The stages of an integrator's launches.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Debug)]
 pub struct Stages {
     /// Do its launches always begin with rays of the camera in memory? Else they do only where such rays are kept ([`Launch::KEPT`]).
     pub generates: bool,
@@ -22,9 +22,9 @@ pub struct Stages {
     /// Bits of the stages that follow rays.
     pub rays: u32,
     /// Records that a path takes.
-    pub path_records: u32,
+    pub path_records: fn(Media) -> u32,
     /// Records that a slot's shadow rays take.
-    pub shadow_records: u32,
+    pub shadow_records: fn(Media) -> u32,
     /// Does it sample, so that its film tells the noise?
     pub tells_noise: bool,
 }
@@ -37,8 +37,8 @@ pub static WHITTED: Stages = Stages {
     further: Coherence::Secondary,
     goes_on: 0,
     rays: 0,
-    path_records: RECORDS,
-    shadow_records: 0,
+    path_records: |_| RECORDS,
+    shadow_records: |_| 0,
     tells_noise: false,
 };
 
@@ -46,12 +46,12 @@ pub static WHITTED: Stages = Stages {
 /// as those of a stream, and what surfaces scatter has no order that a grid of threads could keep.
 pub static SAMPLED: Stages = Stages {
     generates: true,
-    wave: &[Stage::Trace, Stage::Scatter, Stage::Shadow],
+    wave: &[Stage::Trace, Stage::Scatter, Stage::Shadow, Stage::Transmit],
     last: Stage::Accumulate,
     further: Coherence::Scattered,
     goes_on: Launch::GOES_ON,
     rays: Launch::STREAM,
-    path_records: STATE_RECORDS,
-    shadow_records: SHADOW_RECORDS,
+    path_records: state_records,
+    shadow_records,
     tells_noise: true,
 };

@@ -3,6 +3,7 @@
 use eyerays_shader::data::{self, numbers};
 use glam::{DVec3, Vec3};
 
+use crate::cpu;
 use crate::device_scene::flushed;
 use crate::error::{Error, Result};
 use crate::job::Job;
@@ -26,6 +27,8 @@ pub(crate) struct CameraRecord {
     pub eyes: [f32; 2],
     /// See [`data::Frame::keys`].
     pub keys: u32,
+    /// See [`data::Frame::media`].
+    pub inside: u32,
 }
 
 impl CameraRecord {
@@ -58,7 +61,8 @@ impl CameraRecord {
             Projection::Equirectangular | Projection::Fisheye { .. } => axes.round(camera.projection, of_eye, grid),
         };
         let keys = job.movement().keys(camera).unwrap_or(data::Frame::STILL);
-        let record = CameraRecord { keys, ..record };
+        let inside = cpu::enclosing(job, eye).0;
+        let record = CameraRecord { keys, inside, ..record };
         record.clipped(job, camera).and_then(|record| record.of_two(job, camera))
     }
 
@@ -127,7 +131,7 @@ impl Axes {
         // Half a cell's height is a step at distance 1.
         let spread = 2.0 * up.length();
         let (clip, eyes, keys) = ([0.0; 2], [0.0; 2], data::Frame::STILL);
-        Ok(CameraRecord { camera, spread, angle: 0.0, aperture, clip, eyes, keys })
+        Ok(CameraRecord { camera, spread, angle: 0.0, aperture, clip, eyes, keys, inside: 0 })
     }
 
     /// The same through a lens, and its diameter.
@@ -175,7 +179,7 @@ impl Axes {
         };
         let spread = (2.0 * turns * std::f64::consts::TAU) as f32;
         let (clip, eyes, keys) = ([0.0; 2], [0.0; 2], data::Frame::STILL);
-        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0, clip, eyes, keys }
+        CameraRecord { camera, spread, angle: angle as f32, aperture: 0.0, clip, eyes, keys, inside: 0 }
     }
 }
 

@@ -2,7 +2,7 @@
 
 mod run;
 
-use eyerays_shader::data::{Aovs, Effects, Launch, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Launch, Media, Specialisation};
 use eyerays_shader::resources::binding;
 use eyerays_shader::stage::{FilmWords, Found, film_words, sum_records};
 
@@ -24,6 +24,8 @@ pub enum Stage {
     Trace,
     /// Follows the shadow rays of its hits.
     Shadow,
+    /// Dims the light of shadow rays by what is between surfaces.
+    Transmit,
     /// Shades its hits.
     Shade,
     /// Scatters its paths.
@@ -42,6 +44,7 @@ impl Stage {
             Stage::Advance => "advance",
             Stage::Trace => "trace",
             Stage::Shadow => "shadow",
+            Stage::Transmit => "transmit",
             Stage::Shade => "shade",
             Stage::Scatter => "scatter",
             Stage::Gather => "gather",
@@ -117,11 +120,16 @@ impl Plan {
                 let coherence = match stage {
                     Stage::Trace => traced,
                     Stage::Shadow => shadowed,
+                    Stage::Transmit => return Ok(plain(stage, of_rays(spec).with_launch(stages.rays))),
                     _ => return Ok(plain(stage, spec)),
                 };
                 Ok(Step { stage, traversal: Some(resolve(coherence)?), spec: of_rays(spec).with_launch(stages.rays) })
             };
-            let there = |stage: &&Stage| shadow_rays > 0 || **stage != Stage::Shadow;
+            let there = |stage: &&Stage| match stage {
+                Stage::Shadow => shadow_rays > 0,
+                Stage::Transmit => shadow_rays > 0 && spec.media.has(Media::OPEN | Media::GRIDS),
+                _ => true,
+            };
             stages.wave.iter().filter(there).map(step).collect()
         };
         let mut first = wave(spec, Coherence::Primary, Coherence::Shadow)?;
@@ -137,7 +145,7 @@ impl Plan {
         let last = vec![plain(stages.last, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let records = Records { sums, hits: Found::<f32>::records(spec.effects) };
+        let records = Records { sums, hits: Found::<f32>::records(spec.effects), media: spec.media };
         let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, records, has_further);
         let film_words = FilmWords { light: film_words(spec.launch, stages.tells_noise), aovs };
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
@@ -174,7 +182,9 @@ impl Plan {
     pub fn walks_pairs(&self) -> bool {
         // The hierarchies of meshes that are copied are of pairs, whatever the method.
         let has_copies = self.steps().any(|step| step.spec.effects.has(Effects::INSTANCED));
-        has_copies || self.methods().any(|method| method != Method::Wide)
+        has_copies
+            || self.steps().any(|step| step.stage == Stage::Transmit)
+            || self.methods().any(|method| method != Method::Wide)
     }
 
     /// Does some step walk the hierarchy of nodes of eight children?
@@ -191,18 +201,19 @@ impl Plan {
 struct Records {
     sums: u32,
     hits: u32,
+    media: Media,
 }
 
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
-fn slot_bytes(needs: &Needs, Records { sums, hits }: Records, has_queue: bool) -> Vec<(u32, u64)> {
+fn slot_bytes(needs: &Needs, Records { sums, hits, media }: Records, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, stages, .. } = *needs;
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
     let all = [
-        (binding::PATHS, records(paths * stages.path_records)),
+        (binding::PATHS, records(paths * (stages.path_records)(media))),
         (binding::HITS, records(hits)),
         (binding::SHADOWS, 4 * u64::from(shadow_rays)),
-        (binding::SEGMENTS, records(stages.shadow_records)),
+        (binding::SEGMENTS, records((stages.shadow_records)(media))),
         (binding::SUMS, records(sums)),
         (binding::QUEUE, queue),
         (binding::NEXT, queue),

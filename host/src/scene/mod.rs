@@ -11,11 +11,13 @@ pub(crate) mod extent;
 mod falloff;
 mod filter;
 pub(crate) mod frame;
+mod grid;
 pub(crate) mod hierarchy;
 mod instance;
 mod lens;
 mod light_groups;
 mod matrices;
+mod medium;
 mod motion;
 pub(crate) mod normal;
 mod object;
@@ -39,10 +41,12 @@ pub use environment::Environment;
 pub use falloff::Falloff;
 pub use filter::Filter;
 pub use frame::{default_camera, without_spare_lamps};
+pub use grid::{Grid, LEAF, Leaf};
 pub use hierarchy::Hierarchy;
 pub use instance::{Instance, SharedMesh};
 pub use lens::{Focus, Lens};
 pub use light_groups::LightGroups;
+pub use medium::{Medium, Volume};
 pub use motion::{Motion, Moved, Pose, Shape};
 pub use object::{Object, ObjectNumbers};
 pub use physical::{Absorption, Conductor, Physical, Wall};
@@ -101,6 +105,8 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// The group of lamps that the background or the environment is in, empty for none.
     pub background_group: String,
+    /// What is everywhere outside of closed surfaces, if anything is.
+    pub fog: Option<Medium>,
     /// Ambient light, linear RGB; times a material's ambient colour.
     pub ambient: Vec3,
     /// What the scene file asks of a rendering; the command line has the last word.
@@ -205,6 +211,9 @@ pub struct Material {
     pub emission_is_coloured: bool,
     /// How it scatters where integrators sample it; without this as the rest says.
     pub physical: Option<Physical>,
+    /// What is inside of its closed surfaces, if anything is.
+    #[serde(default)]
+    pub volume: Option<Volume>,
     /// Its textures.
     #[serde(skip)]
     pub maps: Maps,

@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use crate::choice::choices;
+use crate::math;
 
 /// How a surface scatters light by microfacets (glTF 2.0, appendix B). Colours are linear RGB in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -65,6 +66,19 @@ pub struct Conductor {
     pub eta: Vec3,
     /// The absorbing part, in [0, 100].
     pub k: Vec3,
+}
+
+impl Absorption {
+    /// How far light goes on average before it is absorbed, in world units.
+    pub(crate) fn mean_way(&self) -> Vec3 {
+        self.colour.map(|left| (f64::from(self.distance) / Self::depth(left).max(1e-9)) as f32)
+    }
+
+    /// The optical depth behind which so much is left.
+    pub(crate) fn depth(left: f32) -> f64 {
+        // Nothing is left of what a single precision number holds.
+        if left > 0.0 { -math::ln(left.into()) } else { 100.0 }
+    }
 }
 
 impl Default for Physical {

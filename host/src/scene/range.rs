@@ -1,5 +1,7 @@
 //! What numbers mean something where.
 
+use super::Medium;
+
 /// The numbers that a key takes.
 #[derive(Clone, Copy)]
 pub struct Range {
@@ -31,6 +33,9 @@ impl Range {
     /// An index of refraction.
     pub const IOR: Range = Range { holds: |x| (1.0..=4.0).contains(&x), says: "between 1 and 4" };
 
+    /// The mean cosine of an angle by which light is scattered.
+    pub const ANISOTROPY: Range =
+        Range { holds: |x| x.abs() <= Medium::MOST_ANISOTROPY, says: "between -0.999 and 0.999" };
     /// A part of a conductor's complex index of refraction.
     pub const INDEX: Range = Range { holds: |x| (0.0..=100.0).contains(&x), says: "between 0 and 100" };
 

@@ -9,7 +9,7 @@ use crate::choice::Named;
 use crate::scene::studio;
 use crate::scene::{
     Absorption, Alpha, Background, Camera, Conductor, Environment, Falloff, Focus, Integrator, Lens, Light, Mapping,
-    Material, Matte, Physical, Projection, Scene, Settings, Transport, Visibility, Wall,
+    Material, Matte, Medium, Physical, Projection, Scene, Settings, Transport, Visibility, Volume, Wall,
 };
 
 /// The text of a TOML scene whose one mesh is the file `mesh`, from which `scene` was loaded by itself: its settings, cameras,
@@ -28,6 +28,10 @@ pub fn describe(scene: &Scene, mesh: &str) -> String {
     settings(&mut text, &scene.settings);
     text.table("background");
     background(&mut text, scene);
+    if let Some(fog) = &scene.fog {
+        text.table("fog");
+        medium(fog).into_iter().for_each(|(key, value)| text.key(key, value));
+    }
     for camera in &scene.cameras {
         text.list("camera");
         self::camera(&mut text, camera);
@@ -272,6 +276,9 @@ fn material(text: &mut Text, of: &Material) {
         let names: Vec<String> = lit_by.iter().map(|name| quoted(name)).collect();
         text.key("lit_by", format!("[{}]", names.join(", ")));
     }
+    if let Some(of) = &of.volume {
+        text.key("volume", volume(of));
+    }
     visibility(text, of.visibility);
     match of.alpha {
         Alpha::Opaque => {}
@@ -279,6 +286,35 @@ fn material(text: &mut Text, of: &Material) {
         Alpha::Blend => text.key("alpha", quoted("blend")),
     }
     text.other("opacity", of.opacity, 1.0);
+}
+
+/// What a medium says.
+fn medium(of: &Medium) -> Vec<(&'static str, String)> {
+    let default = Medium::default();
+    let colours = [
+        ("scattering", of.scattering, default.scattering),
+        ("absorption", of.absorption, default.absorption),
+        ("emission", of.emission, default.emission),
+    ];
+    let said = colours.into_iter().filter(|(_, colour, default)| colour != default);
+    let mut keys: Vec<_> = said.map(|(key, colour, _)| (key, triple(colour))).collect();
+    if of.anisotropy != default.anisotropy {
+        keys.push(("anisotropy", format!("{:?}", of.anisotropy)));
+    }
+    keys
+}
+
+/// What surfaces are filled with, as a table in a line.
+fn volume(of: &Volume) -> String {
+    let mut keys = medium(&of.medium);
+    if !of.interface {
+        keys.push(("interface", "false".to_owned()));
+    }
+    if of.priority > 0 {
+        keys.push(("priority", of.priority.to_string()));
+    }
+    let all: Vec<String> = keys.into_iter().map(|(key, value)| format!("{key} = {value}")).collect();
+    format!("{{ {} }}", all.join(", "))
 }
 
 fn visibility(text: &mut Text, of: Visibility) {

@@ -27,7 +27,7 @@ use super::source::Source;
 use super::table::Table;
 use super::{Instant, LightUnit, Moment, Shutter};
 use super::{Warning, WarningKind};
-use super::{camera_table, document};
+use super::{camera_table, document, medium};
 use crate::error::{Error, Result};
 use crate::memory::Room;
 use crate::scene::Range;
@@ -177,6 +177,7 @@ fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Sce
         settings: Settings::default(),
         motion: None,
         hierarchy: None,
+        fog: None,
     };
     Ok((settled(path, scene, budget, loading)?, warnings))
 }
@@ -244,6 +245,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
     let background = table.table("background")?.map(|table| document::background(table, &mut files.images));
     let Surroundings { background, environment, group } = background.transpose()?.unwrap_or_default();
     let ambient = table.triple("ambient", Range::AMOUNT)?;
+    let fog = table.table("fog")?.map(medium::fog).transpose()?;
     let seconds = holding.moment.seconds.unwrap_or(0.0);
     let (cameras, last) = camera_table::cameras(table.tables("camera")?.unwrap_or_default(), seconds)?;
     files.move_until(last);
@@ -285,6 +287,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         settings,
         motion: None,
         hierarchy: None,
+        fog,
     };
     let mut scene = settled(path, scene, budget, &holding)?;
     if !names_lights {

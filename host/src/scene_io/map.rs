@@ -7,6 +7,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::budget::Budget;
+use super::grid;
 use super::load::Loading;
 use super::moment::Instant;
 use super::table::Table;
@@ -15,7 +16,7 @@ use crate::image::{TextureBudget, read_heights, read_texture};
 #[cfg(test)]
 use crate::memory::Room;
 use crate::scene::displace::Heights;
-use crate::scene::{Map, Maps, Placement, Texture, Wrap};
+use crate::scene::{Grid, Map, Maps, Placement, Texture, Wrap};
 use crate::scene::{Range, studio};
 
 /// Pictures already read, since materials share them.
@@ -28,6 +29,8 @@ pub struct Images {
     pub room: Budget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
+    /// Grids that were read beside them.
+    grids: Vec<PathBuf>,
 }
 
 impl Images {
@@ -46,6 +49,7 @@ impl Images {
             room,
             textures: HashMap::new(),
             opacities: HashMap::new(),
+            grids: Vec::new(),
         }
     }
 
@@ -82,6 +86,18 @@ impl Images {
         Ok((read_heights(&path, &mut self.budget.clone())?, path))
     }
 
+    /// The grid that a key of a table names.
+    ///
+    /// # Errors
+    /// Those of [`grid::named`].
+    pub fn grid(&mut self, table: &mut Table, key: &'static str) -> Result<Option<Arc<Grid>>> {
+        let named = grid::named(table, key, &self.folder, &self.room)?;
+        Ok(named.map(|(grid, path)| {
+            self.grids.push(path);
+            Arc::new(grid)
+        }))
+    }
+
     /// The [opacity](Texture::opacity) of the picture of a path.
     pub fn opacity_of(&mut self, path: &Path, texture: &Texture) -> Arc<Texture> {
         self.opacities.entry(path.to_owned()).or_insert_with(|| Arc::new(texture.opacity())).clone()
@@ -89,7 +105,7 @@ impl Images {
 
     /// Every file that was read, in the order of their names.
     pub fn paths(self) -> Vec<PathBuf> {
-        let mut paths: Vec<_> = self.textures.into_keys().collect();
+        let mut paths: Vec<_> = self.textures.into_keys().chain(self.grids).collect();
         paths.sort();
         paths
     }

@@ -4,10 +4,10 @@ use glam::Vec3;
 
 use super::map::{self, Images};
 use super::table::Table;
-use super::{physical, visible};
+use super::{medium, physical, visible};
 use crate::error::Result;
 use crate::scene::Range;
-use crate::scene::{Alpha, Checker, Maps, Material, Physical, Visibility};
+use crate::scene::{Alpha, Checker, Maps, Material, Physical, Visibility, Volume};
 
 /// What a file says of a material; the rest is left to whoever else describes it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,6 +26,7 @@ pub struct Fields {
     pub group: Option<String>,
     pub lit_by: Option<Vec<String>>,
     pub physical: physical::Fields,
+    pub volume: Option<Volume>,
     pub maps: Maps,
     pub visibility: Option<Visibility>,
     pub alpha: Option<Alpha>,
@@ -64,6 +65,7 @@ impl Fields {
             group: table.name("group")?,
             lit_by: table.names("lit_by")?,
             physical: physical::Fields::read(table)?,
+            volume: table.table("volume")?.map(|table| medium::volume(table, images)).transpose()?,
             maps: map::maps(table, images)?,
             visibility: visible::read(table)?,
             alpha: alpha(table)?,
@@ -89,6 +91,7 @@ impl Fields {
             group: self.group.or(under.group),
             lit_by: self.lit_by.or(under.lit_by),
             physical: self.physical.over(under.physical),
+            volume: self.volume.or(under.volume),
             maps: self.maps.over(under.maps),
             visibility: self.visibility.or(under.visibility),
             alpha: self.alpha.or(under.alpha),
@@ -122,6 +125,7 @@ impl Fields {
             group: self.group.unwrap_or_default(),
             lit_by: self.lit_by,
             physical,
+            volume: self.volume,
             visibility: self.visibility.unwrap_or_default(),
             alpha: self.alpha.unwrap_or(alpha),
             opacity: self.opacity.unwrap_or(plain.opacity),
@@ -188,6 +192,7 @@ impl Default for Material {
             group: String::new(),
             lit_by: None,
             physical: None,
+            volume: None,
             maps: Maps::default(),
             visibility: Visibility::default(),
             alpha: Alpha::Opaque,

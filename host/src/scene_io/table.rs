@@ -221,6 +221,14 @@ impl<'s> Table<'s> {
         })
     }
 
+    /// Two places.
+    pub fn two_places(&mut self, key: &'static str) -> Result<Option<[Vec3; 2]>> {
+        self.map(key, |table, value| {
+            let items = table.items(key, &value, "two places, [[x, y, z], [x, y, z]]", 2)?;
+            Ok([table.check_triple(key, items[0], &Range::ANY)?, table.check_triple(key, items[1], &Range::ANY)?])
+        })
+    }
+
     /// Four places.
     pub fn corners(&mut self, key: &'static str) -> Result<Option<[Vec3; 4]>> {
         self.map(key, |table, value| {

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Aovs, Effects, Launch, Layout, Order, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Launch, Layout, Media, Order, Specialisation};
 use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
@@ -13,6 +13,10 @@ fn modules() -> [&'static [u8]; 2] {
 
 fn effects(bits: u32) -> Specialisation {
     Specialisation { effects: Effects(bits), ..Specialisation::default() }
+}
+
+fn between(spec: Specialisation, bits: u32) -> Specialisation {
+    Specialisation { media: Media(bits), ..spec }
 }
 
 /// Nothing, everything, and what together makes the kernels of most branches.
@@ -47,6 +51,9 @@ fn specialisations() -> Vec<Specialisation> {
         wave.without_launch(Launch::SECONDARY).with_launch(Launch::KEPT | Launch::LENS | Launch::PARALLEL),
         moving.with_launch(Launch::KEPT | Launch::MOVING | Launch::PANNED),
         moving.with_launch(Launch::SECONDARY | Launch::MOVING | Launch::GOES_ON),
+        between(path, Media::PRESENT),
+        between(path.with_launch(Launch::STREAM), Media::PRESENT | Media::GRIDS | Media::GLOWING),
+        between(all, u32::MAX),
     ]
 }
 
@@ -197,6 +204,26 @@ fn a_layer_that_no_film_keeps_is_in_no_kernel() {
     }
 }
 
+/// What is between surfaces costs nothing where nothing is.
+#[test]
+fn media_are_in_no_kernel_of_a_scene_without() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let lit = effects(Effects::LIT | Effects::EMISSIVE | Effects::HIDDEN).with_launch(Launch::GOES_ON);
+    let cut = |entry: &str, bits| kernels.cut(entry, &between(lit, bits).constants()).unwrap();
+    let scatter = |bits| cut("exact::scatter", bits);
+    let binds = |bits, resource| scatter(bits).bindings().contains(&resource);
+    assert!(!binds(0, binding::MEDIA) && binds(Media::PRESENT, binding::MEDIA));
+    let (present, grids) = (Media::PRESENT, Media::PRESENT | Media::GRIDS);
+    assert!(!binds(present, binding::GRIDS) && binds(grids, binding::GRIDS));
+    assert!(scatter(0).instructions() < scatter(present).instructions());
+    for further in [Media::OPEN, Media::GLOWING, Media::GRIDS] {
+        assert!(scatter(present).instructions() != scatter(present | further).instructions(), "{further:#x}");
+    }
+    for entry in ["exact::if_if::shadow", "exact::accumulate", "exact::shade"] {
+        assert_eq!(cut(entry, u32::MAX).words(), cut(entry, 0).words(), "{entry}");
+    }
+}
+
 /// Functions of their own that one effect, or any of some, alone needs.
 #[test]
 fn a_kernel_reaches_no_function_of_an_effect_that_nothing_has() {
@@ -266,6 +293,7 @@ fn a_stage_names_no_resource_that_its_kernels_do_not_use() {
                 "shadow" => bound::shadow,
                 "shade" => bound::shade,
                 "scatter" => bound::scatter,
+                "transmit" => bound::transmit,
                 "generate" => bound::generate,
                 "accumulate" => bound::accumulate,
                 "advance" => bound::advance,

@@ -1,6 +1,7 @@
 //! What changes from launch to launch.
 
 use super::{Camera, Launch};
+use crate::medium::Inside;
 use crate::real::{Real, SMALL, Scalar};
 use bytemuck::{Pod, Zeroable};
 use glam::UVec4;
@@ -101,13 +102,25 @@ pub struct Frame {
     pub row_delay: f32,
     /// The first key of the camera, among the records of copies, or [`Frame::STILL`].
     pub keys: u32,
-    /// Nothing: records are whole words of 16 bytes.
-    pub unused: u32,
+    /// What the camera is in (see [`Inside`](crate::medium::Inside)) and, in the upper eight bits, [`Frame::fog`].
+    pub media: u32,
 }
 
 impl Frame {
     /// In place of the first key of a camera that does not move.
     pub const STILL: u32 = u32::MAX;
+
+    /// The medium outside of all surfaces, by its number; 0 for none.
+    #[inline(always)]
+    pub fn fog(&self) -> u32 {
+        self.media >> Inside::BITS
+    }
+
+    /// What the camera is in.
+    #[inline(always)]
+    pub fn inside(&self) -> Inside {
+        Inside(self.media).scattered()
+    }
 
     /// The step that a time of the shutter is in, of which 0 is its opening and 1 its closing, and the share of the step before it.
     #[inline(always)]

@@ -54,8 +54,10 @@ impl Primitive {
     pub const HOLDOUT: u32 = 256;
     /// The flag of one that shows only what others do to its light.
     pub const CATCHER: u32 = 512;
+    /// The flag of one that is not there, but what is inside of it: only paths know of it, see [`Media::OPEN`](super::Media).
+    pub const OPEN: u32 = 1024;
     /// How far the flags are shifted beside the material of an indexed vertex.
-    pub const FLAGS_SHIFT: u32 = 22;
+    pub const FLAGS_SHIFT: u32 = 21;
     /// The bits of the material there.
     pub const MATERIAL: u32 = (1 << Self::FLAGS_SHIFT) - 1;
 

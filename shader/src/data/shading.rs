@@ -29,7 +29,7 @@ pub struct Material {
     pub specular: UVec4,
     /// Mirror colour; the integer is the bits of the index of refraction, 0 for an opaque surface.
     pub reflection: UVec4,
-    /// Colour of what passes.
+    /// Colour of what passes; the integer says what is inside, see [`Filling`](super::Filling).
     pub transmission: UVec4,
     /// The checker's second diffuse colour; the integer is the bits of cells per unit, 0 for none.
     pub checker: UVec4,

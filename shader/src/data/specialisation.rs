@@ -100,6 +100,20 @@ bits! {
 }
 
 bits! {
+    /// What a scene has between its surfaces.
+    Media {
+        /// Some light is absorbed, scattered or sent there: paths know what they are in.
+        PRESENT = 0;
+        /// Some surfaces are not there themselves, but what is inside of them: rays go on through them.
+        OPEN = 1;
+        /// Some media send light.
+        GLOWING = 2;
+        /// Some are denser in one place than in another.
+        GRIDS = 3;
+    }
+}
+
+bits! {
     /// Which rays a launch follows, where in a pixel the camera's are, and by which test they meet triangles.
     Launch {
         /// Secondary rays: the slots come from a queue.
@@ -254,6 +268,8 @@ pub struct Specialisation {
     pub tuning: Tuning,
     /// What the film keeps beside light.
     pub aovs: Aovs,
+    /// What is between surfaces.
+    pub media: Media,
 }
 
 impl Specialisation {
@@ -268,8 +284,8 @@ impl Specialisation {
     }
 
     /// The value of each specialisation constant by its number; the entry points declare them in this order.
-    pub fn constants(&self) -> [(u32, u32); 6] {
-        let Specialisation { effects, launch, layout, order, tuning, aovs } = *self;
-        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0), (6, aovs.0)]
+    pub fn constants(&self) -> [(u32, u32); 7] {
+        let Specialisation { effects, launch, layout, order, tuning, aovs, media } = *self;
+        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0), (6, aovs.0), (7, media.0)]
     }
 }

@@ -10,7 +10,7 @@ use crate::material::Albedos;
 use crate::real::Scalar;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
-use crate::stage::{self, CameraTables, ShadowInputs};
+use crate::stage::{self, CameraTables, ShadowInputs, TransmitInputs};
 use crate::texture::Textures;
 use crate::traverse::{
     Closest, Cut, Cutout, CwbvhMethod, Hybrid, IfIf, Interleaved, Occlusion, Packet, Primitives, Sequential,

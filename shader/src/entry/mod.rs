@@ -42,6 +42,7 @@ macro_rules! declare_entry {
                     #[spirv(spec_constant(id = 4, default = 0))] layout: u32,
                     #[spirv(spec_constant(id = 5, default = 0))] order: u32,
                     #[spirv(spec_constant(id = 6, default = 0))] aovs: u32,
+                    #[spirv(spec_constant(id = 7, default = 0))] media_bits: u32,
                     $d($d have)*
                 ) {
                     let $d spec = Specialisation {
@@ -51,6 +52,7 @@ macro_rules! declare_entry {
                         layout: Layout(layout),
                         order: Order(order),
                         aovs: Aovs(aovs),
+                        media: Media(media_bits),
                     };
                     $d body
                 }
@@ -94,7 +96,7 @@ macro_rules! shading {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives instances normals materials paths hits shadows segments sums queue next counters emitters emissions
-             physicals maps textures texels coordinates colours tangents environment albedos light_nodes] {
+             physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids] {
                 // One kernel for all waves, since it is the one that drivers take longest to compile.
                 let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
                 let count = if starts { frame.slots } else { read(counters, counter::COUNT) };
@@ -106,12 +108,30 @@ macro_rules! shading {
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
-                let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting };
+                let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting, media, grids };
                 let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
                 if spec.launch.has(Launch::GOES_ON) {
                     enqueue(spec, goes_on, slot, next, counters);
                 }
+            }
+        }
+
+        entry! {
+            /// Dims the light of a wave's shadow rays by what is between surfaces.
+            transmit<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame nodes primitives instances materials hits shadows segments queue counters wide media grids
+             opacities textures texels coordinates colours] {
+                let slot = slot(spec, frame, id.x, queue, counters);
+                if slot == IDLE {
+                    return;
+                }
+                let base = LaunchContext { frame, spec, primitives, instances };
+                let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
+                let scene = TraceContext { base, nodes, wide, cutout };
+                let time = stage::Found::<$R>::time(&base, slot, hits);
+                let inputs = TransmitInputs { shadows, materials, media, grids };
+                stage::transmit::<$R, WhileWhile<Alone>, Primitives>(&scene, inputs, (slot, time), segments);
             }
         }
 

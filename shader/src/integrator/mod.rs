@@ -3,6 +3,7 @@
 
 mod distributed;
 mod feature;
+mod medium;
 mod occlusion;
 mod path;
 mod sampled;

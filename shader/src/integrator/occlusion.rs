@@ -23,7 +23,7 @@ pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_
             limit: R::splat(launch.frame.reach),
             source_primitive: interaction.source_primitive(direction),
         };
-        shadow = ShadowRay { segment, light: vertex.path.weight, tag: 0 };
+        shadow = ShadowRay { segment, light: vertex.path.weight, ..ShadowRay::none() };
     }
     Scattered::once(V3::zero(), shadow, vertex.path, false)
 }

@@ -2,6 +2,7 @@
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
 use super::feature::albedo;
+use super::medium;
 use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::background::gradient;
 use crate::buffer::read;
@@ -76,7 +77,7 @@ fn unlit<R: Scalar>(launch: &LaunchContext<'_>, materials: &[Material], seen: &S
 #[inline(always)]
 fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
-    ScatterContext { shading, lighting, .. }: &ScatterContext<'_>,
+    ScatterContext { shading, lighting, media, .. }: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     (seen, closure): (&Seen<R>, &impl Closure<R>),
     (light, mut outputs): (V3<R>, Outputs<R>),
@@ -110,6 +111,7 @@ fn scattered<R: Scalar>(
     } else {
         ShadowRay::none()
     };
+    shadow = medium::dimmed(launch, media, shadow);
     if catches {
         shadow.segment.source_primitive = Ray::<R>::OF_CATCHER;
     }
@@ -146,7 +148,7 @@ fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> V3<R
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),
 /// without a division.
 #[inline(always)]
-fn may_find_light<R: Scalar>(frame: &Frame, path: &PathState<R>) -> bool {
+pub(super) fn may_find_light<R: Scalar>(frame: &Frame, path: &PathState<R>) -> bool {
     // More than all rounding of the coordinates, which lie in [-1, 1] and are flushed below 2^-40.
     const MARGIN: f32 = 1.0 / (1 << 20) as f32;
     let (zero, d) = (R::splat(0.0), path.direction.map(|c| c.flush(SMALL)));
@@ -243,7 +245,7 @@ pub(super) fn weight<R: Scalar>(launch: Launch, alone: u32, other: R, own: R) ->
 
 /// Russian roulette: a path of little weight ends, or goes on for those that ended. Does it go on?
 #[inline(always)]
-fn survive<R: Scalar>(frame: &Frame, next: PathState<R>, decision: u32) -> (PathState<R>, bool) {
+pub(super) fn survive<R: Scalar>(frame: &Frame, next: PathState<R>, decision: u32) -> (PathState<R>, bool) {
     /// Probabilities are whole steps of this size, so that decisions compare integers.
     const STEPS: u32 = 1 << 23;
     let greatest = next.weight.greatest();
@@ -280,6 +282,8 @@ mod tests {
             density: 0.0,
             pixel: 0,
             beside: (0.0, 0.0),
+            from: V3::zero(),
+            inside: Default::default(),
         };
         may_find_light(&frame, &path)
     }

@@ -3,12 +3,13 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Launch, Physical, Primitive};
+use crate::data::{Effects, Filling, Launch, Media, Medium, Physical, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
 use crate::material::{Albedos, Seen, transmittance};
+use crate::medium::{Chain, Inside, MOST_CROSSINGS};
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::sampler::{self, AFTER_LENS, Key};
+use crate::sampler::{self, AFTER_LENS, FLIGHTS, Key};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{
     AovSlot, CLEARED, Caught, Contribution, FirstSurface, Found, NON_FINITE, PathState, Segment, ShadowRay,
@@ -16,7 +17,7 @@ use crate::stage::{
 use glam::UVec4;
 
 use super::path::weight;
-use super::{distributed, feature, occlusion, path};
+use super::{distributed, feature, medium, occlusion, path};
 
 /// The records that the stages of a wave exchange.
 pub struct Exchange<'a, R: Scalar> {
@@ -45,6 +46,10 @@ pub struct ScatterContext<'a> {
     pub albedos: Albedos<'a>,
     /// What emits.
     pub lighting: Lighting<'a>,
+    /// What is between surfaces ([`Media::PRESENT`]).
+    pub media: &'a [Medium],
+    /// Where they are denser ([`Media::GRIDS`]).
+    pub grids: &'a [u32],
 }
 
 /// What is known where a slot's ray has hit something.
@@ -56,6 +61,8 @@ pub(super) struct Vertex<R: Real> {
     pub draws: Draws,
     /// Did the path start on a shadow catcher, as its first vertex? Of the light of that, catchers tell no more than what is shadowed.
     pub after_catcher: bool,
+    /// What is inside of the surface ([`Media::PRESENT`]).
+    pub filling: Filling,
 }
 
 impl<R: Scalar> Vertex<R> {
@@ -94,7 +101,15 @@ impl<R: Scalar> Vertex<R> {
         let segment = Segment { origin, direction, limit, source_primitive: interaction.source_primitive(direction) };
         let path = PathState { bounces: self.path.bounces + 1, ..self.path };
         let tag = if launch.spec.aovs.any() { Contribution::<R>::tag(sample.group, path.bounces) } else { 0 };
-        ShadowRay { segment, light: share(launch, &path, light), tag }
+        let inside = self.inside(interaction, direction);
+        ShadowRay { segment, light: share(launch, &path, light), tag, inside, ..ShadowRay::none() }
+    }
+
+    /// What a ray is in that leaves the surface towards a direction.
+    #[inline(always)]
+    fn inside(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Inside {
+        let inside = self.path.inside.scattered();
+        if interaction.receives(direction) { inside } else { inside.across(interaction.front, self.filling.medium()) }
     }
 
     /// Is it on a shadow catcher that the camera sees?
@@ -119,6 +134,8 @@ impl<R: Scalar> Vertex<R> {
             weight: self.path.weight.times(factor).map(|c| c.flush(FAINT)),
             bounces: self.path.bounces + 1,
             density,
+            from: origin,
+            inside: self.inside(interaction, direction),
             ..self.path
         }
     }
@@ -188,6 +205,12 @@ pub(super) struct Draws {
 }
 
 impl Draws {
+    /// The numbers of a way through a medium, by how often its path was scattered and has crossed surfaces since that are not there.
+    #[inline(always)]
+    pub fn flight(self, bounces: u32, crossings: u32) -> UVec4 {
+        self.set(FLIGHTS + ((bounces << 8) | crossings))
+    }
+
     /// A set of numbers, see [`sampler::set`].
     #[inline(always)]
     pub fn set(self, set: u32) -> UVec4 {
@@ -216,8 +239,9 @@ pub fn scatter<R: Scalar>(
 ) -> bool {
     let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
     let slots = launch.frame.slots;
+    let (bits, aovs, media) = (launch.spec.launch, launch.spec.aovs, launch.spec.media);
     let path = PathState::<R>::load(slots, slot, 0, paths).unpacked(launch.spec.effects);
-    let (bits, aovs) = (launch.spec.launch, launch.spec.aovs);
+    let path = if media.has(Media::PRESENT) { path.with_medium(slots, slot, paths) } else { path };
     let outputs = AovSlot::new(launch.frame, launch.spec, slot);
     let (sum, mut word, mut caught) = if starts {
         (V3::zero(), 0, Caught::nothing())
@@ -233,8 +257,21 @@ pub fn scatter<R: Scalar>(
     };
     let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
     let found = Found::<R>::load(launch, slot, hits);
+    let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
+    let sample = camera::sample(launch.frame, slot);
+    let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
+    let mut vertex = Vertex { path, found, draws, after_catcher, filling: Filling::default() };
+    let mut collides = false;
+    if media.has(Media::PRESENT) {
+        (vertex, collides) = medium::flown(launch, context, &vertex);
+    }
+    let path = vertex.path;
     // The ray of a slot outside the image hits nothing.
-    let scattered = if found.is_nothing() {
+    let scattered = if media.has(Media::PRESENT) && collides {
+        medium::at(launch, context, &vertex)
+    } else if media.has(Media::OPEN) && vertex.filling.is_open() {
+        medium::crossed(launch, &vertex)
+    } else if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
         let is_dark = is_clear || after_catcher;
@@ -248,13 +285,9 @@ pub fn scatter<R: Scalar>(
         word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
         Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
-        let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
         if after_catcher && launch.placed(found.index, found.instance, found.time).has(Primitive::CATCHER) {
             caught = caught.open();
         }
-        let sample = camera::sample(launch.frame, slot);
-        let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
-        let vertex = Vertex { path, found, draws, after_catcher };
         if bits.has(Launch::FEATURE) {
             feature::at(launch, context, &vertex)
         } else if bits.has(Launch::OCCLUSION) {
@@ -270,11 +303,18 @@ pub fn scatter<R: Scalar>(
     }
     caught.store(bits, launch.frame, slot, sums);
     if aovs.any() {
-        output(outputs, (starts, path.bounces), &scattered, sums);
+        // What is seen through surfaces that are not there is the first.
+        let is_first = starts || media.has(Media::OPEN) && path.bounces == 0;
+        output(outputs, (is_first, path.bounces), &scattered, sums);
     }
     let (sum, word) = added(sum, word, &scattered);
     write(sums, slot, R::store(sum, word));
     scattered.shadow.store(slots, slot, segments);
+    if media.has(Media::OPEN | Media::GRIDS) {
+        let seed = draws.flight(path.bounces, MOST_CROSSINGS);
+        let shadow = ShadowRay { chain: Chain::new(seed.x, seed.y), ..scattered.shadow };
+        shadow.store_medium(slots, slot, segments);
+    }
     follow(launch, slot, &path, scattered, paths)
 }
 
@@ -316,6 +356,9 @@ fn follow<R: Scalar>(
         return branch(launch.frame.slots, slot, path, scattered, paths);
     }
     if scattered.goes_on {
+        if launch.spec.media.has(Media::PRESENT) {
+            scattered.next.store_medium(launch.frame.slots, slot, paths);
+        }
         scattered.next.packed(launch.spec.effects).store(launch.frame.slots, slot, 0, paths);
     }
     scattered.goes_on
@@ -346,7 +389,7 @@ fn branch<R: Scalar>(
     true
 }
 
-/// Adds a vertex' light to the film's arbitrary output variables.
+/// Adds a vertex' light to the film's arbitrary output variables, which start with what the first vertex tells.
 #[inline(always)]
 fn output<R: Scalar>(
     outputs: AovSlot,

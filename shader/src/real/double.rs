@@ -59,6 +59,9 @@ impl Scalar for f64 {
         let exponent = ((self.to_bits() >> 52) & 2047).min(2045);
         (f64::from_bits(exponent << 52), f64::from_bits((2046 - exponent) << 52))
     }
+    fn log2(self) -> f64 {
+        f64::log2(self)
+    }
     fn pow(self, exponent: f64) -> f64 {
         self.powf(exponent)
     }

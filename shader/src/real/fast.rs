@@ -77,6 +77,11 @@ impl Scalar for Fast {
     records!(Fast, inner);
 
     #[inline(always)]
+    fn log2(self) -> Fast {
+        Fast(Float::log2(self.0))
+    }
+
+    #[inline(always)]
     fn pow(self, exponent: Fast) -> Fast {
         // A device's power of zero may be NaN.
         if exponent.0 == 0.0 {

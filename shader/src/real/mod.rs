@@ -248,6 +248,8 @@ pub trait Scalar: Real<Mask = bool, Index = u32> + Send + Sync {
     fn store(v: V3<Self>, word: u32) -> Self::Record;
     /// Unpacks what [`Scalar::store`] packed.
     fn load(record: Self::Record) -> (V3<Self>, u32);
+    /// The logarithm of a positive normal number to the base 2.
+    fn log2(self) -> Self;
     /// `self` to the power of `exponent`, both at least 0; zero below 2^-100.
     fn pow(self, exponent: Self) -> Self;
     /// The whole number at or below, for magnitudes up to 2^23 (clamped there).

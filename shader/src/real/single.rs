@@ -174,6 +174,10 @@ impl Scalar for f32 {
     }
 
     #[inline(always)]
+    fn log2(self) -> f32 {
+        power::log2(self)
+    }
+    #[inline(always)]
     fn pow(self, exponent: f32) -> f32 {
         power::pow(self, exponent)
     }

@@ -90,6 +90,9 @@ pub fn time(Key(x, y): Key, number: u32) -> f32 {
     unit(van_der_corput(number, hash([x, y, TIMES])))
 }
 
+/// The first of the sets of ways through media, of which there are 2^25: those of numbers of bounces and crossings.
+pub const FLIGHTS: u32 = 1 << 28;
+
 /// In the place of a set, those of times. No path has so many vertices.
 const TIMES: u32 = AFTER_LENS + 1;
 

@@ -64,6 +64,12 @@ impl<R: Scalar> Split<R> {
         Split { diffuse: V3::zero(), passes: false }
     }
 
+    /// All is scattered evenly: by a medium.
+    #[inline(always)]
+    pub fn even() -> Self {
+        Split { diffuse: V3::splat(glam::Vec3::ONE), passes: false }
+    }
+
     /// Of what is scattered in all and what the diffuse part scatters.
     #[inline(always)]
     pub fn new(all: V3<R>, diffuse: V3<R>, passes: bool) -> Self {

@@ -3,7 +3,7 @@
 use super::segment::NOWHERE;
 use super::{Found, Path, PathState};
 use crate::camera::{self, CameraRay};
-use crate::data::{Frame, Instance, Launch, Specialisation};
+use crate::data::{Frame, Instance, Launch, Media, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
@@ -29,7 +29,7 @@ pub fn generate<R: Scalar>(
 ) {
     let pixel = camera::pixel(frame, spec.order, slot);
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
-    let mut ray = camera::ray(frame, spec.launch, optics, pixel);
+    let mut ray = camera::ray::<R>(frame, spec.launch, optics, pixel);
     if spec.launch.has(Launch::MOVING | Launch::PANNED) {
         let time = camera::time(frame, pixel);
         if spec.launch.has(Launch::PANNED) {
@@ -52,6 +52,9 @@ pub fn generate<R: Scalar>(
         Path::of_camera(CameraRay { origin: near.origin, ..ray }).within(limit).store(frame.slots, slot, 0, paths);
         return;
     }
+    let follows = pixel.inside && !weight.eq(R::splat(0.0));
+    // In a medium the ray of a slot outside must not go on either.
+    let weight = if spec.media.has(Media::PRESENT) && !follows { R::splat(0.0) } else { weight };
     let path = PathState {
         origin: near.origin,
         direction,
@@ -62,8 +65,12 @@ pub fn generate<R: Scalar>(
         density: R::splat(0.0),
         beside: (R::splat(0.0), R::splat(0.0)),
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
+        from: origin,
+        inside: frame.inside(),
     };
-    let follows = pixel.inside && !weight.eq(R::splat(0.0));
+    if spec.media.has(Media::PRESENT) {
+        path.store_medium(frame.slots, slot, paths);
+    }
     let limit = if follows { limit } else { R::splat(NOWHERE) };
     path.store_within(limit, frame.slots, slot, 0, paths);
 }

@@ -18,6 +18,7 @@ mod shadow;
 #[cfg(not(target_arch = "spirv"))]
 mod together;
 mod trace;
+mod transmit;
 
 pub use aov::{AOV_WORDS, AovSlot, AovSums, Contribution, FirstSurface, Split, expose_aovs, sum_records};
 pub use caught::{CatcherSums, Caught};
@@ -28,13 +29,14 @@ pub use film::{
 pub use found::Found;
 pub use generate::{CameraTables, generate};
 pub use path::{Path, RECORDS};
-pub use path_state::{LINKED_GROUPS, PathState, SHADOW_RECORDS, STATE_RECORDS, ShadowRay, sampled};
+pub use path_state::{LINKED_GROUPS, PathState, ShadowRay, sampled, shadow_records, state_records};
 pub use persistent::persistent;
 pub use segment::Segment;
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};
 #[cfg(not(target_arch = "spirv"))]
 pub use together::{most, shadow_together, trace_together};
 pub use trace::{ray, trace, traced};
+pub use transmit::{TransmitInputs, transmit};
 
 /// In the integer of a sum or a film record: some contribution was not finite (infinite or NaN) and was left out.
 pub const NON_FINITE: u32 = 1 << 31;

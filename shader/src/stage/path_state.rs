@@ -3,9 +3,11 @@
 use super::segment::NOWHERE;
 use super::{Caught, REACHED, Sample, Segment};
 use crate::buffer::{read, write};
-use crate::data::{Effects, Frame, Launch};
+use crate::data::{Effects, Frame, Launch, Media};
 use crate::light::Viewpoint;
-use crate::real::{Real, Scalar, V3};
+use crate::medium::{Chain, Inside};
+use crate::ray::Ray;
+use crate::real::{Real, SMALL, Scalar, V3};
 use crate::scene::LaunchContext;
 use crate::texture::Cone;
 
@@ -13,6 +15,18 @@ use crate::texture::Cone;
 pub const STATE_RECORDS: u32 = 4;
 /// Records of a shadow ray, likewise, with the light that it asks for.
 pub const SHADOW_RECORDS: u32 = 3;
+
+/// Records that a path takes where there are media: what it is in, and where it was scattered.
+#[inline(always)]
+pub fn state_records(media: Media) -> u32 {
+    STATE_RECORDS + if media.has(Media::PRESENT) { 1 } else { 0 }
+}
+
+/// Records of a shadow ray that may go through surfaces which are not there, or through grids: what it is in.
+#[inline(always)]
+pub fn shadow_records(media: Media) -> u32 {
+    SHADOW_RECORDS + if media.has(Media::OPEN | Media::GRIDS) { 1 } else { 0 }
+}
 
 /// Bits of a path's bounces in memory, of which there are at most 65,536; those above are for groups of lamps.
 const BOUNCES: u32 = 17;
@@ -42,6 +56,10 @@ pub struct PathState<R: Real> {
     /// Where paths branch, how many wait in this slot and how many vertices it has had; elsewhere the width of the path's [`Cone`]
     /// and, where there are many lights, the side of its [`Viewpoint`].
     pub beside: (R, R),
+    /// Where it was scattered last, or the camera: its ray may start nearer to the scene, or behind a surface that is not there.
+    pub from: V3<R>,
+    /// What it is in ([`Media::PRESENT`]).
+    pub inside: Inside,
 }
 
 /// A ray to a sampled light, and the light that arrives if nothing is between.
@@ -53,6 +71,12 @@ pub struct ShadowRay<R: Real> {
     pub light: V3<R>,
     /// What films with arbitrary output variables remember of it, see [`Contribution::tag`](super::Contribution::tag).
     pub tag: u32,
+    /// What it is in where it starts ([`Media::PRESENT`]).
+    pub inside: Inside,
+    /// How far before the segment it starts: a place outside of the scene's cube.
+    pub lead: R,
+    /// The numbers that its way through grids draws ([`Media::GRIDS`]).
+    pub chain: Chain,
 }
 
 impl<R: Scalar> PathState<R> {
@@ -63,7 +87,41 @@ impl<R: Scalar> PathState<R> {
         let ((origin, source_primitive), (direction, _), (weight, bounces), (rest, pixel)) =
             (at(0), at(1), at(2), at(3));
         let beside = (rest.y, rest.z);
-        PathState { origin, direction, source_primitive, weight, bounces, density: rest.x, pixel, beside, unlit: 0 }
+        PathState {
+            origin,
+            direction,
+            source_primitive,
+            weight,
+            bounces,
+            density: rest.x,
+            pixel,
+            beside,
+            unlit: 0,
+            from: origin,
+            inside: Inside::default(),
+        }
+    }
+
+    /// The same with what it is in, which lies behind the records of all slots.
+    #[inline(always)]
+    pub fn with_medium(self, slots: u32, slot: u32, paths: &[R::Record]) -> Self {
+        let (from, inside) = R::load(read(paths, STATE_RECORDS * slots + slot));
+        PathState { from, inside: Inside(inside), ..self }
+    }
+
+    /// Keeps that.
+    #[inline(always)]
+    pub fn store_medium(&self, slots: u32, slot: u32, paths: &mut [R::Record]) {
+        write(paths, STATE_RECORDS * slots + slot, R::store(self.from, self.inside.0));
+    }
+
+    /// How far before its ray's origin its way began.
+    #[inline(always)]
+    pub fn lead(&self) -> R {
+        if self.inside.crossings() > 0 {
+            return R::splat(0.0);
+        }
+        (self.origin - self.from).map(|c| c.flush(SMALL)).direction_and_length().1
     }
 
     /// As it lies in memory where some surfaces are not lit by all lamps: groups above its bounces.
@@ -102,7 +160,7 @@ impl<R: Scalar> PathState<R> {
     /// From where it sees lights, where it does not branch.
     #[inline(always)]
     pub fn view(&self) -> Viewpoint<R> {
-        Viewpoint { origin: self.origin, side: self.beside.1.to_f32() as u32, time: 0.0 }
+        Viewpoint { origin: self.from, side: self.beside.1.to_f32() as u32, time: 0.0 }
     }
 
     /// How wide it is after a distance. Where paths branch, each begins as narrow as the camera's. One that chance has led has no
@@ -146,7 +204,14 @@ impl<R: Scalar> ShadowRay<R> {
     pub fn none() -> Self {
         let direction = V3::splat(glam::Vec3::Z);
         let segment = Segment { origin: V3::zero(), direction, limit: R::splat(NOWHERE), source_primitive: 0 };
-        ShadowRay { segment, light: V3::zero(), tag: 0 }
+        ShadowRay {
+            segment,
+            light: V3::zero(),
+            tag: 0,
+            inside: Inside::default(),
+            lead: R::splat(0.0),
+            chain: Chain::new(0, 0),
+        }
     }
 
     /// Does it ask for something?
@@ -162,6 +227,30 @@ impl<R: Scalar> ShadowRay<R> {
         let limit = if asks { self.segment.limit } else { R::splat(NOWHERE) };
         Segment { limit, ..self.segment }.store(slots, slot, segments);
         write(segments, 2 * slots + slot, R::store(V3::select(asks, self.light, V3::zero()), self.tag));
+    }
+
+    /// One that starts somewhere in a medium, maybe far from the scene: from where it comes close to that.
+    #[inline(always)]
+    pub fn brought_near(self) -> Self {
+        let Segment { origin, direction, limit, .. } = self.segment;
+        let near = Ray::from_afar(origin, direction).origin;
+        let lead = (near - origin).map(|c| c.flush(SMALL)).direction_and_length().1;
+        ShadowRay { segment: Segment { origin: near, limit: limit - lead, ..self.segment }, lead, ..self }
+    }
+
+    /// Keeps what a slot's ray is in, behind the records of all slots.
+    #[inline(always)]
+    pub fn store_medium(&self, slots: u32, slot: u32, segments: &mut [R::Record]) {
+        let (a, b) = self.chain.numbers();
+        let rest = V3::new(self.lead, R::splat(a), R::splat(b));
+        write(segments, SHADOW_RECORDS * slots + slot, R::store(rest, self.inside.0));
+    }
+
+    /// That, how far before its segment it starts, and the numbers that it draws.
+    #[inline(always)]
+    pub fn medium(slots: u32, slot: u32, segments: &[R::Record]) -> (Inside, R, Chain) {
+        let (rest, inside) = R::load(read(segments, SHADOW_RECORDS * slots + slot));
+        (Inside(inside), rest.x, Chain::of(rest.y.to_f32(), rest.z.to_f32()))
     }
 
     /// The light of a slot's ray that nothing was in the way of, else zero; and its tag.

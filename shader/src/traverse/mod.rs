@@ -42,6 +42,8 @@ use crate::scene::TraceContext;
 pub trait Query {
     /// Is any hit enough, and do transparent primitives not count? (Shadow rays, thesis 3.2.)
     const ANY: bool;
+    /// Are only surfaces met that are not there, but what is inside of them?
+    const OPEN: bool = false;
 
     /// Called when a ray, or a packet, tests this many boxes. Only statistics implement these callbacks.
     #[inline(always)]
@@ -67,6 +69,13 @@ impl Query for Closest {
 pub struct Occlusion;
 impl Query for Occlusion {
     const ANY: bool = true;
+}
+
+/// The closest surface that is not there itself ([`Primitive::OPEN`](crate::data::Primitive)).
+pub struct ClosestOpen;
+impl Query for ClosestOpen {
+    const ANY: bool = false;
+    const OPEN: bool = true;
 }
 
 /// A traversal method, for the types of numbers that it supports.

@@ -173,6 +173,12 @@ impl Scalar for Interval {
     fn load(Record([x, y, z], word): Record) -> (V3<Self>, u32) {
         (V3::new(x, y, z), word)
     }
+    fn log2(self) -> Self {
+        let log = |x: f64| x.max(f64::MIN_POSITIVE).log2();
+        let slack = |x: f64| 4.0 * f64::EPSILON * x.abs();
+        let (low, high) = (log(self.low), log(self.high));
+        Interval { value: Scalar::log2(self.value), low: low - slack(low), high: high + slack(high) }
+    }
     /// The standard library's power is good to more than 4 of its units.
     #[inline(never)]
     fn pow(self, exponent: Self) -> Self {

@@ -7,7 +7,7 @@ use eyerays_shader::camera;
 use eyerays_shader::data::Launch;
 use eyerays_shader::integrator::{self, Exchange, Wave};
 use eyerays_shader::real::{Scalar, V3};
-use eyerays_shader::stage::{self, CameraTables, RECORDS, SHADOW_RECORDS, STATE_RECORDS, ShadowInputs};
+use eyerays_shader::stage::{self, CameraTables, RECORDS, ShadowInputs, shadow_records, state_records};
 use eyerays_shader::traverse::{IfIf, Primitives};
 
 use crate::Posed;
@@ -56,8 +56,8 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
     let mut spec = scene.specialisation();
     let frame = posed.view.launch(posed, region, 0, 1, spec.order);
     let (slots, pixels, black) = (frame.slots as usize, region.pixels() as usize, R::store(V3::zero(), 0));
-    let mut paths = vec![black; slots * STATE_RECORDS as usize];
-    let mut segments = vec![black; slots * SHADOW_RECORDS as usize];
+    let mut paths = vec![black; slots * state_records(spec.media) as usize];
+    let mut segments = vec![black; slots * shadow_records(spec.media) as usize];
     let (mut hits, mut shadows, mut sums) = (vec![black; slots], vec![0; slots], vec![black; slots]);
     let order = spec.order;
     let inside = |slot: &u32| camera::pixel(&frame, order, *slot).inside;

@@ -164,6 +164,10 @@ macro_rules! numbers {
                 (V3::splat(eyerays_shader::data::numbers(record)), record.w)
             }
             #[track_caller]
+            fn log2(self) -> Self {
+                Self::new(Scalar::log2(self.seen()))
+            }
+            #[track_caller]
             fn pow(self, exponent: Self) -> Self {
                 Self::new(Scalar::pow(self.seen(), exponent.seen()))
             }

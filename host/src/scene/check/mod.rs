@@ -2,6 +2,7 @@
 
 mod covering;
 mod instances;
+mod medium;
 mod motion;
 mod settings;
 
@@ -43,6 +44,7 @@ impl Scene {
             scene.number("environment's rotation", environment.rotation, Range::ANY)?;
             scene.number("environment's scale", environment.scale, Range::AMOUNT)?;
         }
+        self.fog.iter().try_for_each(|of| medium::medium(&Owner("the fog".into()), of))?;
         self.lights.iter().enumerate().try_for_each(|(number, of)| light(number, of))?;
         let groups = LightGroups::of(self);
         groups.check()?;
@@ -91,6 +93,7 @@ fn material(material: &Material) -> Unplaced<()> {
     owner.number("ior", material.ior, Range::IOR)?;
     owner.colour("emission", material.emission, Range::AMOUNT)?;
     material.physical.iter().try_for_each(|of| physical(&owner, of))?;
+    material.volume.iter().try_for_each(|of| medium::volume(&owner, material, of))?;
     covering::material(&owner, material)?;
     material.visibility.check(&owner.0)?;
     let Some(checker) = material.checker else { return Ok(()) };

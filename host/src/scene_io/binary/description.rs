@@ -3,12 +3,14 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::grids::Grids;
 use super::header::AGAIN;
 use super::motion::Shutter;
 use super::textures::Pictures;
 use crate::quality;
 use crate::scene::{
-    Background, Camera, Disk, Instance, Light, Material, Mesh, Object, Scene, Settings, SharedMesh, Sphere, Unplaced,
+    Background, Camera, Disk, Instance, Light, Material, Medium, Mesh, Object, Scene, Settings, SharedMesh, Sphere,
+    Unplaced,
 };
 use crate::scene_io::budget::Budget;
 use crate::scene_io::source;
@@ -23,6 +25,10 @@ pub struct Description {
     background: Background,
     #[serde(default)]
     background_group: String,
+    #[serde(default)]
+    fog: Option<Medium>,
+    #[serde(default, skip_serializing_if = "Grids::is_empty")]
+    grids: Grids,
     settings: Settings,
     objects: Vec<Object>,
     #[serde(default)]
@@ -44,12 +50,14 @@ pub struct Geometry {
 
 impl Description {
     /// That of a scene with these textures and a hierarchy of this quality.
-    pub fn of(scene: &Scene, textures: Pictures, hierarchy: Option<quality::Bvh>) -> Self {
+    pub fn of(scene: &Scene, (grids, textures): (Grids, Pictures), hierarchy: Option<quality::Bvh>) -> Self {
         Description {
             hierarchy,
             ambient: scene.ambient,
             background: scene.background,
             background_group: scene.background_group.clone(),
+            fog: scene.fog,
+            grids,
             settings: scene.settings,
             objects: scene.objects.clone(),
             shared: scene.shared.clone(),
@@ -62,8 +70,8 @@ impl Description {
     }
 
     /// The same without settings, cameras and a hierarchy.
-    pub fn bare(scene: &Scene, textures: Pictures) -> Self {
-        let all = Self::of(scene, textures, None);
+    pub fn bare(scene: &Scene, of: (Grids, Pictures)) -> Self {
+        let all = Self::of(scene, of, None);
         Description { settings: Settings::default(), cameras: Vec::new(), ..all }
     }
 
@@ -92,13 +100,15 @@ impl Description {
     ///
     /// # Errors
     /// A motion of other poses, or textures of other texels.
-    pub fn scene(self, geometry: Geometry, poses: &[u8], texels: &[u8]) -> Unplaced<Scene> {
+    pub fn scene(self, geometry: Geometry, poses: &[u8], mut texels: &[u8]) -> Unplaced<Scene> {
         let Geometry { mesh, spheres, disks, instances } = geometry;
         let Description {
             hierarchy: _,
             ambient,
             background,
             background_group,
+            fog,
+            grids,
             settings,
             objects,
             shared,
@@ -119,6 +129,7 @@ impl Description {
             files: Vec::new(),
             motion: None,
             hierarchy: None,
+            fog,
             materials,
             lights,
             cameras,
@@ -129,6 +140,7 @@ impl Description {
             settings,
         };
         scene.motion = motion.map(|motion| motion.motion(&scene, poses)).transpose()?;
+        grids.give(&mut scene, &mut texels)?;
         textures.give(&mut scene, texels)?;
         Ok(scene)
     }

@@ -7,6 +7,7 @@
 //! checked, and nothing is parsed but the description.
 
 mod description;
+mod grids;
 mod header;
 mod motion;
 mod read;

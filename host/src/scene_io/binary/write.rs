@@ -5,6 +5,7 @@ use std::io::Write;
 use eyerays_bvh::Bvh;
 
 use super::description::Description;
+use super::grids::Grids;
 use super::header::{ALIGNMENT, Counts, Header, SECTIONS, hash};
 use super::motion;
 use super::textures::{Pictures, bytes};
@@ -22,8 +23,10 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
     scene.check()?;
     scene.settings.check()?;
     let (pictures, textures) = Pictures::of(scene);
-    let texels = textures.iter().map(|texture| bytes(texture)).collect::<Vec<_>>().concat();
-    let description = Description::of(scene, pictures, hierarchy.map(|(quality, _)| quality));
+    let (grids, leaves) = Grids::of(scene);
+    let texels = textures.iter().map(|texture| bytes(texture));
+    let texels = [&leaves[..]].into_iter().chain(texels).collect::<Vec<_>>().concat();
+    let description = Description::of(scene, (grids, pictures), hierarchy.map(|(quality, _)| quality));
     let description = description.text().map_err(Error::new)?;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
     let poses = motion::bytes(scene.motion.as_ref());
@@ -47,12 +50,14 @@ pub fn write(scene: &Scene, hierarchy: Option<(quality::Bvh, &Bvh)>, out: &mut d
 pub fn fingerprint(scene: &Scene) -> Result<[u8; 32]> {
     scene.check()?;
     let (pictures, textures) = Pictures::of(scene);
-    let description = Description::bare(scene, pictures).text().map_err(Error::new)?;
+    let (grids, leaves) = Grids::of(scene);
+    let description = Description::bare(scene, (grids, pictures)).text().map_err(Error::new)?;
     let none = Bvh { nodes: Vec::new(), wide: Vec::new(), order: Vec::new(), bounds: Vec::new() };
     let poses = motion::bytes(scene.motion.as_ref());
     let (counts, sections) = sections(scene, (&description, &poses, &[]), &none);
     let textures = textures.iter().map(|texture| bytes(texture));
-    Ok(hash(&counts, sections.into_iter().chain(textures)))
+    let leaves = [&leaves[..]].into_iter().filter(|leaves| !leaves.is_empty());
+    Ok(hash(&counts, sections.into_iter().chain(leaves).chain(textures)))
 }
 
 /// What a file holds after its header, and how much of it there is.

@@ -5,7 +5,7 @@ use super::notes::Notes;
 use crate::scene::Unplaced;
 
 /// Those that are drawn.
-const KNOWN: [&str; 14] = [
+const KNOWN: [&str; 16] = [
     "EXT_mesh_gpu_instancing",
     "KHR_animation_pointer",
     "KHR_lights_punctual",
@@ -13,11 +13,13 @@ const KNOWN: [&str; 14] = [
     "KHR_materials_emissive_strength",
     "KHR_materials_ior",
     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_materials_scatter",
     "KHR_materials_specular",
     "KHR_materials_transmission",
     "KHR_materials_unlit",
     VARIANTS,
     "KHR_materials_volume",
+    "KHR_materials_volume_scatter",
     "KHR_mesh_quantization",
     "KHR_texture_transform",
 ];

@@ -5,9 +5,8 @@ use glam::Vec3;
 use super::super::physical;
 use super::notes::Notes;
 use super::picture::Pictures;
-use super::shading::{Anisotropy, Extensions, Gloss, Info, Material, Metal, Specular, Transmission, Volume};
-use crate::scene::Range;
-use crate::scene::{Absorption, Alpha, Maps, Unplaced, Wall};
+use super::shading::{Anisotropy, Extensions, Gloss, Info, Material, Metal, Scatter, Specular, Transmission, Volume};
+use crate::scene::{Absorption, Alpha, Maps, Medium, Range, Unplaced, Volume as Filled, Wall};
 use crate::scene_io::material::Fields;
 
 /// The material of what names none: that of an empty one in the file.
@@ -143,6 +142,9 @@ impl Reader<'_, '_, '_> {
         let ior = of.ior.as_ref().and_then(|of| of.ior);
         if let Some(transmission) = of.transmission.as_ref().filter(|_| ior != Some(MIRROR)) {
             self.transmission(transmission, of.volume.as_ref())?;
+            if let Some(scatter) = &of.scatter {
+                self.scatter(scatter)?;
+            }
         }
         of.specular.as_ref().map_or(Ok(()), |of| self.specular(of))?;
         ior.map_or(Ok(()), |ior| self.ior(ior))?;
@@ -185,6 +187,26 @@ impl Reader<'_, '_, '_> {
             let colour = self.colour(attenuation_color.unwrap_or([1.0; 3]), &key("attenuationColor"))?;
             self.fields.physical.absorption = Some(Absorption { colour, distance });
         }
+        Ok(())
+    }
+
+    /// The drafts KHR_materials_volume_scatter and KHR_materials_scatter: of what a body takes of light, a share is scattered instead,
+    /// by which a thick body has a colour. Without a volume they do nothing.
+    fn scatter(&mut self, of: &Scatter) -> Unplaced<()> {
+        let key = |key: &str| format!("extensions.KHR_materials_volume_scatter.{key}");
+        let Some(Absorption { colour: left, distance }) = self.fields.physical.absorption else { return Ok(()) };
+        let strength = self.share(of.scatter_strength_factor.unwrap_or(1.0), &key("scatterStrengthFactor"))?;
+        let colour = self.colour(of.multiscatter_color.unwrap_or([0.0; 3]), &key("multiscatterColor"))? * strength;
+        let most = f64::from(Medium::MOST_ANISOTROPY);
+        let anisotropy = of.scatter_anisotropy.unwrap_or(0.0);
+        let anisotropy = self.clamped(anisotropy, &key("scatterAnisotropy"), Range::ANISOTROPY, (-most, most))?;
+        if colour == Vec3::ZERO {
+            return Ok(());
+        }
+        let medium = Medium::of_colour(colour, Absorption { colour: left, distance }.mean_way(), anisotropy);
+        self.fields.volume = Some(Filled { medium, interface: true, priority: 0, density: None });
+        // What is absorbed is the medium's.
+        self.fields.physical.absorption = None;
         Ok(())
     }
 

@@ -66,6 +66,8 @@ pub struct Extensions {
     pub transmission: Option<Transmission>,
     #[serde(rename = "KHR_materials_volume")]
     pub volume: Option<Volume>,
+    #[serde(rename = "KHR_materials_volume_scatter", alias = "KHR_materials_scatter")]
+    pub scatter: Option<Scatter>,
     #[serde(rename = "KHR_materials_specular")]
     pub specular: Option<Specular>,
     #[serde(rename = "KHR_materials_anisotropy")]
@@ -102,6 +104,16 @@ pub struct Volume {
     /// World units; without it the body absorbs nothing.
     pub attenuation_distance: Option<f64>,
     pub attenuation_color: Option<[f64; 3]>,
+}
+
+/// Of drafts whose names of the colour differ.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Scatter {
+    #[serde(alias = "multiscatterColorFactor")]
+    pub multiscatter_color: Option<[f64; 3]>,
+    pub scatter_strength_factor: Option<f64>,
+    pub scatter_anisotropy: Option<f64>,
 }
 
 #[derive(Deserialize, Default)]

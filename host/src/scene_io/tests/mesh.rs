@@ -37,6 +37,7 @@ fn of_mesh(mesh: Mesh) -> Scene {
         settings: Settings::default(),
         motion: None,
         hierarchy: None,
+        fog: None,
         environment: None,
     }
 }

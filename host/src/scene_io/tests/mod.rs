@@ -4,6 +4,7 @@ mod displace;
 mod effect;
 mod gltf;
 mod hostile;
+mod medium;
 mod mesh;
 mod mtl;
 mod obj;

@@ -30,7 +30,7 @@ pub fn intersect<Q: Query, R: Real>(
     if effects.has(Effects::CULLING) && !Q::ANY && disk.is_culled() {
         inside = inside & crossing.front;
     }
-    inside = hidden::met::<Q, R>(effects, disk, ray, inside);
+    inside = hidden::met::<Q, R>(context.base.spec, disk, ray, inside);
     if !inside.any() {
         return;
     }

@@ -32,7 +32,7 @@ impl Leaf for Primitives {
         Q::on_primitive();
         let primitive = context.base.placed(index, instance, ray.time);
         let effects = context.base.spec.effects;
-        if hidden::is_unmet::<Q, R>(effects, &primitive, ray) {
+        if hidden::is_unmet::<Q, R>(context.base.spec, &primitive, ray) {
             return;
         }
         if effects.has(Effects::SPHERE) && primitive.is_sphere() {

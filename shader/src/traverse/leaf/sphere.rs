@@ -95,7 +95,7 @@ fn accept_chord<Q: Query, R: Real>(
     if context.base.spec.effects.has(Effects::CULLING) && !Q::ANY && sphere.is_culled() {
         inside = inside & !end.far;
     }
-    inside = hidden::met::<Q, R>(context.base.spec.effects, sphere, ray, inside);
+    inside = hidden::met::<Q, R>(context.base.spec, sphere, ray, inside);
     if !inside.any() {
         return;
     }

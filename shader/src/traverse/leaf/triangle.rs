@@ -127,7 +127,7 @@ fn accept_candidate<Q: Query, R: Real>(
     if effects.has(Effects::CULLING) && !Q::ANY && triangle.is_culled() {
         inside = inside & candidate.front;
     }
-    inside = hidden::met::<Q, R>(effects, triangle, ray, inside);
+    inside = hidden::met::<Q, R>(context.base.spec, triangle, ray, inside);
     let scale = candidate.scale(inside);
     let vertices = || {
         let [a, b, c] = triangle.vertices();

@@ -1,0 +1,134 @@
+//! What is between surfaces, as kernels read it.
+
+use std::sync::Arc;
+
+use eyerays_shader::data::{Filling, Media as Bits, Medium as MediumRecord, pack};
+use glam::{DVec3, Vec3};
+
+use super::grids;
+use super::normalisation::{Normalisation, flushed};
+use super::records::is_body;
+use crate::error::{Error, Result};
+use crate::scene::{Absorption, Grid, Material, Medium, Scene, Volume};
+
+/// The media of a scene, and which material is filled with which.
+#[derive(Default)]
+pub struct Media {
+    /// Records by their numbers, which begin with 1.
+    pub records: Vec<MediumRecord>,
+    /// By material.
+    pub fillings: Vec<Filling>,
+    /// Words of their grids.
+    pub grids: Vec<u32>,
+    /// Where these are.
+    placed: Vec<(Arc<Grid>, u32)>,
+    /// The number of the medium outside of all surfaces, 0 for none.
+    pub fog: u32,
+    /// What of it kernels are compiled for.
+    pub bits: Bits,
+}
+
+impl Media {
+    /// Those of a scene; nothing of one without.
+    ///
+    /// # Errors
+    /// There are too many.
+    pub fn of(scene: &Scene, normalisation: &Normalisation) -> Result<Media> {
+        let volumes = || scene.materials.iter().filter_map(|material| material.volume.as_ref());
+        if scene.fog.is_none() && volumes().next().is_none() {
+            let fillings = vec![Filling::default(); scene.materials.len()];
+            return Ok(Media { fillings, ..Media::default() });
+        }
+        let mut media = Media::default();
+        let scale = normalisation.scale;
+        if let Some(fog) = &scene.fog {
+            media.fog = media.number(record(fog, DVec3::ZERO, (0, 1.0), scale))?;
+        }
+        for material in &scene.materials {
+            let filling = media.filling(material, normalisation)?;
+            media.fillings.push(filling);
+        }
+        let glows = |medium: &Medium| medium.emission != Vec3::ZERO;
+        let bit = |bit, holds: bool| if holds { bit } else { 0 };
+        media.bits = Bits(
+            Bits::PRESENT
+                | bit(Bits::OPEN, volumes().any(|volume| !volume.interface))
+                | bit(Bits::GRIDS, volumes().any(|volume| volume.density.is_some()))
+                | bit(Bits::GLOWING, volumes().map(|v| v.medium).chain(scene.fog).any(|medium| glows(&medium))),
+        );
+        Ok(media)
+    }
+
+    fn filling(&mut self, material: &Material, normalisation: &Normalisation) -> Result<Filling> {
+        let scale = normalisation.scale;
+        let Some(Volume { medium, interface, priority, density }) = &material.volume else {
+            // Fog ends at the surface of clear glass, too.
+            let clear = record(&Medium::default(), DVec3::ZERO, (0, material.ior), scale);
+            return if is_body(material) {
+                Ok(Filling::new(self.number(clear)?, false))
+            } else {
+                Ok(Filling::default())
+            };
+        };
+        let absorption = material.physical.and_then(|physical| physical.absorption).map_or(DVec3::ZERO, coefficient);
+        let ior = if *interface { material.ior } else { 1.0 };
+        let record = record(medium, absorption, ((*priority).into(), ior), scale);
+        let record = match density {
+            Some(grid) => record.with_grid(self.grid(grid, normalisation)?),
+            None => record,
+        };
+        Ok(Filling::new(self.number(record)?, !interface))
+    }
+
+    /// The first word of a grid, which several media share.
+    fn grid(&mut self, grid: &Arc<Grid>, normalisation: &Normalisation) -> Result<u32> {
+        let known = self.placed.iter().find(|(other, _)| Arc::ptr_eq(other, grid) || other == grid);
+        if let Some((_, at)) = known {
+            return Ok(*at);
+        }
+        let words = grids::words(grid, normalisation)?;
+        let at = u32::try_from(self.grids.len()).ok().filter(|at| at.checked_add(words.len() as u32).is_some());
+        let at =
+            at.ok_or_else(|| Error::new("the scene's grids are together larger than devices hold: make them coarser"))?;
+        self.grids.extend(words);
+        self.placed.push((grid.clone(), at));
+        Ok(at)
+    }
+
+    /// The number of a medium, which those of several materials share that are alike.
+    fn number(&mut self, record: MediumRecord) -> Result<u32> {
+        let place = self.records.iter().position(|other| *other == record);
+        let place = place.unwrap_or_else(|| {
+            self.records.push(record);
+            self.records.len() - 1
+        });
+        if self.records.len() > Filling::MOST as usize {
+            let most = Filling::MOST;
+            return Err(Error::new(format!("the scene has more than {most} media: let materials share theirs")));
+        }
+        Ok(place as u32 + 1)
+    }
+}
+
+/// The absorption coefficient of what leaves so much of light.
+fn coefficient(Absorption { colour, distance }: Absorption) -> DVec3 {
+    let depth = Absorption::depth;
+    DVec3::new(depth(colour.x), depth(colour.y), depth(colour.z)) / f64::from(distance)
+}
+
+/// A record, with what is absorbed beside.
+fn record(of: &Medium, absorbed: DVec3, (priority, ior): (u32, f32), scale: f64) -> MediumRecord {
+    /// Beyond this nothing is seen through anything, and products with lengths overflow.
+    const MOST: f64 = 1e24;
+    let (scattering, absorption) = (of.scattering.as_dvec3(), of.absorption.as_dvec3() + absorbed);
+    let all = scattering + absorption;
+    let extinction = (all / scale).min(DVec3::splat(MOST)).as_vec3();
+    let share = |part: f64, all: f64| if all > 0.0 { part / all } else { 0.0 };
+    let albedo = DVec3::new(share(scattering.x, all.x), share(scattering.y, all.y), share(scattering.z, all.z));
+    MediumRecord {
+        extinction: pack(flushed(extinction), priority),
+        albedo: pack(flushed(albedo.as_vec3()), of.anisotropy.to_bits()),
+        emission: pack(flushed(of.emission), ior.to_bits()),
+        density: Default::default(),
+    }
+}

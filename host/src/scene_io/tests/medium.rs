@@ -1,0 +1,117 @@
+//! What scene files say of media, what a described scene says of them again, and what binary scenes keep.
+
+use glam::Vec3;
+
+use super::{Folder, assert_refused};
+use crate::scene::{Medium, Scene, Volume};
+use crate::scene_io::{describe, fingerprint, write};
+
+/// A grid volume of Mitsuba of two cells along x.
+fn vol(numbers: [f32; 2]) -> Vec<u8> {
+    let mut bytes = b"VOL\x03".to_vec();
+    [1, 2, 1, 1, 1].iter().for_each(|number: &i32| bytes.extend(number.to_le_bytes()));
+    [0f32, 0.0, 0.0, 2.0, 1.0, 1.0].iter().chain(&numbers).for_each(|number| bytes.extend(number.to_le_bytes()));
+    bytes
+}
+
+const BALL: &str = "[[mesh]]\nshape = \"sphere\"\nmaterial = \"m\"\n";
+
+fn folder(text: &str) -> Folder {
+    Folder::new(&[
+        ("scene.toml", text.as_bytes()),
+        ("g.vol", &vol([0.5, 3.0])),
+        ("bad.vol", &vol([0.5, -1.0])),
+        ("no.nvdb", b"hello"),
+    ])
+}
+
+fn load(text: &str) -> Scene {
+    let (scene, warnings) = folder(text).load("scene.toml").unwrap_or_else(|error| panic!("{error}"));
+    assert!(warnings.is_empty(), "{warnings:?}");
+    scene
+}
+
+fn of_material(volume: &str) -> Volume {
+    let scene = load(&format!("[[material]]\nname = \"m\"\nvolume = {{ {volume} }}\n{BALL}"));
+    scene.materials.into_iter().find_map(|material| material.volume).expect("a volume")
+}
+
+#[test]
+fn a_volume_is_as_it_is_told_and_nothing_where_nothing_is() {
+    let all =
+        "scattering = [1, 2, 3], absorption = 0.5, anisotropy = -0.3, emission = 4, interface = false, priority = 9";
+    let medium = Medium {
+        scattering: Vec3::new(1.0, 2.0, 3.0),
+        absorption: Vec3::splat(0.5),
+        anisotropy: -0.3,
+        emission: Vec3::splat(4.0),
+    };
+    assert_eq!(of_material(all), Volume { medium, interface: false, priority: 9, density: None });
+    let default = Volume { interface: true, ..Volume::open(Medium::default()) };
+    assert_eq!(of_material(""), default);
+    let scene = load(&format!("[fog]\nscattering = 0.1\n{BALL}"));
+    assert_eq!(scene.fog, Some(Medium { scattering: Vec3::splat(0.1), ..Medium::default() }));
+}
+
+/// White scatters all, black nothing, and in between less is scattered than is seen of what is scattered again and again.
+#[test]
+fn a_colour_is_that_of_a_thick_body() {
+    let of = of_material("color = [0, 0.5, 1], distance = 0.25").medium;
+    let albedo = of.scattering / (of.scattering + of.absorption);
+    assert!((of.scattering + of.absorption).abs_diff_eq(Vec3::splat(4.0), 1e-5), "{of:?}");
+    assert!(albedo.x < 0.01 && (0.85..0.95).contains(&albedo.y) && albedo.z > 0.999, "{albedo}");
+}
+
+#[test]
+fn what_no_medium_may_be_is_refused_where_it_stands() {
+    let refuse = |table: &str, why: &str| {
+        let text = format!("[[material]]\nname = \"m\"\nvolume = {{ {table} }}\n{BALL}");
+        assert_refused(&folder(&text).refuse("scene.toml"), "scene.toml", Some(3), why);
+    };
+    refuse("scattering = -1", "must be a finite number of at least 0");
+    refuse("anisotropy = 1", "must be between -0.999 and 0.999");
+    refuse("emission = [0, 1, 0]", "what sends green light must absorb green light");
+    refuse("color = [1, 1, 1]", "distance");
+    refuse("color = [1, 1, 1], distance = 1, scattering = 2", "scattering is told by color and distance");
+    refuse("priority = 256", "priority");
+    refuse("thickness = 1", "thickness");
+    refuse("density = \"gone.nvdb\"", "there is no such file");
+    refuse("density = \"no.nvdb\"", "neither NanoVDB");
+    refuse("density = \"bad.vol\"", "the grid has the number -1");
+    refuse("density = { file = \"g.vol\", bounds = [[0, 0, 0], [1, 0, 1]] }", "must be greater than the first");
+    refuse("density = { file = \"g.vol\", size = 3 }", "size");
+    let shines = format!("[[material]]\nname = \"m\"\nemission = [1, 1, 1]\nvolume = {{ interface = false }}\n{BALL}");
+    let scene = load(&shines);
+    assert!(scene.check().unwrap_err().to_string().contains("shines without a surface"));
+}
+
+#[test]
+fn a_described_scene_says_its_media_again() {
+    let text = "[fog]\nscattering = [0.1, 0.2, 0.3]\nanisotropy = 0.5\n[[material]]\nname = \"m\"\n\
+        volume = { absorption = 2, emission = [0, 1, 2], interface = false, priority = 3 }\n";
+    let scene = load(&format!("{text}{BALL}"));
+    let told = describe(&scene, "ball.obj");
+    let obj = b"o a\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let again = Folder::new(&[("scene.toml", told.as_bytes()), ("ball.obj", obj)]);
+    let (again, _) = again.load("scene.toml").unwrap_or_else(|error| panic!("{error}\n{told}"));
+    assert_eq!(again.fog, scene.fog, "{told}");
+    assert_eq!(again.materials[0].volume, scene.materials[0].volume, "{told}");
+}
+
+/// Two grids that differ in a number are two scenes; the same grid comes back from a binary file.
+#[test]
+fn binary_scenes_keep_grids() {
+    let told = "density = { file = \"g.vol\", bounds = [[-1, -1, -1], [1, 1, 1]] }, scattering = 2";
+    let scene = load(&format!("[[material]]\nname = \"m\"\nvolume = {{ {told} }}\n{BALL}"));
+    let mut bytes = Vec::new();
+    write(&scene, None, &mut bytes).unwrap();
+    let folder = Folder::new(&[("scene.eyerays", &bytes)]);
+    let (again, _) = folder.load("scene.eyerays").unwrap();
+    assert_eq!(again.materials, scene.materials);
+    assert_eq!(fingerprint(&again).unwrap(), fingerprint(&scene).unwrap());
+    let mut other = scene.clone();
+    let volume = other.materials[0].volume.as_mut().unwrap();
+    let grid = std::sync::Arc::make_mut(volume.density.as_mut().unwrap());
+    grid.background = 1.0;
+    assert_ne!(fingerprint(&other).unwrap(), fingerprint(&scene).unwrap());
+}

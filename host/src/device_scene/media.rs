@@ -7,7 +7,6 @@ use glam::{DVec3, Vec3};
 
 use super::grids;
 use super::normalisation::{Normalisation, flushed};
-use super::records::is_body;
 use crate::error::{Error, Result};
 use crate::scene::{Absorption, Grid, Material, Medium, Scene, Volume};
 
@@ -64,7 +63,7 @@ impl Media {
         let Some(Volume { medium, interface, priority, density }) = &material.volume else {
             // Fog ends at the surface of clear glass, too.
             let clear = record(&Medium::default(), DVec3::ZERO, (0, material.ior), scale);
-            return if is_body(material) {
+            return if material.lets_light_in() {
                 Ok(Filling::new(self.number(clear)?, false))
             } else {
                 Ok(Filling::default())

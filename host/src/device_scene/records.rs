@@ -117,14 +117,9 @@ pub(super) fn is_cutout(m: &Material) -> bool {
     !matches!(m.alpha, Alpha::Opaque | Alpha::Mask(0.0))
 }
 
-/// Does light pass a surface that bends it, around something inside?
-pub(super) fn is_body(m: &Material) -> bool {
-    is_transparent(m) && m.physical.is_none_or(|p| p.is_transparent() && p.wall == Wall::Body)
-}
-
 /// What a body takes of light on its way inside, unless that is a medium's.
 fn absorption(m: &Material) -> Option<Absorption> {
-    m.physical?.absorption.filter(|_| is_body(m) && m.volume.is_none())
+    m.physical?.absorption.filter(|_| m.lets_light_in() && m.volume.is_none())
 }
 
 /// Its primitives: triangles, those of shared meshes each in its own cube and with its number there; spheres and disks.

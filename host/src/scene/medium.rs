@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Grid, Unplaced};
+use super::{Grid, Material, Unplaced, Wall};
 
 /// A homogeneous medium (pbrt-v4, chapter 11): what it does to light on a world unit of its way. Colours are linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -83,5 +83,21 @@ impl Volume {
     /// A medium without a surface.
     pub fn open(medium: Medium) -> Volume {
         Volume { medium, interface: false, priority: 0, density: None }
+    }
+}
+
+impl Material {
+    /// Does light pass its surfaces into something inside?
+    pub(crate) fn lets_light_in(&self) -> bool {
+        match &self.physical {
+            Some(physical) => physical.is_transparent() && physical.wall == Wall::Body,
+            None => self.transmission != Vec3::ZERO,
+        }
+    }
+
+    /// Why nobody sees its volume, and what to do.
+    pub(crate) fn idle_volume(&self) -> Option<&'static str> {
+        let is_hidden = self.volume.as_ref().is_some_and(|volume| volume.interface) && !self.lets_light_in();
+        is_hidden.then_some("its volume is behind an opaque surface; give it transmission, or set interface to false")
     }
 }

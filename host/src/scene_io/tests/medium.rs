@@ -32,7 +32,7 @@ fn load(text: &str) -> Scene {
 }
 
 fn of_material(volume: &str) -> Volume {
-    let scene = load(&format!("[[material]]\nname = \"m\"\nvolume = {{ {volume} }}\n{BALL}"));
+    let scene = load(&format!("[[material]]\nname = \"m\"\ntransmission = [1, 1, 1]\nvolume = {{ {volume} }}\n{BALL}"));
     scene.materials.into_iter().find_map(|material| material.volume).expect("a volume")
 }
 
@@ -49,8 +49,15 @@ fn a_volume_is_as_it_is_told_and_nothing_where_nothing_is() {
     assert_eq!(of_material(all), Volume { medium, interface: false, priority: 9, density: None });
     let default = Volume { interface: true, ..Volume::open(Medium::default()) };
     assert_eq!(of_material(""), default);
-    let scene = load(&format!("[fog]\nscattering = 0.1\n{BALL}"));
+    let scene = load("[fog]\nscattering = 0.1\n[[mesh]]\nshape = \"sphere\"\n");
     assert_eq!(scene.fog, Some(Medium { scattering: Vec3::splat(0.1), ..Medium::default() }));
+}
+
+#[test]
+fn a_volume_that_nobody_sees_is_a_warning() {
+    let hidden = format!("[[material]]\nname = \"m\"\nvolume = {{ scattering = 1 }}\n{BALL}");
+    let (_, warnings) = folder(&hidden).load("scene.toml").unwrap();
+    assert!(warnings.len() == 1 && warnings[0].contains("behind an opaque surface"), "{warnings:?}");
 }
 
 /// White scatters all, black nothing, and in between less is scattered than is seen of what is scattered again and again.
@@ -95,13 +102,14 @@ fn a_described_scene_says_its_media_again() {
     let again = Folder::new(&[("scene.toml", told.as_bytes()), ("ball.obj", obj)]);
     let (again, _) = again.load("scene.toml").unwrap_or_else(|error| panic!("{error}\n{told}"));
     assert_eq!(again.fog, scene.fog, "{told}");
-    assert_eq!(again.materials[0].volume, scene.materials[0].volume, "{told}");
+    let volume = |scene: &Scene| scene.materials.iter().find(|material| material.name == "m").unwrap().volume.clone();
+    assert_eq!(volume(&again), volume(&scene), "{told}");
 }
 
 /// Two grids that differ in a number are two scenes; the same grid comes back from a binary file.
 #[test]
 fn binary_scenes_keep_grids() {
-    let told = "density = { file = \"g.vol\", bounds = [[-1, -1, -1], [1, 1, 1]] }, scattering = 2";
+    let told = "density = { file = \"g.vol\", bounds = [[-1, -1, -1], [1, 1, 1]] }, scattering = 2, interface = false";
     let scene = load(&format!("[[material]]\nname = \"m\"\nvolume = {{ {told} }}\n{BALL}"));
     let mut bytes = Vec::new();
     write(&scene, None, &mut bytes).unwrap();

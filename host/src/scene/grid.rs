@@ -75,7 +75,7 @@ impl Grid {
     /// Refuses a grid without voxels, with those too far away, of no size, or with numbers below nothing.
     pub(crate) fn check(&self) -> Unplaced<()> {
         let [first, end] = self.extent;
-        if self.size().iter().any(|&voxels| voxels <= 0) || self.leaves.is_empty() {
+        if self.size().iter().any(|&voxels| voxels <= 0) {
             return Err("the grid is empty; is it the right one?".to_owned());
         }
         if first.iter().chain(&end).any(|at| at.unsigned_abs() > Self::FARTHEST as u32) {

@@ -136,8 +136,11 @@ fn shadow_rays_are_dimmed_by_what_they_go_through() {
         material
     };
     let ratio = |with: [f64; 3], channel: usize| with[channel] / bare[channel];
-    let near =
-        |what: &str, got: f64, want: f64| assert!((got / want - 1.0).abs() < 2e-5, "{what}: {got} is not {want}");
+    // Rays start off the surfaces that they go on through, by a millionth of the scene.
+    let near = |what: &str, got: f64, want: f64| {
+        let error = (got / want - 1.0).abs();
+        assert!(error < 1e-5 * (1.0 - want.ln()), "{what}: {got} is not {want}");
+    };
 
     let through = lit(&|scene| around(scene, open(red), 2.0, 5.0));
     for (channel, sigma) in [0.0, 0.5, 2.0].into_iter().enumerate() {

@@ -95,7 +95,7 @@ def write_scene(folder, surfaces, media):
     text += ["[background]\ncolor = [0.1, 0.12, 0.15]"]
     text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
     for number, (corners, colour, light) in enumerate(surfaces):
-        text += [f'[[material]]\nname = "s{number}"\ndiffuse = {list(colour)}\nemission = {list(light)}\ntwo_sided = true']
+        text += [f'[[material]]\nname = "s{number}"\ndiffuse = {list(colour)}\nemission = {list(light)}']
         text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in corners]}\nmaterial = "s{number}"']
     for number, of in enumerate(media):
         keys = f'scattering = {list(of["scattering"])}, absorption = {list(of["absorption"])}, anisotropy = {of["g"]}'

@@ -98,8 +98,8 @@ fn a_described_scene_says_its_media_again() {
         volume = { absorption = 2, emission = [0, 1, 2], interface = false, priority = 3 }\n";
     let scene = load(&format!("{text}{BALL}"));
     let told = describe(&scene, "ball.obj");
-    let obj = b"o a\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
-    let again = Folder::new(&[("scene.toml", told.as_bytes()), ("ball.obj", obj)]);
+    let obj = b"mtllib ball.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let again = Folder::new(&[("scene.toml", told.as_bytes()), ("ball.obj", obj), ("ball.mtl", b"newmtl m\n")]);
     let (again, _) = again.load("scene.toml").unwrap_or_else(|error| panic!("{error}\n{told}"));
     assert_eq!(again.fog, scene.fog, "{told}");
     let volume = |scene: &Scene| scene.materials.iter().find(|material| material.name == "m").unwrap().volume.clone();

@@ -19,11 +19,12 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 
+from blocks import blocks, compared
+
 mi.set_variant("scalar_rgb")
 
 # Paths are followed until nothing is left of them: programs count bounces otherwise.
 BOUNCES = 200
-BLOCKS = 8
 
 FLOOR = ((-4, 0, 4), (4, 0, 4), (4, 0, -4), (-4, 0, -4)), (0.5, 0.45, 0.4), (0, 0, 0)
 LAMP = ((-1, 3, 1), (-1, 3, -1), (1, 3, -1), (1, 3, 1)), (0, 0, 0), (6, 5.5, 5)
@@ -196,22 +197,6 @@ def of_mitsuba(asked, folder, surfaces, media):
     scene = mi.load_dict(scene)
     for seed in range(asked.seeds):
         yield np.array(mi.render(scene, seed=seed))
-
-
-def blocks(pictures):
-    """Means of 64 blocks, in the mean of seeds, and their variances."""
-    stack = np.stack([picture.mean(axis=2) for picture in pictures]).astype(np.float64)
-    seeds, size, _ = stack.shape
-    means = stack.reshape(seeds, BLOCKS, size // BLOCKS, BLOCKS, size // BLOCKS).mean(axis=(2, 4)).reshape(seeds, -1)
-    return means.mean(axis=0), means.var(axis=0, ddof=1) / seeds
-
-
-def compared(own, other):
-    """The greatest z, the root of the mean of its square (1 where all is chance), and the difference of the whole image as a share."""
-    error = np.sqrt(own[1] + other[1])
-    lit = error > 0
-    z = (own[0] - other[0])[lit] / error[lit]
-    return np.abs(z).max(), np.sqrt((z * z).mean()), own[0].mean() / other[0].mean() - 1
 
 
 def main():

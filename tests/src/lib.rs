@@ -197,6 +197,15 @@ pub fn assert_same_bits(a: &Picture, b: &Picture, what: &str) {
     assert!(a.bits_equal(b) && comparison.bit_equal, "{what}:\n{comparison}");
 }
 
+/// The mean of the green of all pixels, which see the same, and its standard error.
+pub fn mean(picture: &Picture) -> (f64, f64) {
+    let values: Vec<f64> = picture.pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean, (square / count).sqrt())
+}
+
 /// The largest difference of a channel of each pixel, row-major from the top left.
 pub fn differences(a: &Picture, b: &Picture) -> Vec<f32> {
     let channel = |(a, b): (&f32, &f32)| (a - b).abs();

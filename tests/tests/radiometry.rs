@@ -9,7 +9,7 @@ use eyerays::scene::{
     Transport,
 };
 use eyerays_tests::model::{add_quad, black, empty, matt};
-use eyerays_tests::{by, on_cpu, pack};
+use eyerays_tests::{by, mean, on_cpu, pack};
 use glam::Vec3;
 
 const WAYS: [Direct; 4] = [Direct::Power, Direct::Balance, Direct::Light, Direct::Surface];
@@ -40,15 +40,6 @@ fn render(scene: &Scene, camera: &Camera, settings: Settings) -> Picture {
     let (picture, rays) = on_cpu(&pack(scene, camera, settings));
     assert_eq!(rays.non_finite, 0);
     picture
-}
-
-/// The mean of all pixels and its standard error.
-fn mean(picture: &Picture) -> (f64, f64) {
-    let values: Vec<f64> = picture.pixels.iter().map(|pixel| f64::from(pixel[1])).collect();
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let square = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    (mean, (square / count).sqrt())
 }
 
 fn assert_is(what: &str, (got, error): (f64, f64), want: f64) {

@@ -3,6 +3,7 @@
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
+use super::finish::{Coat, DiffuseTransmission, Sheen, ThinFilm};
 use crate::choice::choices;
 use crate::math;
 
@@ -34,6 +35,22 @@ pub struct Physical {
     pub absorption: Option<Absorption>,
     /// A metal by its complex index of refraction, in place of all but roughness and anisotropy.
     pub conductor: Option<Conductor>,
+    /// A layer over all of it.
+    #[serde(default)]
+    pub coat: Option<Coat>,
+    /// Fibres below that.
+    #[serde(default)]
+    pub sheen: Option<Sheen>,
+    /// What of the base's light leaves on the far side.
+    #[serde(default)]
+    pub diffuse_transmission: Option<DiffuseTransmission>,
+    /// A film on the facets.
+    #[serde(default)]
+    pub film: Option<ThinFilm>,
+    /// The Abbe number of a body that lets light pass, by which it bends blue light more than red, in [1, 1000]
+    /// (KHR_materials_dispersion); without one it bends all light alike.
+    #[serde(default)]
+    pub abbe: Option<f32>,
 }
 
 choices! {
@@ -97,6 +114,11 @@ impl Default for Physical {
             wall: Wall::Body,
             absorption: None,
             conductor: None,
+            coat: None,
+            sheen: None,
+            diffuse_transmission: None,
+            film: None,
+            abbe: None,
         }
     }
 }

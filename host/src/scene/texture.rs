@@ -117,6 +117,80 @@ pub struct Maps {
     pub anisotropy: Option<Map>,
     /// Opacity alone (alpha); without this that of `base` counts.
     pub opacity: Option<Map>,
+    /// What is multiplied with the numbers of coats, sheen and what else a material has beside these.
+    pub finish: FinishMaps,
+}
+
+/// The maps of what lies on a material, and of what else its base does with light, each multiplied with its own number.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FinishMaps {
+    /// How much of the surface the coat is on (red), linear.
+    pub coat: Option<Map>,
+    /// The coat's roughness (green), linear.
+    pub coat_roughness: Option<Map>,
+    /// Its normals in the frame of tangent, bitangent and normal, linear. Without this map it is as smooth as the mesh is.
+    pub coat_normal: Option<Map>,
+    /// What slopes of these normals are multiplied with.
+    pub coat_normal_scale: f32,
+    /// The sheen's colour, sRGB.
+    pub sheen_colour: Option<Map>,
+    /// Its roughness (alpha).
+    pub sheen_roughness: Option<Map>,
+    /// The share of the base's light that leaves on the far side (alpha).
+    pub diffuse_transmission: Option<Map>,
+    /// The colour of that light, sRGB.
+    pub diffuse_transmission_colour: Option<Map>,
+    /// How much of the surface the film is on (red), linear.
+    pub film: Option<Map>,
+    /// The film's thickness from the least to the greatest (green), linear.
+    pub film_thickness: Option<Map>,
+}
+
+impl FinishMaps {
+    /// All maps that there are.
+    pub fn all(&self) -> impl Iterator<Item = &Map> {
+        let FinishMaps {
+            coat,
+            coat_roughness,
+            coat_normal,
+            coat_normal_scale: _,
+            sheen_colour,
+            sheen_roughness,
+            diffuse_transmission,
+            diffuse_transmission_colour,
+            film,
+            film_thickness,
+        } = self;
+        let all = [
+            coat,
+            coat_roughness,
+            coat_normal,
+            sheen_colour,
+            sheen_roughness,
+            diffuse_transmission,
+            diffuse_transmission_colour,
+            film,
+            film_thickness,
+        ];
+        all.into_iter().flatten()
+    }
+
+    /// These maps, and `under` where there is none.
+    pub fn over(self, under: FinishMaps) -> FinishMaps {
+        let has_normals = self.coat_normal.is_some();
+        FinishMaps {
+            coat: self.coat.or(under.coat),
+            coat_roughness: self.coat_roughness.or(under.coat_roughness),
+            coat_normal: self.coat_normal.or(under.coat_normal),
+            coat_normal_scale: if has_normals { self.coat_normal_scale } else { under.coat_normal_scale },
+            sheen_colour: self.sheen_colour.or(under.sheen_colour),
+            sheen_roughness: self.sheen_roughness.or(under.sheen_roughness),
+            diffuse_transmission: self.diffuse_transmission.or(under.diffuse_transmission),
+            diffuse_transmission_colour: self.diffuse_transmission_colour.or(under.diffuse_transmission_colour),
+            film: self.film.or(under.film),
+            film_thickness: self.film_thickness.or(under.film_thickness),
+        }
+    }
 }
 
 impl Maps {
@@ -133,6 +207,7 @@ impl Maps {
             specular_tint,
             anisotropy,
             opacity,
+            finish,
         } = self;
         let all = [
             base,
@@ -145,7 +220,7 @@ impl Maps {
             anisotropy,
             opacity,
         ];
-        all.into_iter().flatten()
+        all.into_iter().flatten().chain(finish.all())
     }
 
     /// These maps, and `under` where there is none.
@@ -162,6 +237,7 @@ impl Maps {
             specular_tint: self.specular_tint.or(under.specular_tint),
             anisotropy: self.anisotropy.or(under.anisotropy),
             opacity: self.opacity.or(under.opacity),
+            finish: self.finish.over(under.finish),
         }
     }
 }

@@ -76,6 +76,7 @@ impl Fields {
             wall: self.wall.unwrap_or(plain.wall),
             absorption: self.absorption,
             conductor: self.conductor,
+            ..plain
         })
     }
 }

@@ -4,7 +4,7 @@ use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Aovs, Effects, Frame, Launch, Layout, Media, Specialisation, pack};
+use eyerays_shader::data::{Aovs, Effects, Finishes, Frame, Launch, Layout, Media, Specialisation, pack};
 use eyerays_shader::material::ALBEDOS;
 use eyerays_shader::medium::Inside;
 use glam::Vec3;
@@ -176,13 +176,22 @@ impl Job {
             tuning: traversal.tuning,
             aovs: self.aovs,
             media: self.media_bits(),
+            finishes: self.finish_bits(),
         }
+    }
+
+    /// What its kernels know of what lies on physical materials: only paths see it.
+    pub fn finish_bits(&self) -> Finishes {
+        if self.follows_paths() { self.scene.finish_bits() } else { Finishes::default() }
     }
 
     /// What of the media its kernels know: only paths go through them.
     pub fn media_bits(&self) -> Media {
-        let follows_paths = self.feature.is_none() && self.settings.transport.integrator == Integrator::Path;
-        if follows_paths { self.scene.media_bits() } else { Media::default() }
+        if self.follows_paths() { self.scene.media_bits() } else { Media::default() }
+    }
+
+    fn follows_paths(&self) -> bool {
+        self.feature.is_none() && self.settings.transport.integrator == Integrator::Path
     }
 
     /// What cameras and the film need.

@@ -64,6 +64,7 @@ macro_rules! resources {
             32 instances INSTANCES: Read Instance, "instances";
             33 media MEDIA: Read Medium, "media";
             34 grids GRIDS: Read u32, "grids";
+            35 finishes FINISHES: Read Finish, "finishes of materials";
         }
     };
 }

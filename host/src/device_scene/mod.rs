@@ -5,9 +5,9 @@ use std::time::{Duration, Instant};
 
 use eyerays_bvh::{Bvh8, Quality, Statistics};
 use eyerays_shader::data::{
-    Bounds, CentredPair, CwbvhNode, Effects, Filling, Instance as InstanceRecord, Light as LightRecord,
-    Material as MaterialRecord, Media as MediaBits, Medium as MediumRecord, Normals, Physical as PhysicalRecord,
-    Primitive,
+    Bounds, CentredPair, CwbvhNode, Effects, Filling, Finish, FinishMaps, Finishes, Instance as InstanceRecord,
+    Light as LightRecord, Material as MaterialRecord, Media as MediaBits, Medium as MediumRecord, Normals,
+    Physical as PhysicalRecord, Primitive,
 };
 
 mod alias;
@@ -75,6 +75,8 @@ pub struct DeviceScene {
     normals: Vec<Normals>,
     materials: Vec<MaterialRecord>,
     physicals: Vec<PhysicalRecord>,
+    finish_bits: Finishes,
+    finishes: Vec<Finish>,
     media: Media,
     lights: Vec<LightRecord>,
     lighting: Lighting,
@@ -160,6 +162,11 @@ impl DeviceScene {
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
         let lights = lights(&scene.lights, &normalisation, &movement.ways)?;
         let mut textures = Textures::new(scene, effects, &bvh.order)?;
+        let finish_bits = records::finish_bits(scene);
+        let maps = |material: usize| textures.finish_maps.get(material).copied().unwrap_or(FinishMaps::NONE);
+        let finish = |(material, m)| records::finish(m, maps(material));
+        let finishes =
+            if finish_bits.any() { scene.materials.iter().enumerate().map(finish).collect() } else { Vec::new() };
         bends.shape((scene, &normalisation), &bvh.order, (&mut primitives, &mut normals, &mut textures.tangents));
         let far = scene.environment.as_ref().map(|of| environment::words(of, Room::now())).transpose()?;
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
@@ -190,6 +197,8 @@ impl DeviceScene {
             materials: scene.materials.iter().zip(&media.fillings).map(material).collect(),
             media,
             physicals,
+            finish_bits,
+            finishes,
             lights,
             lighting,
             textures,
@@ -287,6 +296,16 @@ impl DeviceScene {
     /// Materials by microfacets; empty if there are none.
     pub fn physicals(&self) -> &[PhysicalRecord] {
         &self.physicals
+    }
+
+    /// What physical materials have beside base, facets and what passes; empty if none has any of it.
+    pub fn finishes(&self) -> &[Finish] {
+        &self.finishes
+    }
+
+    /// What kernels are compiled for that know of it.
+    pub(crate) fn finish_bits(&self) -> Finishes {
+        self.finish_bits
     }
 
     /// What is between surfaces: media by their numbers, from 1 on.

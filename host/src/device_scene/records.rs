@@ -2,8 +2,8 @@
 
 use bytemuck::Zeroable;
 use eyerays_shader::data::{
-    Effects, Filling, Instance, Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord,
-    Primitive, pack,
+    Effects, Filling, Finish, FinishMaps, Finishes, Instance, Light as LightRecord, Material as MaterialRecord,
+    Normals, Physical as PhysicalRecord, Primitive, pack,
 };
 use eyerays_shader::material::conductor_mean;
 use eyerays_shader::real::SMALL;
@@ -15,8 +15,8 @@ use super::normalisation::{Normalisation, flushed, flushed_number};
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
-    Absorption, Alpha, Background, Conductor, Falloff, Integrator, Light, Material, Matte, Physical, Scene, Settings,
-    Visibility, Wall,
+    Absorption, Alpha, Background, Coat, Conductor, DiffuseTransmission, Falloff, Integrator, Light, Material, Matte,
+    Physical, Scene, Settings, Sheen, ThinFilm, Visibility, Wall,
 };
 
 /// A colour and an integer.
@@ -232,6 +232,51 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
         attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), 0),
         eta: colour(conductor.eta, turned(math::cos(turns))),
         k: colour(conductor.k, turned(math::sin(turns))),
+    }
+}
+
+/// What kernels are compiled for that know what physical materials have beside base, facets and what passes.
+pub(super) fn finish_bits(scene: &Scene) -> Finishes {
+    let used = |has: &dyn Fn(&Physical) -> bool| scene.materials.iter().filter_map(|m| m.physical.as_ref()).any(has);
+    let bit = |bit, holds| if holds { bit } else { 0 };
+    let coated = used(&|p| p.coat.is_some_and(|coat| coat.weight > 0.0));
+    let fibrous = used(&|p| p.sheen.is_some_and(|sheen| sheen.colour != Vec3::ZERO));
+    Finishes(
+        bit(Finishes::COATED, coated)
+            | bit(Finishes::FIBROUS, fibrous)
+            | bit(Finishes::TRANSLUCENT, used(&is_translucent))
+            | bit(Finishes::FILMED, used(&|p| p.film.is_some_and(|film| film.weight > 0.0)))
+            | bit(Finishes::DISPERSIVE, used(&|p| dispersion(p) > 0.0)),
+    )
+}
+
+/// Does the base send light to its far side?
+fn is_translucent(p: &Physical) -> bool {
+    p.conductor.is_none() && p.diffuse_transmission.is_some_and(|of| of.weight > 0.0)
+}
+
+/// Half of the difference between a body's indices of refraction for blue and for red light (the F and the C line), which the Abbe
+/// number divides `ior - 1` by.
+fn dispersion(p: &Physical) -> f32 {
+    let bends = p.is_transparent() && p.wall == Wall::Body;
+    p.abbe.filter(|_| bends).map_or(0.0, |abbe| (p.ior - 1.0) / (2.0 * abbe))
+}
+
+/// What a material has beside base, facets and what passes, with the maps of that.
+pub(super) fn finish(m: &Material, maps: FinishMaps) -> Finish {
+    let Some(p) = m.physical else { return Finish::NONE };
+    let coat = p.coat.unwrap_or(Coat { weight: 0.0, roughness: 0.0 });
+    let sheen = p.sheen.unwrap_or(Sheen { colour: Vec3::ZERO, roughness: 0.0 });
+    let film = p.film.unwrap_or(ThinFilm { weight: 0.0, ior: 1.0, thickness: [0.0; 2] });
+    let beyond = p.diffuse_transmission.filter(|_| is_translucent(&p));
+    let beyond = beyond.unwrap_or(DiffuseTransmission { weight: 0.0, colour: Vec3::ZERO });
+    let [least, most] = film.thickness;
+    Finish {
+        coat: colour(Vec3::new(coat.weight, coat.roughness, film.weight), film.ior.to_bits()),
+        sheen: colour(sheen.colour, flushed_number(sheen.roughness).to_bits()),
+        beyond: colour(beyond.colour, flushed_number(beyond.weight).to_bits()),
+        film: colour(Vec3::new(least, most, dispersion(&p)), 0),
+        maps,
     }
 }
 

@@ -2,7 +2,9 @@
 
 use std::sync::Arc;
 
-use eyerays_shader::data::{Colours, Effects, Maps as MapsRecord, Normals, Opacity, TexCoords, TextureMap};
+use eyerays_shader::data::{
+    Colours, Effects, FinishMaps as FinishMapsRecord, Maps as MapsRecord, Normals, Opacity, TexCoords, TextureMap,
+};
 use glam::{UVec4, Vec2, Vec3, Vec4};
 
 use super::levels;
@@ -12,13 +14,15 @@ use super::tangents;
 use crate::error::{Error, Result};
 use crate::image::byte_to_linear;
 use crate::memory::Room;
-use crate::scene::{Alpha, Map, Material, Scene, Texels, Texture, Wrap};
+use crate::scene::{Alpha, FinishMaps, Map, Material, Scene, Texels, Texture, Wrap};
 
 /// What covers the surfaces of a scene; each empty unless it has a use for it.
 #[derive(Default)]
 pub struct Textures {
     /// By material.
     pub maps: Vec<MapsRecord>,
+    /// Those of finishes, by material.
+    pub finish_maps: Vec<FinishMapsRecord>,
     /// Every map.
     pub textures: Vec<TextureMap>,
     /// The table of sRGB, and the texels of all pictures.
@@ -41,9 +45,11 @@ impl Textures {
     /// # Errors
     /// More texels than kernels count, or than there is memory for.
     pub(super) fn new(scene: &Scene, effects: Effects, order: &[u32]) -> Result<Textures> {
-        let mut pack = Pack::default();
+        let (mut pack, mut finish_maps) = (Pack::default(), Vec::new());
         if effects.has(Effects::TEXTURED) {
             pack.maps = scene.materials.iter().map(|material| pack.maps(material)).collect::<Result<_>>()?;
+            let finish = |material: &Material| pack.finish_maps(&material.maps.finish);
+            finish_maps = scene.materials.iter().map(finish).collect::<Result<_>>()?;
         }
         let mut opacities = Vec::new();
         if effects.has(Effects::CUTOUT) {
@@ -67,7 +73,7 @@ impl Textures {
         let (texels, means) =
             if effects.has(Effects::TEXTURED) { pack.texels(Room::now())? } else { Default::default() };
         let Pack { maps, textures, .. } = pack;
-        Ok(Textures { maps, textures, texels, coordinates, colours, tangents, opacities, means })
+        Ok(Textures { maps, finish_maps, textures, texels, coordinates, colours, tangents, opacities, means })
     }
 
     /// What a material's emission is multiplied with: the map, 0 for none, and the mean of its light, linear RGB.
@@ -139,6 +145,21 @@ impl Pack {
         Ok(MapsRecord {
             first: UVec4::new(base, metallic_roughness, normal, emission),
             second: UVec4::new(transmission, weight, tint, anisotropy),
+        })
+    }
+
+    fn finish_maps(&mut self, maps: &FinishMaps) -> Result<FinishMapsRecord> {
+        let mut put = |map: &Option<Map>, is_colour| self.map(map.as_ref(), is_colour, 1.0);
+        let (coat, coat_roughness) = (put(&maps.coat, false)?, put(&maps.coat_roughness, false)?);
+        let (sheen, sheen_roughness) = (put(&maps.sheen_colour, true)?, put(&maps.sheen_roughness, false)?);
+        let beyond = put(&maps.diffuse_transmission, false)?;
+        let beyond_colour = put(&maps.diffuse_transmission_colour, true)?;
+        let (film, film_thickness) = (put(&maps.film, false)?, put(&maps.film_thickness, false)?);
+        let coat_normal = self.map(maps.coat_normal.as_ref(), false, maps.coat_normal_scale)?;
+        Ok(FinishMapsRecord {
+            first: UVec4::new(coat, coat_roughness, coat_normal, sheen),
+            second: UVec4::new(sheen_roughness, beyond, beyond_colour, film),
+            third: UVec4::new(film_thickness, 0, 0, 0),
         })
     }
 

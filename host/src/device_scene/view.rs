@@ -88,6 +88,7 @@ impl SceneView {
         let (physicals, albedos) = (self.job.physicals(), Albedos(self.job.albedos()));
         let media = self.job.media();
         ScatterContext {
+            finishes: self.job.finishes(),
             shading: self.shading(),
             physicals,
             albedos,

@@ -30,12 +30,13 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 23] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 24] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
         let lighting = is_chosen.then(|| packed.lighting());
         let physicals = if packed.effects().has(Effects::PHYSICAL) { packed.physicals() } else { &[] };
+        let finishes = if packed.finish_bits().any() { packed.finishes() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(nodes.words(packed)))),
@@ -49,6 +50,7 @@ impl<'a> SceneRecords<'a> {
             (binding::LIGHT_NODES, lighting.map_or(&[], |lighting| bytemuck::cast_slice(&lighting.nodes))),
             (binding::EMISSIONS, lighting.map_or(&[], |lighting| bytemuck::cast_slice(&lighting.emissions))),
             (binding::PHYSICALS, bytemuck::cast_slice(physicals)),
+            (binding::FINISHES, bytemuck::cast_slice(finishes)),
             (binding::MAPS, bytemuck::cast_slice(&textures.maps)),
             (binding::TEXTURES, bytemuck::cast_slice(&textures.textures)),
             (binding::TEXELS, bytemuck::cast_slice(&textures.texels)),

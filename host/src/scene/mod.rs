@@ -292,7 +292,9 @@ pub enum Light {
 impl Material {
     /// Do its surfaces need tangents?
     pub(crate) fn has_axes(&self) -> bool {
-        self.maps.normal.is_some() || self.physical.is_some_and(|p| p.anisotropy > 0.0)
+        self.maps.normal.is_some()
+            || self.maps.finish.coat_normal.is_some()
+            || self.physical.is_some_and(|p| p.anisotropy > 0.0)
     }
 }
 

@@ -114,6 +114,30 @@ bits! {
 }
 
 bits! {
+    /// What physical materials have beside a base, facets and what passes.
+    Finishes {
+        /// Some have a coat.
+        COATED = 0;
+        /// Some have fibres.
+        FIBROUS = 1;
+        /// Some bases send light to their far side.
+        TRANSLUCENT = 2;
+        /// Some have a film in which waves of light interfere.
+        FILMED = 3;
+        /// Some bodies bend blue light more than red.
+        DISPERSIVE = 4;
+    }
+}
+
+impl Finishes {
+    /// Is there anything at all?
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.0 != 0
+    }
+}
+
+bits! {
     /// Which rays a launch follows, where in a pixel the camera's are, and by which test they meet triangles.
     Launch {
         /// Secondary rays: the slots come from a queue.
@@ -270,6 +294,8 @@ pub struct Specialisation {
     pub aovs: Aovs,
     /// What is between surfaces.
     pub media: Media,
+    /// What physical materials have beside a base, facets and what passes.
+    pub finishes: Finishes,
 }
 
 impl Specialisation {
@@ -284,8 +310,17 @@ impl Specialisation {
     }
 
     /// The value of each specialisation constant by its number; the entry points declare them in this order.
-    pub fn constants(&self) -> [(u32, u32); 7] {
-        let Specialisation { effects, launch, layout, order, tuning, aovs, media } = *self;
-        [(1, effects.0), (2, tuning.0), (3, launch.0), (4, layout.0), (5, order.0), (6, aovs.0), (7, media.0)]
+    pub fn constants(&self) -> [(u32, u32); 8] {
+        let Specialisation { effects, launch, layout, order, tuning, aovs, media, finishes } = *self;
+        [
+            (1, effects.0),
+            (2, tuning.0),
+            (3, launch.0),
+            (4, layout.0),
+            (5, order.0),
+            (6, aovs.0),
+            (7, media.0),
+            (8, finishes.0),
+        ]
     }
 }

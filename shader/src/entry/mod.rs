@@ -43,6 +43,7 @@ macro_rules! declare_entry {
                     #[spirv(spec_constant(id = 5, default = 0))] order: u32,
                     #[spirv(spec_constant(id = 6, default = 0))] aovs: u32,
                     #[spirv(spec_constant(id = 7, default = 0))] media_bits: u32,
+                    #[spirv(spec_constant(id = 8, default = 0))] finish_bits: u32,
                     $d($d have)*
                 ) {
                     let $d spec = Specialisation {
@@ -53,6 +54,7 @@ macro_rules! declare_entry {
                         order: Order(order),
                         aovs: Aovs(aovs),
                         media: Media(media_bits),
+                        finishes: Finishes(finish_bits),
                     };
                     $d body
                 }
@@ -96,7 +98,7 @@ macro_rules! shading {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives instances normals materials paths hits shadows segments sums queue next counters emitters emissions
-             physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids] {
+             physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids finishes] {
                 // One kernel for all waves, since it is the one that drivers take longest to compile.
                 let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
                 let count = if starts { frame.slots } else { read(counters, counter::COUNT) };
@@ -108,7 +110,8 @@ macro_rules! shading {
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
-                let context = ScatterContext { shading, physicals, albedos: Albedos(albedos), lighting, media, grids };
+                let context =
+                    ScatterContext { shading, physicals, finishes, albedos: Albedos(albedos), lighting, media, grids };
                 let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
                 if spec.launch.has(Launch::GOES_ON) {

@@ -7,7 +7,9 @@ use crate::buffer::read;
 use crate::data::{Effects, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, LightSample, Lighting, Viewpoint, glowing};
-use crate::material::{Bsdf, Closure, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong, lifted};
+use crate::material::{
+    Bsdf, Channels, ClosureSample, INVERSE_PI, Seen, Specular, Surface, closure, eval_phong, lifted,
+};
 use crate::real::{FAINT, Scalar, V3};
 use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
@@ -25,12 +27,13 @@ pub(super) fn at<R: Scalar>(
     let ScatterContext { shading, lighting, physicals, .. } = context;
     let seen = vertex.met(launch);
     let vertex = &vertex.arrived(effects, physicals, &seen);
-    let covering = seen.covering(launch, shading, false);
+    let covering = seen.covering(launch, shading);
     let surface = Surface::new(launch, shading, &seen, &covering);
     let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
     let (path, interaction) = (vertex.path, seen.interaction);
     if effects.has(Effects::PHYSICAL) {
-        let closure = closure(launch, context, (&seen, &surface), &covering);
+        let channels = Channels { weight: path.weight, draw: 0 };
+        let closure = closure(launch, context, (&seen, &surface), &covering, channels).base;
         let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
         let shadow = light_by_closure(launch, lighting, vertex, (&seen, &closure));
         let draws = vertex.draws.set(path.counts().1);

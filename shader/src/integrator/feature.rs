@@ -22,7 +22,7 @@ pub(super) fn at<R: Scalar>(
     } else if launch.spec.launch.has(Launch::POSITION) {
         seen.interaction.position
     } else {
-        let covering = seen.covering(launch, &context.shading, false);
+        let covering = seen.covering(launch, &context.shading);
         let surface = Surface::new(launch, &context.shading, &seen, &covering);
         if launch.spec.launch.has(Launch::NORMAL) {
             surface.normal

@@ -10,7 +10,7 @@ use crate::stage::{Segment, ShadowRay};
 #[inline(always)]
 pub(super) fn at<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, vertex: &Vertex<R>) -> Scattered<R> {
     let seen = vertex.met(launch);
-    let covering = seen.covering(launch, shading, false);
+    let covering = seen.covering(launch, shading);
     let interaction = lifted(launch, shading, &seen);
     let surface = Surface::new(launch, shading, &seen, &covering);
     let (direction, _) = cosine_direction(surface.normal, vertex.draws.pair(0));

@@ -6,10 +6,10 @@ use super::medium;
 use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::background::gradient;
 use crate::buffer::read;
-use crate::data::{Aovs, Effects, Frame, Launch, Material, Primitive, numbers};
+use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
-use crate::material::{Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
+use crate::material::{Channels, Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
 use crate::ray::Ray;
 use crate::real::{FAINT, SMALL, Scalar, V3};
 use crate::sampler::DECISIONS;
@@ -34,7 +34,7 @@ pub(super) fn at<R: Scalar>(
         // What catchers send each other is in the plate.
         return Scattered::once(V3::zero(), ShadowRay::none(), path, false);
     }
-    let covering = seen.covering(launch, shading, is_last);
+    let covering = seen.whole_covering(launch, context, is_last);
     let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
     let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, &seen));
     if is_last {
@@ -46,9 +46,17 @@ pub(super) fn at<R: Scalar>(
         let normal = surface.normal.map(|c| c.flush(FAINT));
         outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
     }
-    let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
+    let seen = if lets_through(launch, context, &seen) {
+        seen
+    } else {
+        Seen { interaction: lifted(launch, shading, &seen), ..seen }
+    };
     if effects.has(Effects::PHYSICAL) {
-        let closure = closure(launch, context, (&seen, &surface), &covering);
+        let is_dispersive = launch.spec.finishes.has(Finishes::DISPERSIVE);
+        // Of this number nobody else asks the last bits.
+        let draw = if is_dispersive { vertex.draws.set(DECISIONS + path.bounces).y } else { 0 };
+        let channels = Channels { weight: path.weight, draw };
+        let closure = closure(launch, context, (&seen, &surface), &covering, channels);
         return scattered(launch, context, vertex, (&seen, &closure), (light, outputs));
     }
     let interaction = seen.interaction;
@@ -73,11 +81,18 @@ fn unlit<R: Scalar>(launch: &LaunchContext<'_>, materials: &[Material], seen: &S
     if launch.spec.effects.has(Effects::LINKED) { read(materials, seen.material()).ambient.w } else { 0 }
 }
 
+/// Does a surface send light of its far side to the viewer?
+#[inline(always)]
+fn lets_through<R: Scalar>(launch: &LaunchContext<'_>, context: &ScatterContext<'_>, seen: &Seen<R>) -> bool {
+    seen.primitive.is_transparent()
+        || launch.spec.finishes.has(Finishes::TRANSLUCENT) && read(context.finishes, seen.material()).is_translucent()
+}
+
 /// The light of one light, and the next ray, by a surface's closure.
 #[inline(always)]
 fn scattered<R: Scalar>(
     launch: &LaunchContext<'_>,
-    ScatterContext { shading, lighting, media, .. }: &ScatterContext<'_>,
+    context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     (seen, closure): (&Seen<R>, &impl Closure<R>),
     (light, mut outputs): (V3<R>, Outputs<R>),
@@ -85,7 +100,9 @@ fn scattered<R: Scalar>(
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let decisions = vertex.draws.set(DECISIONS + bounces);
-    let view = Viewpoint::on(&interaction, closure.normal(), seen.primitive.is_transparent()).at(seen.time);
+    let ScatterContext { shading, lighting, media, .. } = context;
+    let passes = lets_through(launch, context, seen);
+    let view = Viewpoint::on(&interaction, closure.normal(), passes).at(seen.time);
     let is_asked = is_lit(launch) && closure.is_rough();
     let unlit = unlit(launch, shading.materials, seen);
     let lamp = if is_asked {

@@ -3,7 +3,7 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Filling, Launch, Media, Medium, Physical, Primitive};
+use crate::data::{Effects, Filling, Finish, Launch, Media, Medium, Physical, Primitive};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Environment, Lighting};
 use crate::material::{Albedos, Seen, transmittance};
@@ -42,6 +42,8 @@ pub struct ScatterContext<'a> {
     pub shading: ShadingData<'a>,
     /// How they scatter by microfacets ([`Effects::PHYSICAL`](crate::data::Effects)), by material.
     pub physicals: &'a [Physical],
+    /// What they have beside ([`Finishes`](crate::data::Finishes)), likewise.
+    pub finishes: &'a [Finish],
     /// What their facets send back ([`Effects::COMPENSATED`](crate::data::Effects)).
     pub albedos: Albedos<'a>,
     /// What emits.

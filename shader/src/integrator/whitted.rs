@@ -66,7 +66,7 @@ pub fn shade<R: Scalar>(launch: &LaunchContext<'_>, shading: &ShadingData<'_>, s
     let cone = start.after(launch, found.t, sample);
     let (Found { index, instance, time, .. }, direction) = (found, path.direction);
     let seen = Seen { index, instance, time, primitive, interaction, direction, cone };
-    let covering = seen.covering(launch, shading, false);
+    let covering = seen.covering(launch, shading);
     let surface = Surface::new(launch, shading, &seen, &covering);
     let (light, rays) = lit(launch, lights, (slot, time), path.direction, (&interaction, &surface), shadows);
     add(launch, sums, slot, &path, light, rays);

@@ -3,23 +3,24 @@
 mod branches;
 
 use super::albedo::Albedos;
-use super::closure::{Closure, ClosureSample, Scattering};
+use super::closure::{ClosureSample, Scattering};
 use super::energy::Energy;
 use super::facet::{Facet, passes, reflected, rest};
+use super::frame::{half, local, world};
 use super::layers::{Layers, Way};
 use super::refraction::{refracted, refracting};
 use super::{INVERSE_PI, cosine_direction, reflect, refract};
-use crate::data::Effects;
+use crate::data::{Effects, Finishes};
 use crate::geometry::SurfaceInteraction;
-use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3};
+use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::sampler::unit;
 use glam::{UVec4, Vec3};
 
 /// Probabilities of parts are whole steps of this size, so that decisions compare integers.
-const STEPS: i32 = 1 << 23;
+pub(super) const STEPS: i32 = 1 << 23;
 
 /// A part that counts at all is chosen at least so often, in steps: what it scatters elsewhere may be more than here.
-const LEAST: i32 = STEPS / 8;
+pub(super) const LEAST: i32 = STEPS / 8;
 
 /// The same of what comes out from between facets, which is about as much in all directions.
 const LEAST_LOST: i32 = STEPS / 64;
@@ -28,27 +29,36 @@ const LEAST_LOST: i32 = STEPS / 64;
 #[derive(Clone, Copy)]
 pub struct Bsdf<'a, R: Real> {
     effects: Effects,
+    finishes: Finishes,
     albedos: Albedos<'a>,
     /// The axes of the frame; the third is the shading normal.
     axes: [V3<R>; 3],
     /// Unit direction to the viewer, in the frame.
-    viewer: V3<R>,
+    pub(super) viewer: V3<R>,
     layers: Layers<R>,
-    is_smooth: bool,
+    pub(super) is_smooth: bool,
     /// Where light goes that rough facets do not send on at once ([`Effects::COMPENSATED`]).
     energy: Energy<R>,
     /// What the base is given that it sends to the viewer.
     under: R,
     /// Steps for what is matt: the base, and what comes out from between facets.
-    matt: i32,
+    pub(super) matt: i32,
     /// Of these steps, those for the far side.
     far: i32,
+    /// About what all of it scatters of light to the viewer.
+    pub(super) albedo: R,
 }
 
 impl<'a, R: Scalar> Bsdf<'a, R> {
     /// Layers in the frame of unit axes, seen along a unit direction on the third axis' side.
     #[inline(always)]
-    pub fn new(effects: Effects, albedos: Albedos<'a>, axes: [V3<R>; 3], direction: V3<R>, layers: Layers<R>) -> Self {
+    pub fn new(
+        (effects, finishes): (Effects, Finishes),
+        albedos: Albedos<'a>,
+        axes: [V3<R>; 3],
+        direction: V3<R>,
+        layers: Layers<R>,
+    ) -> Self {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
         let is_smooth = layers.ggx.x.eq(zero);
         let own = local(axes, -direction);
@@ -66,23 +76,41 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         };
         let facets = facet.reflected.greatest() + (layers.through * facet.rest).greatest();
         let (near, far) = ((energy.near * energy.lost).greatest(), (energy.far * energy.lost).greatest());
-        let least = if zero.lt(base.greatest()) { LEAST } else { LEAST_LOST };
-        let matt = steps(base.greatest() + near + far, facets, least);
-        let share = far.over((base.greatest() + near + far).max(R::splat(SMALL)));
+        let beyond = if finishes.has(Finishes::TRANSLUCENT) {
+            (if layers.is_coated { layers.beyond * left } else { layers.beyond }).greatest()
+        } else {
+            zero
+        };
+        let (base, far) = (base.greatest() + beyond, far + beyond);
+        let least = if zero.lt(base) { LEAST } else { LEAST_LOST };
+        let sum = base + near + (far - beyond);
+        let matt = steps(sum, facets, least);
+        let share = far.over(sum.max(R::splat(SMALL)));
         let far = (share * R::splat(matt as f32)).floor_index();
-        Bsdf { effects, albedos, axes, viewer, layers, is_smooth, energy, under, matt, far }
+        let albedo = (sum + facets).min(one);
+        Bsdf { effects, finishes, albedos, axes, viewer, layers, is_smooth, energy, under, matt, far, albedo }
     }
 
     #[inline(always)]
-    fn local(&self, v: V3<R>) -> V3<R> {
+    pub(super) fn local(&self, v: V3<R>) -> V3<R> {
         local(self.axes, v)
     }
 
     #[inline(always)]
-    fn world(&self, v: V3<R>) -> V3<R> {
-        let [x, y, z] = self.axes;
-        // Components of the frame are flushed below 2^-40 and those of its axes below 2^-60: no product is subnormal.
-        (x * v.x + y * v.y + z * v.z).map(|c| c.flush(TINY)).renormalised()
+    pub(super) fn world(&self, v: V3<R>) -> V3<R> {
+        world(self.axes, v)
+    }
+
+    /// The unit normal that light sees, on the viewer's side.
+    #[inline(always)]
+    pub fn normal(&self) -> V3<R> {
+        self.axes[2]
+    }
+
+    /// Does the base send light to its far side?
+    #[inline(always)]
+    fn is_translucent(&self) -> bool {
+        self.finishes.has(Finishes::TRANSLUCENT) && R::splat(0.0).lt(self.layers.beyond.greatest())
     }
 
     #[inline(always)]
@@ -108,16 +136,13 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         Facet::new(self.effects, &self.layers, self.viewer, h)
     }
 
-    /// What the base and what comes out from between facets send to the viewer of light from a direction of the frame on this side,
-    /// with its cosine over pi; and what of that the base does.
+    /// What comes out from between facets to the viewer, over the cosine and 1 / pi, of light from a direction of the frame on this
+    /// side; and the share of that light which the base is given and sends there.
     #[inline(always)]
-    fn matt(&self, to: V3<R>) -> (V3<R>, V3<R>) {
-        let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
+    fn under(&self, to: V3<R>) -> (V3<R>, R) {
         if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
             let (out, left) = self.energy.near_side(self.effects, self.albedos, to);
-            let left = if self.layers.is_coated { left } else { R::splat(1.0) };
-            let base = self.layers.diffuse * left;
-            return ((base + out) * cosine, base * cosine);
+            return (out, if self.layers.is_coated { left } else { R::splat(1.0) });
         }
         let up = V3::splat(Vec3::Z);
         let share = if self.layers.is_coated {
@@ -125,8 +150,29 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         } else {
             self.under
         };
+        (V3::zero(), share)
+    }
+
+    /// What the base and what comes out from between facets send to the viewer of light from a direction of the frame on this side,
+    /// with its cosine over pi; and what of that the base does.
+    #[inline(always)]
+    fn matt(&self, to: V3<R>) -> (V3<R>, V3<R>) {
+        let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
+        let (out, share) = self.under(to);
+        if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
+            let base = self.layers.diffuse * share;
+            return ((base + out) * cosine, base * cosine);
+        }
         let base = self.layers.diffuse * (share * cosine).flush(FAINT);
         (base, base)
+    }
+
+    /// What the base sends through itself to the viewer of light from a direction on the far side, whose mirrored one is given, with
+    /// its cosine over pi.
+    #[inline(always)]
+    fn through_base(&self, mirrored: V3<R>) -> V3<R> {
+        let cosine = (mirrored.z * R::splat(INVERSE_PI)).flush(FAINT);
+        self.layers.beyond * (self.under(mirrored).1 * cosine).flush(FAINT)
     }
 
     /// The probabilities of what is matt, on this side and on the far one, and of the facets.
@@ -139,11 +185,11 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
 
     /// How light from a unit direction of the frame is scattered.
     #[inline(always)]
-    fn scattering(&self, to: V3<R>) -> Scattering<R> {
+    pub(super) fn scattering(&self, to: V3<R>) -> Scattering<R> {
         let zero = R::splat(0.0);
         if zero.lt(to.z) {
             self.on_this_side(to)
-        } else if to.z.lt(zero) && self.passes() && !self.is_smooth {
+        } else if to.z.lt(zero) && (self.passes() && !self.is_smooth || self.is_translucent()) {
             self.on_that_side(to)
         } else {
             Scattering::none()
@@ -168,12 +214,24 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     fn on_that_side(&self, to: V3<R>) -> Scattering<R> {
         let (eta, mirrored) = (self.eta(), V3::new(to.x, to.y, -to.z));
         let (_, matt, facets) = self.shares();
-        let (mut value, mut density) = (V3::zero(), R::splat(0.0));
-        if self.effects.has(Effects::COMPENSATED) {
-            let cosine = (mirrored.z * R::splat(INVERSE_PI)).flush(FAINT);
-            (value, density) = (self.energy.far_side(self.albedos, to) * (eta * eta * cosine), matt * cosine);
+        let (mut value, mut density, mut diffuse) = (V3::zero(), R::splat(0.0), V3::zero());
+        let cosine = (mirrored.z * R::splat(INVERSE_PI)).flush(FAINT);
+        if self.is_translucent() {
+            diffuse = self.through_base(mirrored);
+            (value, density) = (diffuse, matt * cosine);
         }
-        let h = if self.is_thin() { half(self.viewer, mirrored) } else { refracting(self.viewer, to, eta) };
+        let is_rough = self.passes() && !self.is_smooth;
+        if self.effects.has(Effects::COMPENSATED) && is_rough {
+            value = value + self.energy.far_side(self.albedos, to) * (eta * eta * cosine);
+            density = matt * cosine;
+        }
+        let h = if !is_rough {
+            V3::zero()
+        } else if self.is_thin() {
+            half(self.viewer, mirrored)
+        } else {
+            refracting(self.viewer, to, eta)
+        };
         if !h.z.eq(R::splat(0.0)) {
             let facet = self.facet(h);
             let (passed, likely) = if self.is_thin() {
@@ -184,7 +242,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
             value = value + self.layers.through * (facet.rest * passed);
             density = density + facets * (R::splat(1.0) - facet.probability) * likely;
         }
-        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT), diffuse: V3::zero() }
+        Scattering { value: value.map(|c| c.flush(FAINT)), density: density.flush(FAINT), diffuse }
     }
 
     /// Where a facet of normal `h` sends the path, in the frame: along its mirrored or its refracted ray.
@@ -204,7 +262,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
 
     /// What a mirror or a lens lets count, over its probability.
     #[inline(always)]
-    fn smooth_factor(&self, facet: &Facet<R>, reflects: bool) -> V3<R> {
+    pub(super) fn smooth_factor(&self, facet: &Facet<R>, reflects: bool) -> V3<R> {
         let facets = self.shares().2;
         if reflects {
             let over = (facets * facet.probability).reciprocal();
@@ -215,41 +273,49 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         (self.layers.through * (facet.rest * eta * eta * over)).map(|c| c.flush(FAINT))
     }
 
-    /// [`Closure::eval`] of a direction, in the frame and in the world.
+    /// How it scatters light from a unit direction of the world.
     #[inline(always)]
-    fn agreeing(&self, interaction: &SurfaceInteraction<R>, to: V3<R>, direction: V3<R>) -> Scattering<R> {
+    pub fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
+        let to = self.local(direction);
         if self.agrees(interaction, to, direction) { self.scattering(to) } else { Scattering::none() }
     }
 
     /// Is a direction of the frame on its side of the surface, too?
     #[inline(always)]
-    fn agrees(&self, interaction: &SurfaceInteraction<R>, local: V3<R>, world: V3<R>) -> bool {
+    pub(super) fn agrees(&self, interaction: &SurfaceInteraction<R>, local: V3<R>, world: V3<R>) -> bool {
         R::splat(0.0).lt(local.z) == interaction.receives(world)
     }
 
-    /// Chooses what is matt or a facet, by the draws of [`Closure::sample`].
+    /// Is the direction of a step drawn? That of a mirror and of a lens is not.
     #[inline(always)]
-    fn choose(&self, (part, way): (u32, u32), pair: impl FnOnce() -> UVec4) -> Chosen<R> {
-        let (step, up) = ((part >> 9) as i32, V3::<R>::splat(Vec3::Z));
-        let is_matt = step < self.matt;
-        // Here, so that a kernel holds it once.
-        let pair = if is_matt || !self.is_smooth { pair() } else { UVec4::ZERO };
-        if is_matt {
+    pub(super) fn draws(&self, step: i32) -> bool {
+        step < self.matt || !self.is_smooth
+    }
+
+    /// Chooses what is matt or a facet by a step of [`STEPS`], what a facet does by a number, and the direction by a pair.
+    #[inline(always)]
+    pub(super) fn choose(&self, (step, way): (i32, u32), pair: UVec4) -> Chosen<R> {
+        let up = V3::<R>::splat(Vec3::Z);
+        if step < self.matt {
             let near = cosine_direction(up, (pair.x, pair.y)).0.map(|c| c.flush(SMALL));
             let is_near = step >= self.far;
             let to = V3::new(near.x, near.y, R::select(is_near, near.z, -near.z));
-            return Chosen { to, reflects: is_near, is_matt: true, facet: Facet::none() };
+            return Chosen { to, reflects: is_near, is_rough: true, facet: Facet::none() };
         }
         let h = if self.is_smooth { up } else { self.layers.ggx.visible(self.viewer, (pair.x, pair.y)) };
         let facet = self.facet(h);
         let reflects = R::splat(unit(way)).lt(facet.probability);
-        Chosen { to: self.leaving(h, reflects), reflects, is_matt: false, facet }
+        Chosen { to: self.leaving(h, reflects), reflects, is_rough: !self.is_smooth, facet }
     }
 
-    /// Along the ray of a mirror or a lens.
+    /// Along the ray of a mirror or a lens, of which a factor counts.
     #[inline(always)]
-    fn smooth_sample(&self, interaction: &SurfaceInteraction<R>, chosen: &Chosen<R>) -> ClosureSample<R> {
-        let Chosen { mut to, reflects, ref facet, .. } = *chosen;
+    pub(super) fn smooth_sample(
+        &self,
+        interaction: &SurfaceInteraction<R>,
+        Chosen { mut to, reflects, .. }: Chosen<R>,
+        factor: V3<R>,
+    ) -> ClosureSample<R> {
         let mut direction = self.world(to);
         if reflects && !interaction.faces(direction) {
             // An interpolated normal may mirror a ray into its own surface; the triangle's normal does not.
@@ -258,13 +324,13 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
             to.z = R::splat(1.0);
         }
         let agrees = self.agrees(interaction, to, direction);
-        let factor = V3::select(agrees, self.smooth_factor(facet, reflects), V3::zero());
+        let factor = V3::select(agrees, factor, V3::zero());
         ClosureSample::only(direction, factor, self.leave(interaction, direction))
     }
 
     /// Along a direction whose scattering is known.
     #[inline(always)]
-    fn rough_sample(
+    pub(super) fn rough_sample(
         &self,
         interaction: &SurfaceInteraction<R>,
         (chosen, direction): (&Chosen<R>, V3<R>),
@@ -291,71 +357,23 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     }
 }
 
-impl<R: Scalar> Closure<R> for Bsdf<'_, R> {
-    #[inline(always)]
-    fn is_rough(&self) -> bool {
-        !self.is_smooth || self.matt > 0
-    }
-
-    #[inline(always)]
-    fn normal(&self) -> V3<R> {
-        self.axes[2]
-    }
-
-    #[inline(always)]
-    fn eval(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Scattering<R> {
-        self.agreeing(interaction, self.local(direction), direction)
-    }
-
-    #[inline(always)]
-    fn eval_and_sample(
-        &self,
-        (interaction, _): (&SurfaceInteraction<R>, V3<R>),
-        light: V3<R>,
-        draws: (u32, u32),
-        pair: impl FnOnce() -> UVec4,
-    ) -> (Scattering<R>, ClosureSample<R>) {
-        let chosen = self.choose(draws, pair);
-        let is_rough = chosen.is_matt || !self.is_smooth;
-        let (mut of_light, mut own) = (Scattering::none(), Scattering::none());
-        let (mut to, mut direction) = (self.local(light), light);
-        let (mut turn, turns) = (0, if is_rough { 2 } else { 1 });
-        while turn < turns {
-            (of_light, own) = (own, self.agreeing(interaction, to, direction));
-            (to, direction) = (chosen.to, self.world(chosen.to));
-            turn += 1;
-        }
-        if is_rough {
-            (of_light, self.rough_sample(interaction, (&chosen, direction), own))
-        } else {
-            (own, self.smooth_sample(interaction, &chosen))
-        }
-    }
-}
-
-/// What [`Bsdf::choose`] chose.
-struct Chosen<R: Real> {
+/// Where a path goes on.
+pub(super) struct Chosen<R: Real> {
     /// In the frame.
-    to: V3<R>,
+    pub to: V3<R>,
     /// Is it meant for this side of the surface?
-    reflects: bool,
-    /// Is it of what is matt?
-    is_matt: bool,
-    /// Else the facet that sends the path there.
-    facet: Facet<R>,
-}
-
-/// The unit vector between two others.
-#[inline(always)]
-fn half<R: Scalar>(a: V3<R>, b: V3<R>) -> V3<R> {
-    (a + b).map(|c| c.flush(SMALL)).direction_and_length().0.map(|c| c.flush(SMALL))
+    pub reflects: bool,
+    /// Could it be another direction? Else a mirror or a lens sends it there.
+    pub is_rough: bool,
+    /// Which, unless it is of what is matt.
+    pub facet: Facet<R>,
 }
 
 /// Steps for what is matt, given what it and the facets scatter.
 // A clamp holds a panic, which a kernel can't have.
 #[allow(clippy::manual_clamp)]
 #[inline(always)]
-fn steps<R: Scalar>(matt: R, facets: R, least: i32) -> i32 {
+pub(super) fn steps<R: Scalar>(matt: R, facets: R, least: i32) -> i32 {
     let zero = R::splat(0.0);
     if matt.eq(zero) {
         return 0;
@@ -367,10 +385,4 @@ fn steps<R: Scalar>(matt: R, facets: R, least: i32) -> i32 {
         .floor_index()
         .max(least)
         .min(STEPS - LEAST)
-}
-
-/// A vector in the frame of unit axes.
-#[inline(always)]
-fn local<R: Scalar>([x, y, z]: [V3<R>; 3], v: V3<R>) -> V3<R> {
-    V3::new(x.dot(v), y.dot(v), z.dot(v)).map(|c| c.flush(SMALL))
 }

@@ -88,7 +88,7 @@ pub fn conductor_mean(eta: Vec3, k: Vec3) -> Vec3 {
 /// How far reflectance has come from that at normal incidence to that at grazing angles (Schlick, An Inexpensive BRDF Model for
 /// Physically-based Rendering, 1994).
 #[inline(always)]
-fn schlick<R: Scalar>(cosine: R) -> R {
+pub(super) fn schlick<R: Scalar>(cosine: R) -> R {
     /// The fifth power of anything larger is normal.
     const LEAST: f32 = 1.0 / (1 << 20) as f32;
     let x = (R::splat(1.0) - cosine).flush(LEAST);

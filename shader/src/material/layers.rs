@@ -22,6 +22,8 @@ impl Way {
 pub struct Layers<R: Real> {
     /// The base's colour.
     pub diffuse: V3<R>,
+    /// The colour of what the base sends to its far side.
+    pub beyond: V3<R>,
     /// The colour of what passes.
     pub through: V3<R>,
     /// What facets reflect.

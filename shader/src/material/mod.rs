@@ -4,8 +4,13 @@ mod albedo;
 mod bend;
 mod bsdf;
 mod closure;
+mod coat;
+mod coated;
 mod energy;
 mod facet;
+mod film;
+mod finish;
+mod frame;
 mod fresnel;
 mod ggx;
 mod lambert;
@@ -15,6 +20,7 @@ mod optics;
 mod phong;
 mod physical;
 mod refraction;
+mod sheen;
 mod specular;
 mod terminator;
 
@@ -23,6 +29,10 @@ pub use albedo::ALBEDOS;
 pub use albedo::{Albedos, BRUSHED, EVEN, GLASS, MOST_BEND, STARTS, cosine_coordinate};
 pub use bsdf::Bsdf;
 pub use closure::{Closure, ClosureSample, Scattering};
+pub use coat::Coat;
+pub use coated::Coated;
+pub use film::film;
+pub use finish::Channels;
 pub use fresnel::Reflectance;
 #[cfg(not(target_arch = "spirv"))]
 pub use fresnel::conductor_mean;
@@ -33,12 +43,14 @@ pub use lobes::Lobes;
 pub use optics::{Refraction, fresnel, reflect, refract};
 pub use phong::eval_phong;
 pub use physical::{closure, transmittance};
+pub use sheen::Sheen;
 pub use specular::Specular;
 pub use terminator::lifted;
 
 use crate::buffer::read;
-use crate::data::{Effects, Launch, Maps, Material, Normals, Primitive, numbers};
+use crate::data::{Effects, FinishMaps, Launch, Maps, Material, Normals, Primitive, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
+use crate::integrator::ScatterContext;
 use crate::real::{Real, SMALL, Scalar, TINY, V3};
 use crate::scene::{LaunchContext, ShadingData};
 use crate::texture::{Cone, Covering, Place};
@@ -62,6 +74,8 @@ pub struct Surface<R: Real> {
     pub transmission: V3<R>,
     /// Index of refraction, 0 for an opaque surface.
     pub ior: R,
+    /// The shading normal before a map changes it.
+    pub even_normal: V3<R>,
 }
 
 /// What a ray has met.
@@ -92,9 +106,34 @@ impl<R: Scalar> Seen<R> {
         primitive.material()
     }
 
-    /// What its textures say, or that of emission alone. Nothing but white in a scene without.
+    /// What its textures say. Nothing but white in a scene without.
     #[inline(always)]
-    pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>, emits_only: bool) -> Covering<R> {
+    pub fn covering(&self, launch: &LaunchContext<'_>, shading: &ShadingData<'_>) -> Covering<R> {
+        self.covered(launch, shading, FinishMaps::NONE, false)
+    }
+
+    /// The same with what they say of [finishes](crate::data::Finish), or that of emission alone.
+    #[inline(always)]
+    pub fn whole_covering(
+        &self,
+        launch: &LaunchContext<'_>,
+        ScatterContext { shading, finishes, .. }: &ScatterContext<'_>,
+        emits_only: bool,
+    ) -> Covering<R> {
+        // Read here: a closure in a closure would keep the buffer's pointer in memory.
+        let is_asked = launch.spec.finishes.any() && launch.spec.effects.has(Effects::TEXTURED) && !emits_only;
+        let maps = if is_asked { read(finishes, self.material()).maps } else { FinishMaps::NONE };
+        self.covered(launch, shading, maps, emits_only)
+    }
+
+    #[inline(always)]
+    fn covered(
+        &self,
+        launch: &LaunchContext<'_>,
+        shading: &ShadingData<'_>,
+        finish_maps: FinishMaps,
+        emits_only: bool,
+    ) -> Covering<R> {
         let (effects, launched) = (launch.spec.effects, launch.spec.launch);
         let Seen { index, primitive, interaction, direction, cone, .. } = *self;
         let place = Place { index, weights: interaction.coordinates, count: launch.frame.vertices };
@@ -102,9 +141,10 @@ impl<R: Scalar> Seen<R> {
         if effects.has(Effects::TEXTURED) && launched.has(Launch::MIPMAPPED) {
             footprint = cone.footprint(&primitive, (interaction.normal, direction));
         }
-        let maps = if emits_only { (Maps::EMISSION, Maps::EMISSION + 1) } else { (0, Maps::COUNT) };
-        let own = || read(shading.maps, primitive.material());
-        Covering::new((effects, launched), &shading.textures, own, &place, footprint, maps)
+        let further = if launch.spec.finishes.any() { FinishMaps::COUNT } else { 0 };
+        let range = if emits_only { (Maps::EMISSION, Maps::EMISSION + 1) } else { (0, Maps::COUNT + further) };
+        let maps = || read(shading.maps, primitive.material());
+        Covering::new(launch.spec, &shading.textures, (maps, finish_maps), &place, footprint, range)
     }
 }
 
@@ -117,15 +157,15 @@ impl<R: Scalar> Surface<R> {
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
-        let normal = if effects.has(Effects::SMOOTH) {
+        let even_normal = if effects.has(Effects::SMOOTH) {
             interpolated(&shading.normals(launch, (index, instance, time)), direction, &interaction)
         } else {
             interaction.normal
         };
         let normal = if effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED) {
-            mapped(launch, shading, seen, (normal, covering.normal))
+            mapped(launch, shading, seen, (even_normal, covering.normal))
         } else {
-            normal
+            even_normal
         };
         let other = effects.has(Effects::CHECKER)
             && material.checker.w != 0
@@ -147,6 +187,7 @@ impl<R: Scalar> Surface<R> {
             reflection: colour(material.reflection),
             transmission: colour(material.transmission),
             ior: number(material.reflection.w),
+            even_normal,
         }
     }
 }

@@ -34,6 +34,7 @@ mod tests {
 
     fn surface() -> Surface<f64> {
         Surface {
+            even_normal: V3::splat(Vec3::Y),
             normal: V3::splat(Vec3::Y),
             ambient: V3::zero(),
             diffuse: V3::splat(Vec3::new(0.5, 0.5, 0.5)),

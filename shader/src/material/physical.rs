@@ -2,11 +2,12 @@
 
 use super::bend::bent;
 use super::bsdf::Bsdf;
+use super::finish::{Channels, above, finished};
 use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
-use super::{Ggx, Seen, Surface, axes};
+use super::{Coat, Coated, Ggx, Seen, Sheen, Surface, axes};
 use crate::buffer::read;
-use crate::data::{Effects, Physical, numbers};
+use crate::data::{Effects, Finish, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
 use crate::real::{Real, Scalar, TINY, V3};
@@ -24,6 +25,8 @@ pub struct Parameters<R: Real> {
     pub metalness: R,
     /// Linear RGB in [0, 1].
     pub transmission: V3<R>,
+    /// Index of refraction.
+    pub ior: R,
     /// What the dielectric part reflects at normal incidence, linear RGB in [0, 1].
     pub normal: V3<R>,
     /// The same at grazing angles.
@@ -53,6 +56,7 @@ impl<R: Scalar> Parameters<R> {
             roughness: shape.x * covering.roughness,
             metalness: shape.y * covering.metalness,
             transmission: colour(material.transmission) * covering.transmission,
+            ior: number(material.shape.w),
             normal: dielectric.map(|c| c.min(R::splat(1.0))) * grazing,
             grazing,
             anisotropy: shape.z * strength,
@@ -79,8 +83,9 @@ pub fn closure<'a, R: Scalar>(
     context: &ScatterContext<'a>,
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
-) -> Bsdf<'a, R> {
-    let effects = launch.spec.effects;
+    channels: Channels<R>,
+) -> Coated<'a, R> {
+    let (effects, finishes) = (launch.spec.effects, launch.spec.finishes);
     let Seen { interaction, direction, .. } = *seen;
     let material = read(context.physicals, seen.material());
     let leans = effects.has(Effects::SMOOTH) || (effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED));
@@ -94,7 +99,22 @@ pub fn closure<'a, R: Scalar>(
     } else {
         whitted(effects, surface, &interaction)
     };
-    Bsdf::new(effects, context.albedos, frame, direction, layers)
+    // One way for all, since a closure with tables must not be chosen between two.
+    let has_finish = finishes.any() && is_physical;
+    let finish = if has_finish { read(context.finishes, seen.material()) } else { Finish::NONE };
+    let layers = if has_finish {
+        let cosine = -direction.dot(frame[2]);
+        finished(finishes, &finish, &at, &covering.finish, (&interaction, &channels), (layers, cosine))
+    } else {
+        layers
+    };
+    let base = Bsdf::new((effects, finishes), context.albedos, frame, direction, layers);
+    let on = if has_finish {
+        above(launch, context, &finish, (seen, surface), covering, (base.viewer, layers.way))
+    } else {
+        (Coat::none(), Sheen::none())
+    };
+    Coated::new(finishes, base, on)
 }
 
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.
@@ -106,11 +126,11 @@ fn physical<R: Scalar>(
     interaction: &SurfaceInteraction<R>,
 ) -> Layers<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
-    let number = |bits| R::splat(f32::from_bits(bits));
     let anisotropy = if effects.has(Effects::ANISOTROPIC) { at.anisotropy } else { zero };
     let ggx = rough(at.roughness, anisotropy);
     let none = Layers {
         diffuse: V3::zero(),
+        beyond: V3::zero(),
         through: V3::zero(),
         reflectance: Reflectance {
             normal: V3::splat(numbers(material.eta)),
@@ -142,7 +162,7 @@ fn physical<R: Scalar>(
     let is_body = effects.has(Effects::REFRACTION) && way == Way::BODY;
     let is_thin = effects.has(Effects::THIN) && way == Way::THIN;
     let is_glass = is_body || is_thin;
-    let ior = number(material.shape.w);
+    let ior = at.ior;
     let dielectric = if is_glass { zero } else { rest };
     let grazing = at.grazing * dielectric + metal;
     Layers {
@@ -181,6 +201,7 @@ fn whitted<R: Scalar>(effects: Effects, surface: &Surface<R>, interaction: &Surf
     let mirror = if is_lens { V3::zero() } else { surface.reflection };
     Layers {
         diffuse: surface.diffuse,
+        beyond: V3::zero(),
         through: if is_lens { surface.transmission } else { V3::zero() },
         reflectance: Reflectance {
             normal: mirror,
@@ -205,7 +226,7 @@ fn smooth<R: Scalar>() -> Ggx<R> {
 /// Facets by perceived roughness, whose square they have, and more along the axis of anisotropy, by its strength
 /// (KHR_materials_anisotropy): highlights are stretched along it.
 #[inline(always)]
-fn rough<R: Scalar>(roughness: R, strength: R) -> Ggx<R> {
+pub(super) fn rough<R: Scalar>(roughness: R, strength: R) -> Ggx<R> {
     let (least, one) = (R::splat(Ggx::<R>::LEAST), R::splat(1.0));
     let alpha = (roughness * roughness).min(one);
     let along = alpha + (one - alpha) * (strength * strength);

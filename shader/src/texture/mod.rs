@@ -4,11 +4,13 @@
 mod cone;
 mod covering;
 mod filter;
+mod finish;
 
 pub use cone::Cone;
 pub use covering::Covering;
 pub(crate) use filter::beyond;
 pub use filter::{Texel, opacity, sample};
+pub use finish::FinishCovering;
 
 use crate::buffer::read;
 use crate::data::{Colours, Effects, Launch, TexCoords, TextureMap};

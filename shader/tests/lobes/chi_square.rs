@@ -5,7 +5,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::{PI, TAU};
 
 use super::integral::Rectangle;
-use super::surface::{BLACK, Seen, direction, facets, glass, gold, pane, plastic};
+use super::surface::{BLACK, Over, Seen, direction, facets, glass, gold, leaf, pane, plastic};
 
 /// Bins over the polar angle and the azimuth.
 const BINS: (usize, usize) = (80, 160);
@@ -76,6 +76,11 @@ fn likelihood(expected: &[f64], counted: &[f64]) -> f64 {
 
 /// Tests surfaces by their roughness along both axes, from every angle.
 fn test(name: &str, of: impl Fn(f64, f64) -> Layers<f64>) {
+    test_below(name, Over::default(), of);
+}
+
+/// The same below what lies on them.
+fn test_below(name: &str, over: Over, of: impl Fn(f64, f64) -> Layers<f64>) {
     let roughnesses = [(0.1, 0.1), (0.4, 0.4), (1.0, 1.0), (0.4, 0.1), (0.1, 0.4), (1.0, 0.2)];
     let (count, runs) = effort();
     // Sidak: of so many tests one fails by chance no more often than of one.
@@ -83,7 +88,7 @@ fn test(name: &str, of: impl Fn(f64, f64) -> Layers<f64>) {
     let least = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / tests);
     for (x, y) in roughnesses {
         for angle in ANGLES {
-            let seen = Seen::from(of(x, y), direction(angle, 0.7));
+            let seen = Seen::below(over, of(x, y), direction(angle, 0.7));
             let expected = expected(&seen, count);
             for run in 0..runs {
                 let likely = likelihood(&expected, &counted(&seen, run, count));
@@ -121,6 +126,22 @@ fn glass_is_sampled_by_its_density_from_outside() {
 #[test]
 fn glass_is_sampled_by_its_density_from_inside() {
     test("glass from inside", |x, y| glass(x, y, 1.5));
+}
+
+#[test]
+fn coats_are_sampled_by_their_density() {
+    test_below("coat", Over { coat: Some((0.7, 0.09)), sheen: None }, gold);
+}
+
+#[test]
+fn fibres_below_a_coat_are_sampled_by_their_density() {
+    test_below("fibres", Over { coat: Some((1.0, 0.25)), sheen: Some(0.3) }, plastic);
+    test_below("long fibres", Over { coat: None, sheen: Some(1.0) }, pane);
+}
+
+#[test]
+fn leaves_are_sampled_by_their_density() {
+    test("leaf", leaf);
 }
 
 /// The test notices a density that is off by a fifth at half of the azimuths.

@@ -7,17 +7,21 @@ use super::integral::Rectangle;
 use super::surface::{Seen, V, direction, facets, glass, plastic};
 
 /// Facets' roughness by the perceived one, from a twentieth to 1.
-const ROUGHNESSES: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
+pub const ROUGHNESSES: [f64; 8] = [0.05, 0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 1.0];
 /// Angles from the normal, up to 3 degrees above the plane.
-const ANGLES: [f64; 6] = [0.0, 0.4, 0.8, 1.2, 1.4, 1.518];
+pub const ANGLES: [f64; 6] = [0.0, 0.4, 0.8, 1.2, 1.4, 1.518];
 
 /// The index of what lets nothing pass.
-const OPAQUE: f64 = 0.0;
+pub const OPAQUE: f64 = 0.0;
 
 /// What a surface sends to a viewer of white light from everywhere, of the second channel and as energy: radiance on the far side of glass is as much more as
 /// the square of its index is.
 fn sent(layers: Layers<f64>, angle: f64, azimuth: f64, eta: f64) -> f64 {
-    let seen = Seen::from(layers, direction(angle, azimuth));
+    sent_by(&Seen::from(layers, direction(angle, azimuth)), angle, azimuth, eta)
+}
+
+/// The same of a surface that is seen from there.
+pub fn sent_by(seen: &Seen, angle: f64, azimuth: f64, eta: f64) -> f64 {
     let value = |polar: f64, azimuth: f64| seen.scattering(direction(polar, azimuth)).value.y * polar.sin();
     // Around the mirrored direction facets' highlights are narrow.
     let mirrored = azimuth + PI;

@@ -2,6 +2,7 @@
 
 mod albedo;
 mod chi_square;
+mod finish;
 mod furnace;
 mod integral;
 mod reciprocity;

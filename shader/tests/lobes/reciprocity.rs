@@ -1,10 +1,11 @@
 //! Light that goes the other way is scattered as much.
 
-use eyerays_shader::material::Layers;
+use eyerays_shader::data::Effects;
+use eyerays_shader::material::{Albedos, Coat, Ggx, Layers};
 use glam::DVec3;
 use proptest::prelude::*;
 
-use super::surface::{Seen, direction, facets, glass, gold, pane, plastic};
+use super::surface::{Seen, V, albedos, direction, facets, glass, gold, leaf, pane, plastic};
 
 /// What is scattered from one direction to the other, without the cosine.
 fn between(layers: Layers<f64>, light: DVec3, viewer: DVec3) -> DVec3 {
@@ -36,6 +37,26 @@ proptest! {
         let b = DVec3::new(b.x, b.y, -b.z);
         let (there, back) = (between(pane(x, y), a, b), between(pane(x, y), b, a));
         prop_assert!(is_near(there, back), "{there} and {back}");
+    }
+
+    #[test]
+    fn what_passes_a_leaf_is_reciprocal(a in above(), b in above(), x in 0.05f64..1.0, y in 0.05f64..1.0) {
+        let b = DVec3::new(b.x, b.y, -b.z);
+        let (there, back) = (between(leaf(x, y), a, b), between(leaf(x, y), b, a));
+        prop_assert!(is_near(there, back), "{there} and {back}");
+    }
+
+    /// By itself; what a coat leaves to the layers below depends on the viewer alone.
+    #[test]
+    fn a_coat_is_reciprocal(a in above(), b in above(), weight in 0.1f64..1.0, alpha in 0.05f64..1.0) {
+        let of = |light: DVec3, viewer: DVec3| {
+            let up = V::new(0.0, 0.0, 1.0);
+            let viewer = V::new(viewer.x, viewer.y, viewer.z);
+            let ggx = Ggx { x: alpha, y: alpha };
+            let coat = Coat::new(Effects(u32::MAX), Albedos(albedos()), (up, -viewer), (weight, ggx));
+            DVec3::splat(coat.scattering(V::new(light.x, light.y, light.z)).0 / light.z)
+        };
+        prop_assert!(is_near(of(a, b), of(b, a)), "{} and {}", of(a, b), of(b, a));
     }
 
     /// But for the compression of radiance, by the square of the index.

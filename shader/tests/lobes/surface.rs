@@ -1,9 +1,10 @@
 //! Surfaces to test, in double precision: flat, facing up the third axis.
 
-use eyerays_shader::data::Effects;
+use eyerays_shader::data::{Effects, Finishes};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::material::{
-    ALBEDOS, Albedos, Bsdf, Closure, ClosureSample, Ggx, Layers, Reflectance, Scattering, Way, conductor_mean,
+    ALBEDOS, Albedos, Bsdf, Closure, ClosureSample, Coat, Coated, Ggx, Layers, Reflectance, Scattering, Sheen, Way,
+    conductor_mean,
 };
 use eyerays_shader::real::V3;
 use eyerays_shader::sampler::hash;
@@ -27,7 +28,7 @@ pub fn facets(x: f64, y: f64) -> Layers<f64> {
         has_two_faces: false,
     };
     let ggx = Ggx { x, y };
-    Layers { diffuse: BLACK, through: BLACK, reflectance, is_coated: true, way: Way::OPAQUE, ggx }
+    Layers { diffuse: BLACK, beyond: BLACK, through: BLACK, reflectance, is_coated: true, way: Way::OPAQUE, ggx }
 }
 
 /// White plastic.
@@ -60,6 +61,21 @@ pub fn pane(x: f64, y: f64) -> Layers<f64> {
     Layers { through: half, diffuse: half, way: Way::THIN, ..plastic(x, y) }
 }
 
+/// A leaf: half of what its base scatters leaves on the far side.
+pub fn leaf(x: f64, y: f64) -> Layers<f64> {
+    let half = WHITE * 0.5;
+    Layers { diffuse: half, beyond: half, ..plastic(x, y) }
+}
+
+/// What lies on a surface.
+#[derive(Clone, Copy, Default)]
+pub struct Over {
+    /// How much of it a coat is on, and the roughness of its facets.
+    pub coat: Option<(f64, f64)>,
+    /// The perceived roughness of white fibres.
+    pub sheen: Option<f64>,
+}
+
 /// The words of the tables.
 pub fn albedos() -> &'static [u32] {
     static WORDS: OnceLock<Vec<u32>> = OnceLock::new();
@@ -68,22 +84,27 @@ pub fn albedos() -> &'static [u32] {
 
 /// A closure that is seen from some direction, which may be below.
 pub struct Seen {
-    closure: Bsdf<'static, f64>,
+    closure: Coated<'static, f64>,
     interaction: SurfaceInteraction<f64>,
 }
 
 impl Seen {
     /// From the unit direction `viewer`, with what is lost between facets.
     pub fn from(layers: Layers<f64>, viewer: DVec3) -> Self {
-        Self::by(Effects(u32::MAX), layers, viewer)
+        Self::by(Effects(u32::MAX), layers, Over::default(), viewer)
+    }
+
+    /// The same below what lies on it.
+    pub fn below(over: Over, layers: Layers<f64>, viewer: DVec3) -> Self {
+        Self::by(Effects(u32::MAX), layers, over, viewer)
     }
 
     /// Where facets scatter once.
     pub fn once(layers: Layers<f64>, viewer: DVec3) -> Self {
-        Self::by(Effects(!Effects::COMPENSATED), layers, viewer)
+        Self::by(Effects(!Effects::COMPENSATED), layers, Over::default(), viewer)
     }
 
-    fn by(effects: Effects, layers: Layers<f64>, viewer: DVec3) -> Self {
+    fn by(effects: Effects, layers: Layers<f64>, over: Over, viewer: DVec3) -> Self {
         let up = if viewer.z < 0.0 { -1.0 } else { 1.0 };
         let normal = V::new(0.0, 0.0, up);
         let axes = [V::new(1.0, 0.0, 0.0), V::new(0.0, up, 0.0), normal];
@@ -99,7 +120,14 @@ impl Seen {
             is_lifted: false,
             lift: 0.0,
         };
-        Seen { closure: Bsdf::new(effects, Albedos(albedos()), axes, -of(viewer), layers), interaction }
+        let base = Bsdf::new((effects, Finishes(u32::MAX)), Albedos(albedos()), axes, -of(viewer), layers);
+        let coat = over.coat.map_or(Coat::none(), |(weight, alpha)| {
+            let ggx = Ggx { x: alpha, y: alpha };
+            Coat::new(effects, Albedos(albedos()), (normal, -of(viewer)), (weight, ggx))
+        });
+        let own = V::new(viewer.x, viewer.y * up, viewer.z * up);
+        let sheen = over.sheen.map_or(Sheen::none(), |roughness| Sheen::new(own, WHITE, roughness));
+        Seen { closure: Coated::new(Finishes(u32::MAX), base, (coat, sheen)), interaction }
     }
 
     /// How it scatters light from a unit direction.

@@ -8,6 +8,7 @@ use glam::{DVec3, Vec3};
 use super::grids;
 use super::normalisation::{Normalisation, flushed};
 use crate::error::{Error, Result};
+use crate::memory::Room;
 use crate::scene::{Absorption, Grid, Material, Medium, Scene, Volume};
 
 /// The media of a scene, and which material is filled with which.
@@ -85,11 +86,8 @@ impl Media {
         if let Some((_, at)) = known {
             return Ok(*at);
         }
-        let words = grids::words(grid, normalisation)?;
-        let at = u32::try_from(self.grids.len()).ok().filter(|at| at.checked_add(words.len() as u32).is_some());
-        let at =
-            at.ok_or_else(|| Error::new("the scene's grids are together larger than devices hold: make them coarser"))?;
-        self.grids.extend(words);
+        let at = self.grids.len() as u32;
+        grids::append(grid, normalisation, Room::now(), &mut self.grids)?;
         self.placed.push((grid.clone(), at));
         Ok(at)
     }

@@ -1,13 +1,12 @@
 //! What is between surfaces, as kernels read it.
 
-use std::sync::Arc;
-
 use eyerays_shader::data::{Filling, Media as Bits, Medium as MediumRecord, pack};
 use glam::{DVec3, Vec3};
 
 use super::grids;
 use super::normalisation::{Normalisation, flushed};
 use crate::error::{Error, Result};
+use crate::memory::Room;
 use crate::scene::{Absorption, Grid, Material, Medium, Scene, Volume};
 
 /// The media of a scene, and which material is filled with which.
@@ -19,8 +18,6 @@ pub struct Media {
     pub fillings: Vec<Filling>,
     /// Words of their grids.
     pub grids: Vec<u32>,
-    /// Where these are.
-    placed: Vec<(Arc<Grid>, u32)>,
     /// The number of the medium outside of all surfaces, 0 for none.
     pub fog: u32,
     /// What of it kernels are compiled for.
@@ -31,35 +28,46 @@ impl Media {
     /// Those of a scene; nothing of one without.
     ///
     /// # Errors
-    /// There are too many.
+    /// There are too many, or a grid is too large.
     pub fn of(scene: &Scene, normalisation: &Normalisation) -> Result<Media> {
         let volumes = || scene.materials.iter().filter_map(|material| material.volume.as_ref());
         if scene.fog.is_none() && volumes().next().is_none() {
             let fillings = vec![Filling::default(); scene.materials.len()];
             return Ok(Media { fillings, ..Media::default() });
         }
-        let mut media = Media::default();
-        let scale = normalisation.scale;
-        if let Some(fog) = &scene.fog {
-            media.fog = media.number(record(fog, DVec3::ZERO, (0, 1.0), scale))?;
-        }
-        for material in &scene.materials {
-            let filling = media.filling(material, normalisation)?;
-            media.fillings.push(filling);
-        }
+        let mut tables = Tables { normalisation, records: Vec::new(), grids: Vec::new(), placed: Vec::new() };
+        let fog = match &scene.fog {
+            Some(fog) => tables.number(record(fog, DVec3::ZERO, (0, 1.0), normalisation.scale))?,
+            None => 0,
+        };
+        let fillings = scene.materials.iter().map(|material| tables.filling(material)).collect::<Result<_>>()?;
         let glows = |medium: &Medium| medium.emission != Vec3::ZERO;
         let bit = |bit, holds: bool| if holds { bit } else { 0 };
-        media.bits = Bits(
+        let bits = Bits(
             Bits::PRESENT
                 | bit(Bits::OPEN, volumes().any(|volume| !volume.interface))
                 | bit(Bits::GRIDS, volumes().any(|volume| volume.density.is_some()))
                 | bit(Bits::GLOWING, volumes().map(|v| v.medium).chain(scene.fog).any(|medium| glows(&medium))),
         );
-        Ok(media)
+        let Tables { records, mut grids, .. } = tables;
+        // Blocks that turned out even need no room for their corners.
+        grids.shrink_to_fit();
+        Ok(Media { records, fillings, grids, fog, bits })
     }
+}
 
-    fn filling(&mut self, material: &Material, normalisation: &Normalisation) -> Result<Filling> {
-        let scale = normalisation.scale;
+/// The tables of media while they are made.
+struct Tables<'a> {
+    normalisation: &'a Normalisation,
+    records: Vec<MediumRecord>,
+    grids: Vec<u32>,
+    /// Grids, and their first words.
+    placed: Vec<(&'a Grid, u32)>,
+}
+
+impl<'a> Tables<'a> {
+    fn filling(&mut self, material: &'a Material) -> Result<Filling> {
+        let scale = self.normalisation.scale;
         let Some(Volume { medium, interface, priority, density }) = &material.volume else {
             // Fog ends at the surface of clear glass, too.
             let clear = record(&Medium::default(), DVec3::ZERO, (0, material.ior), scale);
@@ -73,24 +81,21 @@ impl Media {
         let ior = if *interface { material.ior } else { 1.0 };
         let record = record(medium, absorption, ((*priority).into(), ior), scale);
         let record = match density {
-            Some(grid) => record.with_grid(self.grid(grid, normalisation)?),
+            Some(grid) => record.with_grid(self.grid(grid)?),
             None => record,
         };
         Ok(Filling::new(self.number(record)?, !interface))
     }
 
     /// The first word of a grid, which several media share.
-    fn grid(&mut self, grid: &Arc<Grid>, normalisation: &Normalisation) -> Result<u32> {
-        let known = self.placed.iter().find(|(other, _)| Arc::ptr_eq(other, grid) || other == grid);
+    fn grid(&mut self, grid: &'a Grid) -> Result<u32> {
+        let known = self.placed.iter().find(|(other, _)| std::ptr::eq(*other, grid) || *other == grid);
         if let Some((_, at)) = known {
             return Ok(*at);
         }
-        let words = grids::words(grid, normalisation)?;
-        let at = u32::try_from(self.grids.len()).ok().filter(|at| at.checked_add(words.len() as u32).is_some());
-        let at =
-            at.ok_or_else(|| Error::new("the scene's grids are together larger than devices hold: make them coarser"))?;
-        self.grids.extend(words);
-        self.placed.push((grid.clone(), at));
+        let at = self.grids.len() as u32;
+        grids::append(grid, self.normalisation, Room::now(), &mut self.grids)?;
+        self.placed.push((grid, at));
         Ok(at)
     }
 

@@ -1,12 +1,11 @@
 //! Compiled kernels: how many threads they are run with, and what they bind.
 
-use eyerays_passes::Kernel as Cut;
 use eyerays_shader::launch::WORKGROUP;
 use eyerays_shader::resources::{Access, RESOURCES, binding};
 
 use super::deep::on_deep_stacks;
 use super::device::Gpu;
-use super::module;
+use super::pipeline::{Pipeline, READ, WRITE};
 use super::recipe::Recipe;
 use crate::plan::{Plan, Stage};
 
@@ -18,8 +17,7 @@ const RESIDENT: u32 = 4096;
 #[derive(Clone)]
 pub(super) struct Kernel {
     pub stage: Stage,
-    pipeline: wgpu::ComputePipeline,
-    layout: wgpu::BindGroupLayout,
+    pipeline: Pipeline,
     /// What it binds, by the numbers of the table of resources: its own binding `i` is the `i`th.
     bindings: Vec<u32>,
     persistent: bool,
@@ -28,15 +26,11 @@ pub(super) struct Kernel {
 impl Kernel {
     /// Binds buffers to it; `buffer` gives that of a resource.
     pub fn group<'b>(&self, gpu: &Gpu, buffer: impl Fn(u32) -> Option<&'b wgpu::Buffer>) -> wgpu::BindGroup {
-        let entry = |(place, &binding): (usize, &u32)| {
-            let buffer = buffer(binding);
+        let buffer = |&binding: &u32| {
             let name = RESOURCES[binding as usize].name;
-            let buffer = buffer.unwrap_or_else(|| panic!("the plan has no {name} for {:?}", self.stage));
-            wgpu::BindGroupEntry { binding: place as u32, resource: buffer.as_entire_binding() }
+            buffer(binding).unwrap_or_else(|| panic!("the plan has no {name} for {:?}", self.stage))
         };
-        let entries: Vec<_> = self.bindings.iter().enumerate().map(entry).collect();
-        let (layout, entries) = (&self.layout, &entries[..]);
-        gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries })
+        self.pipeline.group(gpu, self.bindings.iter().map(buffer))
     }
 
     /// Does it bind this resource?
@@ -52,7 +46,7 @@ impl Kernel {
 
     /// Runs a thread for each of `slots` slots in each of `rows` rows, or takes them in turn.
     pub fn run(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup, slots: u32, rows: u32) {
-        self.set(pass, group);
+        self.pipeline.set(pass, group);
         let groups = slots.div_ceil(WORKGROUP);
         if self.persistent {
             pass.dispatch_workgroups(groups.saturating_mul(rows).min(RESIDENT), 1, 1);
@@ -69,17 +63,12 @@ impl Kernel {
         arguments: &wgpu::Buffer,
         offset: u32,
     ) {
-        self.set(pass, group);
+        self.pipeline.set(pass, group);
         if self.persistent {
             pass.dispatch_workgroups(RESIDENT, 1, 1);
         } else {
             pass.dispatch_workgroups_indirect(arguments, 4 * u64::from(offset));
         }
-    }
-
-    fn set(&self, pass: &mut wgpu::ComputePass<'_>, group: &wgpu::BindGroup) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, group, &[]);
     }
 }
 
@@ -111,41 +100,12 @@ impl Known {
 
 fn one(gpu: &Gpu, recipe: &Recipe) -> Kernel {
     let cut = recipe.cut();
-    let layout = layout(gpu, &cut);
-    let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-        label: None,
-        bind_group_layouts: &[Some(&layout)],
-        immediate_size: 0,
-    });
-    let module = module::create(gpu, &cut.words(), &recipe.name);
-    let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-        label: Some(&recipe.name),
-        layout: Some(&pipeline_layout),
-        module: &module,
-        entry_point: Some(&recipe.name),
-        compilation_options: Default::default(),
-        cache: None,
-    });
     let bindings = cut.bindings().to_vec();
-    Kernel { stage: recipe.step.stage, pipeline, layout, bindings, persistent: recipe.is_persistent() }
-}
-
-/// What a kernel binds, and nothing else.
-fn layout(gpu: &Gpu, cut: &Cut) -> wgpu::BindGroupLayout {
-    let entry = |(place, &binding): (usize, &u32)| wgpu::BindGroupLayoutEntry {
-        binding: place as u32,
-        visibility: wgpu::ShaderStages::COMPUTE,
-        ty: wgpu::BindingType::Buffer {
-            ty: match RESOURCES[binding as usize].access {
-                Access::Uniform => wgpu::BufferBindingType::Uniform,
-                Access::Read => wgpu::BufferBindingType::Storage { read_only: true },
-                Access::Write => wgpu::BufferBindingType::Storage { read_only: false },
-            },
-            has_dynamic_offset: false,
-            min_binding_size: None,
-        },
-        count: None,
-    };
-    let entries: Vec<_> = cut.bindings().iter().enumerate().map(entry).collect();
-    gpu.device.create_bind_group_layout(&wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries })
+    let types = bindings.iter().map(|&binding| match RESOURCES[binding as usize].access {
+        Access::Uniform => wgpu::BufferBindingType::Uniform,
+        Access::Read => READ,
+        Access::Write => WRITE,
+    });
+    let pipeline = Pipeline::new(gpu, &cut.words(), &recipe.name, types);
+    Kernel { stage: recipe.step.stage, pipeline, bindings, persistent: recipe.is_persistent() }
 }

@@ -12,6 +12,7 @@ mod linear;
 mod memory;
 mod module;
 pub mod numerics;
+mod pipeline;
 mod readback;
 mod recipe;
 mod refit;

@@ -1,6 +1,6 @@
 //! Device memory of a scene.
 
-use eyerays_shader::data::Effects;
+use eyerays_shader::data::{Effects, Media};
 use eyerays_shader::resources::{RESOURCES, binding};
 
 use super::adapter::AdapterReport;
@@ -38,6 +38,8 @@ impl<'a> SceneRecords<'a> {
         let physicals = if packed.effects().has(Effects::PHYSICAL) { packed.physicals() } else { &[] };
         let finishes = if packed.finish_bits().any() { packed.finishes() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
+        let media = if packed.media_bits().has(Media::PRESENT) { packed.media() } else { &[] };
+        let grids = if packed.media_bits().has(Media::GRIDS) { packed.grids() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(nodes.words(packed)))),
             (binding::WIDE, bytemuck::cast_slice(wide)),
@@ -60,8 +62,8 @@ impl<'a> SceneRecords<'a> {
             (binding::OPACITIES, bytemuck::cast_slice(&textures.opacities)),
             (binding::ENVIRONMENT, bytemuck::cast_slice(packed.environment())),
             (binding::ALBEDOS, bytemuck::cast_slice(packed.albedos())),
-            (binding::MEDIA, bytemuck::cast_slice(packed.media())),
-            (binding::GRIDS, bytemuck::cast_slice(packed.grids())),
+            (binding::MEDIA, bytemuck::cast_slice(media)),
+            (binding::GRIDS, bytemuck::cast_slice(grids)),
             (binding::OPTICS, bytemuck::cast_slice(packed.optic_tables())),
         ]
     }
@@ -170,7 +172,40 @@ fn upload(gpu: &Gpu, binding: u32, bytes: &[u8]) -> Result<wgpu::Buffer> {
 
 #[cfg(test)]
 mod tests {
+    use std::sync::Arc;
+
+    use eyerays_bvh::Quality;
+    use glam::DVec3;
+
     use super::*;
+    use crate::device_scene::Feature;
+    use crate::scene::{Grid, Integrator, Medium, Settings, Transport, Volume};
+
+    #[test]
+    fn media_go_to_the_device_where_kernels_go_through_them_and_only_there() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
+        let mut scene = crate::scene_io::load(path.as_ref()).unwrap().0;
+        let by = |integrator| {
+            let transport = Transport { integrator, ..scene.settings.transport };
+            Settings { transport, ..scene.settings }
+        };
+        let (paths, occlusion) = (by(Integrator::Path), by(Integrator::Ao));
+        let sizes = |job: &Job| {
+            let records = SceneRecords::new(job, Layout::Gathered, Hierarchies::default());
+            let bytes = records.bytes();
+            [binding::MEDIA, binding::GRIDS].map(|wanted| bytes.iter().find(|(own, _)| *own == wanted).unwrap().1.len())
+        };
+        scene.fog = Some(Medium::default());
+        let fog = Job::new(&scene, paths, Quality::Fast).unwrap();
+        assert!(sizes(&fog)[0] > 0 && sizes(&fog)[1] == 0);
+        let density = Grid::dense("smoke", [1, 1, 2], &[1.0, 2.0], [DVec3::ZERO, DVec3::ONE]);
+        scene.materials[0].volume =
+            Some(Volume { density: Some(Arc::new(density)), ..Volume::open(Medium::default()) });
+        let smoke = Job::new(&scene, paths, Quality::Fast).unwrap();
+        assert!(sizes(&smoke).iter().all(|&size| size > 0));
+        assert_eq!(sizes(&smoke.showing(Some(Feature::Normal))), [0, 0]);
+        assert_eq!(sizes(&smoke.with(occlusion).unwrap()), [0, 0]);
+    }
 
     #[test]
     fn a_scene_over_a_buffer_or_over_the_memory_is_refused_with_both_numbers() {

@@ -4,13 +4,14 @@ use eyerays_shader::launch::{ROW, WORKGROUP};
 use wgpu::BufferUsages as Use;
 
 use super::device::Gpu;
-use super::{module, readback};
+use super::pipeline::{Pipeline, READ, WRITE};
+use super::readback;
 use crate::error::Result;
 
 /// A dispatch.
 #[derive(Clone)]
 pub(super) struct Step {
-    pipeline: wgpu::ComputePipeline,
+    pipeline: Pipeline,
     group: wgpu::BindGroup,
     threads: u32,
 }
@@ -18,8 +19,7 @@ pub(super) struct Step {
 impl Step {
     /// Records it.
     pub fn record(&self, pass: &mut wgpu::ComputePass<'_>) {
-        pass.set_pipeline(&self.pipeline);
-        pass.set_bind_group(0, &self.group, &[]);
+        self.pipeline.set(pass, &self.group);
         pass.dispatch_workgroups(self.threads.min(ROW).div_ceil(WORKGROUP), self.threads.div_ceil(ROW), 1);
     }
 }
@@ -59,52 +59,20 @@ pub(super) fn uniform(gpu: &Gpu, told: &impl bytemuck::NoUninit) -> wgpu::Buffer
 }
 
 /// A kernel that takes a uniform record and buffers.
-pub(super) struct Kernel {
-    layout: wgpu::BindGroupLayout,
-    pipeline: wgpu::ComputePipeline,
-}
+pub(super) struct Kernel(Pipeline);
 
 impl Kernel {
     /// By its name in a module, with whether it writes each of its buffers.
     pub fn new(gpu: &Gpu, module: &[u8], name: &str, writes: &[bool]) -> Kernel {
-        let storage = |&writes: &bool| wgpu::BufferBindingType::Storage { read_only: !writes };
+        let storage = |&writes: &bool| if writes { WRITE } else { READ };
         let types = [wgpu::BufferBindingType::Uniform].into_iter().chain(writes.iter().map(storage));
-        let entries: Vec<_> = types
-            .zip(0..)
-            .map(|(ty, binding)| wgpu::BindGroupLayoutEntry {
-                binding,
-                visibility: wgpu::ShaderStages::COMPUTE,
-                ty: wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None },
-                count: None,
-            })
-            .collect();
-        let layout = &wgpu::BindGroupLayoutDescriptor { label: None, entries: &entries };
-        let layout = gpu.device.create_bind_group_layout(layout);
-        let pipeline_layout = gpu.device.create_pipeline_layout(&wgpu::PipelineLayoutDescriptor {
-            label: None,
-            bind_group_layouts: &[Some(&layout)],
-            immediate_size: 0,
-        });
         let words: Vec<u32> = readback::words(module).collect();
-        let pipeline = gpu.device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: Some(name),
-            layout: Some(&pipeline_layout),
-            module: &module::create(gpu, &words, name),
-            entry_point: Some(name),
-            compilation_options: Default::default(),
-            cache: None,
-        });
-        Kernel { layout, pipeline }
+        Kernel(Pipeline::new(gpu, &words, name, types))
     }
 
     /// A dispatch of so many threads over buffers, after the uniform record.
     pub fn step(&self, gpu: &Gpu, uniform: &wgpu::Buffer, buffers: &[&wgpu::Buffer], threads: u32) -> Step {
-        let all = [&uniform].into_iter().chain(buffers).zip(0..);
-        let entries: Vec<_> = all
-            .map(|(buffer, binding)| wgpu::BindGroupEntry { binding, resource: buffer.as_entire_binding() })
-            .collect();
-        let (layout, entries) = (&self.layout, &entries[..]);
-        let group = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor { label: None, layout, entries });
-        Step { pipeline: self.pipeline.clone(), group, threads }
+        let group = self.0.group(gpu, [uniform].into_iter().chain(buffers.iter().copied()));
+        Step { pipeline: self.0.clone(), group, threads }
     }
 }

@@ -190,21 +190,34 @@ pub struct Surfaces {
 /// # Errors
 /// As [`Backend::open`] and [`Session::render`].
 pub fn surfaces(job: &Job, camera: &Camera, threads: usize) -> Result<Surfaces> {
-    let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
-    let of = |feature| {
-        let job = job.showing(Some(feature));
-        Ok(backend.open(&job)?.render(&View::new(&job, camera)?, 1, &|_| ())?.picture)
-    };
-    let (albedo, normal) = (of(Feature::Albedo)?, of(Feature::Normal)?);
-    let places = at_middles(job, camera, Feature::Place, View::new(job, camera)?.region(), threads)?;
+    let showing = |feature| job.showing(Some(feature));
+    let mut session = on_cpu(&showing(Feature::Albedo), threads)?;
+    let view = View::new(session.job(), camera)?;
+    let albedo = session.render(&view, 1, &|_| ())?.picture;
+    session.turn(&showing(Feature::Normal))?;
+    let normal = session.render(&View::new(session.job(), camera)?, 1, &|_| ())?.picture;
+    let (middle, view) = middle(job, camera, Feature::Place, view.region())?;
+    session.turn(&middle)?;
+    let places = session.render(&view, 1, &|_| ())?.picture;
     let depth = |pixel| Place::of(pixel, job.normalisation().scale).depth;
     Ok(Surfaces { albedo, normal, depth: places.pixels.into_iter().map(depth).collect() })
 }
 
 /// A feature at the middle of each pixel of a part of the image, by this many threads of the CPU.
 fn at_middles(job: &Job, camera: &Camera, feature: Feature, window: Region, threads: usize) -> Result<Picture> {
-    let backend = Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?;
+    let (job, view) = middle(job, camera, feature, window)?;
+    Ok(on_cpu(&job, threads)?.render(&view, 1, &|_| ())?.picture)
+}
+
+/// The job that shows a feature at the middle of each pixel, and its view of a part of the image.
+fn middle(job: &Job, camera: &Camera, feature: Feature, window: Region) -> Result<(Job, View)> {
     let (middle, pinhole) = middles(job.settings(), camera);
     let job = job.with(middle)?.showing(Some(feature));
-    Ok(backend.open(&job)?.render(&seen(&job, &pinhole, window)?.as_it_opens(), 1, &|_| ())?.picture)
+    let view = seen(&job, &pinhole, window)?.as_it_opens();
+    Ok((job, view))
+}
+
+/// A job on this many threads of the CPU, 0 for one a core.
+fn on_cpu(job: &Job, threads: usize) -> Result<Session> {
+    Backend::new(&Choice { device: DeviceWish::Cpu, threads, ..Choice::default() })?.open(job)
 }

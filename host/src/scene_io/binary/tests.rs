@@ -80,6 +80,7 @@ fn covered() -> Scene {
         specular_tint: all(&floats),
         anisotropy: all(&bytes),
         opacity: Some(Map { placement: Placement::default(), ..bytes.clone() }),
+        ..Maps::default()
     };
     (scene.materials[0].alpha, scene.materials[0].opacity) = (Alpha::Mask(0.3), 0.7);
     scene.materials[2].maps.base = all(&bytes);

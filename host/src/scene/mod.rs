@@ -14,6 +14,7 @@ mod finish;
 pub(crate) mod frame;
 mod grid;
 pub(crate) mod hierarchy;
+mod idle;
 mod instance;
 mod lens;
 mod light_groups;
@@ -292,7 +293,8 @@ pub enum Light {
 impl Material {
     /// Do its surfaces need tangents?
     pub(crate) fn has_axes(&self) -> bool {
-        self.maps.normal.is_some() || self.physical.is_some_and(|p| p.anisotropy > 0.0)
+        let turns_normals = self.maps.normal.is_some() || self.maps.finish.coat_normal.is_some();
+        turns_normals || self.physical.is_some_and(|p| p.anisotropy > 0.0)
     }
 }
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Grid, Material, Unplaced, Wall};
+use super::{Grid, Material, Unplaced};
 
 /// A homogeneous medium (pbrt-v4, chapter 11): what it does to light on a world unit of its way. Colours are linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -90,7 +90,7 @@ impl Material {
     /// Does light pass its surfaces into something inside?
     pub(crate) fn lets_light_in(&self) -> bool {
         match &self.physical {
-            Some(physical) => physical.is_transparent() && physical.wall == Wall::Body,
+            Some(physical) => physical.lets_light_in(),
             None => self.transmission != Vec3::ZERO,
         }
     }
@@ -98,6 +98,6 @@ impl Material {
     /// Why nobody sees its volume, and what to do.
     pub(crate) fn idle_volume(&self) -> Option<&'static str> {
         let is_hidden = self.volume.as_ref().is_some_and(|volume| volume.interface) && !self.lets_light_in();
-        is_hidden.then_some("its volume is behind an opaque surface; give it transmission, or set interface to false")
+        is_hidden.then_some("its volume is behind an opaque surface; give it transmission or diffuse_transmission, or set interface to false")
     }
 }

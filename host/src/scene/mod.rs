@@ -15,6 +15,7 @@ mod finish;
 pub(crate) mod frame;
 mod grid;
 pub(crate) mod hierarchy;
+mod idle;
 mod instance;
 mod lens;
 mod light;

@@ -33,7 +33,7 @@ pub struct Physical {
     pub wall: Wall,
     /// What a body takes of light on its way inside.
     pub absorption: Option<Absorption>,
-    /// A metal by its complex index of refraction, in place of all but roughness and anisotropy.
+    /// A metal by its complex index of refraction, in place of all but roughness, anisotropy, coat and sheen.
     pub conductor: Option<Conductor>,
     /// A layer over all of it.
     #[serde(default)]
@@ -129,14 +129,14 @@ impl Physical {
         self.transmission != Vec3::ZERO && self.conductor.is_none()
     }
 
-    /// What of it does nothing beside the rest, and what to do.
-    pub fn idle(&self) -> Option<&'static str> {
-        if self.conductor.is_some() && self.transmission != Vec3::ZERO {
-            return Some("no light passes a conductor; remove conductor or transmission");
-        }
-        let has_inside = self.is_transparent() && self.wall == Wall::Body;
-        let absorbs_nothing = self.absorption.is_some() && !has_inside;
-        absorbs_nothing.then_some("absorption is of light that passes inside; give it transmission and leave thin out")
+    /// Does its base scatter light to its far side?
+    pub fn scatters_through(&self) -> bool {
+        self.diffuse_transmission.is_some_and(|of| of.weight > 0.0) && self.conductor.is_none()
+    }
+
+    /// Does light pass its surface into something inside?
+    pub(crate) fn lets_light_in(&self) -> bool {
+        (self.is_transparent() || self.scatters_through()) && self.wall == Wall::Body
     }
 
     /// What it reflects at normal incidence where it is no metal, linear RGB.

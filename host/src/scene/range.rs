@@ -32,7 +32,13 @@ impl Range {
         Range { holds: |x| x > 0.0 && x <= 360.0, says: "greater than 0 and at most 360 degrees" };
     /// An index of refraction.
     pub const IOR: Range = Range { holds: |x| (1.0..=4.0).contains(&x), says: "between 1 and 4" };
-
+    /// An Abbe number.
+    pub const ABBE: Range = Range { holds: |x| (1.0..=1000.0).contains(&x), says: "between 1 and 1000" };
+    /// 20 over an Abbe number; 0 for none.
+    pub const DISPERSION: Range = Range { holds: |x| (0.0..=20.0).contains(&x), says: "between 0 and 20" };
+    /// The thickness of a film, in nanometres.
+    pub const THICKNESS: Range =
+        Range { holds: |x| (0.0..=100_000.0).contains(&x), says: "between 0 and 100000 nanometres" };
     /// The mean cosine of an angle by which light is scattered.
     pub const ANISOTROPY: Range =
         Range { holds: |x| x.abs() <= Medium::MOST_ANISOTROPY, says: "between -0.999 and 0.999" };

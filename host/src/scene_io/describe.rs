@@ -5,6 +5,7 @@ use std::fmt::{Debug, Write};
 
 use glam::Vec3;
 
+use super::finish;
 use crate::choice::Named;
 use crate::scene::studio;
 use crate::scene::{
@@ -343,6 +344,7 @@ fn physical(text: &mut Text, of: &Physical) {
     text.other("roughness", of.roughness, default.roughness);
     text.other("anisotropy", of.anisotropy, default.anisotropy);
     text.other("anisotropy_rotation", of.anisotropy_rotation, default.anisotropy_rotation);
+    finish::described(of).into_iter().for_each(|(key, value)| text.key(key, value));
     if let Some(Conductor { eta, k }) = of.conductor {
         text.key("conductor", format!("{{ eta = {}, k = {} }}", triple(eta), triple(k)));
         return;

@@ -294,7 +294,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         frame::without_spare_lamps(&mut scene, settings.transport.integrator);
     }
     for material in &scene.materials {
-        let idle = material.physical.and_then(|physical| physical.idle()).or(material.idle_volume());
+        let idle = material.physical.and_then(|physical| physical.idle(&material.maps)).or(material.idle_volume());
         let said = idle.map(|idle| format!("material {:?}: {idle}", material.name));
         warnings.extend(said.map(|said| Warning::new(WarningKind::Idle, path, said)));
     }

@@ -11,12 +11,12 @@ use super::grid;
 use super::load::Loading;
 use super::moment::Instant;
 use super::table::Table;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::image::{TextureBudget, read_heights, read_texture};
 #[cfg(test)]
 use crate::memory::Room;
 use crate::scene::displace::Heights;
-use crate::scene::{Grid, Map, Maps, Placement, Texture, Wrap};
+use crate::scene::{FinishMaps, Grid, Map, Maps, Placement, Texture, Wrap};
 use crate::scene::{Range, studio};
 
 /// Pictures already read, since materials share them.
@@ -116,7 +116,7 @@ impl Images {
 /// # Errors
 /// A picture that cannot be read, or a number out of range.
 pub fn maps(table: &mut Table, images: &mut Images) -> Result<Maps> {
-    let mut map = |key| Ok::<_, crate::error::Error>(map(table, key, images)?.map(|(map, _)| map));
+    let mut map = |key| Ok::<_, Error>(map(table, key, images)?.map(|(map, _)| map));
     let maps = Maps {
         base: map("base_texture")?,
         metallic_roughness: map("metallic_roughness_texture")?,
@@ -130,7 +130,25 @@ pub fn maps(table: &mut Table, images: &mut Images) -> Result<Maps> {
     };
     let normal = self::map(table, "normal_texture", images)?;
     let normal_scale = normal.as_ref().map_or(1.0, |(_, scale)| *scale);
-    Ok(Maps { normal: normal.map(|(map, _)| map), normal_scale, ..maps })
+    Ok(Maps { normal: normal.map(|(map, _)| map), normal_scale, finish: finish(table, images)?, ..maps })
+}
+
+/// The maps of what lies on a material, and of what else its base does with light.
+fn finish(table: &mut Table, images: &mut Images) -> Result<FinishMaps> {
+    let (coat_normal, coat_normal_scale) = map(table, "coat_normal_texture", images)?.unzip();
+    let mut map = |key| Ok::<_, Error>(map(table, key, images)?.map(|(map, _)| map));
+    Ok(FinishMaps {
+        coat: map("coat_texture")?,
+        coat_roughness: map("coat_roughness_texture")?,
+        coat_normal,
+        coat_normal_scale: coat_normal_scale.unwrap_or_default(),
+        sheen_colour: map("sheen_color_texture")?,
+        sheen_roughness: map("sheen_roughness_texture")?,
+        diffuse_transmission: map("diffuse_transmission_texture")?,
+        diffuse_transmission_colour: map("diffuse_transmission_color_texture")?,
+        film: map("film_texture")?,
+        film_thickness: map("film_thickness_texture")?,
+    })
 }
 
 /// A map and, of normals, their scale.
@@ -148,7 +166,8 @@ fn map(table: &mut Table, key: &'static str, images: &mut Images) -> Result<Opti
         nearest: of.flag("nearest")?.unwrap_or(false),
         ..Placement::default().transformed(scale, rotation, offset)
     };
-    let strength = if key == "normal_texture" { of.number("strength", Range::ANY)? } else { None };
+    let is_of_normals = matches!(key, "normal_texture" | "coat_normal_texture");
+    let strength = if is_of_normals { of.number("strength", Range::ANY)? } else { None };
     of.done()?;
     Ok(Some((Map { texture, placement }, strength.unwrap_or(1.0))))
 }

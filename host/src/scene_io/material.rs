@@ -136,6 +136,10 @@ impl Fields {
     /// A picture whose factor nobody says is taken as it is.
     fn take_pictures(&mut self) {
         let Fields { transmission, emission, physical, maps, .. } = self;
+        physical.finish.take_pictures(&maps.finish);
+        if physical.finish.takes_base() {
+            maps.finish.diffuse_transmission_colour = maps.base.clone();
+        }
         if maps.emission.is_some() {
             emission.get_or_insert(Vec3::ONE);
         }

@@ -15,6 +15,7 @@ mod document;
 mod face_sizes;
 mod file;
 mod files;
+mod finish;
 mod geometry;
 mod gltf;
 mod grid;

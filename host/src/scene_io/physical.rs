@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::finish;
 use super::table::Table;
 use crate::error::Result;
 use crate::scene::{Absorption, Conductor, Physical, Range, Wall};
@@ -19,6 +20,7 @@ pub struct Fields {
     pub wall: Option<Wall>,
     pub absorption: Option<Absorption>,
     pub conductor: Option<Conductor>,
+    pub finish: finish::Fields,
 }
 
 impl Fields {
@@ -38,6 +40,7 @@ impl Fields {
             wall: table.flag_or_choice("thin", [Wall::Body, Wall::Pane])?,
             absorption: table.table("absorption")?.map(absorption).transpose()?,
             conductor: table.table("conductor")?.map(conductor).transpose()?,
+            finish: finish::Fields::read(table)?,
         })
     }
 
@@ -54,6 +57,7 @@ impl Fields {
             wall: self.wall.or(under.wall),
             absorption: self.absorption.or(under.absorption),
             conductor: self.conductor.or(under.conductor),
+            finish: self.finish.over(under.finish),
         }
     }
 
@@ -63,7 +67,7 @@ impl Fields {
             return None;
         }
         let plain = Physical::default();
-        Some(Physical {
+        let mut physical = Physical {
             base: self.base.or(diffuse).unwrap_or(plain.base),
             metallic: self.metallic.unwrap_or(plain.metallic),
             roughness: self.roughness.unwrap_or(plain.roughness),
@@ -77,7 +81,9 @@ impl Fields {
             absorption: self.absorption,
             conductor: self.conductor,
             ..plain
-        })
+        };
+        self.finish.give(&mut physical);
+        Some(physical)
     }
 }
 

@@ -27,6 +27,7 @@ pub(super) fn material(owner: &Owner, material: &Material) -> Unplaced<()> {
         owner.number("alpha_cutoff", least, Range::SHARE)?;
     }
     owner.number("strength of normals", material.maps.normal_scale, Range::ANY)?;
+    owner.number("strength of the coat's normals", material.maps.finish.coat_normal_scale, Range::ANY)?;
     material.maps.all().try_for_each(|map| placed(owner, map))
 }
 

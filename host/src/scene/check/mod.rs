@@ -1,6 +1,7 @@
 //! Whether a scene holds together and is in range, whoever made it.
 
 mod covering;
+mod finish;
 mod instances;
 mod medium;
 mod motion;
@@ -119,6 +120,7 @@ fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
         owner.colour("absorption color", absorption.colour, Range::SHARE)?;
         owner.number("absorption distance", absorption.distance, Range::LENGTH)?;
     }
+    finish::finish(owner, of)?;
     let Some(conductor) = of.conductor else { return Ok(()) };
     owner.colour("conductor eta", conductor.eta, Range::INDEX)?;
     owner.colour("conductor k", conductor.k, Range::INDEX)

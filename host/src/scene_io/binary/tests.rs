@@ -14,7 +14,7 @@ use crate::job::Job;
 use crate::memory::Room;
 use crate::quality::Bvh;
 use crate::scene::{
-    Alpha, Environment, Light, Map, Maps, Motion, Placement, Scene, Shape, Texels, Texture, Unplaced, Wrap,
+    Alpha, Environment, FinishMaps, Light, Map, Maps, Motion, Placement, Scene, Shape, Texels, Texture, Unplaced, Wrap,
 };
 use crate::scene_io::{Loading, Shutter, budget::Budget, load, load_as};
 
@@ -80,7 +80,18 @@ fn covered() -> Scene {
         specular_tint: all(&floats),
         anisotropy: all(&bytes),
         opacity: Some(Map { placement: Placement::default(), ..bytes.clone() }),
-        ..Maps::default()
+        finish: FinishMaps {
+            coat: all(&like),
+            coat_roughness: all(&bytes),
+            coat_normal: all(&like),
+            coat_normal_scale: 0.25,
+            sheen_colour: all(&floats),
+            sheen_roughness: all(&like),
+            diffuse_transmission: all(&bytes),
+            diffuse_transmission_colour: all(&floats),
+            film: all(&like),
+            film_thickness: all(&bytes),
+        },
     };
     (scene.materials[0].alpha, scene.materials[0].opacity) = (Alpha::Mask(0.3), 0.7);
     scene.materials[2].maps.base = all(&bytes);
@@ -204,8 +215,8 @@ fn what_covers_surfaces_comes_back_and_every_picture_once() {
     let around = back.environment.as_ref().expect("an environment");
     assert!(Arc::ptr_eq(&around.texture, &maps(0).emission.as_ref().expect("a map").texture));
     assert_eq!((around.rotation, around.scale, around.visible), (30.0, 0.1, false));
-    let of =
-        |scene: &Scene| scene.materials.iter().map(|m| (m.alpha, m.opacity, m.maps.normal_scale)).collect::<Vec<_>>();
+    let scales = |maps: &Maps| (maps.normal_scale, maps.finish.coat_normal_scale);
+    let of = |scene: &Scene| scene.materials.iter().map(|m| (m.alpha, m.opacity, scales(&m.maps))).collect::<Vec<_>>();
     assert_eq!(of(&back), of(&scene));
 }
 
@@ -259,7 +270,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b.truncate(100)).starts_with("its 100 bytes are less than a header"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
-    assert!(refused(|b| b[8] = 6).starts_with("version 6 of the binary form, and 7 is what is read"));
+    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 8 is what is read"));
     assert!(refused(|b| b[168] = 1).starts_with("its byte 168, which belongs to no section, is not zero"));
     assert!(refused(|b| b[12] = 1).starts_with("its header has other than zeros in its spare bytes"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));

@@ -24,6 +24,7 @@ struct Picture {
 struct Taken {
     material: u32,
     normal_scale: f32,
+    coat_normal_scale: f32,
     maps: Vec<Use>,
 }
 
@@ -36,7 +37,7 @@ struct Use {
     placement: Placement,
 }
 
-/// A field of [`Maps`].
+/// A field of [`Maps`], or of its [`FinishMaps`](crate::scene::FinishMaps).
 #[derive(Clone, Copy, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 enum What {
@@ -49,6 +50,15 @@ enum What {
     SpecularTint,
     Anisotropy,
     Opacity,
+    Coat,
+    CoatRoughness,
+    CoatNormal,
+    SheenColour,
+    SheenRoughness,
+    DiffuseTransmission,
+    DiffuseTransmissionColour,
+    Film,
+    FilmThickness,
 }
 
 /// An environment.
@@ -71,7 +81,7 @@ pub struct Pictures {
 }
 
 impl What {
-    const ALL: [What; 9] = [
+    const ALL: [What; 18] = [
         What::Base,
         What::MetallicRoughness,
         What::Normal,
@@ -81,6 +91,15 @@ impl What {
         What::SpecularTint,
         What::Anisotropy,
         What::Opacity,
+        What::Coat,
+        What::CoatRoughness,
+        What::CoatNormal,
+        What::SheenColour,
+        What::SheenRoughness,
+        What::DiffuseTransmission,
+        What::DiffuseTransmissionColour,
+        What::Film,
+        What::FilmThickness,
     ];
 
     fn of(self, maps: &mut Maps) -> &mut Option<Map> {
@@ -94,6 +113,15 @@ impl What {
             What::SpecularTint => &mut maps.specular_tint,
             What::Anisotropy => &mut maps.anisotropy,
             What::Opacity => &mut maps.opacity,
+            What::Coat => &mut maps.finish.coat,
+            What::CoatRoughness => &mut maps.finish.coat_roughness,
+            What::CoatNormal => &mut maps.finish.coat_normal,
+            What::SheenColour => &mut maps.finish.sheen_colour,
+            What::SheenRoughness => &mut maps.finish.sheen_roughness,
+            What::DiffuseTransmission => &mut maps.finish.diffuse_transmission,
+            What::DiffuseTransmissionColour => &mut maps.finish.diffuse_transmission_colour,
+            What::Film => &mut maps.finish.film,
+            What::FilmThickness => &mut maps.finish.film_thickness,
         }
     }
 }
@@ -120,7 +148,8 @@ impl Pictures {
                     uses.push(Use { what, picture: number(&mut textures, texture), placement: *placement });
                 }
             }
-            taken.push(Taken { material, normal_scale: maps.normal_scale, maps: uses });
+            let (normal_scale, coat_normal_scale) = (maps.normal_scale, maps.finish.coat_normal_scale);
+            taken.push(Taken { material, normal_scale, coat_normal_scale, maps: uses });
         }
         let pictures = textures.iter().map(|texture| Picture::of(texture)).collect();
         (Pictures { environment, pictures, taken }, textures)
@@ -145,12 +174,13 @@ impl Pictures {
         if let Some(Around { picture, rotation, scale, visible }) = self.environment {
             scene.environment = Some(Environment { texture: texture(picture)?, rotation, scale, visible });
         }
-        for Taken { material, normal_scale, maps } in self.taken {
+        for Taken { material, normal_scale, coat_normal_scale, maps } in self.taken {
             let materials = scene.materials.len();
             let Some(material) = scene.materials.get_mut(material as usize) else {
                 return Err(format!("material {material} takes textures, but there are {materials}"));
             };
             material.maps.normal_scale = normal_scale;
+            material.maps.finish.coat_normal_scale = coat_normal_scale;
             for Use { what, picture, placement } in maps {
                 *what.of(&mut material.maps) = Some(Map { texture: texture(picture)?, placement });
             }

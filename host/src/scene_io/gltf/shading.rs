@@ -72,6 +72,16 @@ pub struct Extensions {
     pub specular: Option<Specular>,
     #[serde(rename = "KHR_materials_anisotropy")]
     pub anisotropy: Option<Anisotropy>,
+    #[serde(rename = "KHR_materials_clearcoat")]
+    pub clearcoat: Option<Box<Clearcoat>>,
+    #[serde(rename = "KHR_materials_sheen")]
+    pub sheen: Option<Box<Sheen>>,
+    #[serde(rename = "KHR_materials_diffuse_transmission")]
+    pub diffuse_transmission: Option<Box<DiffuseTransmission>>,
+    #[serde(rename = "KHR_materials_iridescence")]
+    pub iridescence: Option<Box<Iridescence>>,
+    #[serde(rename = "KHR_materials_dispersion")]
+    pub dispersion: Option<Dispersion>,
     #[serde(rename = "KHR_materials_pbrSpecularGlossiness")]
     pub gloss: Option<Gloss>,
     #[serde(rename = "KHR_materials_unlit")]
@@ -132,6 +142,53 @@ pub struct Anisotropy {
     pub anisotropy_strength: Option<f64>,
     pub anisotropy_rotation: Option<f64>,
     pub anisotropy_texture: Option<Info>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Clearcoat {
+    pub clearcoat_factor: Option<f64>,
+    pub clearcoat_texture: Option<Info>,
+    pub clearcoat_roughness_factor: Option<f64>,
+    pub clearcoat_roughness_texture: Option<Info>,
+    pub clearcoat_normal_texture: Option<Info>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Sheen {
+    pub sheen_color_factor: Option<[f64; 3]>,
+    pub sheen_color_texture: Option<Info>,
+    pub sheen_roughness_factor: Option<f64>,
+    pub sheen_roughness_texture: Option<Info>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct DiffuseTransmission {
+    pub diffuse_transmission_factor: Option<f64>,
+    pub diffuse_transmission_texture: Option<Info>,
+    pub diffuse_transmission_color_factor: Option<[f64; 3]>,
+    pub diffuse_transmission_color_texture: Option<Info>,
+}
+
+/// Nanometres.
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "camelCase", default)]
+pub struct Iridescence {
+    pub iridescence_factor: Option<f64>,
+    pub iridescence_texture: Option<Info>,
+    pub iridescence_ior: Option<f64>,
+    pub iridescence_thickness_minimum: Option<f64>,
+    pub iridescence_thickness_maximum: Option<f64>,
+    pub iridescence_thickness_texture: Option<Info>,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(default)]
+pub struct Dispersion {
+    /// 20 over the Abbe number; 0 for none.
+    pub dispersion: Option<f64>,
 }
 
 /// What takes the place of `pbrMetallicRoughness`.

@@ -9,12 +9,14 @@
 //! | `d` below 1, or `illum` 6, 7, or `illum` 4, 9 with `Ni` above 1 | glass |
 //! | `Ni` | index of refraction; where absent 1.5 for `illum` 4, 6, 7, 9 and else 1, which does not bend |
 //! | `Pr`, `Pm` | roughness and metalness of what is no glass, which is then of microfacets, with `Kd` as its base |
+//! | `Pc`, `Pcr`, `Ps` | weight and roughness of a coat, and the colour of sheen, likewise; 0 is none |
 //! | `map_Kd` | texture of the base and diffuse colour, times `Kd`; white where that is absent or black |
 //! | `map_Ke` | texture of the emission, times `Ke`; white where that is absent or black |
 //! | `Ke` alone | emission under paths; nothing under Whitted's model, which draws nothing that emits |
 //! | `map_d` | blended opacity, times `d`, which then makes no glass: the picture's alpha, or its red without |
 //! | `norm` | texture of normals, whose slopes `-bm` multiplies |
 //! | `map_Pr`, `map_Pm` | texture of roughness (green) and metalness (blue), where both name the same picture |
+//! | `map_Pc`, `map_Pcr` | texture of the coat's weight (red) and of its roughness (green), times `Pc` and `Pcr`; 1 where those are absent or 0 |
 //! | other pictures | nothing |
 //!
 //! Glass passes the share 1 - `d` of the light (all of it where `d` is 1 or absent), coloured by
@@ -153,13 +155,13 @@ impl<'p> Reader<'p> {
                 self.materials.push(new);
                 Ok(())
             }
-            "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "Pr" | "Pm" | "illum" => {
+            "Kd" | "Ks" | "Ke" | "Tf" | "Ns" | "Ni" | "d" | "Tr" | "Pr" | "Pm" | "Pc" | "Pcr" | "Ps" | "illum" => {
                 let mut now = self.latest(key)?.numbers;
                 self.statement(&mut now, key, rest)?;
                 self.latest(key)?.numbers = now;
                 Ok(())
             }
-            "map_Kd" | "map_Ke" | "map_d" | "norm" | "map_Pr" | "map_Pm" => {
+            "map_Kd" | "map_Ke" | "map_d" | "norm" | "map_Pr" | "map_Pm" | "map_Pc" | "map_Pcr" => {
                 let picture = self.picture(key, rest)?;
                 let pictures = &mut self.latest(key)?.pictures;
                 let of = match key {
@@ -168,6 +170,8 @@ impl<'p> Reader<'p> {
                     "map_d" => &mut pictures.opacity,
                     "norm" => &mut pictures.normal,
                     "map_Pr" => &mut pictures.roughness,
+                    "map_Pc" => &mut pictures.coat,
+                    "map_Pcr" => &mut pictures.coat_roughness,
                     _ => &mut pictures.metallic,
                 };
                 *of = picture;
@@ -202,6 +206,9 @@ impl<'p> Reader<'p> {
             "d" => now.d = Some(self.number(key, without_halo(rest), 0.0, 1.0)?),
             "Pr" => now.pr = Some(self.number(key, rest, 0.0, 1.0)?),
             "Pm" => now.pm = Some(self.number(key, rest, 0.0, 1.0)?),
+            "Pc" => now.pc = Some(self.number(key, rest, 0.0, 1.0)?),
+            "Pcr" => now.pcr = Some(self.number(key, rest, 0.0, 1.0)?),
+            "Ps" => now.ps = Some(self.colour(key, rest)?),
             "Tr" => now.tr = Some((self.number(key, rest, 0.0, 1.0)?, self.line)),
             _ => {
                 let model = lines::words(rest).next().and_then(|word| word.parse().ok());
@@ -273,7 +280,8 @@ impl<'p> Reader<'p> {
             if let Some(line) = numbers.take_transparency() {
                 opaque.add(line, "Tr 1");
             }
-            let (maps, alpha) = pictures.maps(images, &mut said);
+            let has_coat = numbers.pc.is_some_and(|weight| weight > 0.0);
+            let (maps, alpha) = pictures.maps(has_coat, images, &mut said);
             if let Some(line) = numbers.unlit(&maps).filter(|_| !shines) {
                 unlit.add(line, "Ke");
             }

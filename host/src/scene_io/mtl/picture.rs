@@ -8,7 +8,7 @@ use super::super::tally::Tally;
 use crate::scene::{Alpha, Map, Maps, Placement, Unplaced, Wrap};
 
 /// What is said of pictures for which there is no use.
-pub(super) const UNUSED: &str = "ignored: pictures are drawn of Kd, Ke, d, norm, and Pr and Pm together";
+pub(super) const UNUSED: &str = "ignored: pictures are drawn of Kd, Ke, d, norm, Pc, Pcr, and Pr and Pm together";
 /// What is said of pictures of other kinds.
 pub(super) const FOREIGN: &str =
     "is no .png, .jpg, .tga, .bmp, .tif, .exr or .hdr: surfaces are drawn without; convert it";
@@ -35,6 +35,8 @@ pub(super) struct Pictures {
     pub normal: Option<Picture>,
     pub roughness: Option<Picture>,
     pub metallic: Option<Picture>,
+    pub coat: Option<Picture>,
+    pub coat_roughness: Option<Picture>,
 }
 
 /// What is said of the pictures of a file.
@@ -126,8 +128,8 @@ pub(super) fn is_known(path: &Path) -> bool {
 }
 
 impl Pictures {
-    /// The maps of them, and the alpha of one whose opacity is its base's.
-    pub fn maps(self, images: &mut Images, said: &mut Said) -> (Maps, Option<Alpha>) {
+    /// The maps of them, and the alpha of one whose opacity is its base's; is there a coat without a picture of it?
+    pub fn maps(self, has_coat: bool, images: &mut Images, said: &mut Said) -> (Maps, Option<Alpha>) {
         let Said { apart, damaged } = said;
         let mut map = |picture: &Picture| match images.at(&picture.path) {
             Ok(texture) => Some(Map { texture, placement: picture.placement }),
@@ -143,6 +145,10 @@ impl Pictures {
             normal_scale: self.normal.as_ref().map_or(0.0, |normal| normal.strength),
             ..Maps::default()
         };
+        maps.finish.coat = self.coat.as_ref().and_then(&mut map);
+        // Roughness alone makes no coat.
+        let has_coat = has_coat || maps.finish.coat.is_some();
+        maps.finish.coat_roughness = self.coat_roughness.as_ref().filter(|_| has_coat).and_then(&mut map);
         let same = |a: &Picture, b: &Picture| (&a.path, a.placement) == (&b.path, b.placement);
         match (&self.roughness, &self.metallic) {
             (Some(roughness), Some(metallic)) if same(roughness, metallic) => {

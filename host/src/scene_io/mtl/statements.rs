@@ -2,9 +2,10 @@
 
 use glam::Vec3;
 
+use super::super::finish::{self, CoatFields, SheenFields};
 use super::super::material::Fields;
 use super::super::physical;
-use crate::scene::{Alpha, Maps};
+use crate::scene::{Alpha, FinishMaps, Maps};
 
 /// The numbers of one `newmtl`, by the statements' keys.
 #[derive(Debug, Clone, Copy, Default)]
@@ -21,6 +22,9 @@ pub(super) struct Statements {
     pub tr: Option<(f32, usize)>,
     pub pr: Option<f32>,
     pub pm: Option<f32>,
+    pub pc: Option<f32>,
+    pub pcr: Option<f32>,
+    pub ps: Option<Vec3>,
     pub illum: Option<u8>,
 }
 
@@ -54,7 +58,7 @@ impl Statements {
             // What is cut out is no glass.
             self.d = None;
         }
-        let rough = maps.metallic_roughness.as_ref().map(|_| 1.0);
+        let physical = self.physical(&maps);
         let surface = Fields {
             diffuse: self.kd,
             specular: self.ks.filter(|_| !matches!(self.illum, Some(0 | 1))),
@@ -65,16 +69,32 @@ impl Statements {
             opacity,
             ..Fields::default()
         };
-        match (self.passing(), self.illum, self.pr.or(rough), self.pm.or(rough)) {
+        match (self.passing(), self.illum, physical) {
             (Some(share), ..) => self.glass(surface, share),
-            (None, Some(3 | 5), None, None) => Fields { reflection: self.ks, ..surface },
-            (None, _, None, None) => surface,
-            (None, _, roughness, metallic) => {
-                let physical = physical::Fields { base: self.kd, roughness, metallic, ..Default::default() };
-                // Whitted's model keeps of it what it can.
-                Fields { diffuse: None, physical, ..surface }
-            }
+            (None, Some(3 | 5), None) => Fields { reflection: self.ks, ..surface },
+            (None, _, None) => surface,
+            // Whitted's model keeps of it what it can.
+            (None, _, Some(physical)) => Fields { diffuse: None, physical, ..surface },
         }
+    }
+
+    /// What is said of microfacets, if anything is. Exporters write coats and sheen of 0 for everything.
+    fn physical(&self, maps: &Maps) -> Option<physical::Fields> {
+        let rough = maps.metallic_roughness.as_ref().map(|_| 1.0);
+        let (roughness, metallic) = (self.pr.or(rough), self.pm.or(rough));
+        let some = |number: Option<f32>| number.filter(|&number| number > 0.0);
+        let finish = &maps.finish;
+        let has_coat = finish.coat.is_some() || some(self.pc).is_some();
+        // A picture is multiplied with 1 where its number is 0, as one of colours is with white.
+        let coat_roughness = if finish.coat_roughness.is_some() { some(self.pcr) } else { self.pcr };
+        let coat = has_coat.then_some(CoatFields { weight: some(self.pc), roughness: coat_roughness });
+        let sheen = self.ps.filter(|&colour| colour != Vec3::ZERO);
+        let sheen = sheen.map(|colour| SheenFields { colour: Some(colour), roughness: None });
+        if (roughness, metallic, coat, sheen) == (None, None, None, None) {
+            return None;
+        }
+        let finish = finish::Fields { coat, sheen, ..Default::default() };
+        Some(physical::Fields { base: self.kd, roughness, metallic, finish, ..Default::default() })
     }
 
     /// The share of light that passes, if this is glass.
@@ -97,6 +117,8 @@ impl Statements {
         let hue = if brightest > 0.0 { kd / brightest } else { Vec3::ONE };
         let bending = matches!(self.illum, Some(4 | 6 | 7 | 9));
         Fields {
+            // Coats are of microfacets, which glass has none of here.
+            maps: Maps { finish: FinishMaps::default(), ..surface.maps },
             diffuse: Some(kd * (1.0 - share)),
             transmission: Some(self.tf.unwrap_or(hue) * share),
             ior: Some(self.ni.unwrap_or(if bending { 1.5 } else { 1.0 })),

@@ -2,6 +2,7 @@
 
 mod displace;
 mod effect;
+mod finish;
 mod gltf;
 mod hostile;
 mod medium;

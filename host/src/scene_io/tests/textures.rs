@@ -6,7 +6,7 @@ use glam::{Vec2, Vec3};
 use image::{ImageFormat, Rgba, RgbaImage};
 
 use super::Folder;
-use crate::scene::{Alpha, Integrator, Maps, Material, Scene, Texels, Wrap};
+use crate::scene::{Alpha, Coat, Integrator, Maps, Material, Scene, Sheen, Texels, Wrap};
 
 /// A square of two triangles, with the first corner's texture coordinates on a seam.
 const SQUARE: &str = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 0.75\nvt 0 1 0.5\nvt 0.5\n\
@@ -137,6 +137,41 @@ fn roughness_and_metalness_are_of_microfacets() {
     let (scene, warnings) = loaded("map_Pm a.png\nmap_Pr b c.png\n");
     assert_eq!(scene.materials[0].maps.all().count(), 0);
     assert!(warnings[0].contains("a.mtl:2: map_Pm and 1 more ignored"), "{warnings:?}");
+}
+
+#[test]
+fn coats_and_sheen_are_of_microfacets_and_zeros_are_none() {
+    let finish = |statements| material(statements).physical.map(|physical| (physical.coat, physical.sheen));
+    let coat = |weight, roughness| Some(Coat { weight, roughness });
+    let sheen = |colour| Some(Sheen { colour, roughness: 0.3 });
+    assert_eq!(finish("Kd 1 0 0\nPc 0.5\nPcr 0.25\n"), Some((coat(0.5, 0.25), None)));
+    assert_eq!(finish("Pc 1\nPs 0.5\n"), Some((coat(1.0, 0.0), sheen(Vec3::splat(0.5)))));
+    assert_eq!(finish("Ps 0 0.5 1\n"), Some((None, sheen(Vec3::new(0.0, 0.5, 1.0)))));
+    assert_eq!(material("Kd 1 0 0\nPc 1\n").physical.unwrap().base, Vec3::X);
+    // As Blender writes for everything.
+    assert_eq!(finish("Pr 0.5\nPs 0\nPc 0\nPcr 0.03\n"), Some((None, None)));
+    assert_eq!(finish("Ps 0\nPc 0\nPcr 0.03\nmap_Pcr a.png\n"), None);
+    assert_eq!(finish("Pc 1\nmap_Pc a.png\nd 0.5\n"), None, "glass has none");
+    let (scene, warnings) = loaded("Pc 2\nPs -1\nPc x\n");
+    assert_eq!(scene.materials[0].physical.unwrap().coat, coat(1.0, 0.0));
+    assert_eq!(warnings.len(), 2, "{warnings:?}");
+    assert!(warnings[0].contains("a.mtl:4: Pc (Pc holds \"x\", which is no number"), "{warnings:?}");
+    assert!(warnings[1].contains("a.mtl:2: Pc and 1 more out of range"), "{warnings:?}");
+}
+
+#[test]
+fn pictures_of_a_coat_are_multiplied_with_its_numbers_or_one() {
+    let of = |statements| {
+        let material = material(statements);
+        let maps = material.maps.finish;
+        (material.physical.unwrap().coat.unwrap(), maps.coat.is_some(), maps.coat_roughness.is_some())
+    };
+    let coat = |weight, roughness| Coat { weight, roughness };
+    assert_eq!(of("map_Pc a.png\n"), (coat(1.0, 0.0), true, false));
+    assert_eq!(of("Pc 0\nPcr 0\nmap_Pc a.png\nmap_Pcr b c.png\n"), (coat(1.0, 1.0), true, true));
+    assert_eq!(of("Pc 0.5\nPcr 0.25\nmap_Pc a.png\nmap_Pcr b c.png\n"), (coat(0.5, 0.25), true, true));
+    let (_, warnings) = loaded("Ps 1\nmap_Ps a.png\n");
+    assert!(warnings[0].contains("a.mtl:3: map_Ps ignored: pictures are drawn of"), "{warnings:?}");
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod animation;
 mod damaged;
+mod finish;
 mod hostile;
 mod left_out;
 mod model;

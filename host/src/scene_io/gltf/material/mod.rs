@@ -1,12 +1,15 @@
 //! Materials by microfacets, and the extensions of them that are drawn.
 
+mod passing;
+mod reflecting;
+
 use glam::Vec3;
 
 use super::super::physical;
 use super::notes::Notes;
 use super::picture::Pictures;
-use super::shading::{Anisotropy, Extensions, Gloss, Info, Material, Metal, Scatter, Specular, Transmission, Volume};
-use crate::scene::{Absorption, Alpha, Maps, Medium, Range, Unplaced, Volume as Filled, Wall};
+use super::shading::{Extensions, Gloss, Info, Material, Metal};
+use crate::scene::{Alpha, Map, Maps, Range, Unplaced};
 use crate::scene_io::material::Fields;
 
 /// The material of what names none: that of an empty one in the file.
@@ -15,11 +18,6 @@ pub fn plain() -> Fields {
         physical::Fields { base: Some(Vec3::ONE), metallic: Some(1.0), roughness: Some(1.0), ..Default::default() };
     Fields { physical, ..Fields::default() }
 }
-
-/// The index of refraction that means that all light is reflected (KHR_materials_ior).
-const MIRROR: f64 = 0.0;
-/// The greatest by which light is bent.
-const MOST_IOR: f64 = 4.0;
 
 /// Reads the material of a number.
 ///
@@ -36,16 +34,14 @@ pub fn read(of: &Material, number: usize, pictures: &mut Pictures, notes: &mut N
         None => reader.metal(of.pbr_metallic_roughness.as_deref().unwrap_or(&default), of)?,
     }
     reader.fields.two_sided = Some(of.double_sided);
-    let normal = of.normal_texture.as_deref();
-    reader.fields.maps.normal = reader.map(normal, "normalTexture")?;
-    reader.fields.maps.normal_scale = match normal.and_then(|normal| normal.scale) {
-        Some(scale) => reader.number(scale, "normalTexture.scale", Range::ANY)?,
-        None => 1.0,
-    };
+    (reader.fields.maps.normal, reader.fields.maps.normal_scale) =
+        reader.normals(of.normal_texture.as_deref(), "normalTexture")?;
     reader.emission(of, extensions)?;
     // The others are extensions of what this one takes the place of.
     if extensions.gloss.is_none() {
-        reader.extensions(extensions)?;
+        reader.passing(extensions)?;
+        reader.reflecting(extensions)?;
+        extensions.ior.as_ref().map_or(Ok(()), |of| reader.ior(of))?;
     }
     if extensions.unlit.is_some() {
         reader.unlit(of.double_sided);
@@ -138,107 +134,6 @@ impl Reader<'_, '_, '_> {
         Ok(())
     }
 
-    fn extensions(&mut self, of: &Extensions) -> Unplaced<()> {
-        let ior = of.ior.as_ref().and_then(|of| of.ior);
-        if let Some(transmission) = of.transmission.as_ref().filter(|_| ior != Some(MIRROR)) {
-            self.transmission(transmission, of.volume.as_ref())?;
-            if let Some(scatter) = &of.scatter {
-                self.scatter(scatter)?;
-            }
-        }
-        of.specular.as_ref().map_or(Ok(()), |of| self.specular(of))?;
-        ior.map_or(Ok(()), |ior| self.ior(ior))?;
-        of.anisotropy.as_ref().map_or(Ok(()), |of| self.anisotropy(of))
-    }
-
-    /// An index of refraction. One that is too great to bend light here still reflects as much as it says: by the tint, which the
-    /// reflection at normal incidence is multiplied with.
-    fn ior(&mut self, ior: f64) -> Unplaced<()> {
-        let bends = self.fields.transmission.is_some() && self.fields.physical.wall == Some(Wall::Body);
-        if ior == MIRROR || ior > MOST_IOR && !bends {
-            let root = |ior: f64| (ior - 1.0) / (ior + 1.0);
-            let reflectance = |ior: f64| root(ior) * root(ior);
-            let tint = self.fields.physical.specular_tint.unwrap_or(Vec3::ONE);
-            self.fields.physical.specular_tint = Some(tint * (reflectance(ior) / reflectance(MOST_IOR)) as f32);
-            self.fields.ior = Some(MOST_IOR as f32);
-            return Ok(());
-        }
-        self.fields.ior = Some(self.clamped(ior, "extensions.KHR_materials_ior.ior", Range::IOR, (1.0, MOST_IOR))?);
-        Ok(())
-    }
-
-    fn transmission(&mut self, of: &Transmission, volume: Option<&Volume>) -> Unplaced<()> {
-        let key = |key: &str| format!("extensions.KHR_materials_transmission.{key}");
-        let factor = self.share(of.transmission_factor.unwrap_or(0.0), &key("transmissionFactor"))?;
-        if factor == 0.0 {
-            return Ok(());
-        }
-        self.fields.transmission = Some(Vec3::splat(factor));
-        self.fields.maps.transmission = self.map(of.transmission_texture.as_ref(), &key("transmissionTexture"))?;
-        let volume = volume.filter(|volume| volume.thickness_factor.is_some_and(|thickness| thickness > 0.0));
-        self.fields.physical.wall = Some(if volume.is_none() { Wall::Interface } else { Wall::Body });
-        let Some(Volume { attenuation_distance: Some(distance), attenuation_color, .. }) = volume else {
-            return Ok(());
-        };
-        let key = |key: &str| format!("extensions.KHR_materials_volume.{key}");
-        // A number beyond single precision is as good as the infinity that JSON does not have.
-        if (*distance as f32).is_finite() {
-            let distance = self.number(*distance, &key("attenuationDistance"), Range::LENGTH)?;
-            let colour = self.colour(attenuation_color.unwrap_or([1.0; 3]), &key("attenuationColor"))?;
-            self.fields.physical.absorption = Some(Absorption { colour, distance });
-        }
-        Ok(())
-    }
-
-    /// The drafts KHR_materials_volume_scatter and KHR_materials_scatter: of what a body takes of light, a share is scattered instead,
-    /// by which a thick body has a colour. Without a volume they do nothing.
-    fn scatter(&mut self, of: &Scatter) -> Unplaced<()> {
-        let key = |key: &str| format!("extensions.KHR_materials_volume_scatter.{key}");
-        let Some(Absorption { colour: left, distance }) = self.fields.physical.absorption else { return Ok(()) };
-        let strength = self.share(of.scatter_strength_factor.unwrap_or(1.0), &key("scatterStrengthFactor"))?;
-        let colour = self.colour(of.multiscatter_color.unwrap_or([0.0; 3]), &key("multiscatterColor"))? * strength;
-        let most = f64::from(Medium::MOST_ANISOTROPY);
-        let anisotropy = of.scatter_anisotropy.unwrap_or(0.0);
-        let anisotropy = self.clamped(anisotropy, &key("scatterAnisotropy"), Range::ANISOTROPY, (-most, most))?;
-        if colour == Vec3::ZERO {
-            return Ok(());
-        }
-        let medium = Medium::of_colour(colour, Absorption { colour: left, distance }.mean_way(), anisotropy);
-        self.fields.volume = Some(Filled { medium, interface: true, priority: 0, density: None });
-        // What is absorbed is the medium's.
-        self.fields.physical.absorption = None;
-        Ok(())
-    }
-
-    fn specular(&mut self, of: &Specular) -> Unplaced<()> {
-        let key = |key: &str| format!("extensions.KHR_materials_specular.{key}");
-        self.fields.physical.specular_weight =
-            Some(self.share(of.specular_factor.unwrap_or(1.0), &key("specularFactor"))?);
-        let tint = of.specular_color_factor.unwrap_or([1.0; 3]);
-        let of_tint = key("specularColorFactor");
-        let [red, green, blue] = tint.map(|number| self.number(number, &of_tint, Range::AMOUNT));
-        self.fields.physical.specular_tint = Some(Vec3::new(red?, green?, blue?));
-        let is_glass = self.fields.transmission.is_some() && self.fields.physical.wall == Some(Wall::Body);
-        if is_glass && (tint != [1.0; 3] || of.specular_color_texture.is_some()) {
-            let text = format!("{}.{of_tint}: bodies of glass reflect without a tint", self.owner);
-            self.notes.changed("glass", &text);
-        }
-        self.fields.maps.specular_weight = self.map(of.specular_texture.as_ref(), &key("specularTexture"))?;
-        self.fields.maps.specular_tint = self.map(of.specular_color_texture.as_ref(), &key("specularColorTexture"))?;
-        Ok(())
-    }
-
-    fn anisotropy(&mut self, of: &Anisotropy) -> Unplaced<()> {
-        let key = |key: &str| format!("extensions.KHR_materials_anisotropy.{key}");
-        let strength = of.anisotropy_strength.unwrap_or(0.0);
-        self.fields.physical.anisotropy = Some(self.share(strength, &key("anisotropyStrength"))?);
-        let degrees = of.anisotropy_rotation.unwrap_or(0.0).to_degrees();
-        self.fields.physical.anisotropy_rotation =
-            Some(self.number(degrees, &key("anisotropyRotation"), Range::ANY)?);
-        self.fields.maps.anisotropy = self.map(of.anisotropy_texture.as_ref(), &key("anisotropyTexture"))?;
-        Ok(())
-    }
-
     /// What has its own colour in any light sends it out, and reflects nothing.
     fn unlit(&mut self, is_two_sided: bool) {
         self.notes
@@ -265,7 +160,16 @@ impl Reader<'_, '_, '_> {
         };
     }
 
-    fn map(&mut self, info: Option<&Info>, key: &str) -> Unplaced<Option<crate::scene::Map>> {
+    /// A map of normals, and what their slopes are multiplied with.
+    fn normals(&mut self, info: Option<&Info>, key: &str) -> Unplaced<(Option<Map>, f32)> {
+        let scale = match info.and_then(|info| info.scale) {
+            Some(scale) => self.number(scale, &format!("{key}.scale"), Range::ANY)?,
+            None => 1.0,
+        };
+        Ok((self.map(info, key)?, scale))
+    }
+
+    fn map(&mut self, info: Option<&Info>, key: &str) -> Unplaced<Option<Map>> {
         self.pictures.map(info, &format!("{}.{key}", self.owner), self.notes)
     }
 

@@ -54,6 +54,22 @@ macro_rules! methods {
 }
 eyerays_shader::for_each_method!(methods);
 
+/// How a method's rays are followed on a CPU, from the shader's table: by the functions that are called `alone`, `together` and `plainly`
+/// where this stands, and by the given one where a CPU walks nodes of eight.
+#[doc(hidden)]
+#[macro_export]
+macro_rules! follower {
+    ([$method:ident $nodes:expr] $(#[$help:meta] $variant:ident $path:ident $name:literal:
+        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
+        match $method {
+            $crate::method::Method::Auto => alone::<IfIf>,
+            $($crate::method::Method::$variant => $crate::follower!(@ $nodes, $way $(, $type)?),)*
+        }
+    };
+    (@ $nodes:expr, nodes) => { $nodes };
+    (@ $nodes:expr, $way:ident, $type:ty) => { $way::<$type> };
+}
+
 choices! {
     /// How a GPU's subgroups come by their rays (thesis 6.1).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]

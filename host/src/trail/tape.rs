@@ -13,6 +13,7 @@ use eyerays_shader::traverse::{
 use eyerays_shader::warp::Alone;
 
 use super::block::{Block, LANES};
+use crate::follower;
 use crate::method::Method;
 
 /// Something that a kernel does.
@@ -88,22 +89,10 @@ pub(super) fn of(method: Method, context: &TraceContext<'_>, block: &Block, lane
 /// Follows the ray of a lane.
 type Follow = fn(&TraceContext<'_>, &Block, usize) -> Hit<f32>;
 
-/// How a method's rays are followed, from the shader's table.
-macro_rules! follower {
-    ([$method:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
-        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
-        match $method {
-            Method::Auto => alone::<IfIf>,
-            $(Method::$variant => follower!(@ $way $($type)?),)*
-        }
-    };
-    (@ nodes) => { alone::<Bvh8Method<Native>> };
-    (@ $way:ident $type:ty) => { $way::<$type> };
-}
-
+/// How a method's rays are followed.
 fn follower(method: Method) -> Follow {
     use {packet as plainly, packet as together};
-    eyerays_shader::for_each_method!(follower method)
+    eyerays_shader::for_each_method!(follower method alone::<Bvh8Method<Native>>)
 }
 
 fn alone<M: traverse::Method<f32>>(context: &TraceContext<'_>, block: &Block, lane: usize) -> Hit<f32> {

@@ -19,6 +19,7 @@ use rayon::prelude::*;
 use crate::error::Result;
 use eyerays::cpu;
 use eyerays::device_scene::SceneView;
+use eyerays::follower;
 use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Traversal};
 use eyerays::stream::{Question, Stream, StreamRay};
@@ -119,23 +120,11 @@ pub struct Counts {
 /// Follows a group of rays and counts.
 type Follow = fn(&TraceContext<'_>, &Stream, Range<usize>, Question) -> Calls;
 
-/// How a method's rays are followed, from the shader's table: by themselves or 32 together. Alone, `speculative` never
-/// speculates: its counts are those of `while-while`.
-macro_rules! follower {
-    ([$method:ident] $(#[$help:meta] $variant:ident $path:ident $name:literal:
-        gpu($($gpu:tt)*), persistent($($persistent:tt)*), cpu($way:ident $(, $type:ty)?);)*) => {
-        match $method {
-            Method::Auto => alone::<IfIf>,
-            $(Method::$variant => follower!(@ $way $($type)?),)*
-        }
-    };
-    (@ nodes) => { single::<CwbvhMethod> };
-    (@ $way:ident $type:ty) => { $way::<$type> };
-}
-
+/// How a method's rays are followed: by themselves or 32 together. Alone, `speculative` never speculates: its counts are those of
+/// `while-while`.
 fn follower(method: Method) -> Follow {
     use {packet as plainly, packet as together, single as alone};
-    eyerays_shader::for_each_method!(follower method)
+    eyerays_shader::for_each_method!(follower method single::<CwbvhMethod>)
 }
 
 /// Counts what a method does for a sample of a stream, every so many of its groups of 32, with `threads`

@@ -110,6 +110,8 @@ bits! {
         GLOWING = 2;
         /// Some are denser in one place than in another.
         GRIDS = 3;
+        /// Bodies that bend light may lie in each other, and priorities tell which is there.
+        NESTED = 4;
     }
 }
 

@@ -157,6 +157,53 @@ pub(super) fn dimmed<R: Scalar>(launch: &LaunchContext<'_>, media: &[Medium], ra
     ShadowRay { light: ray.light.times(left).map(|c| c.flush(FAINT)), ..ray }
 }
 
+/// Is the surface that a path has met not there: by itself, or since what is there is the same on both sides of it?
+#[inline(always)]
+pub(super) fn is_crossed<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+) -> bool {
+    let media = launch.spec.media;
+    if media.has(Media::OPEN) && vertex.filling.is_open() {
+        return true;
+    }
+    if !media.has(Media::NESTED) || vertex.filling.medium() == 0 || vertex.found.is_nothing() {
+        return false;
+    }
+    let (before, after) = sides(launch, context, vertex, vertex.met(launch).interaction.front);
+    before == after
+}
+
+/// The media on this side of the surface that a path has met, and on the far one, by their numbers.
+#[inline(always)]
+fn sides<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+    front: bool,
+) -> (u32, u32) {
+    let (inside, fog) = (vertex.path.inside, launch.frame.fog());
+    let beyond = inside.across(front, vertex.filling.medium());
+    (inside.medium(context.media, fog), beyond.medium(context.media, fog))
+}
+
+/// The index of refraction around the body whose surface a path has met.
+#[inline(always)]
+pub(super) fn around<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+    front: bool,
+) -> R {
+    let (before, after) = sides(launch, context, vertex, front);
+    let number = if front { before } else { after };
+    if number == 0 || vertex.filling.medium() == 0 {
+        return R::splat(1.0);
+    }
+    R::splat(f32::from_bits(read(context.media, number - 1).emission.w))
+}
+
 /// Goes straight on through a surface that is not there, as if nothing were.
 // A function of its own on a CPU, where what no scene has would take registers from the rest.
 #[cfg_attr(target_arch = "spirv", inline(always))]
@@ -170,6 +217,8 @@ pub(super) fn crossed<R: Scalar>(launch: &LaunchContext<'_>, vertex: &Vertex<R>)
         origin: interaction.offset_ray_origin(path.direction),
         source_primitive: interaction.source_primitive(path.direction),
         inside: inside.crossed(),
+        // Light that is sampled does not get through a surface that is there for others.
+        density: if vertex.filling.is_open() { path.density } else { R::splat(0.0) },
         ..path
     };
     let goes_on = inside.crossings() < MOST_CROSSINGS && R::splat(0.0).lt(path.weight.greatest());

@@ -6,7 +6,7 @@ use super::medium;
 use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::background::gradient;
 use crate::buffer::read;
-use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Primitive, numbers};
+use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Media, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Channels, Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
@@ -41,6 +41,11 @@ pub(super) fn at<R: Scalar>(
         return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
     let surface = Surface::new(launch, shading, &seen, &covering);
+    let surface = if launch.spec.media.has(Media::NESTED) {
+        surface.within(medium::around(launch, context, vertex, seen.interaction.front))
+    } else {
+        surface
+    };
     if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
         let albedo = albedo(effects, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
         let normal = surface.normal.map(|c| c.flush(FAINT));

@@ -271,7 +271,7 @@ pub fn scatter<R: Scalar>(
     // The ray of a slot outside the image hits nothing.
     let scattered = if media.has(Media::PRESENT) && collides {
         medium::at(launch, context, &vertex)
-    } else if media.has(Media::OPEN) && vertex.filling.is_open() {
+    } else if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex) {
         medium::crossed(launch, &vertex)
     } else if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;

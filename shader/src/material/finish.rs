@@ -61,7 +61,7 @@ pub fn finished<R: Scalar>(
     finish: &Finish,
     at: &Parameters<R>,
     covering: &FinishCovering<R>,
-    (interaction, channels): (&SurfaceInteraction<R>, &Channels<R>),
+    (interaction, around, channels): (&SurfaceInteraction<R>, R, &Channels<R>),
     (layers, cosine): (Layers<R>, R),
 ) -> Layers<R> {
     let mut layers = layers;
@@ -77,7 +77,7 @@ pub fn finished<R: Scalar>(
         let spread = number::<R>(finish.film.z);
         if R::splat(0.0).lt(spread) {
             let (side, colour) = channels.chosen();
-            layers.reflectance.eta = interaction.relative_ior(at.ior + side * spread);
+            layers.reflectance.eta = interaction.relative_ior(at.ior + (side * spread).div(around));
             layers.through = layers.through.times(colour);
         }
     }

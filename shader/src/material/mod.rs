@@ -72,8 +72,10 @@ pub struct Surface<R: Real> {
     pub reflection: V3<R>,
     /// Colour of the transmitted light.
     pub transmission: V3<R>,
-    /// Index of refraction, 0 for an opaque surface.
+    /// Index of refraction over that of what is around it, 0 for an opaque surface.
     pub ior: R,
+    /// The index of refraction around it: what its own is divided by.
+    pub around: R,
     /// The shading normal before a map changes it.
     pub even_normal: V3<R>,
 }
@@ -187,8 +189,15 @@ impl<R: Scalar> Surface<R> {
             reflection: colour(material.reflection),
             transmission: colour(material.transmission),
             ior: number(material.reflection.w),
+            around: R::splat(1.0),
             even_normal,
         }
+    }
+
+    /// The same in surroundings of an index of refraction.
+    #[inline(always)]
+    pub fn within(self, around: R) -> Self {
+        Surface { ior: self.ior.div(around), around, ..self }
     }
 }
 

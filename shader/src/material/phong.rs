@@ -34,6 +34,7 @@ mod tests {
 
     fn surface() -> Surface<f64> {
         Surface {
+            around: 1.0,
             even_normal: V3::splat(Vec3::Y),
             normal: V3::splat(Vec3::Y),
             ambient: V3::zero(),

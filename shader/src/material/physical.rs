@@ -7,7 +7,7 @@ use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
 use super::{Coat, Coated, Ggx, Seen, Sheen, Surface, axes};
 use crate::buffer::read;
-use crate::data::{Effects, Finish, Physical, numbers};
+use crate::data::{Effects, Finish, Media, Physical, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
 use crate::real::{Real, Scalar, TINY, V3};
@@ -92,6 +92,8 @@ pub fn closure<'a, R: Scalar>(
     let normal = if leans { bent(&interaction, surface.normal, direction) } else { surface.normal };
     let frame = axes(launch, &context.shading, seen, normal);
     let at = Parameters::new(&material, covering);
+    let at =
+        if launch.spec.media.has(Media::NESTED) { Parameters { ior: at.ior.div(surface.around), ..at } } else { at };
     let is_physical = material.has(Physical::IS_PHYSICAL);
     let frame = if effects.has(Effects::ANISOTROPIC) && is_physical { at.turned(frame) } else { frame };
     let layers = if is_physical {
@@ -104,7 +106,7 @@ pub fn closure<'a, R: Scalar>(
     let finish = if has_finish { read(context.finishes, seen.material()) } else { Finish::NONE };
     let layers = if has_finish {
         let cosine = -direction.dot(frame[2]);
-        finished(finishes, &finish, &at, &covering.finish, (&interaction, &channels), (layers, cosine))
+        finished(finishes, &finish, &at, &covering.finish, (&interaction, surface.around, &channels), (layers, cosine))
     } else {
         layers
     };
@@ -185,7 +187,7 @@ fn physical<R: Scalar>(
         },
         way,
         // Facets of glass that hardly bends light have directions that rounding loses.
-        ggx: if is_body && (ior - one).lt(R::splat(LEAST_BEND)) { smooth() } else { ggx },
+        ggx: if is_body && (ior - one).abs().lt(R::splat(LEAST_BEND)) { smooth() } else { ggx },
         ..none
     }
 }

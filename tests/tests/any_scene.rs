@@ -8,8 +8,9 @@ use eyerays::device_scene::Feature;
 use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
-    Absorption, Alpha, Conductor, Direct, Environment, Filter, Grid, Integrator, Map, Maps, Material, Medium, Physical,
-    Placement, Sampler, Scene, Settings, Texels, Texture, Transport, Volume, Wall, Wrap,
+    Absorption, Alpha, Coat, Conductor, DiffuseTransmission, Direct, Environment, Filter, FinishMaps, Grid, Integrator,
+    Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Texels, Texture, ThinFilm,
+    Transport, Volume, Wall, Wrap,
 };
 use eyerays_tests::random::Random;
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
@@ -78,6 +79,7 @@ fn maps(random: &mut Random, pictures: &[Arc<Texture>]) -> Maps {
         specular_tint: map(random, pictures),
         anisotropy: map(random, pictures),
         opacity: map(random, pictures),
+        finish: if chance(random, 0.5) { finish_maps(random, pictures) } else { FinishMaps::default() },
     }
 }
 
@@ -96,6 +98,32 @@ fn physical(random: &mut Random) -> Physical {
         wall: one(random, Wall::VARIANTS),
         absorption: chance(random, 0.5).then(|| Absorption { colour: colour(random), distance: 1e-3 }),
         conductor: chance(random, 0.2).then_some(gold),
+        coat: chance(random, 0.3)
+            .then(|| Coat { weight: one(random, &[0.0, 0.5, 1.0]), roughness: one(random, &[0.0, 0.03, 0.5, 1.0]) }),
+        sheen: chance(random, 0.3).then(|| Sheen { colour: colour(random), roughness: one(random, &[0.0, 0.3, 1.0]) }),
+        diffuse_transmission: chance(random, 0.3)
+            .then(|| DiffuseTransmission { weight: one(random, &[0.0, 0.5, 1.0]), colour: colour(random) }),
+        film: chance(random, 0.3).then(|| ThinFilm {
+            weight: one(random, &[0.0, 0.5, 1.0]),
+            ior: one(random, &[1.0, 1.3, 4.0]),
+            thickness: [one(random, &[0.0, 300.0]), one(random, &[0.0, 500.0, 1e5])],
+        }),
+        abbe: one(random, &[None, Some(1.0), Some(30.0)]),
+    }
+}
+
+fn finish_maps(random: &mut Random, pictures: &[Arc<Texture>]) -> FinishMaps {
+    FinishMaps {
+        coat: map(random, pictures),
+        coat_roughness: map(random, pictures),
+        coat_normal: map(random, pictures),
+        coat_normal_scale: one(random, &[1.0, 3.0]),
+        sheen_colour: map(random, pictures),
+        sheen_roughness: map(random, pictures),
+        diffuse_transmission: map(random, pictures),
+        diffuse_transmission_colour: map(random, pictures),
+        film: map(random, pictures),
+        film_thickness: map(random, pictures),
     }
 }
 

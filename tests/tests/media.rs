@@ -6,8 +6,8 @@ use eyerays::cpu;
 use eyerays::method::Method;
 use eyerays::picture::Picture;
 use eyerays::scene::{
-    Background, Camera, Direct, Grid, Integrator, Light, Material, Medium, Projection, Sampler, Scene, Settings,
-    Sphere, Transport, Volume,
+    Background, Camera, Direct, Grid, Integrator, Light, Material, Medium, Physical, Projection, Sampler, Scene,
+    Settings, Sphere, Transport, Volume,
 };
 use eyerays_tests::model::{add_box, add_wall, black, empty, glass, matt};
 use eyerays_tests::{assert_same_bits, by, mean, on_cpu, pack};
@@ -222,6 +222,38 @@ fn what_absorbs_nothing_is_not_seen_in_a_white_furnace() {
         scene.spheres.push(Sphere { center: Vec3::NEG_Z * 3.0, radius: 1.0, material: 0 });
         let picture = render(&scene, &at(Vec3::ZERO, Vec3::new(0.2, 0.1, -3.0)), paths(400, 4000));
         assert_is(what, mean(&picture), 1.0);
+    }
+}
+
+/// Water over glass, whose boxes overlap: what has the higher priority is there, and light is bent and reflected as the indices on both
+/// sides of each surface say, of which there are three. What none of them absorbs gets through by 1 / (1 + sum R / (1 - R)).
+#[test]
+fn bodies_within_bodies_reflect_by_the_indices_on_both_sides() {
+    let filled = |ior: f32, priority: u8| Material {
+        ior,
+        volume: Some(Volume { medium: Medium::default(), interface: true, priority, density: None }),
+        ..glass(Vec3::ONE)
+    };
+    let physical = |ior: f32, priority: u8| Material {
+        physical: Some(Physical { transmission: Vec3::ONE, roughness: 0.0, ior, ..Physical::default() }),
+        ..filled(ior, priority)
+    };
+    let share = |a: f64, b: f64| {
+        let reflected = ((a - b) / (a + b)).powi(2);
+        reflected / (1.0 - reflected)
+    };
+    let want = 1.0 / (1.0 + share(1.0, 1.33) + share(1.33, 1.5) + share(1.5, 1.0));
+    for (what, of) in [("by the thesis' model", &filled as &dyn Fn(f32, u8) -> Material), ("by microfacets", &physical)]
+    {
+        for (water, glass) in [(0, 1), (5, 9)] {
+            let mut scene = empty();
+            let corner = Vec3::new(WIDE, WIDE, 0.0);
+            add_box(&mut scene, of(1.33, water), -corner - Vec3::Z * 2.0, corner);
+            add_box(&mut scene, of(1.5, glass), -corner - Vec3::Z * 3.0, corner - Vec3::Z);
+            add_wall(&mut scene, shining(1.0), Vec3::NEG_Z * 5.0, 2.0 * WIDE);
+            let picture = render(&scene, &at(Vec3::Z, Vec3::ZERO), paths(400, 200));
+            assert_is(what, mean(&picture), want);
+        }
     }
 }
 

@@ -43,8 +43,11 @@ impl Media {
         let fillings = scene.materials.iter().map(|material| tables.filling(material)).collect::<Result<_>>()?;
         let glows = |medium: &Medium| medium.emission != Vec3::ZERO;
         let bit = |bit, holds: bool| if holds { bit } else { 0 };
+        let bends = |record: &&MediumRecord| record.emission.w != 1.0f32.to_bits();
+        let is_nested = tables.records.iter().filter(bends).count() > 1;
         let bits = Bits(
             Bits::PRESENT
+                | bit(Bits::NESTED, is_nested)
                 | bit(Bits::OPEN, volumes().any(|volume| !volume.interface))
                 | bit(Bits::GRIDS, volumes().any(|volume| volume.density.is_some()))
                 | bit(Bits::GLOWING, volumes().map(|v| v.medium).chain(scene.fog).any(|medium| glows(&medium))),

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Aovs, Effects, Launch, Layout, Media, Order, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Finishes, Launch, Layout, Media, Order, Specialisation};
 use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
@@ -17,6 +17,10 @@ fn effects(bits: u32) -> Specialisation {
 
 fn between(spec: Specialisation, bits: u32) -> Specialisation {
     Specialisation { media: Media(bits), ..spec }
+}
+
+fn finished(spec: Specialisation, bits: u32) -> Specialisation {
+    Specialisation { finishes: Finishes(bits), ..spec }
 }
 
 /// Nothing, everything, and what together makes the kernels of most branches.
@@ -54,6 +58,10 @@ fn specialisations() -> Vec<Specialisation> {
         between(path, Media::PRESENT),
         between(path.with_launch(Launch::STREAM), Media::PRESENT | Media::GRIDS | Media::GLOWING),
         between(all, u32::MAX),
+        between(path, Media::PRESENT | Media::NESTED),
+        finished(effects(Effects::PHYSICAL | Effects::LIT | Effects::REFRACTION | Effects::TEXTURED), u32::MAX),
+        finished(effects(Effects::PHYSICAL | Effects::EMISSIVE), Finishes::COATED | Finishes::TRANSLUCENT),
+        finished(between(all, u32::MAX), u32::MAX),
     ]
 }
 
@@ -216,11 +224,31 @@ fn media_are_in_no_kernel_of_a_scene_without() {
     let (present, grids) = (Media::PRESENT, Media::PRESENT | Media::GRIDS);
     assert!(!binds(present, binding::GRIDS) && binds(grids, binding::GRIDS));
     assert!(scatter(0).instructions() < scatter(present).instructions());
-    for further in [Media::OPEN, Media::GLOWING, Media::GRIDS] {
+    for further in [Media::OPEN, Media::GLOWING, Media::GRIDS, Media::NESTED] {
         assert!(scatter(present).instructions() != scatter(present | further).instructions(), "{further:#x}");
     }
     for entry in ["exact::if_if::shadow", "exact::accumulate", "exact::shade"] {
         assert_eq!(cut(entry, u32::MAX).words(), cut(entry, 0).words(), "{entry}");
+    }
+}
+
+/// What lies on surfaces costs nothing where nothing does, or where no material is by microfacets.
+#[test]
+fn finishes_are_in_no_kernel_of_a_scene_without() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let physical =
+        effects(Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL | Effects::REFRACTION | Effects::TEXTURED);
+    let cut = |spec, bits| kernels.cut("exact::scatter", &finished(spec, bits).constants()).unwrap();
+    let bare = cut(physical, 0);
+    assert!(!bare.bindings().contains(&binding::FINISHES));
+    for one in [Finishes::COATED, Finishes::FIBROUS, Finishes::TRANSLUCENT, Finishes::FILMED, Finishes::DISPERSIVE] {
+        let with = cut(physical, one);
+        assert!(with.bindings().contains(&binding::FINISHES), "{one:#x}");
+        assert!(with.instructions() > bare.instructions(), "{one:#x}");
+    }
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::shade"] {
+        let of = |bits| kernels.cut(entry, &finished(physical, bits).constants()).unwrap();
+        assert_eq!(of(u32::MAX).words(), of(0).words(), "{entry}");
     }
 }
 

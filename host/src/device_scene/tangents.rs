@@ -11,7 +11,7 @@ use super::records::by_slot;
 use crate::scene::{Material, Mesh, Scene};
 
 /// Tangents in the order of slots; three zeros where there are none. Triangles without tangents of their own get them by the
-/// coordinates that their normal map lies by, those of the first set if they have none.
+/// coordinates that their normal map lies by, else their coat's, those of the first set if they have none.
 pub(super) fn tangents(scene: &Scene, order: &[u32]) -> Vec<Normals> {
     let mesh = &scene.mesh;
     // Those of a mesh that stands in several places are its own.
@@ -37,7 +37,10 @@ fn own(mesh: &Mesh, vertex: u32) -> Vec4 {
 }
 
 fn made(mesh: &Mesh, materials: &[Material], triangles: Range<usize>) -> Vec<(usize, [Vec4; 3])> {
-    let set_of = |material: &Material| material.maps.normal.as_ref().map_or(0, |map| map.placement.set as usize);
+    let set_of = |Material { maps, .. }: &Material| {
+        let map = maps.normal.as_ref().or(maps.finish.coat_normal.as_ref());
+        map.map_or(0, |map| map.placement.set as usize)
+    };
     let sets: Vec<usize> = materials.iter().map(set_of).collect();
     let set_of = |triangle: usize| sets[mesh.materials[triangle] as usize];
     let lacks = |triangle: usize| mesh.triangles[triangle].iter().all(|&vertex| own(mesh, vertex) == Vec4::ZERO);

@@ -19,8 +19,16 @@ fn every_scene_loads_without_a_warning_and_is_small_enough_for_slow_devices() {
         assert!(scene.mesh.triangles.len() < 50_000, "{name}");
         assert!(scene.cameras.len() >= 3, "{name}");
     }
-    let gallery =
-        ["metal.toml", "frosted.toml", "dusk.toml", "room.toml", "subdivision.toml", "media.toml", "chess.glb"];
+    let gallery = [
+        "metal.toml",
+        "frosted.toml",
+        "dusk.toml",
+        "room.toml",
+        "subdivision.toml",
+        "media.toml",
+        "finishes.toml",
+        "chess.glb",
+    ];
     for name in ["cornell_path.toml", "soft_shadows.toml", "bleeding.toml", "occlusion.toml"].into_iter().chain(gallery)
     {
         assert!(shipped(name).settings.transport.integrator.samples(), "{name}");

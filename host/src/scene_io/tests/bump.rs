@@ -199,7 +199,7 @@ fn what_does_nothing_is_told_once_a_file() {
     let mtl = "newmtl m\nbump h.png\nnewmtl n\nmap_bump h.png\nnewmtl o\nnorm n.png\nmap_Bump h.png\n";
     let (_, warnings) = folder("", mtl, "f 1 2 3\nusemtl n\nf 1 2 3\nusemtl o\nf 1 2 3\n").load("a.obj").unwrap();
     assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].contains("a.mtl:7: map_Bump ignored: the material has normals by norm"), "{warnings:?}");
+    assert!(warnings[0].contains("a.mtl:7: bump ignored: the material has normals by norm"), "{warnings:?}");
     assert!(warnings[1].contains("a.mtl:2: bump and 1 more ignored: no triangle"), "{warnings:?}");
 }
 

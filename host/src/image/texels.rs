@@ -5,7 +5,7 @@ use std::path::Path;
 
 use image::{DynamicImage, ImageFormat};
 
-use super::read::{Kinds, Size, distrusting, most_per_pixel, open, pixels_of};
+use super::read::{Kinds, Size, distrusting, most_per_pixel, open, pixels_of, room};
 use crate::error::{Error, Result};
 use crate::scene::displace::Heights;
 use crate::scene::{Texels, Texture};
@@ -31,6 +31,16 @@ impl TextureBudget {
     /// The pictures before it leave less.
     pub fn take_bytes(&mut self, width: u32, height: u32) -> Result<()> {
         self.take(Size { width, height, is_float: false })
+    }
+
+    /// Likewise of floats, 16 bytes each, if there is memory for them.
+    ///
+    /// # Errors
+    /// More texels than a texture may have, or than the pictures before it or memory leave.
+    pub fn take_floats(&mut self, width: u32, height: u32) -> Result<()> {
+        Texture::check_size(width, height)?;
+        self.take(Size { width, height, is_float: true })?;
+        room(width, height, 16)
     }
 
     /// Takes a picture's share.
@@ -78,14 +88,22 @@ pub fn decode_texture(name: &str, reader: impl BufRead + Seek, budget: &mut Text
 /// As [`read_texture`].
 pub fn read_heights(path: &Path, budget: &mut TextureBudget) -> Result<Heights> {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let (Size { width, height, .. }, image) =
-        decoded(&name, BufReader::new(open(path)?), budget).map_err(|error| error.of(path))?;
-    let height_of = |pixel: &image::Rgba<f32>| if pixel.0[0].is_finite() { pixel.0[0] } else { 0.0 };
-    let values = distrusting(|| Ok(image.into_rgba32f().pixels().map(height_of).collect()))?;
-    Ok(Heights { width, height, values })
+    let (size, image) = decoded(&name, BufReader::new(open(path)?), budget).map_err(|error| error.of(path))?;
+    distrusting(|| Ok(heights(size, image)))
 }
 
-fn decoded(name: &str, reader: impl BufRead + Seek, budget: &mut TextureBudget) -> Result<(Size, DynamicImage)> {
+/// The heights of an image, as [`read_heights`].
+pub(super) fn heights(Size { width, height, .. }: Size, image: DynamicImage) -> Heights {
+    let height_of = |pixel: &image::Rgba<f32>| if pixel.0[0].is_finite() { pixel.0[0] } else { 0.0 };
+    Heights { width, height, values: image.into_rgba32f().pixels().map(height_of).collect() }
+}
+
+/// An image of a file of this name, which takes its share of the budget.
+pub(super) fn decoded(
+    name: &str,
+    reader: impl BufRead + Seek,
+    budget: &mut TextureBudget,
+) -> Result<(Size, DynamicImage)> {
     const MOST: u64 = Texture::MOST_SIDE as u64;
     distrusting(|| {
         // Files of this kind have no first bytes to be told by.
@@ -108,7 +126,7 @@ fn most_per_texel(format: ImageFormat) -> Option<u64> {
     }
 }
 
-fn texels(image: DynamicImage) -> Texels {
+pub(super) fn texels(image: DynamicImage) -> Texels {
     use DynamicImage::{ImageRgb32F, ImageRgba32F};
     match image {
         ImageRgb32F(_) | ImageRgba32F(_) => {

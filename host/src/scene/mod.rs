@@ -3,6 +3,7 @@
 
 mod animation;
 mod background;
+pub mod bump;
 mod camera;
 mod check;
 mod copies;

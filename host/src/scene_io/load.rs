@@ -8,6 +8,7 @@ use glam::Vec3;
 
 use super::binary;
 use super::budget::Budget;
+use super::bump;
 use super::copies::Instancing;
 use super::document::Surroundings;
 use super::file;
@@ -147,7 +148,7 @@ fn of_paths() -> Settings {
 
 /// A scene of one mesh without a camera, and the warnings of it.
 fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Scene, Vec<Warning>)> {
-    let Obj { mesh, copies, materials, warnings, libraries, objects, .. } = obj;
+    let Obj { mesh, copies, materials, mut warnings, libraries, objects, .. } = obj;
     let name = match &*objects {
         [only] => only.name.clone(),
         _ => path.file_name().unwrap_or_default().to_string_lossy().into_owned(),
@@ -157,8 +158,8 @@ fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Sce
         Placed { name, geometry, copies, repeated: None, materials, material: None, objects, visibility, lit_by: None };
     let mut merge = Merge::default();
     merge.add(placed, &Overrides::new()).map_err(|fault| Error::file(path, fault))?;
-    let Merged { mesh, spheres, disks, shared, instances, objects, materials } = merge.finish();
-    let scene = Scene {
+    let Merged { mesh, spheres, disks, shared, instances, objects, materials, bumps } = merge.finish();
+    let mut scene = Scene {
         mesh,
         spheres,
         disks,
@@ -179,6 +180,7 @@ fn bare(path: &Path, obj: Obj, budget: Budget, loading: &Loading) -> Result<(Sce
         hierarchy: None,
         fog: None,
     };
+    warnings.extend(bump::settle(&mut scene, bumps));
     Ok((settled(path, scene, budget, loading)?, warnings))
 }
 
@@ -262,13 +264,13 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         return Err(Error::file(path, fault));
     }
     files.is_covered = overrides.values().any(Override::has_maps) || meshes.iter().any(|mesh| mesh.has("displace"));
-    let Merged { mesh, spheres, disks, shared, instances, objects, materials } =
+    let Merged { mesh, spheres, disks, shared, instances, objects, materials, bumps } =
         merge(meshes, &overrides, &mut files)?.finish();
     let animations = files.take_animations();
     let mut warnings = files.warnings;
     warnings.extend(overrides.values().filter_map(Override::warning));
     let names_lights = lights.is_some();
-    let scene = Scene {
+    let mut scene = Scene {
         mesh,
         spheres,
         disks,
@@ -289,6 +291,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         hierarchy: None,
         fog,
     };
+    warnings.extend(bump::settle(&mut scene, bumps));
     let mut scene = settled(path, scene, budget, &holding)?;
     if !names_lights {
         frame::without_spare_lamps(&mut scene, settings.transport.integrator);

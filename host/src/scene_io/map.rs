@@ -7,12 +7,13 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use super::budget::Budget;
+use super::bump::{Made, ReliefMap, Slopes};
 use super::grid;
 use super::load::Loading;
 use super::moment::Instant;
 use super::table::Table;
 use crate::error::{Error, Result};
-use crate::image::{TextureBudget, read_heights, read_texture};
+use crate::image::{Relief, TextureBudget, read_heights, read_relief, read_texture};
 #[cfg(test)]
 use crate::memory::Room;
 use crate::scene::displace::Heights;
@@ -29,6 +30,10 @@ pub struct Images {
     pub room: Budget,
     textures: HashMap<PathBuf, Arc<Texture>>,
     opacities: HashMap<PathBuf, Arc<Texture>>,
+    /// Those whose heights are slopes of materials.
+    slopes: Slopes,
+    /// Which of them are normal maps, where only their colours tell.
+    of_normals: HashMap<PathBuf, bool>,
     /// Grids that were read beside them.
     grids: Vec<PathBuf>,
 }
@@ -49,6 +54,8 @@ impl Images {
             room,
             textures: HashMap::new(),
             opacities: HashMap::new(),
+            slopes: Slopes::default(),
+            of_normals: HashMap::new(),
             grids: Vec::new(),
         }
     }
@@ -86,6 +93,57 @@ impl Images {
         Ok((read_heights(&path, &mut self.budget.clone())?, path))
     }
 
+    /// The slopes of the picture of a name, relative to the folder, as a normal map that lies so.
+    ///
+    /// # Errors
+    /// Those of [`read_heights`], and no room for them.
+    pub fn slopes(&mut self, name: &str, placement: Placement) -> Result<Made> {
+        self.slopes_at(&self.folder.join(name), placement)
+    }
+
+    /// As [`Images::slopes`], of a path.
+    fn slopes_at(&mut self, path: &Path, placement: Placement) -> Result<Made> {
+        if self.loading.instant == Instant::Later {
+            return Ok(Made::blank(placement));
+        }
+        if let Some(made) = self.slopes.find(path, placement) {
+            return Ok(made);
+        }
+        let heights = read_heights(path, &mut self.budget.clone())?;
+        self.slopes.make(path, placement, &heights, &mut self.budget)
+    }
+
+    /// The picture of a path as a normal map, or else the slopes of its heights, whichever its colours say.
+    ///
+    /// # Errors
+    /// Those of [`read_relief`], and no room for slopes.
+    pub fn relief(&mut self, path: &Path, placement: Placement) -> Result<ReliefMap> {
+        let normals = |texture| ReliefMap::Normals(Map { texture, placement });
+        if self.loading.instant == Instant::Later {
+            return Ok(normals(studio::blank()));
+        }
+        match self.of_normals.get(path) {
+            Some(false) => return self.slopes_at(path, placement).map(ReliefMap::Heights),
+            Some(true) => return self.at(path).map(normals),
+            None => {}
+        }
+        let before = self.budget.clone();
+        let relief = read_relief(path, &mut self.budget)?;
+        self.of_normals.insert(path.to_owned(), matches!(relief, Relief::Normals(_)));
+        match relief {
+            Relief::Heights(heights) => {
+                self.slopes.make(path, placement, &heights, &mut self.budget).map(ReliefMap::Heights)
+            }
+            Relief::Normals(texture) => {
+                // A material that takes it for something else has brought it.
+                if self.textures.contains_key(path) {
+                    self.budget = before;
+                }
+                Ok(normals(self.textures.entry(path.to_owned()).or_insert_with(|| Arc::new(texture)).clone()))
+            }
+        }
+    }
+
     /// The grid that a key of a table names.
     ///
     /// # Errors
@@ -105,8 +163,9 @@ impl Images {
 
     /// Every file that was read, in the order of their names.
     pub fn paths(self) -> Vec<PathBuf> {
-        let mut paths: Vec<_> = self.textures.into_keys().chain(self.grids).collect();
+        let mut paths: Vec<_> = self.textures.into_keys().chain(self.slopes.paths()).chain(self.grids).collect();
         paths.sort();
+        paths.dedup();
         paths
     }
 }
@@ -156,18 +215,26 @@ fn map(table: &mut Table, key: &'static str, images: &mut Images) -> Result<Opti
     let Some((name, of)) = table.text_or_table(key, "file")? else { return Ok(None) };
     let texture = images.texture(&name).map_err(|error| table.fault_of(key, error.to_string()))?;
     let Some(mut of) = of else { return Ok(Some((Map { texture, placement: Placement::default() }, 1.0))) };
-    let scale = of.two("scale", Range::ANY)?.unwrap_or(Vec2::ONE);
-    let offset = of.two("offset", Range::ANY)?.unwrap_or(Vec2::ZERO);
-    let rotation = of.number("rotation", Range::ANY)?.unwrap_or(0.0);
-    let wrap: Wrap = of.choice("wrap")?.unwrap_or_default();
-    let placement = Placement {
-        set: of.whole("set", 0, 1)?.unwrap_or(0),
-        wrap: [wrap; 2],
-        nearest: of.flag("nearest")?.unwrap_or(false),
-        ..Placement::default().transformed(scale, rotation, offset)
-    };
+    let placement = placement(&mut of)?;
     let is_of_normals = matches!(key, "normal_texture" | "coat_normal_texture");
     let strength = if is_of_normals { of.number("strength", Range::ANY)? } else { None };
     of.done()?;
     Ok(Some((Map { texture, placement }, strength.unwrap_or(1.0))))
+}
+
+/// Takes where a picture lies.
+///
+/// # Errors
+/// A number out of range, or a wrap that there is not.
+pub fn placement(of: &mut Table) -> Result<Placement> {
+    let scale = of.two("scale", Range::ANY)?.unwrap_or(Vec2::ONE);
+    let offset = of.two("offset", Range::ANY)?.unwrap_or(Vec2::ZERO);
+    let rotation = of.number("rotation", Range::ANY)?.unwrap_or(0.0);
+    let wrap: Wrap = of.choice("wrap")?.unwrap_or_default();
+    Ok(Placement {
+        set: of.whole("set", 0, 1)?.unwrap_or(0),
+        wrap: [wrap; 2],
+        nearest: of.flag("nearest")?.unwrap_or(false),
+        ..Placement::default().transformed(scale, rotation, offset)
+    })
 }

@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::bump::{self, Bump};
 use super::map::{self, Images};
 use super::table::Table;
 use super::{medium, physical, visible};
@@ -28,6 +29,7 @@ pub struct Fields {
     pub physical: physical::Fields,
     pub volume: Option<Volume>,
     pub maps: Maps,
+    pub bump: Option<Bump>,
     pub visibility: Option<Visibility>,
     pub alpha: Option<Alpha>,
     pub opacity: Option<f32>,
@@ -67,6 +69,7 @@ impl Fields {
             physical: physical::Fields::read(table)?,
             volume: table.table("volume")?.map(|table| medium::volume(table, images)).transpose()?,
             maps: map::maps(table, images)?,
+            bump: bump::read(table, images)?,
             visibility: visible::read(table)?,
             alpha: alpha(table)?,
             opacity: table.number("opacity", Range::SHARE)?,
@@ -75,7 +78,11 @@ impl Fields {
     }
 
     /// These fields, and `under` where they say nothing.
-    pub fn over(self, under: Fields) -> Fields {
+    pub fn over(self, mut under: Fields) -> Fields {
+        // Normals come of either.
+        if self.maps.normal.is_some() || self.bump.is_some() {
+            (under.maps.normal, under.bump) = (None, None);
+        }
         Fields {
             ambient: self.ambient.or(under.ambient),
             diffuse: self.diffuse.or(under.diffuse),
@@ -93,10 +100,16 @@ impl Fields {
             physical: self.physical.over(under.physical),
             volume: self.volume.or(under.volume),
             maps: self.maps.over(under.maps),
+            bump: self.bump.or(under.bump),
             visibility: self.visibility.or(under.visibility),
             alpha: self.alpha.or(under.alpha),
             opacity: self.opacity.or(under.opacity),
         }
+    }
+
+    /// Does it have textures?
+    pub fn has_maps(&self) -> bool {
+        self.bump.is_some() || self.maps.all().next().is_some()
     }
 
     /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse. Of one by microfacets the thesis'

@@ -6,6 +6,7 @@ use std::collections::{BTreeMap, HashMap, TryReserveError};
 use glam::{Vec2, Vec3, Vec4};
 
 use super::Warning;
+use super::bump::Bump;
 use super::copies::Copies;
 use super::geometry::Geometry;
 use super::material::{DEFAULT, Fields};
@@ -33,7 +34,7 @@ impl Override {
 
     /// Does it have textures?
     pub fn has_maps(&self) -> bool {
-        self.fields.maps.all().next().is_some()
+        self.fields.has_maps()
     }
 
     fn over(&self, fields: Fields) -> Fields {
@@ -56,6 +57,7 @@ pub struct Merge {
     repeated: HashMap<String, usize>,
     objects: Vec<Object>,
     materials: Vec<Material>,
+    bumps: Vec<(u32, Bump)>,
     by_name: HashMap<String, Vec<u32>>,
 }
 
@@ -78,6 +80,8 @@ pub struct Merged {
     pub instances: Vec<Instance>,
     pub objects: Vec<Object>,
     pub materials: Vec<Material>,
+    /// Heights of materials, by their numbers, whose slopes are not yet those of a surface.
+    pub bumps: Vec<(u32, Bump)>,
 }
 
 impl Merge {
@@ -184,8 +188,8 @@ impl Merge {
                 *coordinates = Vec::new();
             }
         }
-        let Merge { mesh, spheres, disks, objects, materials, .. } = self;
-        Merged { mesh, spheres, disks, shared, instances, objects, materials }
+        let Merge { mesh, spheres, disks, objects, materials, bumps, .. } = self;
+        Merged { mesh, spheres, disks, shared, instances, objects, materials, bumps }
     }
 
     fn named(&mut self, name: &str, placed: &Placed, overrides: &Overrides) -> Unplaced<u32> {
@@ -202,10 +206,14 @@ impl Merge {
 
     /// The number of a material of a mesh, which may be lit by other lamps than others of it.
     fn number(&mut self, name: &str, (fields, lit_by): (Fields, &Option<Vec<String>>), overrides: &Overrides) -> u32 {
-        let fields = match overrides.get(name) {
+        let mut fields = match overrides.get(name) {
             Some(over) => over.over(fields),
             None => fields,
         };
+        let bump = fields.bump.take();
+        if let Some(bump) = &bump {
+            bump.cover(&mut fields.maps);
+        }
         let lit_by = lit_by.clone().or_else(|| fields.lit_by.clone());
         let material = Fields { lit_by, ..fields }.finish(name);
         // Two files may mean different things by a name.
@@ -216,6 +224,7 @@ impl Merge {
         }
         let number = self.materials.len() as u32;
         same.push(number);
+        self.bumps.extend(bump.map(|bump| (number, bump)));
         self.materials.push(material);
         number
     }

@@ -8,10 +8,12 @@
 
 mod binary;
 mod budget;
+mod bump;
 mod camera_table;
 mod copies;
 mod describe;
 mod document;
+mod face_areas;
 mod face_sizes;
 mod file;
 mod files;

@@ -15,6 +15,7 @@
 //! | `Ke` alone | emission under paths; nothing under Whitted's model, which draws nothing that emits |
 //! | `map_d` | blended opacity, times `d`, which then makes no glass: the picture's alpha, or its red without |
 //! | `norm` | texture of normals, whose slopes `-bm` multiplies |
+//! | `bump`, `map_Bump` | the same if its colours are those of normals, as Blender writes it; else heights by its first channel, where white is `-bm` world units above black |
 //! | `map_Pr`, `map_Pm` | texture of roughness (green) and metalness (blue), where both name the same picture |
 //! | `map_Pc`, `map_Pcr` | texture of the coat's weight (red) and of its roughness (green), times `Pc` and `Pcr`; 1 where those are absent or 0 |
 //! | other pictures | nothing |
@@ -29,6 +30,7 @@
 //!
 //! Files are read here and not by tobj, which panics on `Kd 1 0`.
 
+mod bump;
 mod picture;
 mod statements;
 
@@ -161,7 +163,8 @@ impl<'p> Reader<'p> {
                 self.latest(key)?.numbers = now;
                 Ok(())
             }
-            "map_Kd" | "map_Ke" | "map_d" | "norm" | "map_Pr" | "map_Pm" | "map_Pc" | "map_Pcr" => {
+            "map_Kd" | "map_Ke" | "map_d" | "norm" | "bump" | "map_Bump" | "map_bump" | "map_Pr" | "map_Pm"
+            | "map_Pc" | "map_Pcr" => {
                 let picture = self.picture(key, rest)?;
                 let pictures = &mut self.latest(key)?.pictures;
                 let of = match key {
@@ -169,6 +172,7 @@ impl<'p> Reader<'p> {
                     "map_Ke" => &mut pictures.emission,
                     "map_d" => &mut pictures.opacity,
                     "norm" => &mut pictures.normal,
+                    "bump" | "map_Bump" | "map_bump" => &mut pictures.bump,
                     "map_Pr" => &mut pictures.roughness,
                     "map_Pc" => &mut pictures.coat,
                     "map_Pcr" => &mut pictures.coat_roughness,
@@ -177,7 +181,7 @@ impl<'p> Reader<'p> {
                 *of = picture;
                 Ok(())
             }
-            "bump" | "disp" | "decal" | "refl" => {
+            "disp" | "decal" | "refl" => {
                 self.unused.add(self.line, key);
                 Ok(())
             }
@@ -276,16 +280,18 @@ impl<'p> Reader<'p> {
         let (mut unlit, mut opaque) = (Tally::default(), Tally::default());
         let shines = images.loading.integrator == Some(Integrator::Path);
         let mut materials = Vec::with_capacity(self.materials.len());
-        for (name, New { mut numbers, pictures }) in self.materials {
+        for (name, New { mut numbers, mut pictures }) in self.materials {
             if let Some(line) = numbers.take_transparency() {
                 opaque.add(line, "Tr 1");
             }
             let has_coat = numbers.pc.is_some_and(|weight| weight > 0.0);
-            let (maps, alpha) = pictures.maps(has_coat, images, &mut said);
+            let relief = pictures.bump.take();
+            let (mut maps, alpha) = pictures.maps(has_coat, images, &mut said);
+            let bump = relief.and_then(|relief| relief.bump(&mut maps, images, path, &mut said));
             if let Some(line) = numbers.unlit(&maps).filter(|_| !shines) {
                 unlit.add(line, "Ke");
             }
-            materials.push((name, numbers.fields(maps, alpha, shines)));
+            materials.push((name, Fields { bump, ..numbers.fields(maps, alpha, shines) }));
         }
         let warnings = [
             self.latin.warn(Changed, path, NOT_UTF8),
@@ -293,6 +299,7 @@ impl<'p> Reader<'p> {
             self.bad.warn(LeftOut, path, "left out"),
             self.missing.warn(Missing, path, MISSING),
             self.foreign.warn(LeftOut, path, picture::FOREIGN),
+            said.beside.warn(Idle, path, "ignored: the material has normals by norm, too, which count; remove one"),
             said.damaged.warn(Missing, path, "left out: surfaces are drawn without"),
             self.unused.warn(LeftOut, path, UNUSED),
             said.apart.warn(LeftOut, path, "ignored: roughness and metalness are read of one picture that both name"),

@@ -8,7 +8,7 @@ use super::super::tally::Tally;
 use crate::scene::{Alpha, Map, Maps, Placement, Unplaced, Wrap};
 
 /// What is said of pictures for which there is no use.
-pub(super) const UNUSED: &str = "ignored: pictures are drawn of Kd, Ke, d, norm, Pc, Pcr, and Pr and Pm together";
+pub(super) const UNUSED: &str = "ignored: pictures are drawn of Kd, Ke, d, norm, bump, Pc, Pcr, and Pr and Pm together";
 /// What is said of pictures of other kinds.
 pub(super) const FOREIGN: &str =
     "is no .png, .jpg, .tga, .bmp, .tif, .exr or .hdr: surfaces are drawn without; convert it";
@@ -20,7 +20,7 @@ const ENDINGS: [&str; 9] = ["png", "jpg", "jpeg", "exr", "hdr", "tga", "bmp", "t
 pub(super) struct Picture {
     pub path: PathBuf,
     pub placement: Placement,
-    /// What slopes are multiplied with (`-bm`).
+    /// What slopes or heights are multiplied with (`-bm`).
     pub strength: f32,
     /// The statement's.
     pub line: usize,
@@ -33,6 +33,7 @@ pub(super) struct Pictures {
     pub emission: Option<Picture>,
     pub opacity: Option<Picture>,
     pub normal: Option<Picture>,
+    pub bump: Option<Picture>,
     pub roughness: Option<Picture>,
     pub metallic: Option<Picture>,
     pub coat: Option<Picture>,
@@ -46,6 +47,8 @@ pub(super) struct Said {
     pub apart: Tally,
     /// Pictures that cannot be read.
     pub damaged: Tally,
+    /// Heights of what has normals.
+    pub beside: Tally,
 }
 
 /// What a statement says: its options come before the name, which may hold blanks.
@@ -130,7 +133,7 @@ pub(super) fn is_known(path: &Path) -> bool {
 impl Pictures {
     /// The maps of them, and the alpha of one whose opacity is its base's; is there a coat without a picture of it?
     pub fn maps(self, has_coat: bool, images: &mut Images, said: &mut Said) -> (Maps, Option<Alpha>) {
-        let Said { apart, damaged } = said;
+        let Said { apart, damaged, .. } = said;
         let mut map = |picture: &Picture| match images.at(&picture.path) {
             Ok(texture) => Some(Map { texture, placement: picture.placement }),
             Err(fault) => {

@@ -47,7 +47,7 @@ pub(super) struct Libraries<'p> {
 impl Materials {
     /// Does any of them have textures?
     pub fn has_maps(&self) -> bool {
-        self.materials.iter().any(|(_, fields)| fields.maps.all().next().is_some())
+        self.materials.iter().any(|(_, fields)| fields.has_maps())
     }
 }
 

@@ -13,7 +13,7 @@ use crate::scene_io::{load, mtl, obj, xyzr};
 /// Words of the format between words of no format.
 fn word() -> impl Strategy<Value = String> {
     prop_oneof![
-        4 => "(v|vn|vt|f|usemtl|mtllib|o|l|newmtl|Kd|d|illum|Pr|Pc|Ps|Ke|map_Kd -s|norm -bm) ",
+        4 => "(v|vn|vt|f|usemtl|mtllib|o|l|newmtl|Kd|d|illum|Pr|Pc|Ps|Ke|map_Kd -s|norm -bm|bump -bm) ",
         8 => "-?[0-9]{1,2} ",
         3 => "-?[0-9]{0,2}/[0-9]?/-?[0-9]{0,20} ",
         2 => "-?[0-9]\\.[0-9]e-?[0-9]{1,2} ",

@@ -1,5 +1,6 @@
 //! Tests of loading: what must be refused, and what must come out right.
 
+mod bump;
 mod displace;
 mod effect;
 mod finish;

@@ -177,13 +177,13 @@ fn pictures_of_a_coat_are_multiplied_with_its_numbers_or_one() {
 #[test]
 fn what_is_not_drawn_is_warned_of_once_a_file() {
     let statements =
-        "map_Kd no.png\nmap_d\nKe 1 1 1\nKe 0 0 2\nmap_Kd old.webp\nbump a.png\nmap_Bump a.png\nmap_Ks a.png\n";
+        "map_Kd no.png\nmap_d\nKe 1 1 1\nKe 0 0 2\nmap_Kd old.webp\ndisp a.png\nrefl a.png\nmap_Ks a.png\n";
     let (scene, warnings) = loaded(statements);
     assert_eq!(scene.materials[0], Material { name: "m".into(), ..Material::default() });
     let wanted = [
         "a.mtl:2: map_Kd \"no.png\" and 1 more not found: surfaces are drawn without",
         "a.mtl:6: map_Kd \"old.webp\" is no .png, .jpg, .tga, .bmp, .tif, .exr or .hdr",
-        "a.mtl:7: bump and 2 more ignored: pictures are drawn of",
+        "a.mtl:7: disp and 2 more ignored: pictures are drawn of",
         "a.mtl:5: Ke ignored: add --integrator path, or give the material an emission",
     ];
     assert_eq!(warnings.len(), wanted.len(), "{warnings:?}");

@@ -75,7 +75,8 @@ def write_scene(folder, keys):
 
 
 def read(path):
-    return np.asarray(OpenEXR.File(str(path)).channels()["RGB"].pixels)[..., :3]
+    channels = OpenEXR.File(str(path)).channels()
+    return np.asarray(channels["RGBA" if "RGBA" in channels else "RGB"].pixels)[..., :3]
 
 
 def of_eyerays(asked, folder):

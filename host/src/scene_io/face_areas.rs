@@ -63,7 +63,6 @@ fn covered(scene: &Scene, sets: &[Option<usize>], triangles: Range<usize>, mut t
 }
 
 /// What triangles of a mesh are together, so that no copy has to look at each.
-#[derive(Default)]
 struct Facing {
     own: Areas,
     /// The sum of the squares (outer products) of their normals, each times its area.
@@ -75,7 +74,7 @@ impl Facing {
     fn of(scene: &Scene, sets: &[Option<usize>], triangles: Range<usize>) -> BTreeMap<usize, Facing> {
         let mut all: BTreeMap<usize, Facing> = BTreeMap::new();
         covered(scene, sets, triangles, |material, (area, texture)| {
-            let facing = all.entry(material).or_default();
+            let facing = all.entry(material).or_insert(Facing { own: Areas::default(), squares: DMat3::ZERO });
             let world = area.length();
             facing.own.add(Areas { world, texture });
             if world > 0.0 {

@@ -246,7 +246,7 @@ fn finishes_are_in_no_kernel_of_a_scene_without() {
         assert!(with.bindings().contains(&binding::FINISHES), "{one:#x}");
         assert!(with.instructions() > bare.instructions(), "{one:#x}");
     }
-    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::shade"] {
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate"] {
         let of = |bits| kernels.cut(entry, &finished(physical, bits).constants()).unwrap();
         assert_eq!(of(u32::MAX).words(), of(0).words(), "{entry}");
     }

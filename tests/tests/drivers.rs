@@ -10,8 +10,9 @@ use eyerays_tests::{pack, settings};
 /// The family of GPUs that RADV compiles for without one.
 const FAMILY: (&str, &str) = ("RADV_FORCE_FAMILY", "navi21");
 
-/// More than any kernel's instructions there: `frosted` has the most, 11,094.
-const MOST: f64 = 15_000.0;
+/// More than any kernel's instructions there: `finishes`, which has coats, fibres, films and all else at once, has the most, 18,816, and
+/// no register of it is spilled to memory; of the others `frosted` has, 11,094.
+const MOST: f64 = 22_000.0;
 
 /// Mesa's compiler needs more than a thread's usual stack.
 const STACK: usize = 64 << 20;

@@ -330,7 +330,8 @@ fn a_hundred_thousand_of_everything_take_seconds() {
     ];
     let start = std::time::Instant::now();
     let (scene, warnings) = load(&text.concat());
-    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    // What grew with the square of them would take hours; machines that do other work take their time.
+    assert!(start.elapsed().as_secs() < 120, "{:?}", start.elapsed());
     assert_eq!((scene.cameras.len(), scene.lights.len()), (100_000, 100_000));
     assert_eq!((scene.materials.len(), scene.objects.len()), (50_000, 100_000));
     assert_eq!(warnings.len(), 50_000);

@@ -107,7 +107,7 @@ pub struct DeviceScene {
 
 impl DeviceScene {
     /// Normalises, builds the hierarchy or takes the one that the scene brings along, and packs. All methods follow rays through
-    /// it but [`Method::Wide`] on a GPU.
+    /// it but [`Method::Wide`](crate::method::Method::Wide) on a GPU.
     ///
     /// # Errors
     /// A mesh that names vertices or materials which are not there. What no device could hold or no ray meet: too many triangles,
@@ -118,7 +118,7 @@ impl DeviceScene {
     }
 
     /// As [`DeviceScene::new`], with the nodes of eight children beside that a GPU walks by
-    /// [`Method::Wide`].
+    /// [`Method::Wide`](crate::method::Method::Wide).
     ///
     /// # Errors
     /// As there.

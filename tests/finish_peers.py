@@ -9,9 +9,7 @@ what the scene is about is a tenth weaker, to show what the comparison can tell.
 Fresnel's equations say, this program's by Schlick's approximation, as glTF has it; its film is seen by tables of the eye.
 """
 
-import argparse
 import math
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -20,7 +18,7 @@ import mathutils
 import numpy as np
 import OpenEXR
 
-from blocks import blocks, compared
+from blocks import arguments, blocks, of_eyerays, row
 
 BOUNCES = 32
 SKY = (0.25, 0.28, 0.35)
@@ -77,14 +75,6 @@ def write_scene(folder, keys):
 def read(path):
     channels = OpenEXR.File(str(path)).channels()
     return np.asarray(channels["RGBA" if "RGBA" in channels else "RGB"].pixels)[..., :3]
-
-
-def of_eyerays(asked, folder):
-    for seed in range(asked.seeds):
-        output = folder / "picture.exr"
-        shared = ["--device", asked.device, "--size", f"{asked.size}x{asked.size}", "--spp", str(asked.samples), "--quiet"]
-        subprocess.run([asked.program, "render", folder / "scene.toml", *shared, "--seed", str(seed), "-o", output], check=True)
-        yield read(output)
 
 
 def in_blender(place):
@@ -172,24 +162,15 @@ def of_cycles(asked, folder, inputs):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("scenes", nargs="*", default=list(SCENES))
-    parser.add_argument("--device", default="cpu")
-    parser.add_argument("--size", type=int, default=64)
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--seeds", type=int, default=16)
-    asked = parser.parse_args()
-    print("| scene | beside | greatest z of 64 | root mean square of z | difference of the image |\n|---|---|---|---|---|")
+    asked = arguments(__doc__, SCENES)
     for name in asked.scenes:
         keys, inputs, weakened = SCENES[name]
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             write_scene(folder, keys)
-            own = blocks(of_eyerays(asked, folder))
+            own = blocks(of_eyerays(asked, folder, read))
             for other, of in {"Cycles": inputs, "Cycles, a tenth weaker": {**inputs, weakened: 0.9 * inputs[weakened]}}.items():
-                greatest, spread, share = compared(own, blocks(of_cycles(asked, folder, of)))
-                print(f"| {name} | {other} | {greatest:.2f} | {spread:.2f} | {100 * share:+.2f} % |", flush=True)
+                row(name, other, own, of_cycles(asked, folder, of))
 
 
 if __name__ == "__main__":

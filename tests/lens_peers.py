@@ -10,11 +10,9 @@ degrees of freedom: of 64 blocks the greatest is below 3.9 in 95 of 100 images. 
 wider, to show what the comparison can tell. Blocks without any light do not count.
 """
 
-import argparse
 import contextlib
 import math
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -24,7 +22,7 @@ import mathutils
 import mitsuba as mi
 import numpy as np
 
-from blocks import blocks, compared
+from blocks import arguments, blocks, of_eyerays, row
 
 mi.set_variant("scalar_rgb")
 
@@ -100,12 +98,8 @@ def write_scene(folder, surfaces, sky, camera):
     )
 
 
-def of_eyerays(asked, folder):
-    for seed in range(asked.seeds):
-        output = folder / "picture.exr"
-        shared = ["--device", asked.device, "--size", f"{asked.size}x{asked.size}", "--spp", str(asked.samples), "--quiet"]
-        subprocess.run([asked.program, "render", folder / "scene.toml", *shared, "--seed", str(seed), "-o", output], check=True)
-        yield np.array(mi.Bitmap(str(output)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
+def read(path):
+    return np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
 
 
 def of_mitsuba(asked, surfaces, sky, camera):
@@ -209,21 +203,13 @@ def quiet():
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("scenes", nargs="*", default=list(SCENES))
-    parser.add_argument("--device", default="cpu")
-    parser.add_argument("--size", type=int, default=64)
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--seeds", type=int, default=16)
-    asked = parser.parse_args()
-    print("| scene | beside | greatest z of 64 | root mean square of z | difference of the image |\n|---|---|---|---|---|")
+    asked = arguments(__doc__, SCENES)
     for name in asked.scenes:
         surfaces, sky, camera = SCENES[name]()
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             write_scene(folder, surfaces, sky, camera)
-            own = blocks(of_eyerays(asked, folder))
+            own = blocks(of_eyerays(asked, folder, read))
             wider = dict(camera, aperture=1.05 * camera["aperture"])
             others = {
                 "Mitsuba thinlens": of_mitsuba(asked, surfaces, sky, camera),
@@ -231,8 +217,7 @@ def main():
                 "Mitsuba, 5 % wider": of_mitsuba(asked, surfaces, sky, wider),
             }
             for other, pictures in others.items():
-                greatest, spread, share = compared(own, blocks(pictures))
-                print(f"| {name} | {other} | {greatest:.2f} | {spread:.2f} | {100 * share:+.2f} % |", flush=True)
+                row(name, other, own, pictures)
 
 
 if __name__ == "__main__":

@@ -10,16 +10,14 @@ freedom: of 64 blocks the greatest is below 3.9 in 95 of 100 images. The last ro
 show what the comparison can tell. Blocks without any light do not count.
 """
 
-import argparse
 import struct
-import subprocess
 import tempfile
 from pathlib import Path
 
 import mitsuba as mi
 import numpy as np
 
-from blocks import blocks, compared
+from blocks import arguments, blocks, of_eyerays, row
 
 mi.set_variant("scalar_rgb")
 
@@ -111,12 +109,8 @@ def write_scene(folder, surfaces, media):
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 
 
-def of_eyerays(asked, folder):
-    for seed in range(asked.seeds):
-        output = folder / "picture.exr"
-        shared = ["--device", asked.device, "--size", f"{asked.size}x{asked.size}", "--spp", str(asked.samples), "--quiet"]
-        subprocess.run([asked.program, "render", folder / "scene.toml", *shared, "--seed", str(seed), "-o", output], check=True)
-        yield np.array(mi.Bitmap(str(output)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
+def read(path):
+    return np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
 
 
 def rgb(values):
@@ -200,28 +194,19 @@ def of_mitsuba(asked, folder, surfaces, media):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("scenes", nargs="*", default=list(SCENES))
-    parser.add_argument("--device", default="cpu")
-    parser.add_argument("--size", type=int, default=64)
-    parser.add_argument("--samples", type=int, default=64)
-    parser.add_argument("--seeds", type=int, default=16)
-    asked = parser.parse_args()
-    print("| scene | beside | greatest z of 64 | root mean square of z | difference of the image |\n|---|---|---|---|---|")
+    asked = arguments(__doc__, SCENES)
     for name in asked.scenes:
         surfaces, media = SCENES[name]()
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
             write_scene(folder, surfaces, media)
-            own = blocks(of_eyerays(asked, folder))
+            own = blocks(of_eyerays(asked, folder, read))
             others = {
                 "Mitsuba volpath": of_mitsuba(asked, folder, surfaces, media),
                 "Mitsuba, 5 % denser": of_mitsuba(asked, folder, surfaces, [denser(of, 1.05) for of in media]),
             }
             for other, pictures in others.items():
-                greatest, spread, share = compared(own, blocks(pictures))
-                print(f"| {name} | {other} | {greatest:.2f} | {spread:.2f} | {100 * share:+.2f} % |", flush=True)
+                row(name, other, own, pictures)
 
 
 if __name__ == "__main__":

@@ -4,10 +4,10 @@ use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Aovs, Effects, Finishes, Frame, Launch, Layout, Media, Specialisation, pack};
+use eyerays_shader::data::{Aovs, Effects, Finishes, Frame, Launch, Layout, Media, Specialisation, Waves, pack};
 use eyerays_shader::material::ALBEDOS;
 use eyerays_shader::medium::Inside;
-use glam::Vec3;
+use glam::{UVec4, Vec3};
 
 use crate::device_scene::{DeviceScene, Feature, flushed};
 use crate::error::{Error, Result};
@@ -15,6 +15,7 @@ use crate::integrator::needs;
 use crate::layers;
 use crate::method::Traversal;
 use crate::scene::{Integrator, PixelFilter, Scene, Settings, Transport};
+use crate::spectrum;
 
 /// A scene as devices hold it, with settings and what its pictures show. Cheap to clone: jobs of one scene share it.
 #[derive(Clone)]
@@ -85,6 +86,11 @@ impl Job {
                 "the scene has media (volume, fog), which paths alone go through: set the integrator to \"path\"",
             ));
         }
+        if settings.spectral && settings.transport.integrator != Integrator::Path {
+            return Err(Error::new(
+                "light of single wavelengths (spectral) is what paths alone carry: set the integrator to \"path\" (--integrator path)",
+            ));
+        }
         Ok(Job { scene, settings, feature: None, aovs: Aovs(0), optic_tables: Arc::default() })
     }
 
@@ -111,6 +117,11 @@ impl Job {
     /// The integrator traces no paths, or groups of lamps are asked of a scene without any.
     pub fn keeping(&self, aovs: Aovs) -> Result<Job> {
         layers::check(aovs, self.settings.transport.integrator, self.light_groups())?;
+        if self.settings.spectral && aovs.has(Aovs::LOBES) {
+            return Err(Error::new(
+                "layers of what is diffuse, glossy and transmitted are of red, green and blue light: leave them out, or spectral",
+            ));
+        }
         Ok(Job { aovs, ..self.clone() })
     }
 
@@ -177,12 +188,28 @@ impl Job {
             aovs: self.aovs,
             media: self.media_bits(),
             finishes: self.finish_bits(),
+            waves: self.waves(),
         }
     }
 
     /// What its kernels know of what lies on physical materials: only paths see it.
     pub fn finish_bits(&self) -> Finishes {
         if self.follows_paths() { self.scene.finish_bits() } else { Finishes::default() }
+    }
+
+    /// How light has wavelengths.
+    pub fn waves(&self) -> Waves {
+        let is_spectral = self.settings.spectral && self.feature.is_none();
+        Waves(if is_spectral { Waves::SPECTRAL } else { 0 })
+    }
+
+    /// Words of the table of spectra, see [`eyerays_shader::data::SpectrumRow`]; empty where light has no wavelengths.
+    pub fn spectra(&self) -> &[UVec4] {
+        static WORDS: OnceLock<Vec<UVec4>> = OnceLock::new();
+        if !self.waves().has(Waves::SPECTRAL) {
+            return &[];
+        }
+        WORDS.get_or_init(|| spectrum::words(&[]))
     }
 
     /// What of the media its kernels know: only paths go through them.

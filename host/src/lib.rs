@@ -59,6 +59,7 @@ pub mod rays;
 pub mod render;
 pub mod scene;
 pub mod scene_io;
+pub mod spectrum;
 pub mod stream;
 mod team;
 pub mod trail;

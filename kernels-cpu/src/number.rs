@@ -8,6 +8,7 @@ use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 use eyerays_shader::stage::{self, CameraTables, FilmWords, Found, TransmitInputs};
 use eyerays_shader::traverse::{Primitives, WhileWhile};
 use eyerays_shader::warp::Alone;
+use glam::UVec4;
 
 use crate::follow::{Query, follow};
 use crate::isa::Isa;
@@ -42,6 +43,8 @@ pub struct Between<'a> {
     pub media: &'a [Medium],
     /// Where they are denser.
     pub grids: &'a [u32],
+    /// What light of single wavelengths does.
+    pub spectra: &'a [UVec4],
 }
 
 /// A number that every stage is compiled for: `f32` and, for references, `f64`. A CPU has no faster division or root to give up
@@ -124,13 +127,13 @@ macro_rules! number {
 
             fn transmit(
                 scene: &TraceContext<'_>,
-                &Between { materials, media, grids }: &Between<'_>,
+                &Between { materials, media, grids, spectra }: &Between<'_>,
                 slots: &[u32],
-                Records { hits, shadows, segments, .. }: &mut Records<Self>,
+                Records { paths, hits, shadows, segments, .. }: &mut Records<Self>,
             ) {
                 for &slot in slots {
                     let time = Found::<Self>::time(&scene.base, slot, hits);
-                    let inputs = TransmitInputs { shadows, materials, media, grids };
+                    let inputs = TransmitInputs { paths, shadows, materials, media, grids, spectra };
                     stage::transmit::<Self, WhileWhile<Alone>, Primitives>(scene, inputs, (slot, time), segments);
                 }
             }

@@ -23,6 +23,7 @@ pub mod resources;
 pub mod sampler;
 pub mod scene;
 pub mod screen;
+pub mod spectrum;
 pub mod stage;
 pub mod texture;
 pub mod traverse;

@@ -65,6 +65,7 @@ macro_rules! resources {
             33 media MEDIA: Read Medium, "media";
             34 grids GRIDS: Read u32, "grids";
             35 finishes FINISHES: Read Finish, "finishes of materials";
+            36 spectra SPECTRA: Read UVec4, "spectra";
         }
     };
 }

@@ -4,12 +4,14 @@ use crate::buffer::read;
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::Bvh8View;
 use crate::data::{
-    CentredPair, CompactPair, CwbvhNode, Effects, Frame, Instance, Launch, Layout, Maps, Material, NodeRef, Normals,
-    Primitive, Specialisation, line, numbers, pack,
+    CentredPair, CompactPair, CwbvhNode, Effects, Frame, Instance, Launch, Layout, Maps, Material, Medium, NodeRef,
+    Normals, Primitive, Specialisation, Waves, line, numbers, pack,
 };
 use crate::geometry::Transform;
 use crate::ray::Hit;
-use crate::real::{Real, TINY};
+use crate::real::{Real, Scalar, TINY, V3};
+use crate::sampler::{self, Key, WAVELENGTHS};
+use crate::spectrum::Bands;
 use crate::texture::Textures;
 use crate::traverse::Cutout;
 use glam::{UVec4, Vec3};
@@ -25,6 +27,55 @@ pub struct LaunchContext<'a> {
     pub primitives: &'a [UVec4],
     /// Copies of meshes ([`Effects::INSTANCED`]).
     pub instances: &'a [Instance],
+    /// The wavelengths of a sample's light ([`Waves::SPECTRAL`]).
+    pub bands: Bands,
+}
+
+impl<'a> LaunchContext<'a> {
+    /// Of red, green and blue light.
+    #[inline(always)]
+    pub fn new(frame: &'a Frame, spec: Specialisation, primitives: &'a [UVec4], instances: &'a [Instance]) -> Self {
+        LaunchContext { frame, spec, primitives, instances, bands: Bands::default() }
+    }
+
+    /// For a sample of a pixel, which draws its wavelengths where light has any.
+    #[inline(always)]
+    pub fn of_sample(&self, spectra: &[UVec4], key: Key, sample: u32) -> Self {
+        // No launch is chosen between two: that would be a phi of its buffers.
+        let bands = if self.spec.waves.has(Waves::SPECTRAL) {
+            Bands::drawn(spectra, sampler::set(self.spec.launch, key, sample, WAVELENGTHS).x)
+        } else {
+            Bands::default()
+        };
+        LaunchContext { bands, ..*self }
+    }
+
+    /// What a colour, linear RGB, is at each of the sample's wavelengths; itself where light has none.
+    #[inline(always)]
+    pub fn banded<R: Scalar>(&self, rgb: V3<R>) -> V3<R> {
+        if self.spec.waves.has(Waves::SPECTRAL) { self.bands.of(rgb) } else { rgb }
+    }
+
+    /// A medium by its number from 1 on, as it is for the sample's wavelengths.
+    #[inline(always)]
+    pub fn medium(&self, media: &[Medium], number: u32) -> Medium {
+        let medium = read(media, number - 1);
+        if !self.spec.waves.has(Waves::SPECTRAL) {
+            return medium;
+        }
+        let banded = |of: UVec4| {
+            let V3 { x, y, z } = self.bands.of(V3::<f32>::splat(numbers(of)));
+            pack(Vec3::new(x, y, z), of.w)
+        };
+        let Medium { extinction, albedo, emission, density } = medium;
+        Medium { extinction: banded(extinction), albedo: banded(albedo), emission: banded(emission), density }
+    }
+
+    /// The colour of light that has the sample's wavelengths, linear RGB.
+    #[inline(always)]
+    pub fn rgb<R: Scalar>(&self, light: V3<R>) -> V3<R> {
+        if self.spec.waves.has(Waves::SPECTRAL) { self.bands.rgb(light) } else { light }
+    }
 }
 
 impl LaunchContext<'_> {

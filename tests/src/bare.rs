@@ -29,7 +29,7 @@ impl Bare {
         let spec = Specialisation { effects: self.effects, ..Specialisation::default() };
         let primitives = bytemuck::cast_slice(&self.primitives);
         let context = TraceContext {
-            base: LaunchContext { frame: &self.frame, spec, primitives, instances: &[] },
+            base: LaunchContext::new(&self.frame, spec, primitives, &[]),
             nodes: &[],
             wide: &[],
             bvh8: Bvh8View::default(),

@@ -199,7 +199,8 @@ impl<R: Number> Launch<'_, R> {
 
     fn transmit(&mut self, scene: &TraceContext<'_>) {
         let job = &self.planned.laid.job;
-        let between = Between { materials: job.materials(), media: job.media(), grids: job.grids() };
+        let (materials, media, grids, spectra) = (job.materials(), job.media(), job.grids(), job.spectra());
+        let between = Between { materials, media, grids, spectra };
         R::transmit(scene, &between, &self.queue, &mut self.records);
     }
 

@@ -78,7 +78,7 @@ pub(super) fn of(
         launch: Launch(if steps > 0 { Launch::MOVING } else { 0 }),
         ..Specialisation::default()
     };
-    let launch = LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(primitives), instances };
+    let launch = LaunchContext::new(&frame, spec, bytemuck::cast_slice(primitives), instances);
     let moved = |(copy, &first): (usize, &usize)| {
         let times = if instances[first].moves() { 2 * steps } else { 0 };
         let shining = move |&index: &u32| {

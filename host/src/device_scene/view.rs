@@ -80,6 +80,7 @@ impl SceneView {
             emissions: &lighting.emissions,
             textures: self.textures(),
             environment: self.job.environment(),
+            spectra: self.job.spectra(),
         }
     }
 
@@ -115,12 +116,7 @@ impl SceneView {
     /// The scene for a launch by a kernel that is compiled for `spec`.
     pub fn context<'g>(&'g self, frame: &'g Frame, spec: Specialisation) -> TraceContext<'g> {
         TraceContext {
-            base: LaunchContext {
-                frame,
-                spec,
-                primitives: self.primitives.words(&self.job),
-                instances: self.job.instances(),
-            },
+            base: LaunchContext::new(frame, spec, self.primitives.words(&self.job), self.job.instances()),
             nodes: self.nodes.words(&self.job),
             wide: self.job.wide(),
             bvh8: self.bvh8(),

@@ -30,7 +30,7 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 24] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 25] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
@@ -64,6 +64,7 @@ impl<'a> SceneRecords<'a> {
             (binding::ALBEDOS, bytemuck::cast_slice(packed.albedos())),
             (binding::MEDIA, bytemuck::cast_slice(media)),
             (binding::GRIDS, bytemuck::cast_slice(grids)),
+            (binding::SPECTRA, bytemuck::cast_slice(packed.spectra())),
             (binding::OPTICS, bytemuck::cast_slice(packed.optic_tables())),
         ]
     }

@@ -38,6 +38,7 @@ pub use tone::ToneMap;
 pub(crate) use transfer::{byte_to_linear, least_of_byte};
 pub use transfer::{linear_to_srgb, quantise_to_byte, srgb_to_linear};
 pub use white::WhiteBalance;
+pub(crate) use white::from_xyz;
 
 /// What wrote a file.
 const SOFTWARE: &str = concat!("eyerays ", env!("CARGO_PKG_VERSION"));

@@ -90,6 +90,11 @@ pub(super) fn balanced(picture: &Picture, white: Option<WhiteBalance>) -> Cow<'_
     white.map_or(Cow::Borrowed(picture), |white| Cow::Owned(white.balanced(picture)))
 }
 
+/// Linear Rec. 709 of CIE 1931 XYZ.
+pub(crate) fn from_xyz(xyz: [f64; 3]) -> [f64; 3] {
+    times(&FROM_XYZ, xyz)
+}
+
 /// With a brightness of 1.
 fn xyz((x, y): Chromaticity) -> [f64; 3] {
     [x / y, 1.0, (1.0 - x - y) / y]

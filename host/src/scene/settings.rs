@@ -36,6 +36,9 @@ pub struct Settings {
     /// Is what the camera sees of the surroundings left out, so that the picture tells how much of it is opaque?
     #[serde(default)]
     pub transparent: bool,
+    /// Do paths carry light of single wavelengths?
+    #[serde(default)]
+    pub spectral: bool,
     /// How light is carried.
     pub transport: Transport,
 }
@@ -99,6 +102,7 @@ impl Default for Settings {
             filter: Filter::default(),
             pixel_filter: None,
             transparent: false,
+            spectral: false,
             transport: Transport::default(),
         }
     }

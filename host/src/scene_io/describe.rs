@@ -153,6 +153,7 @@ fn settings(text: &mut Text, of: &Settings) {
         text.key("pixel_filter", quoted(filter.name()));
     }
     text.other("transparent", of.transparent, default.transparent);
+    text.other("spectral", of.spectral, default.spectral);
     let Transport { integrator, seed, roulette, clamp, direct, ao_distance } = of.transport;
     let default = default.transport;
     text.word("integrator", integrator, Integrator::Whitted);

@@ -72,7 +72,7 @@ fn among(method: Method, tuning: Tuning, directions: impl Fn(usize) -> Vec3, lan
     let frame = Frame { slots: 32, ..Frame::default() };
     let spec = Specialisation { tuning, ..Specialisation::default() }.with_launch(Launch::STREAM);
     let context = TraceContext {
-        base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(&triangles), instances: &[] },
+        base: LaunchContext::new(&frame, spec, bytemuck::cast_slice(&triangles), &[]),
         nodes: bytemuck::cast_slice(&nodes),
         wide: &[],
         bvh8: Default::default(),

@@ -10,7 +10,7 @@ use crate::validate::Validation;
 use crate::{Error, Result, compile, pass, reflect, source, validate};
 
 /// The most bytes that all modules may hold.
-pub const SIZE_LIMIT: usize = 11 << 20;
+pub const SIZE_LIMIT: usize = 12 << 20;
 
 /// A fresh build.
 #[derive(Clone, Debug)]

@@ -71,7 +71,7 @@ pub struct Emission {
     /// Radiance, linear RGB; the integer is the bits of the probability density over the area of the normalised scene that a
     /// place on it is chosen as a light, 0 if it emits nothing.
     pub radiance: UVec4,
-    /// Bits of [`Emission::TWO_SIDED`] and [`Emission::COLOURED`] with the group of lamps above them, the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
+    /// Bits of [`Emission::TWO_SIDED`] and [`Emission::COLOURED`] with the row of its spectrum (0 for that of D65) and the group of lamps above them, the map that it is multiplied with as in [`Maps`](super::Maps), and of what is not opaque everywhere
     /// the map of its opacity and the bits of a number: at least 0 what opacity is multiplied with, and below 0 less the least opacity
     /// that is there.
     pub sides: UVec4,
@@ -80,6 +80,8 @@ pub struct Emission {
 impl Emission {
     /// The bits below those of the group.
     pub const FLAGS: u32 = 8;
+    /// The bits below those of the spectrum.
+    pub const ILLUMINANT: u32 = 2;
     /// Backs emit too.
     pub const TWO_SIDED: u32 = 1;
     /// The radiance is multiplied with the colours of vertices.
@@ -89,6 +91,12 @@ impl Emission {
     #[inline(always)]
     pub fn group(&self) -> u32 {
         self.sides.x >> Self::FLAGS
+    }
+
+    /// The row of its spectrum ([`SpectrumRow`](super::SpectrumRow)), 0 for that of D65.
+    #[inline(always)]
+    pub fn illuminant(&self) -> u32 {
+        (self.sides.x & ((1 << Self::FLAGS) - 1)) >> Self::ILLUMINANT
     }
 
     /// Does it shine to whoever sees its front, or its back?

@@ -17,7 +17,8 @@ pub struct Finish {
     /// base's light.
     pub beyond: UVec4,
     /// The least and the greatest thickness of the film in nanometres, and half of the difference of the indices of refraction of
-    /// blue and red light; the integer is unused.
+    /// blue and red light; the integer is the row of the spectrum ([`SpectrumRow`](super::SpectrumRow)) of what the index is above that of
+    /// yellow light, over the third number, or 0 for Cauchy's.
     pub film: UVec4,
     /// The maps of all that.
     pub maps: FinishMaps,

@@ -1,5 +1,16 @@
 //! Grids of numbers, as words.
 
+/// The words of a table of what glows: the bits of its steps over a kelvin, and for each step's temperature from 0 on three numbers, linear RGB
+/// of the light of a black body, over the luminance of that of the last.
+pub struct GlowTable;
+
+impl GlowTable {
+    /// How many temperatures there are, of which the last goes on.
+    pub const TEMPERATURES: u32 = 256;
+    /// All its words.
+    pub const WORDS: u32 = 1 + 3 * Self::TEMPERATURES;
+}
+
 /// Cells along an edge of a block.
 pub const CELLS: u32 = 8;
 

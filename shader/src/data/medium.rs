@@ -16,7 +16,8 @@ pub struct Medium {
     /// Radiance that it sends where it absorbs, linear RGB: much of it is as bright as this. The integer is the bits of its index of
     /// refraction.
     pub emission: UVec4,
-    /// The first word of a [`Grid`](super::Grid) of densities that coefficients are multiplied with, two unused numbers, and flags.
+    /// The first word of a [`Grid`](super::Grid) of densities that coefficients are multiplied with; those of a grid of temperatures and
+    /// of the [light](super::GlowTable) of each, which what it sends is multiplied with; and flags.
     pub density: UVec4,
 }
 
@@ -24,9 +25,21 @@ impl Medium {
     /// The flag of a medium that is not as dense everywhere.
     pub const HAS_GRID: u32 = 1;
 
-    /// The same with a grid at this word.
-    pub fn with_grid(self, at: u32) -> Self {
-        Medium { density: UVec4::new(at, 0, 0, Self::HAS_GRID), ..self }
+    /// The flag of one that glows as its temperature says.
+    pub const HAS_TEMPERATURE: u32 = 2;
+
+    /// The same with a grid of densities at this word.
+    pub fn with_grid(mut self, at: u32) -> Self {
+        self.density.x = at;
+        self.density.w |= Self::HAS_GRID;
+        self
+    }
+
+    /// The same with a grid of temperatures at a word, and the table of their light at another.
+    pub fn with_temperature(mut self, at: u32, table: u32) -> Self {
+        (self.density.y, self.density.z) = (at, table);
+        self.density.w |= Self::HAS_TEMPERATURE;
+        self
     }
 
     /// Is it denser in some places?
@@ -35,7 +48,13 @@ impl Medium {
         self.density.w & Self::HAS_GRID != 0
     }
 
-    /// The first word of its grid.
+    /// Is it hotter in some places?
+    #[inline(always)]
+    pub fn has_temperature(&self) -> bool {
+        self.density.w & Self::HAS_TEMPERATURE != 0
+    }
+
+    /// The first word of its grid of densities.
     #[inline(always)]
     pub fn grid(&self) -> u32 {
         self.density.x

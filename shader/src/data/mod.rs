@@ -22,6 +22,7 @@ mod primitive;
 mod quanta;
 mod shading;
 mod specialisation;
+mod spectrum;
 mod texture;
 
 pub use aovs::Aovs;
@@ -31,7 +32,7 @@ pub use cwbvh::CwbvhNode;
 pub use emitter::{Emission, Emitter};
 pub use finish::{Finish, FinishMaps};
 pub use frame::Frame;
-pub use grid::{CELLS, Grid};
+pub use grid::{CELLS, GlowTable, Grid};
 pub use instance::{Instance, line};
 pub use light_node::LightNode;
 pub use medium::{Filling, Medium};
@@ -40,7 +41,8 @@ pub use physical::Physical;
 pub use primitive::{Bounds, Primitive};
 pub use quanta::Quanta;
 pub use shading::{Light, Material, Normals};
-pub use specialisation::{Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Tuning};
+pub use specialisation::{Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Tuning, Waves};
+pub use spectrum::SpectrumRow;
 pub use texture::{Colours, Maps, Opacity, TexCoords, TextureMap};
 
 use glam::{UVec4, Vec3};

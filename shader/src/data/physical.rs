@@ -18,7 +18,8 @@ pub struct Physical {
     /// Share of the base that lets light pass, linear RGB; the integer is the bits of one over the distance of `attenuation`, 0
     /// where nothing is absorbed.
     pub transmission: UVec4,
-    /// What is left of light that went that far inside, linear RGB; the integer is unused.
+    /// What is left of light that went that far inside, linear RGB; the integer is the row of the spectrum
+    /// ([`SpectrumRow`](super::SpectrumRow)) of a conductor's refractive part, which that of its absorbing part follows, or 0.
     pub attenuation: UVec4,
     /// The refractive part of a conductor's complex index, linear RGB; the integer is the bits of the cosine of the angle by which
     /// the axis along which facets are rougher is turned from the tangent.

@@ -61,16 +61,30 @@ impl Light {
     /// As [`Light::SPOT`], but light fades by the square of a ramp (KHR_lights_punctual) instead of a cubic.
     pub const RAMP: u32 = 5;
 
-    /// The bits of a kind. Above them is one more than the place of its first key among the records of copies, if it moves while the
+    /// The bits of a kind.
+    pub const KINDS: u32 = (1 << Self::ILLUMINANT) - 1;
+    /// How many these bits are. Above them is the row of the light's spectrum, or 0.
+    pub const ILLUMINANT: u32 = 4;
+    /// The bits of both. Above them is one more than the place of its first key among the records of copies, if it moves while the
     /// shutter is open: how it is turned against how it is when that opens, and where it is.
-    pub const KINDS: u32 = (1 << Self::KEYS) - 1;
-    /// How many these bits are.
-    pub const KEYS: u32 = 4;
+    pub const KEYS: u32 = 10;
+
+    /// The row of its spectrum ([`SpectrumRow`](super::SpectrumRow)), 0 for that of D65.
+    #[inline(always)]
+    pub fn illuminant(&self) -> u32 {
+        (self.position.w >> Self::ILLUMINANT) & ((1 << (Self::KEYS - Self::ILLUMINANT)) - 1)
+    }
+
+    /// The integer of its position without that.
+    #[inline(always)]
+    pub fn without_illuminant(&self) -> u32 {
+        (self.position.w >> Self::KEYS << Self::KEYS) | (self.position.w & Self::KINDS)
+    }
 
     /// Does it move?
     #[inline(always)]
     pub fn moves(&self) -> bool {
-        self.position.w > Self::KINDS
+        self.position.w >> Self::KEYS != 0
     }
 
     /// The place of its first key.

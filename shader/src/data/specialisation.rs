@@ -140,6 +140,18 @@ impl Finishes {
 }
 
 bits! {
+    /// How light has wavelengths.
+    Waves {
+        /// Paths carry three wavelengths instead of red, green and blue.
+        SPECTRAL = 0;
+        /// Some lamps have spectra of their own.
+        ILLUMINANTS = 1;
+        /// Some bodies bend light, or some metals reflect it, as was measured at each wavelength.
+        MEASURED = 2;
+    }
+}
+
+bits! {
     /// Which rays a launch follows, where in a pixel the camera's are, and by which test they meet triangles.
     Launch {
         /// Secondary rays: the slots come from a queue.
@@ -298,6 +310,8 @@ pub struct Specialisation {
     pub media: Media,
     /// What physical materials have beside a base, facets and what passes.
     pub finishes: Finishes,
+    /// How light has wavelengths.
+    pub waves: Waves,
 }
 
 impl Specialisation {
@@ -312,8 +326,8 @@ impl Specialisation {
     }
 
     /// The value of each specialisation constant by its number; the entry points declare them in this order.
-    pub fn constants(&self) -> [(u32, u32); 8] {
-        let Specialisation { effects, launch, layout, order, tuning, aovs, media, finishes } = *self;
+    pub fn constants(&self) -> [(u32, u32); 9] {
+        let Specialisation { effects, launch, layout, order, tuning, aovs, media, finishes, waves } = *self;
         [
             (1, effects.0),
             (2, tuning.0),
@@ -323,6 +337,7 @@ impl Specialisation {
             (6, aovs.0),
             (7, media.0),
             (8, finishes.0),
+            (9, waves.0),
         ]
     }
 }

@@ -44,6 +44,7 @@ macro_rules! declare_entry {
                     #[spirv(spec_constant(id = 6, default = 0))] aovs: u32,
                     #[spirv(spec_constant(id = 7, default = 0))] media_bits: u32,
                     #[spirv(spec_constant(id = 8, default = 0))] finish_bits: u32,
+                    #[spirv(spec_constant(id = 9, default = 0))] waves: u32,
                     $d($d have)*
                 ) {
                     let $d spec = Specialisation {
@@ -55,6 +56,7 @@ macro_rules! declare_entry {
                         aovs: Aovs(aovs),
                         media: Media(media_bits),
                         finishes: Finishes(finish_bits),
+                        waves: Waves(waves),
                     };
                     $d body
                 }
@@ -85,7 +87,7 @@ macro_rules! shading {
                 if slot == IDLE {
                     return;
                 }
-                let launch = LaunchContext { frame, spec, primitives, instances };
+                let launch = LaunchContext::new(frame, spec, primitives, instances);
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
                 let wave = Wave { paths, hits, shadows, lights, environment, sums };
@@ -98,7 +100,8 @@ macro_rules! shading {
             /// Scatters the paths of a wave.
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives instances normals materials paths hits shadows segments sums queue next counters emitters emissions
-             physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids finishes] {
+             physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids finishes
+             spectra] {
                 // One kernel for all waves, since it is the one that drivers take longest to compile.
                 let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
                 let count = if starts { frame.slots } else { read(counters, counter::COUNT) };
@@ -106,10 +109,10 @@ macro_rules! shading {
                     return;
                 }
                 let slot = if starts { id.x } else { read(queue, id.x) };
-                let launch = LaunchContext { frame, spec, primitives, instances };
+                let launch = LaunchContext::new(frame, spec, primitives, instances);
                 let textures = Textures { textures, texels, coordinates, colours };
                 let shading = ShadingData { normals, materials, tangents, maps, textures };
-                let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment };
+                let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment, spectra };
                 let context =
                     ScatterContext { shading, physicals, finishes, albedos: Albedos(albedos), lighting, media, grids };
                 let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
@@ -123,17 +126,17 @@ macro_rules! shading {
         entry! {
             /// Dims the light of a wave's shadow rays by what is between surfaces.
             transmit<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
-            [frame nodes primitives instances materials hits shadows segments queue counters wide media grids
-             opacities textures texels coordinates colours] {
+            [frame nodes primitives instances materials paths hits shadows segments queue counters wide media grids
+             opacities textures texels coordinates colours spectra] {
                 let slot = slot(spec, frame, id.x, queue, counters);
                 if slot == IDLE {
                     return;
                 }
-                let base = LaunchContext { frame, spec, primitives, instances };
+                let base = LaunchContext::new(frame, spec, primitives, instances);
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let time = stage::Found::<$R>::time(&base, slot, hits);
-                let inputs = TransmitInputs { shadows, materials, media, grids };
+                let inputs = TransmitInputs { paths: &*paths, shadows, materials, media, grids, spectra };
                 stage::transmit::<$R, WhileWhile<Alone>, Primitives>(&scene, inputs, (slot, time), segments);
             }
         }
@@ -197,7 +200,7 @@ macro_rules! tracing {
                 if slot == IDLE {
                     return;
                 }
-                let base = LaunchContext { frame, spec, primitives, instances };
+                let base = LaunchContext::new(frame, spec, primitives, instances);
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let time = stage::Found::<$R>::time(&base, slot, hits);
@@ -214,7 +217,7 @@ macro_rules! tracing {
                 if slot == IDLE {
                     return;
                 }
-                let base = LaunchContext { frame, spec, primitives, instances };
+                let base = LaunchContext::new(frame, spec, primitives, instances);
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let light = if spec.launch.has(Launch::STREAM) { 0 } else { id.y };
@@ -233,7 +236,7 @@ macro_rules! persistent_tracing {
             trace<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
             [frame nodes primitives instances paths hits queue counters wide
              opacities textures texels coordinates colours] {
-                let base = LaunchContext { frame, spec, primitives, instances };
+                let base = LaunchContext::new(frame, spec, primitives, instances);
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let (count, paths, queue) = (slots(spec, frame, counters), &*paths, &*queue);
@@ -259,7 +262,7 @@ macro_rules! persistent_tracing {
             shadow<64>(#[spirv(subgroup_local_invocation_id)] lane: u32,) spec
             [frame nodes primitives instances lights paths hits shadows queue counters wide
              opacities textures texels coordinates colours] {
-                let base = LaunchContext { frame, spec, primitives, instances };
+                let base = LaunchContext::new(frame, spec, primitives, instances);
                 let cutout = Cutout { opacities, textures: Textures { textures, texels, coordinates, colours } };
                 let scene = TraceContext { base, nodes, wide, cutout };
                 let inputs = ShadowInputs { lights, paths: &*paths, hits: &*hits };

@@ -26,7 +26,7 @@ pub(super) fn at<R: Scalar>(
     let effects = launch.spec.effects;
     let ScatterContext { shading, lighting, physicals, .. } = context;
     let seen = vertex.met(launch);
-    let vertex = &vertex.arrived(effects, physicals, &seen);
+    let vertex = &vertex.arrived(launch, physicals, &seen);
     let covering = seen.covering(launch, shading);
     let surface = Surface::new(launch, shading, &seen, &covering);
     let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
@@ -34,14 +34,14 @@ pub(super) fn at<R: Scalar>(
     if effects.has(Effects::PHYSICAL) {
         let channels = Channels { weight: path.weight, draw: 0 };
         let closure = closure(launch, context, (&seen, &surface), &covering, channels).base;
-        let light = share(launch, &path, shining(effects, lighting, (&seen, &surface), &covering));
+        let light = share(launch, &path, shining(launch, lighting, (&seen, &surface), &covering));
         let shadow = light_by_closure(launch, lighting, vertex, (&seen, &closure));
         let draws = vertex.draws.set(path.counts().1);
         let [reflected, passed] = closure.branches(&interaction, (draws.x, draws.y));
         let on = |s: &ClosureSample<R>| vertex.on((&interaction, s.origin), s.direction, s.factor, s.density);
         return branched(launch, light, shadow, (on(&reflected), on(&passed)));
     }
-    let light = shining(effects, lighting, (&seen, &surface), &covering);
+    let light = shining(launch, lighting, (&seen, &surface), &covering);
     let light = share(launch, &path, light);
     let shadow = sampled_light(launch, lighting, vertex, &interaction, &surface);
     if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
@@ -53,12 +53,12 @@ pub(super) fn at<R: Scalar>(
 /// What a surface sends by itself: ambient light and what it emits.
 #[inline(always)]
 fn shining<R: Scalar>(
-    effects: Effects,
+    launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
 ) -> V3<R> {
-    let mut light = surface.ambient;
+    let (mut light, effects) = (surface.ambient, launch.spec.effects);
     if effects.has(Effects::EMISSIVE) {
         let emission = read(lighting.emissions, seen.material());
         if emission.shines(seen.interaction.front) {
@@ -66,7 +66,7 @@ fn shining<R: Scalar>(
             let radiance = if effects.has(Effects::TEXTURED) { radiance.times(covering.emission) } else { radiance };
             let place = Place { index: seen.index, weights: seen.interaction.coordinates, count: 0 };
             let radiance = glowing(effects, &lighting.textures, &emission, &place, radiance);
-            light = light + radiance.map(|c| c.flush(FAINT));
+            light = light + lighting.banded(launch, radiance, emission.illuminant()).map(|c| c.flush(FAINT));
         }
     }
     light

@@ -27,7 +27,7 @@ pub(super) fn at<R: Scalar>(
         if launch.spec.launch.has(Launch::NORMAL) {
             surface.normal
         } else {
-            albedo(launch.spec.effects, context.physicals, (&seen, &surface), &covering)
+            albedo(launch, context.physicals, (&seen, &surface), &covering)
         }
     };
     Scattered::once(feature.map(|c| c.flush(FAINT)), ShadowRay::none(), vertex.path, false)
@@ -52,15 +52,15 @@ fn place<R: Scalar>(launch: &LaunchContext<'_>, seen: &Seen<R>) -> V3<R> {
 /// what glass lets pass.
 #[inline(always)]
 pub(super) fn albedo<R: Scalar>(
-    effects: Effects,
+    launch: &LaunchContext<'_>,
     physicals: &[Physical],
     (seen, surface): (&Seen<R>, &Surface<R>),
     covering: &Covering<R>,
 ) -> V3<R> {
-    if effects.has(Effects::PHYSICAL) {
+    if launch.spec.effects.has(Effects::PHYSICAL) {
         let material = read(physicals, seen.material());
         if material.has(Physical::IS_PHYSICAL) {
-            return V3::splat(numbers(material.base)).times(covering.base);
+            return launch.banded(V3::splat(numbers(material.base)).times(covering.base));
         }
     }
     let is_glass = !surface.ior.eq(R::splat(0.0));

@@ -6,7 +6,7 @@ use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
 use crate::buffer::read;
 use crate::data::{Filling, Launch, Media, Medium, numbers};
 use crate::light::{EmitterSample, Viewpoint};
-use crate::medium::{Chain, Flight, MOST_CROSSINGS, Phase, delta, transmittance};
+use crate::medium::{Chain, Flight, MOST_CROSSINGS, Phase, delta, glow, transmittance};
 use crate::ray::Ray;
 use crate::real::{FAINT, Scalar, TINY, V3};
 use crate::sampler::DECISIONS;
@@ -40,7 +40,7 @@ pub(super) fn flown<R: Scalar>(
     let lead = path.lead();
     let most = if is_nothing { R::splat(f32::MAX) } else { found.t + lead };
     let draws = vertex.draws.flight(path.bounces, inside.crossings());
-    let medium = read(context.media, number - 1);
+    let medium = launch.medium(context.media, number);
     let flight = if launch.spec.media.has(Media::GRIDS) && medium.has_grid() {
         let ray = (path.origin - path.direction * lead, path.direction);
         delta(&medium, context.grids, ray, (most, path.weight), Chain::new(draws.x, draws.y))
@@ -66,11 +66,16 @@ pub(super) fn at<R: Scalar>(
     vertex: &Vertex<R>,
 ) -> Scattered<R> {
     let path = vertex.path;
-    let medium = read(context.media, vertex.filling.medium() - 1);
+    let medium = launch.medium(context.media, vertex.filling.medium());
     let albedo = V3::<R>::splat(numbers(medium.albedo));
+    let origin = (path.origin + path.direction * vertex.found.t).map(|c| c.flush(TINY));
     let light = if launch.spec.media.has(Media::GLOWING) {
         let absorbed = V3::splat(glam::Vec3::ONE) - albedo;
-        share(launch, &path, absorbed.times(V3::splat(numbers(medium.emission))).map(|c| c.flush(FAINT)))
+        let mut light = V3::splat(numbers(medium.emission));
+        if launch.spec.media.has(Media::GRIDS) && medium.has_temperature() {
+            light = light.times(launch.banded(glow(&medium, context.grids, origin))).map(|c| c.flush(FAINT));
+        }
+        share(launch, &path, absorbed.times(light).map(|c| c.flush(FAINT)))
     } else {
         V3::zero()
     };
@@ -79,7 +84,6 @@ pub(super) fn at<R: Scalar>(
     if path.bounces > launch.frame.bounces {
         return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
-    let origin = (path.origin + path.direction * vertex.found.t).map(|c| c.flush(TINY));
     let path = PathState { weight: path.weight.times(albedo).map(|c| c.flush(FAINT)), ..path };
     let vertex = &Vertex { path, ..*vertex };
     let phase = Phase(R::splat(f32::from_bits(medium.albedo.w)));
@@ -153,7 +157,7 @@ pub(super) fn dimmed<R: Scalar>(launch: &LaunchContext<'_>, media: &[Medium], ra
     if number == 0 || !ray.asks() {
         return ray;
     }
-    let left = transmittance(&read(media, number - 1), ray.segment.limit + ray.lead);
+    let left = transmittance(&launch.medium(media, number), ray.segment.limit + ray.lead);
     ShadowRay { light: ray.light.times(left).map(|c| c.flush(FAINT)), ..ray }
 }
 

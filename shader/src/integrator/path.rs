@@ -27,7 +27,7 @@ pub(super) fn at<R: Scalar>(
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting, .. } = context;
     let seen = vertex.met(launch);
-    let vertex = &vertex.arrived(effects, physicals, &seen);
+    let vertex = &vertex.arrived(launch, physicals, &seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
     if vertex.after_catcher && seen.primitive.has(Primitive::CATCHER) {
@@ -47,7 +47,7 @@ pub(super) fn at<R: Scalar>(
         surface
     };
     if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
-        let albedo = albedo(effects, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
+        let albedo = albedo(launch, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
         let normal = surface.normal.map(|c| c.flush(FAINT));
         outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
     }
@@ -164,7 +164,7 @@ fn unsampled<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>) -> V3<R
     if effects.has(Effects::ENVIRONMENT) || !path.is_lit_by(effects, launch.frame.group) {
         return V3::zero();
     }
-    share(launch, path, gradient(effects, launch.frame, path.direction))
+    share(launch, path, launch.banded(gradient(effects, launch.frame, path.direction)))
 }
 
 /// Does a ray pass near the box of all that emits? By axes that separate them (Gottschalk, Lin and Manocha, OBBTree, 1996),
@@ -215,6 +215,7 @@ fn emitted<R: Scalar>(
     };
     let place = Place { index: seen.index, weights: interaction.coordinates, count: launch.frame.vertices };
     let radiance = glowing(effects, &lighting.textures, &emission, &place, radiance);
+    let radiance = lighting.banded(launch, radiance, emission.illuminant());
     if own.eq(R::splat(0.0)) {
         return radiance;
     }

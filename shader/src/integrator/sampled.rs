@@ -80,12 +80,12 @@ impl<R: Scalar> Vertex<R> {
 
     /// With what of the path has come through the body whose inside it hits.
     #[inline(always)]
-    pub fn arrived(&self, effects: Effects, physicals: &[Physical], seen: &Seen<R>) -> Self {
-        if !effects.has(Effects::ABSORBING) || seen.interaction.front {
+    pub fn arrived(&self, launch: &LaunchContext<'_>, physicals: &[Physical], seen: &Seen<R>) -> Self {
+        if !launch.spec.effects.has(Effects::ABSORBING) || seen.interaction.front {
             return *self;
         }
         let material = read(physicals, seen.material());
-        let left = transmittance(&material, self.found.t);
+        let left = transmittance(launch, &material, self.found.t);
         let weight = self.path.weight.times(left).map(|c| c.flush(FAINT));
         Vertex { path: PathState { weight, ..self.path }, ..*self }
     }
@@ -262,6 +262,7 @@ pub fn scatter<R: Scalar>(
     let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
     let sample = camera::sample(launch.frame, slot);
     let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
+    let launch = &launch.of_sample(context.lighting.spectra, key, sample);
     let mut vertex = Vertex { path, found, draws, after_catcher, filling: Filling::default() };
     let mut collides = false;
     if media.has(Media::PRESENT) {
@@ -269,7 +270,7 @@ pub fn scatter<R: Scalar>(
     }
     let path = vertex.path;
     // The ray of a slot outside the image hits nothing.
-    let scattered = if media.has(Media::PRESENT) && collides {
+    let mut scattered = if media.has(Media::PRESENT) && collides {
         medium::at(launch, context, &vertex)
     } else if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex) {
         medium::crossed(launch, &vertex)
@@ -304,6 +305,12 @@ pub fn scatter<R: Scalar>(
         caught = path::caught(launch, &scattered);
     }
     caught.store(bits, launch.frame, slot, sums);
+    scattered.light = launch.rgb(scattered.light);
+    scattered.outputs.surface.albedo = launch.rgb(scattered.outputs.surface.albedo);
+    if !media.has(Media::OPEN | Media::GRIDS) {
+        // Else it is dimmed first.
+        scattered.shadow.light = launch.rgb(scattered.shadow.light);
+    }
     if aovs.any() {
         // What is seen through surfaces that are not there is the first.
         let is_first = starts || media.has(Media::OPEN) && path.bounces == 0;
@@ -335,7 +342,7 @@ fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, 
     if launch.spec.launch.has(Launch::FEATURE) || !path.is_lit_by(effects, frame.group) {
         return V3::zero();
     }
-    let seen = background(effects, frame, lighting.environment, path.direction, path.bounces == 0);
+    let seen = launch.banded(background(effects, frame, lighting.environment, path.direction, path.bounces == 0));
     if !effects.has(Effects::ENVIRONMENT) || path.density.eq(R::splat(0.0)) {
         return seen;
     }

@@ -8,12 +8,13 @@ use super::choice::{per_area, per_area_of_hit, picked};
 use super::moving::over_area_at;
 use super::{Environment, LightSample, SHORT, Viewpoint, at_time};
 use crate::buffer::read;
-use crate::data::{Aovs, Effects, Emission, Emitter, Light, LightNode, Primitive, numbers};
+use crate::data::{Aovs, Effects, Emission, Emitter, Light, LightNode, Primitive, Waves, numbers};
 use crate::geometry::{SurfaceInteraction, tangents};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3, turns};
 use crate::sampler::unit;
 use crate::scene::LaunchContext;
 use crate::texture::{Place, Textures, opacity as opacity_of};
+use glam::UVec4;
 
 /// What emits in a scene.
 #[derive(Clone, Copy)]
@@ -28,6 +29,21 @@ pub struct Lighting<'a> {
     pub textures: Textures<'a>,
     /// Light from far away ([`Effects::ENVIRONMENT`]), see [`Environment`].
     pub environment: &'a [u32],
+    /// What light of single wavelengths does ([`Waves::SPECTRAL`]), see [`SpectrumRow`](crate::data::SpectrumRow).
+    pub spectra: &'a [UVec4],
+}
+
+impl Lighting<'_> {
+    /// What light of a colour, linear RGB, has of each of a sample's wavelengths: of D65, or of an illuminant by the row of its shares
+    /// of that.
+    #[inline(always)]
+    pub fn banded<R: Scalar>(&self, launch: &LaunchContext<'_>, rgb: V3<R>, illuminant: u32) -> V3<R> {
+        let light = launch.banded(rgb);
+        if !launch.spec.waves.has(Waves::SPECTRAL) || !launch.spec.waves.has(Waves::ILLUMINANTS) || illuminant == 0 {
+            return light;
+        }
+        light.times(launch.bands.row(self.spectra, illuminant)).map(|c| c.flush(FAINT))
+    }
 }
 
 /// A sample of a light, as seen from a ray's origin.
@@ -83,7 +99,8 @@ impl<R: Scalar> EmitterSample<R> {
             return Self::none();
         }
         let sample = Self::of(launch, lighting, (&emitter, probability), view, place);
-        EmitterSample { group: group(launch, lighting, &emitter), ..sample }
+        let light = lighting.banded(launch, sample.light, illuminant(launch, lighting, &emitter));
+        EmitterSample { light, group: group(launch, lighting, &emitter), ..sample }
     }
 
     /// Samples a light that was chosen with some probability.
@@ -291,6 +308,18 @@ impl<R: Scalar> Cone<R> {
         let two = R::splat(2.0);
         Density { over: (two * (per_area * radius).flush(FAINT) * radius).flush(FAINT), under: self.height }
     }
+}
+
+/// The row of the spectrum that a light has, where some have one of their own; 0 for that of D65.
+#[inline(always)]
+fn illuminant(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
+    if !launch.spec.waves.has(Waves::SPECTRAL) || !launch.spec.waves.has(Waves::ILLUMINANTS) {
+        return 0;
+    }
+    if !launch.spec.effects.has(Effects::EMISSIVE) || emitter.light.position.w != Emitter::PRIMITIVE {
+        return emitter.light.illuminant();
+    }
+    read(lighting.emissions, launch.primitive(emitter.light.axis.w).material()).illuminant()
 }
 
 /// The group that a light is in, where somebody asks for it.

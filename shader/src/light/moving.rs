@@ -1,7 +1,7 @@
 //! Lights that move while the shutter is open (thesis 3.4.7).
 
 use crate::buffer::read;
-use crate::data::{Instance, Launch, Light, numbers, pack};
+use crate::data::{Instance, Launch, Light, Waves, numbers, pack};
 use crate::geometry::across;
 use crate::ray::Hit;
 use crate::real::{FAINT, Scalar, TINY, V3};
@@ -11,6 +11,10 @@ use glam::{UVec4, Vec3};
 /// A light without extent where it is at a time.
 #[inline(always)]
 pub fn at_time<R: Scalar>(launch: &LaunchContext<'_>, light: Light, time: f32) -> Light {
+    let mut light = light;
+    if launch.spec.waves.has(Waves::ILLUMINANTS) {
+        light.position.w = light.without_illuminant();
+    }
     if !launch.spec.launch.has(Launch::MOVING) || !light.moves() {
         return light;
     }
@@ -81,7 +85,7 @@ mod tests {
         let keys = [Instance::NONE, key(axes, Vec3::ZERO), key(turned, Vec3::X)];
         let frame = Frame { steps: 1, exposure: 1.0, ..Frame::default() };
         let spec = Specialisation { launch: Launch(Launch::MOVING), ..Specialisation::default() };
-        let launch = LaunchContext { frame: &frame, spec, primitives: &[], instances: &keys };
+        let launch = LaunchContext::new(&frame, spec, &[], &keys);
         let light = |kind| Light {
             position: pack(Vec3::X, kind | (1 + 1) << Light::KEYS),
             colour: UVec4::ONE,

@@ -7,6 +7,7 @@
 //! of Gaussians over the wave number.
 
 use super::optics::ratio;
+use crate::data::Waves;
 use crate::light::on_circle;
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 
@@ -28,12 +29,15 @@ const RGB: [(f32, f32, f32); 3] =
 
 /// A longer path has no colours, in nanometres.
 const LONGEST: f32 = 16_384.0;
+/// That of a longer path of single wavelengths is not told.
+const LONGEST_OF_BANDS: f32 = (1 << 20) as f32;
 
-/// What a film of an index of refraction and a thickness in nanometres reflects of white light under an angle of incidence by its
-/// cosine, linear RGB in [0, 1]; below it is what reflects `base` of light at normal incidence by itself, linear RGB.
+/// What a film of an index of refraction and a thickness in nanometres reflects under an angle of incidence by its cosine, of white light
+/// in linear RGB in [0, 1], or of three wavelengths ([`Waves::SPECTRAL`]) by one over each in nanometres; below it is what reflects
+/// `base` of light at normal incidence by itself, likewise.
 // A function of its own, since few surfaces have one.
 #[inline(never)]
-pub fn film<R: Scalar>(cosine: R, (ior, thickness): (R, R), base: V3<R>) -> V3<R> {
+pub fn film<R: Scalar>(light: (Waves, V3<R>), cosine: R, (ior, thickness): (R, R), base: V3<R>) -> V3<R> {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let sine = (one - cosine * cosine).max(zero).flush(SMALL);
     let bent = |n: R| {
@@ -41,8 +45,8 @@ pub fn film<R: Scalar>(cosine: R, (ior, thickness): (R, R), base: V3<R>) -> V3<R
         (one - sine * (over * over)).max(zero).sqrt()
     };
     let inside = bent(ior);
-    let path = ((ior + ior) * thickness * inside).min(R::splat(LONGEST)).flush(SMALL);
-    let (index, light) = (base.map(index_of), Interference::new(path));
+    let path = ((ior + ior) * thickness * inside).flush(SMALL);
+    let (index, light) = (base.map(index_of), Interference::new(light, path));
     let below = index.map(bent);
     let across = airy(ratio(cosine, ior * inside), below.times(index).map(|c| ratio(ior * inside, c)), &light);
     let along = V3::new(
@@ -65,14 +69,34 @@ fn index_of<R: Scalar>(reflectance: R) -> R {
 
 /// The eye's means of the cosines of a phase, of twice and of three times that, over wavelengths: the terms of the series that count.
 /// The next is less than 1e-2 where q is less than 1/4.
-struct Interference<R: Real>(V3<R>, V3<R>, V3<R>);
+///
+/// Of single wavelengths the first term tells all.
+struct Interference<R: Real> {
+    waves: Waves,
+    once: V3<R>,
+    twice: V3<R>,
+    thrice: V3<R>,
+}
 
 impl<R: Scalar> Interference<R> {
     /// Of the difference of two ways of light in nanometres.
     #[inline(always)]
-    fn new(path: R) -> Self {
-        Interference(mean(path), mean(path + path), mean(path + path + path))
+    fn new((waves, per_nanometre): (Waves, V3<R>), path: R) -> Self {
+        if waves.has(Waves::SPECTRAL) {
+            let path = path.min(R::splat(LONGEST_OF_BANDS));
+            let once = per_nanometre.map(|over| cosine_of_turns(path * over));
+            return Interference { waves, once, twice: V3::zero(), thrice: V3::zero() };
+        }
+        let path = path.min(R::splat(LONGEST));
+        Interference { waves, once: mean(path), twice: mean(path + path), thrice: mean(path + path + path) }
     }
+}
+
+/// The cosine of an angle in turns, at least 0.
+#[inline(always)]
+fn cosine_of_turns<R: Scalar>(turns: R) -> R {
+    let within = (turns - R::splat(turns.floor_index() as f32)) * R::splat((1 << 23) as f32);
+    on_circle::<R>((within.floor_index() as u32) << 9).0
 }
 
 /// The eye's mean of a cosine, linear RGB: 1 of a path without length.
@@ -82,9 +106,7 @@ impl<R: Scalar> Interference<R> {
 fn mean<R: Scalar>(path: R) -> V3<R> {
     let path = path.min(R::splat(LONGEST)).flush(SMALL);
     let of = |middle: f32, fades: f32| {
-        let turns = path * R::splat(middle);
-        let within = (turns - R::splat(turns.floor_index() as f32)) * R::splat((1 << 23) as f32);
-        let (cosine, _) = on_circle::<R>((within.floor_index() as u32) << 9);
+        let cosine = cosine_of_turns(path * R::splat(middle));
         cosine * R::splat(0.5).pow((path * path * R::splat(fades)).min(R::splat(127.0)))
     };
     let red = of(RED.0, RED.1) * R::splat(GREATER) + of(PURPLE.0, PURPLE.1) * R::splat(1.0 - GREATER);
@@ -93,13 +115,18 @@ fn mean<R: Scalar>(path: R) -> V3<R> {
     V3::new(row(RGB[0]), row(RGB[1]), row(RGB[2]))
 }
 
-/// The series of Airy's sum for the amplitudes that both faces reflect.
+/// Airy's sum for the amplitudes that both faces reflect: for single wavelengths, or its series.
 #[inline(always)]
-fn airy<R: Scalar>(upper: R, lower: V3<R>, Interference(once, twice, thrice): &Interference<R>) -> V3<R> {
+fn airy<R: Scalar>(upper: R, lower: V3<R>, light: &Interference<R>) -> V3<R> {
+    let Interference { waves, once, twice, thrice } = light;
     let (one, upper) = (R::splat(1.0), upper.flush(SMALL));
     let of = |lower: R, (a, b, c): (R, R, R)| {
         let (lower, left) = (lower.flush(SMALL), one - upper * upper);
         let q = (upper * lower).flush(SMALL);
+        if waves.has(Waves::SPECTRAL) {
+            let all = (one + q * q + (q + q) * a).max(R::splat(SMALL));
+            return one - (left * (one - lower * lower)).over(all);
+        }
         let passed = (left * (one - lower * lower)).over((one - q * q).max(R::splat(SMALL)));
         let sum = q * (b * q - a - c * (q * q).flush(SMALL));
         one - passed * (one + sum + sum)

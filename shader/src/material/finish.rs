@@ -6,9 +6,10 @@ use super::fresnel::{Reflectance, schlick};
 use super::layers::{Layers, Way};
 use super::physical::{Parameters, rough};
 use super::{Coat, Seen, Sheen, Surface, mapped};
-use crate::data::{Effects, Finish, Finishes, numbers};
+use crate::data::{Effects, Finish, Finishes, SpectrumRow, Waves, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
+use crate::light::Lighting;
 use crate::real::{FAINT, Scalar, V3};
 use crate::scene::LaunchContext;
 use crate::texture::{Covering, FinishCovering};
@@ -27,12 +28,12 @@ pub struct Channels<R: Scalar> {
 }
 
 impl<R: Scalar> Channels<R> {
-    /// One of the channels that count, as -1, 0 or 1 from red to blue, and a colour of that one alone: one over its probability.
+    /// One of the channels that count, by its number, and a colour of that one alone: one over its probability.
     #[inline(always)]
-    fn chosen(&self) -> (R, V3<R>) {
+    fn chosen(&self) -> (u32, V3<R>) {
         /// All values of the bits that choose.
         const ALL: u32 = 512;
-        let (zero, one, V3 { x, y, z }) = (R::splat(0.0), R::splat(1.0), self.weight);
+        let (zero, V3 { x, y, z }) = (R::splat(0.0), self.weight);
         let counts = |c: R| if zero.lt(c) { 1 } else { 0 };
         let (red, green, blue) = (counts(x), counts(y), counts(z));
         // A third of them for each of three, of which the last has one less.
@@ -45,29 +46,51 @@ impl<R: Scalar> Channels<R> {
         let step = self.draw % ALL;
         let over = |steps: u32| R::splat(ALL as f32).over(R::splat(steps as f32));
         if step < first {
-            (-one, V3::new(over(of), zero, zero))
+            (0, V3::new(over(of), zero, zero))
         } else if step < second {
-            (zero, V3::new(zero, over(of), zero))
+            (1, V3::new(zero, over(of), zero))
         } else {
-            (one, V3::new(zero, zero, over((ALL - second).max(1))))
+            (2, V3::new(zero, zero, over((ALL - second).max(1))))
         }
     }
+}
+
+/// How much more a body bends light of a channel than yellow light, over half of what it bends blue light more than red.
+#[inline(always)]
+fn bends<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, finish: &Finish, channel: u32) -> R {
+    let waves = launch.spec.waves;
+    if !waves.has(Waves::SPECTRAL) {
+        return R::splat(channel as f32) - R::splat(1.0);
+    }
+    let own = if waves.has(Waves::MEASURED) { finish.film.w } else { 0 };
+    let row = if own == 0 { SpectrumRow::CAUCHY } else { own };
+    let V3 { x, y, z } = launch.bands.row::<R>(lighting.spectra, row);
+    R::select(channel == 0, x, R::select(channel == 1, y, z))
+}
+
+/// Of what light a film tells: of white, or of a sample's wavelengths by one over each in nanometres.
+#[inline(always)]
+fn light_of_film<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>) -> (Waves, V3<R>) {
+    let waves = launch.spec.waves;
+    let is_spectral = waves.has(Waves::SPECTRAL);
+    let row = if is_spectral { launch.bands.row(lighting.spectra, SpectrumRow::PER_NANOMETRE) } else { V3::zero() };
+    (waves, row)
 }
 
 /// What is below a finish: a base that sends light to its far side, facets with a film, a body that bends each channel by itself.
 #[inline(always)]
 pub fn finished<R: Scalar>(
-    finishes: Finishes,
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
     finish: &Finish,
-    at: &Parameters<R>,
-    covering: &FinishCovering<R>,
+    (at, covering): (&Parameters<R>, &FinishCovering<R>),
     (interaction, around, channels): (&SurfaceInteraction<R>, R, &Channels<R>),
     (layers, cosine): (Layers<R>, R),
 ) -> Layers<R> {
-    let mut layers = layers;
+    let (mut layers, finishes) = (layers, launch.spec.finishes);
     if finishes.has(Finishes::TRANSLUCENT) && !layers.reflectance.is_conductor {
         let (one, weight) = (R::splat(1.0), number::<R>(finish.beyond.w) * covering.beyond);
-        let colour = V3::splat(numbers(finish.beyond)).times(covering.beyond_colour);
+        let colour = launch.banded(V3::splat(numbers(finish.beyond)).times(covering.beyond_colour));
         let left = at.transmission.map(|passed| (one - passed) * (one - at.metalness) * weight);
         layers.beyond = colour.times(left).map(|c| c.flush(FAINT));
         layers.diffuse = (layers.diffuse * (one - weight)).map(|c| c.flush(FAINT));
@@ -76,7 +99,8 @@ pub fn finished<R: Scalar>(
     if finishes.has(Finishes::DISPERSIVE) && layers.way == Way::BODY {
         let spread = number::<R>(finish.film.z);
         if R::splat(0.0).lt(spread) {
-            let (side, colour) = channels.chosen();
+            let (channel, colour) = channels.chosen();
+            let side: R = bends(launch, lighting, finish, channel);
             layers.reflectance.eta = interaction.relative_ior(at.ior + (side * spread).div(around));
             layers.through = layers.through.times(colour);
         }
@@ -87,7 +111,7 @@ pub fn finished<R: Scalar>(
             let (least, most) = (number::<R>(finish.film.x), number::<R>(finish.film.y));
             let thickness = least + (most - least) * covering.film_thickness;
             let of = (number(finish.coat.w), thickness);
-            layers.reflectance = below_film(&layers.reflectance, cosine, of, weight);
+            layers.reflectance = below_film(&layers.reflectance, cosine, light_of_film(launch, lighting), of, weight);
         }
     }
     layers
@@ -96,7 +120,13 @@ pub fn finished<R: Scalar>(
 /// What facets below a film reflect that is on a share of them: as seen along the surface's normal, what Schlick's approximation tells
 /// of the film there, as Khronos' own renderer has it.
 #[inline(always)]
-fn below_film<R: Scalar>(of: &Reflectance<R>, cosine: R, (ior, thickness): (R, R), weight: R) -> Reflectance<R> {
+fn below_film<R: Scalar>(
+    of: &Reflectance<R>,
+    cosine: R,
+    light: (Waves, V3<R>),
+    (ior, thickness): (R, R),
+    weight: R,
+) -> Reflectance<R> {
     /// So near to grazing, all is reflected whatever there is.
     const MOST: f32 = 0.999;
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
@@ -106,7 +136,7 @@ fn below_film<R: Scalar>(of: &Reflectance<R>, cosine: R, (ior, thickness): (R, R
         (of.normal + V3::new(exact, exact, exact), of.grazing + V3::new(of.glass, of.glass, of.glass));
     let most = grazing.greatest();
     let base = (normal * R::select(zero.lt(most), most, one).reciprocal()).map(|c| c.max(zero).min(one));
-    let (seen, share) = (film(cosine, (ior, thickness), base), schlick(cosine).min(R::splat(MOST)));
+    let (seen, share) = (film(light, cosine, (ior, thickness), base), schlick(cosine).min(R::splat(MOST)));
     let over = (one - share).reciprocal();
     let own = seen.map(|c| ((c - share) * over).max(zero).min(one)).times(grazing);
     let rest = one - weight;
@@ -139,7 +169,8 @@ pub fn above<R: Scalar>(
         }
     }
     if finishes.has(Finishes::FIBROUS) {
-        let colour = V3::splat(numbers(finish.sheen)).times(covering.finish.sheen).map(|c| c.flush(FAINT));
+        let colour =
+            launch.banded(V3::splat(numbers(finish.sheen)).times(covering.finish.sheen)).map(|c| c.flush(FAINT));
         sheen = Sheen::new(viewer, colour, number::<R>(finish.sheen.w) * covering.finish.sheen_roughness);
     }
     (coat, sheen)

@@ -158,6 +158,7 @@ impl<R: Scalar> Surface<R> {
         let Seen { index, instance, time, primitive, interaction, direction, .. } = *seen;
         let material: Material = read(shading.materials, primitive.material());
         let colour = |record| V3::<R>::splat(numbers(record));
+        let covered = |colour| launch.banded(covered(effects, colour, covering));
         let number = |bits| R::splat(f32::from_bits(bits));
         let even_normal = if effects.has(Effects::SMOOTH) {
             interpolated(&shading.normals(launch, (index, instance, time)), direction, &interaction)
@@ -174,20 +175,12 @@ impl<R: Scalar> Surface<R> {
             && odd_cell(&interaction, number(material.checker.w));
         Surface {
             normal,
-            ambient: covered(
-                effects,
-                if other { colour(material.checker_ambient) } else { colour(material.ambient) },
-                covering,
-            ),
-            diffuse: covered(
-                effects,
-                if other { colour(material.checker) } else { colour(material.diffuse) },
-                covering,
-            ),
-            specular: colour(material.specular),
+            ambient: covered(if other { colour(material.checker_ambient) } else { colour(material.ambient) }),
+            diffuse: covered(if other { colour(material.checker) } else { colour(material.diffuse) }),
+            specular: launch.banded(colour(material.specular)),
             shininess: number(material.specular.w),
-            reflection: colour(material.reflection),
-            transmission: colour(material.transmission),
+            reflection: launch.banded(colour(material.reflection)),
+            transmission: launch.banded(colour(material.transmission)),
             ior: number(material.reflection.w),
             around: R::splat(1.0),
             even_normal,

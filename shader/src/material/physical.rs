@@ -7,9 +7,10 @@ use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
 use super::{Coat, Coated, Ggx, Seen, Sheen, Surface, axes};
 use crate::buffer::read;
-use crate::data::{Effects, Finish, Media, Physical, numbers};
+use crate::data::{Effects, Finish, Media, Physical, Waves, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
+use crate::light::Lighting;
 use crate::real::{Real, Scalar, TINY, V3};
 use crate::scene::LaunchContext;
 use crate::texture::Covering;
@@ -40,7 +41,7 @@ pub struct Parameters<R: Real> {
 impl<R: Scalar> Parameters<R> {
     /// What the record says, as textures change it.
     #[inline(always)]
-    pub fn new(material: &Physical, covering: &Covering<R>) -> Self {
+    pub fn new(launch: &LaunchContext<'_>, material: &Physical, covering: &Covering<R>) -> Self {
         let colour = |record| V3::<R>::splat(numbers(record));
         let number = |bits| R::splat(f32::from_bits(bits));
         let shape = colour(material.shape);
@@ -52,12 +53,12 @@ impl<R: Scalar> Parameters<R> {
         let dielectric = colour(material.dielectric).times(covering.specular_tint);
         let grazing = number(material.dielectric.w) * covering.specular_weight;
         Parameters {
-            base: colour(material.base).times(covering.base),
+            base: launch.banded(colour(material.base).times(covering.base)),
             roughness: shape.x * covering.roughness,
             metalness: shape.y * covering.metalness,
-            transmission: colour(material.transmission) * covering.transmission,
+            transmission: launch.banded(colour(material.transmission) * covering.transmission),
             ior: number(material.shape.w),
-            normal: dielectric.map(|c| c.min(R::splat(1.0))) * grazing,
+            normal: launch.banded(dielectric.map(|c| c.min(R::splat(1.0))) * grazing),
             grazing,
             anisotropy: shape.z * strength,
             axis: turned,
@@ -91,13 +92,13 @@ pub fn closure<'a, R: Scalar>(
     let leans = effects.has(Effects::SMOOTH) || (effects.has(Effects::TANGENTS) && effects.has(Effects::TEXTURED));
     let normal = if leans { bent(&interaction, surface.normal, direction) } else { surface.normal };
     let frame = axes(launch, &context.shading, seen, normal);
-    let at = Parameters::new(&material, covering);
+    let at = Parameters::new(launch, &material, covering);
     let at =
         if launch.spec.media.has(Media::NESTED) { Parameters { ior: at.ior.div(surface.around), ..at } } else { at };
     let is_physical = material.has(Physical::IS_PHYSICAL);
     let frame = if effects.has(Effects::ANISOTROPIC) && is_physical { at.turned(frame) } else { frame };
     let layers = if is_physical {
-        physical(effects, &material, &at, &interaction)
+        physical(launch, &context.lighting, &material, (&at, &interaction))
     } else {
         whitted(effects, surface, &interaction)
     };
@@ -106,7 +107,8 @@ pub fn closure<'a, R: Scalar>(
     let finish = if has_finish { read(context.finishes, seen.material()) } else { Finish::NONE };
     let layers = if has_finish {
         let cosine = -direction.dot(frame[2]);
-        finished(finishes, &finish, &at, &covering.finish, (&interaction, surface.around, &channels), (layers, cosine))
+        let body = (&interaction, surface.around, &channels);
+        finished(launch, &context.lighting, &finish, (&at, &covering.finish), body, (layers, cosine))
     } else {
         layers
     };
@@ -122,23 +124,25 @@ pub fn closure<'a, R: Scalar>(
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.
 #[inline(always)]
 fn physical<R: Scalar>(
-    effects: Effects,
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
     material: &Physical,
-    at: &Parameters<R>,
-    interaction: &SurfaceInteraction<R>,
+    (at, interaction): (&Parameters<R>, &SurfaceInteraction<R>),
 ) -> Layers<R> {
+    let effects = launch.spec.effects;
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let anisotropy = if effects.has(Effects::ANISOTROPIC) { at.anisotropy } else { zero };
     let ggx = rough(at.roughness, anisotropy);
+    let (eta, k) = complex_index(launch, lighting, material);
     let none = Layers {
         diffuse: V3::zero(),
         beyond: V3::zero(),
         through: V3::zero(),
         reflectance: Reflectance {
-            normal: V3::splat(numbers(material.eta)),
-            grazing: V3::splat(numbers(material.k)),
+            normal: eta,
+            grazing: k,
             is_conductor: true,
-            mean_colour: V3::splat(numbers(material.dielectric)),
+            mean_colour: launch.banded(V3::splat(numbers(material.dielectric))),
             glass: zero,
             eta: one,
             has_two_faces: false,
@@ -192,6 +196,20 @@ fn physical<R: Scalar>(
     }
 }
 
+/// The complex index of refraction of a conductor.
+#[inline(always)]
+fn complex_index<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    material: &Physical,
+) -> (V3<R>, V3<R>) {
+    let (row, waves) = (material.attenuation.w, launch.spec.waves);
+    if waves.has(Waves::SPECTRAL) && waves.has(Waves::MEASURED) && row != 0 {
+        return (launch.bands.row(lighting.spectra, row), launch.bands.row(lighting.spectra, row + 1));
+    }
+    (launch.banded(V3::splat(numbers(material.eta))), launch.banded(V3::splat(numbers(material.k))))
+}
+
 /// The least that an index of refraction is above 1 where facets may be rough.
 const LEAST_BEND: f32 = 1.0 / 256.0;
 
@@ -235,9 +253,9 @@ pub(super) fn rough<R: Scalar>(roughness: R, strength: R) -> Ggx<R> {
     if along.lt(least) { smooth() } else { Ggx { x: along, y: alpha.max(least) } }
 }
 
-/// What is left of light that has gone a distance inside of a body, linear RGB.
+/// What is left of light that has gone a distance inside of a body, linear RGB or at each of a sample's wavelengths.
 #[inline(always)]
-pub fn transmittance<R: Scalar>(material: &Physical, distance: R) -> V3<R> {
+pub fn transmittance<R: Scalar>(launch: &LaunchContext<'_>, material: &Physical, distance: R) -> V3<R> {
     let lengths = distance * R::splat(f32::from_bits(material.transmission.w));
-    V3::<R>::splat(numbers(material.attenuation)).map(|colour| colour.pow(lengths))
+    launch.banded(V3::<R>::splat(numbers(material.attenuation))).map(|colour| colour.pow(lengths))
 }

@@ -62,7 +62,8 @@ mod tests {
         let (instance, time, cone) = (u32::MAX, 0.0, Cone::none());
         let seen = Seen { index: 0, instance, time, primitive, interaction, direction, cone };
         let spec = Specialisation { effects: Effects(Effects::SMOOTH), ..Specialisation::default() };
-        let launch = LaunchContext { frame: &Frame::default(), spec, primitives: &[], instances: &[] };
+        let frame = Frame::default();
+        let launch = LaunchContext::new(&frame, spec, &[], &[]);
         lifted(&launch, &shading, &seen)
     }
 

@@ -1,7 +1,7 @@
 //! Media that are denser in one place than in another: numbers at the corners of cells, in blocks that know the greatest of theirs.
 
 use crate::buffer::read;
-use crate::data::{CELLS, Grid};
+use crate::data::{CELLS, GlowTable, Grid, Medium};
 use crate::real::{FAINT, Real, SMALL, Scalar, TINY, V3};
 
 /// A ray in a grid's own coordinates, whose cells have edges of 1: the same distances along it as in the scene.
@@ -97,6 +97,23 @@ impl<R: Scalar> GridRay<R> {
         };
         (first, next)
     }
+}
+
+/// What the temperature of a place of the normalised scene multiplies the light of a medium with, linear RGB; nothing outside of its grid.
+#[inline(always)]
+pub fn glow<R: Scalar>(medium: &Medium, grids: &[u32], place: V3<R>) -> V3<R> {
+    let (at, table, zero) = (medium.density.y, medium.density.z, R::splat(0.0));
+    let ray = GridRay::new(grids, at, place, V3::zero());
+    let (enter, leave) = ray.within(grids, at);
+    if !enter.le(zero) || !zero.le(leave) {
+        return V3::zero();
+    }
+    let temperature = ray.block(grids, at, zero).number::<R>(grids, at, ray.at(zero));
+    let step = (temperature * number(grids, table)).min(R::splat((GlowTable::TEMPERATURES - 1) as f32));
+    let before = step.floor_index().min(GlowTable::TEMPERATURES as i32 - 2);
+    let first = table + 1 + 3 * before as u32;
+    let (low, high) = (row::<R>(grids, first), row(grids, first + 3));
+    low.mix(high, (step - R::splat(before as f32)).flush(SMALL)).map(|c| c.flush(FAINT))
 }
 
 // Functions and no closures: rust-gpu would keep the buffer that these refer to in memory.

@@ -7,6 +7,7 @@ mod phase;
 mod tracking;
 
 pub use flight::{Flight, transmittance};
+pub use grid::glow;
 pub use inside::{Inside, MOST_CROSSINGS};
 pub use phase::Phase;
 pub use tracking::{Chain, delta, ratio};

@@ -93,6 +93,9 @@ pub fn time(Key(x, y): Key, number: u32) -> f32 {
 /// The first of the sets of ways through media, of which there are 2^25: those of numbers of bounces and crossings.
 pub const FLIGHTS: u32 = 1 << 28;
 
+/// The set whose first number chooses the wavelengths of a sample. No path has so many vertices.
+pub const WAVELENGTHS: u32 = AFTER_LENS + 2;
+
 /// In the place of a set, those of times. No path has so many vertices.
 const TIMES: u32 = AFTER_LENS + 1;
 

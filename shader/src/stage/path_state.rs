@@ -3,11 +3,13 @@
 use super::segment::NOWHERE;
 use super::{Caught, REACHED, Sample, Segment};
 use crate::buffer::{read, write};
+use crate::camera;
 use crate::data::{Effects, Frame, Launch, Media};
 use crate::light::Viewpoint;
 use crate::medium::{Chain, Inside};
 use crate::ray::Ray;
 use crate::real::{Real, SMALL, Scalar, V3};
+use crate::sampler::Key;
 use crate::scene::LaunchContext;
 use crate::texture::Cone;
 
@@ -100,6 +102,13 @@ impl<R: Scalar> PathState<R> {
             from: origin,
             inside: Inside::default(),
         }
+    }
+
+    /// What a slot's numbers are drawn from: its pixel, and the sample's number in that.
+    #[inline(always)]
+    pub fn drawn_by(frame: &Frame, slot: u32, paths: &[R::Record]) -> (Key, u32) {
+        let pixel = R::load(read(paths, (STATE_RECORDS - 1) * frame.slots + slot)).1;
+        (Key::new((pixel & 0xffff, pixel >> 16), frame.seed), camera::sample(frame, slot))
     }
 
     /// The same with what it is in, which lies behind the records of all slots.

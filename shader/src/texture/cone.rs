@@ -98,9 +98,7 @@ mod tests {
         let frame = Frame { spread: 0.125, ..Frame::default() };
         let width = |launch, sample| {
             let spec = Specialisation::default().with_launch(launch);
-            Cone::<f64> { width: 1.0 }
-                .after(&LaunchContext { frame: &frame, spec, primitives: &[], instances: &[] }, 2.0, sample)
-                .width
+            Cone::<f64> { width: 1.0 }.after(&LaunchContext::new(&frame, spec, &[], &[]), 2.0, sample).width
         };
         assert_eq!((width(Launch::MIPMAPPED, 0), width(0, 0)), (1.25, 1.0));
         assert_eq!(

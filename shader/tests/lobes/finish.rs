@@ -1,5 +1,6 @@
 //! What lies on surfaces, in light from everywhere and beside other ways to compute it.
 
+use eyerays_shader::data::Waves;
 use eyerays_shader::material::{Sheen, film};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -143,7 +144,7 @@ fn a_thin_film_has_the_colours_of_airys_sum() {
         for ior in [1.2, 1.33, 1.8] {
             for thickness in [0.0, 100.0, 200.0, 300.0, 400.0, 550.0, 800.0, 1200.0] {
                 for angle in [0.0, 0.5, 1.0, 1.3f64] {
-                    let got = film(angle.cos(), (ior, thickness), WHITE * normal);
+                    let got = film((Waves(0), V::zero()), angle.cos(), (ior, thickness), WHITE * normal);
                     let want = summed(angle.cos(), (ior, thickness), base);
                     for (got, want) in [got.x, got.y, got.z].into_iter().zip(want) {
                         worst = worst.max((got - want.clamp(0.0, 1.0)).abs());
@@ -159,7 +160,7 @@ fn a_thin_film_has_the_colours_of_airys_sum() {
 fn a_film_without_thickness_leaves_what_is_below_it() {
     for base in [0.0, 0.04, 0.3, 0.9] {
         for (ior, angle) in [(1.3, 0.0), (1.3, 1.2), (2.0, 0.7)] {
-            let got = film(f64::cos(angle), (ior, 0.0), WHITE * base).y;
+            let got = film((Waves(0), V::zero()), f64::cos(angle), (ior, 0.0), WHITE * base).y;
             let index = (1.0 + base.sqrt()) / (1.0 - base.sqrt());
             let want = reflected(f64::cos(angle), (1.0, 0.0), index, 550.0);
             assert!((got - want).abs() < 2e-2, "{base} below {ior} at {angle}: {got}, not {want}");

@@ -99,6 +99,8 @@ impl Window {
         asked: Asked,
     ) -> Window {
         let Asked { shared, ended, wish, size: fixed, told } = asked;
+        // Where frames take long, a click seems to: its press and its release are two frames.
+        context.options_mut(|options| options.input_options.max_click_duration = f64::INFINITY);
         let repaint = repaint(context);
         let show = Show { panel: false, playing: false, follows: false, said: None };
         Window {

@@ -249,7 +249,7 @@ mod tests {
         let frame = Frame { slots: stream.len() as u32, ..Frame::default() };
         let spec = Specialisation { tuning: traversal.tuning, ..Specialisation::default() }.with_launch(Launch::STREAM);
         let scene = TraceContext {
-            base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(&triangles), instances: &[] },
+            base: LaunchContext::new(&frame, spec, bytemuck::cast_slice(&triangles), &[]),
             nodes: bytemuck::cast_slice(&nodes),
             wide: &[],
             bvh8: Default::default(),

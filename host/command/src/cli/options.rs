@@ -53,6 +53,9 @@ pub(super) struct View {
     /// Let facets of physical materials scatter light once: what is lost between them is not given back
     #[arg(long)]
     no_compensation: bool,
+    /// Follow light of single wavelengths instead of red, green and blue; paths alone do [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    spectral: Option<bool>,
 }
 
 /// How much work a picture is worth.
@@ -220,6 +223,7 @@ impl View {
             filter: effort.filter.unwrap_or(own.filter),
             pixel_filter: effort.pixel_filter.or(own.pixel_filter),
             transparent: self.transparent.unwrap_or(own.transparent),
+            spectral: self.spectral.unwrap_or(own.spectral),
         };
         Picture::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;

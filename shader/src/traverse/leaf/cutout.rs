@@ -75,7 +75,8 @@ mod tests {
         let opacities = [Opacity { mask: UVec4::new(opacity.to_bits(), least.to_bits(), 0, 0) }];
         let cutout = Cutout { opacities: &opacities, ..Cutout::default() };
         let spec = Specialisation::default();
-        let launch = LaunchContext { frame: &Frame::default(), spec, primitives: &[], instances: &[] };
+        let frame = Frame::default();
+        let launch = LaunchContext::new(&frame, spec, &[], &[]);
         let triangle = Primitive::triangle([Vec3::ZERO, Vec3::X, Vec3::Y], 5, 0, 0);
         let count = 20_000;
         let meets = |i: u32| {

@@ -18,7 +18,7 @@ fn hit<Q: Query, R: Scalar>(primitives: &[Primitive], effects: u32, ray: &Ray<R>
     let effects = Effects(effects | Effects::SPHERE | Effects::DISK);
     let spec = Specialisation { effects, ..Specialisation::default() };
     let context = TraceContext {
-        base: LaunchContext { frame: &frame, spec, primitives: bytemuck::cast_slice(primitives), instances: &[] },
+        base: LaunchContext::new(&frame, spec, bytemuck::cast_slice(primitives), &[]),
         nodes: &[],
         wide: &[],
         bvh8: Bvh8View::default(),

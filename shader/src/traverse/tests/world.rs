@@ -124,7 +124,7 @@ impl World {
     pub fn context(&self) -> TraceContext<'_> {
         let spec = Specialisation { effects: self.effects, tuning: Tuning::new(2, 60), ..Specialisation::default() };
         TraceContext {
-            base: LaunchContext { frame: &self.frame, spec, primitives: &self.words, instances: &[] },
+            base: LaunchContext::new(&self.frame, spec, &self.words, &[]),
             nodes: bytemuck::cast_slice(&self.nodes),
             wide: &self.wide,
             bvh8: Bvh8View { nodes: &self.bvh8.0, triangles: &self.bvh8.1, ..Bvh8View::default() },

@@ -67,7 +67,12 @@ fn scene() -> Scene {
         animations: Vec::new(),
         files: Vec::new(),
         materials: vec![plain, mirror],
-        lights: vec![Light::Point { position: vec3(1.5, 3.0, 2.0), colour: Vec3::ONE, group: String::new() }],
+        lights: vec![Light::Point {
+            position: vec3(1.5, 3.0, 2.0),
+            colour: Vec3::ONE,
+            group: String::new(),
+            temperature: None,
+        }],
         cameras: vec![Camera::new(
             "front",
             vec3(0.5, 1.5, 4.0),

@@ -15,7 +15,6 @@ use crate::integrator::needs;
 use crate::layers;
 use crate::method::Traversal;
 use crate::scene::{Integrator, PixelFilter, Scene, Settings, Transport};
-use crate::spectrum;
 
 /// A scene as devices hold it, with settings and what its pictures show. Cheap to clone: jobs of one scene share it.
 #[derive(Clone)]
@@ -199,17 +198,15 @@ impl Job {
 
     /// How light has wavelengths.
     pub fn waves(&self) -> Waves {
+        // Lights tell which spectrum they have whether it is asked for or not.
+        let own = self.scene.own_spectra().waves();
         let is_spectral = self.settings.spectral && self.feature.is_none();
-        Waves(if is_spectral { Waves::SPECTRAL } else { 0 })
+        if is_spectral { own.with(Waves::SPECTRAL) } else { Waves(own.0 & Waves::ILLUMINANTS) }
     }
 
     /// Words of the table of spectra, see [`eyerays_shader::data::SpectrumRow`]; empty where light has no wavelengths.
     pub fn spectra(&self) -> &[UVec4] {
-        static WORDS: OnceLock<Vec<UVec4>> = OnceLock::new();
-        if !self.waves().has(Waves::SPECTRAL) {
-            return &[];
-        }
-        WORDS.get_or_init(|| spectrum::words(&[]))
+        if self.waves().has(Waves::SPECTRAL) { self.scene.own_spectra().words() } else { &[] }
     }
 
     /// What of the media its kernels know: only paths go through them.

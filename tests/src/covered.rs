@@ -39,7 +39,7 @@ pub fn covered() -> Scene {
 /// Physical materials, one of each kind.
 fn kinds() -> [Physical; 6] {
     let base = Physical { base: Vec3::new(0.9, 0.7, 0.4), roughness: 0.4, ..Physical::default() };
-    let gold = Conductor { eta: Vec3::new(0.143, 0.375, 1.442), k: Vec3::new(3.983, 2.386, 1.603) };
+    let gold = Conductor { eta: Vec3::new(0.143, 0.375, 1.442), k: Vec3::new(3.983, 2.386, 1.603), metal: None };
     let absorption = Some(Absorption { colour: Vec3::new(0.6, 0.9, 0.7), distance: 0.5 });
     let glass = Physical { transmission: Vec3::splat(0.9), roughness: 0.3, absorption, ..base };
     [

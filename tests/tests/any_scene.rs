@@ -84,7 +84,7 @@ fn maps(random: &mut Random, pictures: &[Arc<Texture>]) -> Maps {
 }
 
 fn physical(random: &mut Random) -> Physical {
-    let gold = Conductor { eta: Vec3::new(0.143, 0.375, 1.442), k: Vec3::new(3.983, 0.0, 100.0) };
+    let gold = Conductor { eta: Vec3::new(0.143, 0.375, 1.442), k: Vec3::new(3.983, 0.0, 100.0), metal: None };
     Physical {
         base: colour(random),
         metallic: one(random, &[0.0, 0.5, 1.0]),

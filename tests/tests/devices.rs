@@ -166,7 +166,12 @@ fn thousands_of_lights() {
     let Some(gpu) = exact() else { return };
     let mut scene = still_life();
     let place = |i: u16| Vec3::new(f32::from(i % 64) / 8.0 - 4.0, f32::from(i / 64) / 8.0 - 3.5, 1.0);
-    let light = |i| Light::Point { position: place(i), colour: Vec3::splat(1.0 / 1024.0), group: String::new() };
+    let light = |i| Light::Point {
+        position: place(i),
+        colour: Vec3::splat(1.0 / 1024.0),
+        group: String::new(),
+        temperature: None,
+    };
     scene.lights = (0..4096).map(light).collect();
     let settings = Settings { size: (48, 36), bounces: 1, ..scene.settings };
     assert_same(&gpu, &pack(&scene, &scene.cameras[0], settings), "4096 lights");

@@ -238,8 +238,12 @@ fn distributed_trees_are_whitteds() {
         for camera in [0, 1] {
             let mut picture = |integrator, light: f32| {
                 let direction = Vec3::new(-0.4, -1.0, 0.3);
-                scene.lights =
-                    vec![Light::Directional { direction, colour: Vec3::splat(0.5 * light), group: String::new() }];
+                scene.lights = vec![Light::Directional {
+                    direction,
+                    colour: Vec3::splat(0.5 * light),
+                    group: String::new(),
+                    temperature: None,
+                }];
                 on_cpu(&pack(&scene, &scene.cameras[camera], with(integrator, settings))).0
             };
             let (tree, want) =

@@ -111,7 +111,12 @@ fn shadow_rays_are_dimmed_by_what_they_go_through() {
     let lit = |within: &dyn Fn(&mut Scene)| {
         let mut scene = empty();
         add_box(&mut scene, matt(Vec3::ONE), Vec3::new(-9.0, -1.0, -9.0), Vec3::new(9.0, 0.0, 9.0));
-        scene.lights.push(Light::Point { position: Vec3::new(0.0, 8.0, 0.0), colour: Vec3::ONE, group: String::new() });
+        scene.lights.push(Light::Point {
+            position: Vec3::new(0.0, 8.0, 0.0),
+            colour: Vec3::ONE,
+            group: String::new(),
+            temperature: None,
+        });
         within(&mut scene);
         let picture = render(&scene, &at(Vec3::new(5.0, 0.5, 0.0), Vec3::ZERO), paths(1, 0));
         picture.pixels[0].map(f64::from)
@@ -307,7 +312,12 @@ fn shadow_rays_are_dimmed_by_the_integral_of_a_grid() {
     let lit = |density: Option<Arc<Grid>>| {
         let mut scene = empty();
         add_box(&mut scene, matt(Vec3::ONE), Vec3::new(-9.0, -1.0, -9.0), Vec3::new(9.0, 0.0, 9.0));
-        scene.lights.push(Light::Point { position: Vec3::new(0.0, 8.0, 0.0), colour: Vec3::ONE, group: String::new() });
+        scene.lights.push(Light::Point {
+            position: Vec3::new(0.0, 8.0, 0.0),
+            colour: Vec3::ONE,
+            group: String::new(),
+            temperature: None,
+        });
         let of = if density.is_some() { medium(0.3, 0.2, 0.0) } else { Medium::default() };
         let volume = Volume { density, ..Volume::open(of) };
         let material = Material { volume: Some(volume), ..black() };
@@ -329,7 +339,12 @@ fn what_is_filled_with_nothing_is_not_there() {
     let mut scene = empty();
     add_wall(&mut scene, matt(Vec3::splat(0.6)), Vec3::NEG_Z * 4.0, 3.0);
     scene.background = Background::Colour(Vec3::splat(0.3));
-    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::ONE, group: String::new() });
+    scene.lights.push(Light::Point {
+        position: Vec3::ZERO,
+        colour: Vec3::ONE,
+        group: String::new(),
+        temperature: None,
+    });
     let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 40.0 });
     let bare = render(&scene, &camera, paths(16, 3));
     // Nothing, and rays that go on through 120 faces of it.

@@ -74,8 +74,13 @@ fn scene(moving: Moving, time: f32) -> Scene {
             let place = Vec3::new(-1.0 + 2.0 * time, 0.5, 0.5);
             let target = Vec3::new(1.5 * time, -0.5, -1.0);
             scene.lights = vec![
-                Light::Point { position: place, colour, group: group.clone() },
-                Light::Directional { direction: Vec3::new(time - 0.5, 0.3, -1.0), colour, group: group.clone() },
+                Light::Point { position: place, colour, group: group.clone(), temperature: None },
+                Light::Directional {
+                    direction: Vec3::new(time - 0.5, 0.3, -1.0),
+                    colour,
+                    group: group.clone(),
+                    temperature: None,
+                },
                 Light::Spot {
                     position: place + Vec3::Y,
                     target,

@@ -38,8 +38,12 @@ fn a_plane_has_ambient_and_lamberts_light() {
         scene.ambient = Vec3::new(0.1, 0.2, 0.3);
         let (sine, cosine) = degrees.to_radians().sin_cos();
         let colour = Vec3::new(1.0, 0.5, 2.0);
-        scene.lights =
-            vec![Light::Directional { direction: Vec3::new(sine, 0.0, -cosine) * 7.0, colour, group: String::new() }];
+        scene.lights = vec![Light::Directional {
+            direction: Vec3::new(sine, 0.0, -cosine) * 7.0,
+            colour,
+            group: String::new(),
+            temperature: None,
+        }];
         assert_near(pixel(&scene), GREY * scene.ambient + GREY * colour * cosine);
     }
 }
@@ -125,8 +129,16 @@ fn a_spot_lights_its_cone_with_a_soft_rim() {
         let position = Vec3::new(0.0, 0.0, -1.0);
         let target = position + Vec3::new(sine, 0.0, -cosine);
         let (outer, inner, falloff) = (40.0, 20.0, Falloff::Smooth);
-        scene.lights =
-            vec![Light::Spot { position, target, colour: Vec3::ONE, outer, inner, falloff, group: String::new() }];
+        scene.lights = vec![Light::Spot {
+            position,
+            target,
+            colour: Vec3::ONE,
+            outer,
+            inner,
+            falloff,
+            group: String::new(),
+            temperature: None,
+        }];
         let cos = |degrees: f64| degrees.to_radians().cos();
         let x = (cos(degrees.into()) - cos(40.0)) / (cos(20.0) - cos(40.0));
         let share = if share.is_nan() { x * x * (3.0 - 2.0 * x) } else { share };

@@ -147,7 +147,12 @@ fn in_sphere(material: Material) -> Scene {
 /// With a point light in its centre.
 fn lit_sphere() -> Scene {
     let mut scene = in_sphere(matt(Vec3::splat(0.5)));
-    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::splat(PI), group: String::new() });
+    scene.lights.push(Light::Point {
+        position: Vec3::ZERO,
+        colour: Vec3::splat(PI),
+        group: String::new(),
+        temperature: None,
+    });
     scene
 }
 
@@ -178,9 +183,15 @@ fn a_point_light_that_lies_on_a_ceiling() {
         position: Vec3::new(0.7, 2.0, -0.4),
         colour: Vec3::splat(10.0),
         group: String::new(),
+        temperature: None,
     });
     // Another kind of light beside it, which sends none.
-    scene.lights.push(Light::Directional { direction: Vec3::NEG_Y, colour: Vec3::ZERO, group: String::new() });
+    scene.lights.push(Light::Directional {
+        direction: Vec3::NEG_Y,
+        colour: Vec3::ZERO,
+        group: String::new(),
+        temperature: None,
+    });
     let square = 0.7 * 0.7 + 2.0 * 2.0 + 0.4 * 0.4;
     let want = 10.0 / square * (2.0 / f64::sqrt(square)) / f64::from(PI);
     let (got, _) = mean(&render(&scene, &at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO), once()));
@@ -248,7 +259,12 @@ fn no_light_comes_from_below_a_smooth_surface() {
         scene.materials.push(Material { two_sided: true, ..lamp(1.0) });
         let center = Vec3::new(6.0, height, 0.0);
         scene.disks.push(Disk { center, normal: Vec3::NEG_X, radius: 0.5, material: 1 });
-        scene.lights.push(Light::Point { position: center + Vec3::NEG_X, colour: Vec3::ONE, group: String::new() });
+        scene.lights.push(Light::Point {
+            position: center + Vec3::NEG_X,
+            colour: Vec3::ONE,
+            group: String::new(),
+            temperature: None,
+        });
         scene
     };
     let camera = at(Vec3::new(2.0, 0.4, 0.3), Vec3::ZERO);

@@ -70,7 +70,12 @@ fn everything_at_once() {
     let Some(gpu) = quick_gpu() else { return };
     let mut scene = shipped("glass");
     scene.background = Background::Gradient { horizon: Vec3::new(0.3, 0.2, 0.1), zenith: Vec3::new(0.1, 0.2, 0.5) };
-    scene.lights.push(Light::Directional { direction: -Vec3::Y, colour: Vec3::splat(0.2), group: String::new() });
+    scene.lights.push(Light::Directional {
+        direction: -Vec3::Y,
+        colour: Vec3::splat(0.2),
+        group: String::new(),
+        temperature: None,
+    });
     let (position, target) = (Vec3::new(1.0, 4.0, 2.0), Vec3::ZERO);
     scene.lights.push(Light::Spot {
         position,
@@ -80,6 +85,7 @@ fn everything_at_once() {
         inner: 10.0,
         falloff: Falloff::Smooth,
         group: String::new(),
+        temperature: None,
     });
     scene.materials[0].emission = Vec3::new(0.2, 0.3, 0.1);
     for (direct, sampler) in [(Direct::Power, Sampler::Random), (Direct::Balance, Sampler::Jittered)] {

@@ -9,6 +9,7 @@ use eyerays_shader::data::{
     Physical as PhysicalRecord, Primitive,
 };
 
+use super::spectra::Spectra;
 use super::{DeviceScene, Feature, Lighting, Movement, Normalisation, Textures, hierarchy, records, two_levels};
 use crate::error::{Error, Result};
 use crate::method::Method;
@@ -140,6 +141,11 @@ impl DeviceScene {
     /// Light from far away, see [`eyerays_shader::light::Environment`]; empty if there is none.
     pub fn environment(&self) -> &[u32] {
         &self.environment
+    }
+
+    /// The spectra that its things have of their own.
+    pub(crate) fn own_spectra(&self) -> &Spectra {
+        &self.spectra
     }
 
     /// Lights in file order.

@@ -10,6 +10,7 @@ use super::light_tree::{Bounded, Cone, LightTree};
 use super::normalisation::Normalisation;
 use super::records::colour;
 use super::shining::Shining;
+use super::spectra::Spectra;
 use super::textures::Textures;
 use crate::scene::{Light, LightGroups, Material};
 
@@ -43,7 +44,7 @@ pub(super) struct Lamps {
 
 impl Lamps {
     pub fn new(
-        (materials, groups): (&[Material], &LightGroups),
+        (materials, groups, spectra): (&[Material], &LightGroups, &Spectra),
         shining: &[Shining],
         (textures, far_light): (&Textures, Option<f64>),
     ) -> Self {
@@ -65,7 +66,8 @@ impl Lamps {
             let bit = |bit: u32, is_set: bool| if is_set { bit } else { 0 };
             let bits =
                 bit(Emission::TWO_SIDED, material.two_sided) | bit(Emission::COLOURED, material.emission_is_coloured);
-            let bits = bits | groups.number(&material.group) << Emission::FLAGS;
+            let illuminant = spectra.light(material.temperature) << Emission::ILLUMINANT;
+            let bits = bits | illuminant | groups.number(&material.group) << Emission::FLAGS;
             let sides = UVec4::new(bits, map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])
         };

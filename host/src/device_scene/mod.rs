@@ -28,6 +28,7 @@ mod moved;
 mod normalisation;
 mod records;
 mod shining;
+mod spectra;
 mod tangents;
 mod textures;
 mod two_levels;
@@ -52,6 +53,7 @@ pub(crate) use keys::Movement;
 use keys::Way;
 use lighting::Lamps;
 use media::Media;
+use spectra::Spectra;
 use two_levels::Levels;
 
 use crate::error::{Error, Result};
@@ -77,6 +79,7 @@ pub struct DeviceScene {
     finish_bits: Finishes,
     finishes: Vec<Finish>,
     media: Media,
+    spectra: Spectra,
     lights: Vec<LightRecord>,
     lighting: Lighting,
     textures: Textures,
@@ -150,20 +153,21 @@ impl DeviceScene {
         let build_time = start.elapsed();
         let groups = LightGroups::of(scene);
         let media = Media::of(scene, &normalisation)?;
+        let spectra = Spectra::of(scene)?;
         let material =
             |(m, &filling)| records::material(m, filling, groups.unlit(m), (scene.ambient, normalisation.scale));
         // One thing after the other, so that no more lies in memory than must.
         let nodes = centred(bvh.nodes);
         let mut primitives = gathered(primitives, &bvh.order);
         let mut normals = if effects.has(Effects::SMOOTH) { records::normals(scene, &bvh.order) } else { Vec::new() };
-        let physical = |m| records::physical(m, normalisation.scale);
+        let physical = |m| records::physical(m, normalisation.scale, &spectra);
         let physicals =
             if effects.has(Effects::PHYSICAL) { scene.materials.iter().map(physical).collect() } else { Vec::new() };
-        let lights = lights(&scene.lights, &normalisation, &movement.ways)?;
+        let lights = lights(&scene.lights, &normalisation, (&movement.ways, &spectra))?;
         let mut textures = Textures::new(scene, effects, &bvh.order)?;
         let finish_bits = records::finish_bits(scene);
         let maps = |material: usize| textures.finish_maps.get(material).copied().unwrap_or(FinishMaps::NONE);
-        let finish = |(material, m)| records::finish(m, maps(material));
+        let finish = |(material, m)| records::finish(m, maps(material), &spectra);
         let finishes =
             if finish_bits.any() { scene.materials.iter().enumerate().map(finish).collect() } else { Vec::new() };
         bends.shape((scene, &normalisation), &bvh.order, (&mut primitives, &mut normals, &mut textures.tangents));
@@ -171,7 +175,7 @@ impl DeviceScene {
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let background_group = groups.number(&scene.background_group);
         let shining = shining::of(scene, &normalisation, (&primitives, top.1), (&instances, &places))?;
-        let lamps = Lamps::new((&scene.materials, &groups), &shining, (&textures, far_light));
+        let lamps = Lamps::new((&scene.materials, &groups, &spectra), &shining, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new(
             (&scene.lights, &lights, &movement.ways),
@@ -195,6 +199,7 @@ impl DeviceScene {
             bounds: if is_split { bvh.bounds } else { Vec::new() },
             materials: scene.materials.iter().zip(&media.fillings).map(material).collect(),
             media,
+            spectra,
             physicals,
             finish_bits,
             finishes,
@@ -222,7 +227,7 @@ impl DeviceScene {
     /// # Errors
     /// They are others, or too far away.
     pub fn relit(&self, others: &[Light]) -> Result<(Vec<LightRecord>, Lighting)> {
-        let records = lights(others, &self.normalisation, &self.movement.ways)?;
+        let records = lights(others, &self.normalisation, (&self.movement.ways, &self.spectra))?;
         let kinds = |lights: &[LightRecord]| lights.iter().map(|light| light.position.w).collect::<Vec<_>>();
         if kinds(&records) != kinds(&self.lights) {
             let number = self.lights.len();
@@ -243,8 +248,16 @@ fn normalisation(scene: &Scene) -> Normalisation {
 }
 
 /// Records of lights, of which some move.
-fn lights(lights: &[Light], normalisation: &Normalisation, ways: &[Way]) -> Result<Vec<LightRecord>> {
-    let record = |(i, light)| records::light(light, i, normalisation);
+fn lights(
+    lights: &[Light],
+    normalisation: &Normalisation,
+    (ways, spectra): (&[Way], &Spectra),
+) -> Result<Vec<LightRecord>> {
+    let record = |(i, light): (usize, &Light)| {
+        let mut record = records::light(light, i, normalisation)?;
+        record.position.w |= spectra.light(light.temperature()) << LightRecord::ILLUMINANT;
+        Ok(record)
+    };
     let mut records: Vec<LightRecord> = lights.iter().enumerate().map(record).collect::<Result<_>>()?;
     for way in ways {
         if let Some(record) = records.get_mut(way.light) {

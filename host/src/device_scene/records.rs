@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::flags;
 use super::normalisation::{Normalisation, flushed, flushed_number};
+use super::spectra::Spectra;
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
@@ -206,7 +207,7 @@ pub(super) fn material(m: &Material, filling: Filling, unlit: u32, (ambient, sca
 }
 
 /// A physical material's record; that of another says that it is none.
-pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
+pub(super) fn physical(m: &Material, scale: f64, spectra: &Spectra) -> PhysicalRecord {
     let Some(p) = m.physical else { return PhysicalRecord::zeroed() };
     let flag = |flag: u32, holds: bool| if holds { flag } else { 0 };
     let flags = PhysicalRecord::IS_PHYSICAL
@@ -217,7 +218,7 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
     let turned = |number: f64| flushed_number(number as f32).to_bits();
     // A conductor's facets do not ask for its base, which is what it looks like.
     let base = p.conductor.map_or(p.base, |conductor| conductor.reflectance());
-    let conductor = p.conductor.unwrap_or(Conductor { eta: Vec3::ZERO, k: Vec3::ZERO });
+    let conductor = p.conductor.unwrap_or(Conductor { eta: Vec3::ZERO, k: Vec3::ZERO, metal: None });
     let absorption = absorption(m);
     let lengths = absorption.map_or(0.0, |a| (1.0 / (f64::from(a.distance) * scale)).clamp(1e-9, 1e9) as f32);
     PhysicalRecord {
@@ -229,7 +230,7 @@ pub(super) fn physical(m: &Material, scale: f64) -> PhysicalRecord {
             flushed_number(p.specular_weight).to_bits(),
         ),
         transmission: colour(p.transmission, lengths.to_bits()),
-        attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), 0),
+        attenuation: colour(absorption.map_or(Vec3::ONE, |a| a.colour), spectra.metal(conductor.metal)),
         eta: colour(conductor.eta, turned(math::cos(turns))),
         k: colour(conductor.k, turned(math::sin(turns))),
     }
@@ -246,7 +247,7 @@ pub(super) fn finish_bits(scene: &Scene) -> Finishes {
             | bit(Finishes::FIBROUS, fibrous)
             | bit(Finishes::TRANSLUCENT, used(&is_translucent))
             | bit(Finishes::FILMED, used(&|p| p.film.is_some_and(|film| film.weight > 0.0)))
-            | bit(Finishes::DISPERSIVE, used(&|p| dispersion(p) > 0.0)),
+            | bit(Finishes::DISPERSIVE, used(&|p| p.dispersion() > 0.0)),
     )
 }
 
@@ -255,15 +256,8 @@ fn is_translucent(p: &Physical) -> bool {
     p.conductor.is_none() && p.diffuse_transmission.is_some_and(|of| of.weight > 0.0)
 }
 
-/// Half of the difference between a body's indices of refraction for blue and for red light (the F and the C line), which the Abbe
-/// number divides `ior - 1` by.
-fn dispersion(p: &Physical) -> f32 {
-    let bends = p.is_transparent() && p.wall == Wall::Body;
-    p.abbe.filter(|_| bends).map_or(0.0, |abbe| (p.ior - 1.0) / (2.0 * abbe))
-}
-
 /// What a material has beside base, facets and what passes, with the maps of that.
-pub(super) fn finish(m: &Material, maps: FinishMaps) -> Finish {
+pub(super) fn finish(m: &Material, maps: FinishMaps, spectra: &Spectra) -> Finish {
     let Some(p) = m.physical else { return Finish::NONE };
     let coat = p.coat.unwrap_or(Coat { weight: 0.0, roughness: 0.0 });
     let sheen = p.sheen.unwrap_or(Sheen { colour: Vec3::ZERO, roughness: 0.0 });
@@ -275,7 +269,7 @@ pub(super) fn finish(m: &Material, maps: FinishMaps) -> Finish {
         coat: colour(Vec3::new(coat.weight, coat.roughness, film.weight), film.ior.to_bits()),
         sheen: colour(sheen.colour, flushed_number(sheen.roughness).to_bits()),
         beyond: colour(beyond.colour, flushed_number(beyond.weight).to_bits()),
-        film: colour(Vec3::new(least, most, dispersion(&p)), 0),
+        film: colour(Vec3::new(least, most, p.dispersion()), spectra.glass(p.glass)),
         maps,
     }
 }

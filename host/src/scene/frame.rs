@@ -59,8 +59,12 @@ fn finds_light(scene: &Scene, integrator: Integrator) -> bool {
 
 /// A key light from above and a weaker one from the right, of no place, so that size does not matter.
 pub fn lights() -> Vec<Light> {
-    let light =
-        |direction, intensity| Light::Directional { direction, colour: Vec3::splat(intensity), group: String::new() };
+    let light = |direction, intensity| Light::Directional {
+        direction,
+        colour: Vec3::splat(intensity),
+        group: String::new(),
+        temperature: None,
+    };
     vec![light(Vec3::new(0.3, -1.0, -0.7), 0.8), light(Vec3::new(-1.0, -0.2, -0.1), 0.35)]
 }
 

@@ -17,6 +17,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
+        /// See [`Light::temperature`].
+        #[serde(default)]
+        temperature: Option<f32>,
     },
     /// Shines one way from infinitely far.
     Directional {
@@ -27,6 +30,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
+        /// See [`Light::temperature`].
+        #[serde(default)]
+        temperature: Option<f32>,
     },
     /// Shines into a cone.
     Spot {
@@ -46,6 +52,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
+        /// See [`Light::temperature`].
+        #[serde(default)]
+        temperature: Option<f32>,
     },
 }
 
@@ -54,6 +63,15 @@ impl Light {
     pub fn group(&self) -> &str {
         let (Light::Point { group, .. } | Light::Directional { group, .. } | Light::Spot { group, .. }) = self;
         group
+    }
+
+    /// The temperature of the black body whose spectrum its light has, in kelvins; without one it has that of D65. It matters where light
+    /// has wavelengths.
+    pub fn temperature(&self) -> Option<f32> {
+        let (Light::Point { temperature, .. }
+        | Light::Directional { temperature, .. }
+        | Light::Spot { temperature, .. }) = self;
+        *temperature
     }
 
     /// Where it is and which way it shines, where it does not shine every way.
@@ -74,6 +92,16 @@ impl Light {
     /// Is it of the kind of another?
     pub(crate) fn is_as(&self, other: &Light) -> bool {
         std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+
+    /// The same light of a temperature.
+    #[must_use]
+    pub fn of_temperature(mut self, kelvins: Option<f32>) -> Light {
+        let (Light::Point { temperature, .. }
+        | Light::Directional { temperature, .. }
+        | Light::Spot { temperature, .. }) = &mut self;
+        *temperature = kelvins;
+        self
     }
 
     /// The same light in a group.

@@ -28,6 +28,10 @@ pub struct Material {
     pub checker: Option<Checker>,
     /// Radiance that it sends out, linear RGB, at least 0.
     pub emission: Vec3,
+    /// The temperature of the black body whose spectrum that has, in kelvins; without one it has that of D65. It matters where light has
+    /// wavelengths.
+    #[serde(default)]
+    pub temperature: Option<f32>,
     /// Does its back emit too? Culling leaves it.
     pub two_sided: bool,
     /// The group of lamps that what is made of it is in, empty for none.

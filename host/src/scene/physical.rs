@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::finish::{Coat, DiffuseTransmission, Sheen, ThinFilm};
 use crate::choice::choices;
 use crate::math;
+use crate::spectrum::{Glass, Metal};
 
 /// How a surface scatters light by microfacets (glTF 2.0, appendix B). Colours are linear RGB in [0, 1].
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -51,6 +52,9 @@ pub struct Physical {
     /// (KHR_materials_dispersion); without one it bends all light alike.
     #[serde(default)]
     pub abbe: Option<f32>,
+    /// What bends light of each wavelength as was measured; `ior` is its index for yellow light, and `abbe` is not asked.
+    #[serde(default)]
+    pub glass: Option<Glass>,
 }
 
 choices! {
@@ -83,6 +87,9 @@ pub struct Conductor {
     pub eta: Vec3,
     /// The absorbing part, in [0, 100].
     pub k: Vec3,
+    /// The metal whose index it is, which was measured at each wavelength.
+    #[serde(default)]
+    pub metal: Option<Metal>,
 }
 
 impl Absorption {
@@ -119,6 +126,7 @@ impl Default for Physical {
             diffuse_transmission: None,
             film: None,
             abbe: None,
+            glass: None,
         }
     }
 }
@@ -137,6 +145,14 @@ impl Physical {
     /// Does light pass its surface into something inside?
     pub(crate) fn lets_light_in(&self) -> bool {
         (self.is_transparent() || self.scatters_through()) && self.wall == Wall::Body
+    }
+
+    /// Half of the difference between its indices of refraction for blue and for red light (the F and the C line), which the Abbe number
+    /// divides `ior - 1` by, in a body that lets light pass.
+    pub(crate) fn dispersion(&self) -> f32 {
+        let of_abbe = self.abbe.map_or(0.0, |abbe| (self.ior - 1.0) / (2.0 * abbe));
+        let spread = self.glass.map_or(of_abbe, |glass| glass.spread() as f32);
+        if self.is_transparent() && self.wall == Wall::Body { spread } else { 0.0 }
     }
 
     /// What it reflects at normal incidence where it is no metal, linear RGB.

@@ -42,6 +42,8 @@ impl Range {
     /// The mean cosine of an angle by which light is scattered.
     pub const ANISOTROPY: Range =
         Range { holds: |x| x.abs() <= Medium::MOST_ANISOTROPY, says: "between -0.999 and 0.999" };
+    /// The temperature of what glows.
+    pub const KELVINS: Range = Range { holds: |x| (500.0..=100_000.0).contains(&x), says: "between 500 and 100000" };
     /// A part of a conductor's complex index of refraction.
     pub const INDEX: Range = Range { holds: |x| (0.0..=100.0).contains(&x), says: "between 0 and 100" };
 

@@ -260,7 +260,15 @@ fn light(text: &mut Text, of: &Light) {
             }
         }
     }
+    temperature(text, of.temperature());
     group(text, of.group());
+}
+
+/// That of lamps.
+fn temperature(text: &mut Text, kelvins: Option<f32>) {
+    if let Some(kelvins) = kelvins {
+        text.value("temperature", kelvins);
+    }
 }
 
 fn material(text: &mut Text, of: &Material) {
@@ -270,8 +278,11 @@ fn material(text: &mut Text, of: &Material) {
         None => plain(text, of),
     }
     text.colour("transmission", of.physical.map_or(of.transmission, |p| p.transmission), Vec3::ZERO);
-    text.other("ior", of.ior, Material::default().ior);
+    if of.physical.is_none_or(|physical| physical.glass.is_none()) {
+        text.other("ior", of.ior, Material::default().ior);
+    }
     text.colour("emission", of.emission, Vec3::ZERO);
+    temperature(text, of.temperature);
     text.other("two_sided", of.two_sided, false);
     group(text, &of.group);
     if let Some(lit_by) = &of.lit_by {
@@ -346,7 +357,11 @@ fn physical(text: &mut Text, of: &Physical) {
     text.other("anisotropy", of.anisotropy, default.anisotropy);
     text.other("anisotropy_rotation", of.anisotropy_rotation, default.anisotropy_rotation);
     finish::described(of).into_iter().for_each(|(key, value)| text.key(key, value));
-    if let Some(Conductor { eta, k }) = of.conductor {
+    if let Some(metal) = of.conductor.and_then(|conductor| conductor.metal) {
+        text.key("metal", quoted(metal.name()));
+        return;
+    }
+    if let Some(Conductor { eta, k, .. }) = of.conductor {
         text.key("conductor", format!("{{ eta = {}, k = {} }}", triple(eta), triple(k)));
         return;
     }

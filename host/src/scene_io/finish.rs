@@ -3,8 +3,10 @@
 use glam::Vec3;
 
 use super::table::Table;
+use crate::choice::Named;
 use crate::error::Result;
 use crate::scene::{Coat, DiffuseTransmission, FinishMaps, Physical, Range, Sheen, ThinFilm};
+use crate::spectrum::Glass;
 
 /// What a file says of it; the rest is left to whoever else describes the material. A table takes the place of another one as a whole.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -14,6 +16,7 @@ pub struct Fields {
     pub diffuse_transmission: Option<DiffuseFields>,
     pub film: Option<FilmFields>,
     pub abbe: Option<f32>,
+    pub glass: Option<Glass>,
 }
 
 /// What is said of a [`Coat`].
@@ -66,6 +69,7 @@ impl Fields {
             diffuse_transmission: table.table("diffuse_transmission")?.map(diffuse_transmission).transpose()?,
             film: table.table("film")?.map(film).transpose()?,
             abbe: table.number("abbe", Range::ABBE)?,
+            glass: table.choice("glass")?,
         })
     }
 
@@ -77,6 +81,7 @@ impl Fields {
             diffuse_transmission: self.diffuse_transmission.or(under.diffuse_transmission),
             film: self.film.or(under.film),
             abbe: self.abbe.or(under.abbe),
+            glass: self.glass.or(under.glass),
         }
     }
 
@@ -128,7 +133,7 @@ impl Fields {
             ior: of.ior.unwrap_or(FILM_IOR),
             thickness: of.thickness.unwrap_or([FILM_THICKNESS[1]; 2]),
         });
-        to.abbe = self.abbe;
+        (to.abbe, to.glass) = (self.abbe, self.glass);
     }
 }
 
@@ -182,5 +187,6 @@ pub fn described(of: &Physical) -> Vec<(&'static str, String)> {
         keys.push(("film", format!("{{ weight = {weight:?}, ior = {ior:?}, thickness = {thickness} }}")));
     }
     keys.extend(of.abbe.map(|abbe| ("abbe", format!("{abbe:?}"))));
+    keys.extend(of.glass.map(|glass| ("glass", format!("{:?}", glass.name()))));
     keys
 }

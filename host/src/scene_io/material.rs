@@ -9,6 +9,7 @@ use super::{medium, physical, visible};
 use crate::error::Result;
 use crate::scene::Range;
 use crate::scene::{Alpha, Checker, Maps, Material, Physical, Visibility, Volume};
+use crate::spectrum::{self, Glass};
 
 /// What a file says of a material; the rest is left to whoever else describes it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -22,6 +23,7 @@ pub struct Fields {
     pub ior: Option<f32>,
     pub checker: Option<Checker>,
     pub emission: Option<Vec3>,
+    pub temperature: Option<f32>,
     pub two_sided: Option<bool>,
     pub emission_is_coloured: Option<bool>,
     pub group: Option<String>,
@@ -52,6 +54,11 @@ impl Fields {
     pub fn read(table: &mut Table, images: &mut Images) -> Result<(String, Fields)> {
         let name = table.name("name")?;
         let name = table.need("name", name)?;
+        let temperature = table.number("temperature", Range::KELVINS)?;
+        let emission = emission(table, temperature)?;
+        if table.has("glass") && (table.has("ior") || table.has("abbe")) {
+            return Err(table.fault_of("glass", "a glass has an index of its own; remove glass, or ior and abbe"));
+        }
         let fields = Fields {
             ambient: table.triple("ambient", Range::SHARE)?,
             diffuse: table.triple("diffuse", Range::SHARE)?,
@@ -61,7 +68,8 @@ impl Fields {
             transmission: table.triple("transmission", Range::SHARE)?,
             ior: table.number("ior", Range::IOR)?,
             checker: table.table("checker")?.map(checker).transpose()?,
-            emission: table.triple("emission", Range::AMOUNT)?,
+            temperature,
+            emission,
             two_sided: table.flag("two_sided")?,
             emission_is_coloured: None,
             group: table.name("group")?,
@@ -83,6 +91,13 @@ impl Fields {
         if self.maps.normal.is_some() || self.bump.is_some() {
             (under.maps.normal, under.bump) = (None, None);
         }
+        // As indices do.
+        if self.ior.is_some() || self.physical.finish.abbe.is_some() {
+            under.physical.finish.glass = None;
+        }
+        if self.physical.finish.glass.is_some() {
+            (under.ior, under.physical.finish.abbe) = (None, None);
+        }
         Fields {
             ambient: self.ambient.or(under.ambient),
             diffuse: self.diffuse.or(under.diffuse),
@@ -93,6 +108,7 @@ impl Fields {
             ior: self.ior.or(under.ior),
             checker: self.checker.or(under.checker),
             emission: self.emission.or(under.emission),
+            temperature: self.temperature.or(under.temperature),
             two_sided: self.two_sided.or(under.two_sided),
             emission_is_coloured: self.emission_is_coloured.or(under.emission_is_coloured),
             group: self.group.or(under.group),
@@ -116,7 +132,7 @@ impl Fields {
     /// model keeps what it can.
     pub fn finish(mut self, name: &str) -> Material {
         self.take_pictures();
-        let ior = self.ior.unwrap_or(GLASS);
+        let ior = self.physical.finish.glass.map(Glass::ior).or(self.ior).unwrap_or(GLASS);
         let physical = self.physical.finish(self.diffuse, self.transmission, ior);
         let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
         // Who gives an opacity means it.
@@ -133,6 +149,7 @@ impl Fields {
             ior,
             checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
             emission: self.emission.unwrap_or(plain.emission),
+            temperature: self.temperature,
             two_sided: self.two_sided.unwrap_or(plain.two_sided),
             emission_is_coloured: self.emission_is_coloured.unwrap_or(plain.emission_is_coloured),
             group: self.group.unwrap_or_default(),
@@ -204,6 +221,7 @@ impl Default for Material {
             ior: GLASS,
             checker: None,
             emission: Vec3::ZERO,
+            temperature: None,
             two_sided: false,
             emission_is_coloured: false,
             group: String::new(),
@@ -249,6 +267,16 @@ fn alpha(table: &mut Table) -> Result<Option<Alpha>> {
         (_, Some(least)) => Ok(Some(Alpha::Mask(least))),
         (alpha, None) => Ok(alpha),
     }
+}
+
+/// What a `[[material]]` sends out: a colour, or of light of a temperature how bright it is, which is 1 where nobody says it.
+fn emission(table: &mut Table, temperature: Option<f32>) -> Result<Option<Vec3>> {
+    let Some(kelvins) = temperature else { return table.triple("emission", Range::AMOUNT) };
+    if table.is_number("emission") {
+        let luminance = table.number("emission", Range::AMOUNT)?.unwrap_or(1.0);
+        return Ok(Some(spectrum::colour_of(kelvins) * luminance));
+    }
+    Ok(Some(table.triple("emission", Range::AMOUNT)?.unwrap_or(spectrum::colour_of(kelvins))))
 }
 
 fn checker(mut table: Table) -> Result<Checker> {

@@ -6,6 +6,7 @@ use super::finish;
 use super::table::Table;
 use crate::error::Result;
 use crate::scene::{Absorption, Conductor, Physical, Range, Wall};
+use crate::spectrum::Metal;
 
 /// What a file says of a material by microfacets; the rest is left to whoever else describes it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,7 +40,7 @@ impl Fields {
             specular_tint: table.triple("specular_tint", Range::AMOUNT)?,
             wall: table.flag_or_choice("thin", [Wall::Body, Wall::Pane])?,
             absorption: table.table("absorption")?.map(absorption).transpose()?,
-            conductor: table.table("conductor")?.map(conductor).transpose()?,
+            conductor: metal(table)?,
             finish: finish::Fields::read(table)?,
         })
     }
@@ -70,12 +71,17 @@ impl Fields {
         let mut physical = Physical {
             base: self.base.or(diffuse).unwrap_or(plain.base),
             metallic: self.metallic.unwrap_or(plain.metallic),
-            roughness: self.roughness.unwrap_or(plain.roughness),
+            roughness: self.roughness.unwrap_or(if self.finish.glass.is_some() { 0.0 } else { plain.roughness }),
             anisotropy: self.anisotropy.unwrap_or(plain.anisotropy),
             anisotropy_rotation: self.anisotropy_rotation.unwrap_or(plain.anisotropy_rotation),
             specular_weight: self.specular_weight.unwrap_or(plain.specular_weight),
             specular_tint: self.specular_tint.unwrap_or(plain.specular_tint),
-            transmission: transmission.unwrap_or(plain.transmission),
+            // Who names a glass means it.
+            transmission: transmission.unwrap_or(if self.finish.glass.is_some() {
+                Vec3::ONE
+            } else {
+                plain.transmission
+            }),
             ior,
             wall: self.wall.unwrap_or(plain.wall),
             absorption: self.absorption,
@@ -95,10 +101,21 @@ fn absorption(mut table: Table) -> Result<Absorption> {
     Ok(absorption)
 }
 
+/// A `metal` by its name, or a `conductor` by its index.
+fn metal(table: &mut Table) -> Result<Option<Conductor>> {
+    let Some(metal) = table.choice::<Metal>("metal")? else {
+        return table.table("conductor")?.map(conductor).transpose();
+    };
+    if table.has("conductor") {
+        return Err(table.fault_of("conductor", "a metal has an index of its own; remove metal or conductor"));
+    }
+    Ok(Some(metal.conductor()))
+}
+
 fn conductor(mut table: Table) -> Result<Conductor> {
     let eta = table.triple("eta", Range::INDEX)?;
     let k = table.triple("k", Range::INDEX)?;
-    let conductor = Conductor { eta: table.need("eta", eta)?, k: table.need("k", k)? };
+    let conductor = Conductor { eta: table.need("eta", eta)?, k: table.need("k", k)?, metal: None };
     table.done()?;
     Ok(conductor)
 }

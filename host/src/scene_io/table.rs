@@ -94,6 +94,12 @@ impl<'s> Table<'s> {
         self.entries.iter().any(|entry| entry.key == key)
     }
 
+    /// Is the key's value a number? Does not take it.
+    pub fn is_number(&self, key: &str) -> bool {
+        let value = self.entries.iter().find(|entry| entry.key == key).and_then(|entry| entry.value.as_ref());
+        value.is_some_and(|value| matches!(value.get_ref(), DeValue::Integer(_) | DeValue::Float(_)))
+    }
+
     /// A string.
     pub fn text(&mut self, key: &'static str) -> Result<Option<String>> {
         self.map(key, |table, value| match value.get_ref() {

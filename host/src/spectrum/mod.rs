@@ -2,6 +2,8 @@
 //! [`eyerays_shader::spectrum`].
 
 mod cells;
+mod glass;
+mod metal;
 mod observer;
 mod planck;
 mod primaries;
@@ -10,8 +12,10 @@ use eyerays_shader::data::{SpectrumRow, pack};
 use glam::{DVec3, UVec4, Vec3};
 
 use self::cells::{SETS, cells};
+pub use self::glass::Glass;
+pub use self::metal::Metal;
 use self::observer::at;
-pub use self::planck::{black_body, luminance, planck};
+pub use self::planck::{black_body, colour_of, luminance, planck, share_of_light};
 use self::primaries::PRIMARIES;
 
 /// What a wavelength in nanometres has.

@@ -1,6 +1,10 @@
 //! Spectra of red, green and blue.
 
-use super::observer::COUNT;
+use glam::DVec3;
+
+use super::Curve;
+use super::cells::cells;
+use super::observer::{COUNT, at};
 
 /// The smoothest reflectances (the least sum of squares of their steps) in [0, 1] that come to one and are pure red, green and blue of
 /// ITU-R BT.709 under D65, in the steps of [`super::observer`]: what Mallett and Yuksel ask for (Spectral Primary Decomposition for
@@ -35,3 +39,14 @@ pub const PRIMARIES: [[f64; 3]; COUNT] = [
     [0.999995, 1e-06, 4e-06], [0.999992, 2e-06, 6e-06], [0.999989, 3e-06, 8e-06],
     [0.999986, 5e-06, 9e-06], [0.999984, 6e-06, 1e-05], [0.999982, 7e-06, 1.1e-05],
 ];
+
+/// What a curve is in the mean where each of the three spectra is bright, as D65 is seen.
+pub fn mean(of: Curve) -> DVec3 {
+    let (mut sum, mut whole) = (DVec3::ZERO, DVec3::ZERO);
+    for cell in cells() {
+        let seen = DVec3::from(at(&PRIMARIES, cell.wavelength)) * cell.response.abs().element_sum();
+        sum += seen * of(cell.wavelength);
+        whole += seen;
+    }
+    sum / whole
+}

@@ -148,8 +148,10 @@ fn lights_on_surfaces() {
         let mut scene = highlight(50.0);
         let wall = Material { diffuse: Vec3::splat(0.5), ..scene.materials[0].clone() };
         scene.materials[0] = wall;
-        scene.lights =
-            vec![lamp(place), Light::Point { position: place, colour: Vec3::splat(1e-30), group: String::new() }];
+        scene.lights = vec![
+            lamp(place),
+            Light::Point { position: place, colour: Vec3::splat(1e-30), group: String::new(), temperature: None },
+        ];
         let picture = pictures(&pack(&scene, &scene.cameras[0], scene.settings), &format!("a lamp at {place}"));
         let on_plane = place.z == -2.0;
         // Light along a surface gives it none: the cosine is zero but for rounding of the place.

@@ -93,6 +93,9 @@ fn material(material: &Material) -> Unplaced<()> {
     owner.number("shininess", material.shininess, Range::AMOUNT)?;
     owner.number("ior", material.ior, Range::IOR)?;
     owner.colour("emission", material.emission, Range::AMOUNT)?;
+    if let Some(kelvins) = material.temperature {
+        owner.number("temperature", kelvins, Range::KELVINS)?;
+    }
     material.physical.iter().try_for_each(|of| physical(&owner, of))?;
     material.volume.iter().try_for_each(|of| medium::volume(&owner, material, of))?;
     covering::material(&owner, material)?;
@@ -128,6 +131,9 @@ fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
 
 fn light(number: usize, light: &Light) -> Unplaced<()> {
     let owner = Owner(format!("light {number}"));
+    if let Some(kelvins) = light.temperature() {
+        owner.number("temperature", kelvins, Range::KELVINS)?;
+    }
     match *light {
         Light::Point { position, colour, .. } => {
             owner.place("position", position)?;

@@ -53,7 +53,8 @@ fn the_documented_example_loads_as_documented() {
         Light::Point {
             position: Vec3::new(2.0, 4.0, 3.0),
             colour: Vec3::new(1.0, 0.9, 0.8) * 0.8,
-            group: "key".to_owned()
+            group: "key".to_owned(),
+            temperature: None
         }
     );
     let Light::Spot { outer, inner, .. } = scene.lights[2] else {

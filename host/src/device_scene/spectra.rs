@@ -1,0 +1,112 @@
+//! The spectra that things of a scene have of their own: rows of the table that kernels read where light has wavelengths.
+
+use std::sync::OnceLock;
+
+use eyerays_shader::data::{SpectrumRow, Waves};
+use glam::UVec4;
+
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::spectrum::{self, Glass, Metal};
+
+/// A row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Row {
+    /// How a glass bends light.
+    Bends(Glass),
+    /// The refractive part of a metal's index.
+    Eta(Metal),
+    /// The absorbing part.
+    K(Metal),
+    /// Light of a temperature in kelvins, as a share of what its colour in red, green and blue has.
+    Light(f32),
+}
+
+impl Row {
+    fn at(self, wavelength: f64) -> f64 {
+        match self {
+            Row::Bends(glass) => glass.bends(wavelength),
+            Row::Eta(metal) => metal.index(wavelength).0,
+            Row::K(metal) => metal.index(wavelength).1,
+            Row::Light(kelvins) => spectrum::share_of_light(kelvins.into(), wavelength),
+        }
+    }
+}
+
+/// The rows of a scene.
+#[derive(Default)]
+pub struct Spectra {
+    rows: Vec<Row>,
+    /// Made where it is asked for: most pictures have no wavelengths.
+    words: OnceLock<Vec<UVec4>>,
+}
+
+impl Spectra {
+    /// Those that a scene's materials and lights ask for.
+    ///
+    /// # Errors
+    /// They are more than records can tell.
+    pub fn of(scene: &Scene) -> Result<Spectra> {
+        let mut rows = Vec::new();
+        let mut add = |row: Row| {
+            if !rows.contains(&row) {
+                rows.push(row);
+            }
+        };
+        for physical in scene.materials.iter().filter_map(|material| material.physical) {
+            physical.glass.into_iter().for_each(|glass| add(Row::Bends(glass)));
+            if let Some(metal) = physical.conductor.and_then(|conductor| conductor.metal) {
+                add(Row::Eta(metal));
+                add(Row::K(metal));
+            }
+        }
+        let lights = scene.lights.iter().filter_map(|light| light.temperature());
+        let emissions = scene.materials.iter().filter_map(|material| material.temperature);
+        lights.chain(emissions).for_each(|kelvins| add(Row::Light(kelvins)));
+        let most = SpectrumRow::MOST - SpectrumRow::OWN;
+        if rows.len() > most as usize {
+            return Err(Error::new(format!(
+                "glasses, metals and temperatures of lamps need more than {most} spectra: let some share theirs"
+            )));
+        }
+        Ok(Spectra { rows, words: OnceLock::new() })
+    }
+
+    /// What kernels are compiled for where light has wavelengths.
+    pub fn waves(&self) -> Waves {
+        let has_light = self.rows.iter().any(|row| matches!(row, Row::Light(_)));
+        let is_measured = self.rows.iter().any(|row| !matches!(row, Row::Light(_)));
+        let bit = |bit, holds: bool| if holds { bit } else { 0 };
+        Waves(bit(Waves::ILLUMINANTS, has_light) | bit(Waves::MEASURED, is_measured))
+    }
+
+    /// The whole table.
+    pub fn words(&self) -> &[UVec4] {
+        self.words.get_or_init(|| {
+            let curves: Vec<_> = self.rows.iter().map(|&row| move |wavelength| row.at(wavelength)).collect();
+            let curves: Vec<spectrum::Curve> = curves.iter().map(|curve| curve as spectrum::Curve).collect();
+            spectrum::words(&curves)
+        })
+    }
+
+    /// The number of a row, as records have it; 0 for none.
+    fn number(&self, row: Option<Row>) -> u32 {
+        let place = row.and_then(|row| self.rows.iter().position(|own| *own == row));
+        place.map_or(0, |place| SpectrumRow::OWN + place as u32)
+    }
+
+    /// That of how a glass bends light.
+    pub fn glass(&self, glass: Option<Glass>) -> u32 {
+        self.number(glass.map(Row::Bends))
+    }
+
+    /// That of the refractive part of a metal, which that of its absorbing part follows.
+    pub fn metal(&self, metal: Option<Metal>) -> u32 {
+        self.number(metal.map(Row::Eta))
+    }
+
+    /// That of light of a temperature.
+    pub fn light(&self, kelvins: Option<f32>) -> u32 {
+        self.number(kelvins.map(Row::Light))
+    }
+}

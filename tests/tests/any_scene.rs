@@ -12,6 +12,7 @@ use eyerays::scene::{
     Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Texels, Texture, ThinFilm,
     Transport, Volume, Wall, Wrap,
 };
+use eyerays::spectrum::{Glass, Metal};
 use eyerays_tests::random::Random;
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -97,7 +98,7 @@ fn physical(random: &mut Random) -> Physical {
         ior: one(random, &[1.0, 1.001, 1.5, 4.0]),
         wall: one(random, Wall::VARIANTS),
         absorption: chance(random, 0.5).then(|| Absorption { colour: colour(random), distance: 1e-3 }),
-        conductor: chance(random, 0.2).then_some(gold),
+        conductor: one(random, &[None, None, None, Some(gold), Some(Metal::Copper.conductor())]),
         coat: chance(random, 0.3)
             .then(|| Coat { weight: one(random, &[0.0, 0.5, 1.0]), roughness: one(random, &[0.0, 0.03, 0.5, 1.0]) }),
         sheen: chance(random, 0.3).then(|| Sheen { colour: colour(random), roughness: one(random, &[0.0, 0.3, 1.0]) }),
@@ -109,6 +110,7 @@ fn physical(random: &mut Random) -> Physical {
             thickness: [one(random, &[0.0, 300.0]), one(random, &[0.0, 500.0, 1e5])],
         }),
         abbe: one(random, &[None, Some(1.0), Some(30.0)]),
+        glass: one(random, &[None, None, Some(Glass::Sf11), Some(Glass::Diamond)]),
     }
 }
 
@@ -189,6 +191,9 @@ fn any_scene(random: &mut Random) -> Scene {
     scene.environment =
         chance(random, 0.5).then_some(Environment { texture: far, rotation: 33.0, scale: 2.0, visible });
     scene.settings = any_settings(random, &scene);
+    for light in &mut scene.lights {
+        *light = light.clone().of_temperature(one(random, &[None, Some(500.0), Some(3000.0)]));
+    }
     scene.fog = chance(random, 0.2).then(|| medium(random));
     if !matches!(scene.settings.transport.integrator, Integrator::Path | Integrator::Ao) {
         // Nothing else goes through media.
@@ -214,6 +219,7 @@ fn any_settings(random: &mut Random, scene: &Scene) -> Settings {
         bounces: 3,
         culling: chance(random, 0.2),
         compensation: chance(random, 0.8),
+        spectral: transport.integrator == Integrator::Path && chance(random, 0.4),
         filter: one(random, &[Filter::Nearest, Filter::Bilinear, Default::default()]),
         transport,
         ..Settings::default()

@@ -89,6 +89,7 @@ fn scene(moving: Moving, time: f32) -> Scene {
                     inner: 20.0,
                     falloff: Falloff::Gltf,
                     group,
+                    temperature: None,
                 },
             ];
         }

@@ -38,6 +38,9 @@ impl Physical {
             );
         }
         let bends = self.is_transparent() && self.wall == Wall::Body;
+        if self.glass.is_some() && !bends {
+            return Some("glass is a body that bends light; leave transmission and thin out, or remove glass");
+        }
         let is_idle = self.abbe.is_some() && !bends;
         is_idle.then_some("abbe is of light that a body bends; give it transmission and leave thin out, or remove abbe")
     }

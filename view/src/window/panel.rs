@@ -169,12 +169,15 @@ pub(super) fn device(ui: &mut Ui, device: &mut Device) {
 
 /// How light is followed.
 pub(super) fn transport(ui: &mut Ui, settings: &mut Settings) {
-    let Settings { transport, bounces, sampler, .. } = settings;
+    let Settings { transport, bounces, sampler, spectral, .. } = settings;
     pick(ui, "integrator", &mut transport.integrator);
     pick(ui, "sampler", sampler);
     ui.add(Slider::new(bounces, 0..=32).text("bounces"));
     if transport.integrator == Integrator::Path {
         slide(ui, "clamp", &mut transport.clamp, 0.0..=100.0);
+        ui.checkbox(spectral, "light of single wavelengths");
+    } else {
+        *spectral = false;
     }
     if transport.integrator.samples() && sampler.has_cells() {
         *sampler = Sampler::Sobol;

@@ -80,7 +80,9 @@ impl Setting {
         let Setting { integrator, sampler, filter, samples, spp, bounces, min_contribution, roulette, clamp, .. } =
             *self;
         let transport = Transport { integrator, roulette, clamp, ..own.transport };
-        Settings { samples, spp, sampler, filter, bounces, min_contribution, transport, ..own }
+        // Paths alone carry wavelengths.
+        let spectral = own.spectral && integrator == Integrator::Path;
+        Settings { samples, spp, sampler, filter, bounces, min_contribution, spectral, transport, ..own }
     }
 
     /// Can the sampler place so many samples?

@@ -14,6 +14,7 @@ mod object;
 mod ply;
 mod round;
 mod shipped;
+mod spectrum;
 mod subdivide;
 mod textures;
 mod toml;

@@ -71,7 +71,7 @@ fn scene() -> Scene {
             position: vec3(1.5, 3.0, 2.0),
             colour: Vec3::ONE,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         }],
         cameras: vec![Camera::new(
             "front",

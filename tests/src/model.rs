@@ -92,10 +92,10 @@ pub fn add_box(scene: &mut Scene, material: Material, min: Vec3, max: Vec3) {
 
 /// White light that travels along `direction` from infinitely far.
 pub fn sun(direction: Vec3) -> Light {
-    Light::Directional { direction, colour: Vec3::ONE, group: String::new(), temperature: None }
+    Light::Directional { direction, colour: Vec3::ONE, group: String::new(), illuminant: None }
 }
 
 /// White light from a place.
 pub fn lamp(position: Vec3) -> Light {
-    Light::Point { position, colour: Vec3::ONE, group: String::new(), temperature: None }
+    Light::Point { position, colour: Vec3::ONE, group: String::new(), illuminant: None }
 }

@@ -12,7 +12,7 @@ use eyerays::scene::{
     Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Texels, Texture, ThinFilm,
     Transport, Volume, Wall, Wrap,
 };
-use eyerays::spectrum::{Glass, Metal};
+use eyerays::spectrum::{Fluorescent, Glass, Illuminant, Metal};
 use eyerays_tests::random::Random;
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu, shipped};
 use glam::{DVec3, Vec2, Vec3, Vec4};
@@ -192,7 +192,8 @@ fn any_scene(random: &mut Random) -> Scene {
         chance(random, 0.5).then_some(Environment { texture: far, rotation: 33.0, scale: 2.0, visible });
     scene.settings = any_settings(random, &scene);
     for light in &mut scene.lights {
-        *light = light.clone().of_temperature(one(random, &[None, Some(500.0), Some(3000.0)]));
+        let spectra = [Illuminant::BlackBody(500.0), Illuminant::Fluorescent(Fluorescent::Narrow)].map(Some);
+        *light = light.clone().of_spectrum(one(random, &[None, spectra[0], spectra[1]]));
     }
     scene.fog = chance(random, 0.2).then(|| medium(random));
     if !matches!(scene.settings.transport.integrator, Integrator::Path | Integrator::Ao) {

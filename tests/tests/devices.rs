@@ -170,7 +170,7 @@ fn thousands_of_lights() {
         position: place(i),
         colour: Vec3::splat(1.0 / 1024.0),
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     };
     scene.lights = (0..4096).map(light).collect();
     let settings = Settings { size: (48, 36), bounces: 1, ..scene.settings };

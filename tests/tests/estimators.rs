@@ -242,7 +242,7 @@ fn distributed_trees_are_whitteds() {
                     direction,
                     colour: Vec3::splat(0.5 * light),
                     group: String::new(),
-                    temperature: None,
+                    illuminant: None,
                 }];
                 on_cpu(&pack(&scene, &scene.cameras[camera], with(integrator, settings))).0
             };

@@ -115,7 +115,7 @@ fn shadow_rays_are_dimmed_by_what_they_go_through() {
             position: Vec3::new(0.0, 8.0, 0.0),
             colour: Vec3::ONE,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         });
         within(&mut scene);
         let picture = render(&scene, &at(Vec3::new(5.0, 0.5, 0.0), Vec3::ZERO), paths(1, 0));
@@ -316,7 +316,7 @@ fn shadow_rays_are_dimmed_by_the_integral_of_a_grid() {
             position: Vec3::new(0.0, 8.0, 0.0),
             colour: Vec3::ONE,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         });
         let of = if density.is_some() { medium(0.3, 0.2, 0.0) } else { Medium::default() };
         let volume = Volume { density, ..Volume::open(of) };
@@ -339,12 +339,7 @@ fn what_is_filled_with_nothing_is_not_there() {
     let mut scene = empty();
     add_wall(&mut scene, matt(Vec3::splat(0.6)), Vec3::NEG_Z * 4.0, 3.0);
     scene.background = Background::Colour(Vec3::splat(0.3));
-    scene.lights.push(Light::Point {
-        position: Vec3::ZERO,
-        colour: Vec3::ONE,
-        group: String::new(),
-        temperature: None,
-    });
+    scene.lights.push(Light::Point { position: Vec3::ZERO, colour: Vec3::ONE, group: String::new(), illuminant: None });
     let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 40.0 });
     let bare = render(&scene, &camera, paths(16, 3));
     // Nothing, and rays that go on through 120 faces of it.

@@ -74,12 +74,12 @@ fn scene(moving: Moving, time: f32) -> Scene {
             let place = Vec3::new(-1.0 + 2.0 * time, 0.5, 0.5);
             let target = Vec3::new(1.5 * time, -0.5, -1.0);
             scene.lights = vec![
-                Light::Point { position: place, colour, group: group.clone(), temperature: None },
+                Light::Point { position: place, colour, group: group.clone(), illuminant: None },
                 Light::Directional {
                     direction: Vec3::new(time - 0.5, 0.3, -1.0),
                     colour,
                     group: group.clone(),
-                    temperature: None,
+                    illuminant: None,
                 },
                 Light::Spot {
                     position: place + Vec3::Y,
@@ -89,7 +89,7 @@ fn scene(moving: Moving, time: f32) -> Scene {
                     inner: 20.0,
                     falloff: Falloff::Gltf,
                     group,
-                    temperature: None,
+                    illuminant: None,
                 },
             ];
         }

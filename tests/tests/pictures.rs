@@ -42,7 +42,7 @@ fn a_plane_has_ambient_and_lamberts_light() {
             direction: Vec3::new(sine, 0.0, -cosine) * 7.0,
             colour,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         }];
         assert_near(pixel(&scene), GREY * scene.ambient + GREY * colour * cosine);
     }
@@ -137,7 +137,7 @@ fn a_spot_lights_its_cone_with_a_soft_rim() {
             inner,
             falloff,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         }];
         let cos = |degrees: f64| degrees.to_radians().cos();
         let x = (cos(degrees.into()) - cos(40.0)) / (cos(20.0) - cos(40.0));

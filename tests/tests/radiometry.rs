@@ -151,7 +151,7 @@ fn lit_sphere() -> Scene {
         position: Vec3::ZERO,
         colour: Vec3::splat(PI),
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     });
     scene
 }
@@ -183,14 +183,14 @@ fn a_point_light_that_lies_on_a_ceiling() {
         position: Vec3::new(0.7, 2.0, -0.4),
         colour: Vec3::splat(10.0),
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     });
     // Another kind of light beside it, which sends none.
     scene.lights.push(Light::Directional {
         direction: Vec3::NEG_Y,
         colour: Vec3::ZERO,
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     });
     let square = 0.7 * 0.7 + 2.0 * 2.0 + 0.4 * 0.4;
     let want = 10.0 / square * (2.0 / f64::sqrt(square)) / f64::from(PI);
@@ -263,7 +263,7 @@ fn no_light_comes_from_below_a_smooth_surface() {
             position: center + Vec3::NEG_X,
             colour: Vec3::ONE,
             group: String::new(),
-            temperature: None,
+            illuminant: None,
         });
         scene
     };

@@ -74,7 +74,7 @@ fn everything_at_once() {
         direction: -Vec3::Y,
         colour: Vec3::splat(0.2),
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     });
     let (position, target) = (Vec3::new(1.0, 4.0, 2.0), Vec3::ZERO);
     scene.lights.push(Light::Spot {
@@ -85,7 +85,7 @@ fn everything_at_once() {
         inner: 10.0,
         falloff: Falloff::Smooth,
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     });
     scene.materials[0].emission = Vec3::new(0.2, 0.3, 0.1);
     for (direct, sampler) in [(Direct::Power, Sampler::Random), (Direct::Balance, Sampler::Jittered)] {

@@ -11,7 +11,7 @@ use eyerays::scene::{
     Background, Camera, Environment, Integrator, Light, Material, Medium, Physical, PixelFilter, Projection, Sampler,
     Scene, Settings, Sphere, Texels, Texture, ThinFilm, Transport, Volume,
 };
-use eyerays::spectrum::{self, Glass, Metal};
+use eyerays::spectrum::{self, Fluorescent, Glass, Illuminant, Metal};
 use eyerays_tests::model::{add, add_quad, add_wall, black, empty, glass, lamp, matt};
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu};
 use glam::{DVec3, Vec3};
@@ -99,19 +99,42 @@ fn white_stays_white_however_often_it_is_scattered() {
 #[test]
 fn lamps_have_the_colours_of_their_temperatures() {
     for kelvins in [2700.0f32, 5000.0, 10_000.0] {
-        let colour = spectrum::colour_of(kelvins);
+        let colour = Illuminant::BlackBody(kelvins).colour();
         let Light::Point { position, .. } = lamp(Vec3::Z) else { panic!("a point light") };
-        let warm = Light::Point { position, colour, group: String::new(), temperature: Some(kelvins) };
+        let warm =
+            Light::Point { position, colour, group: String::new(), illuminant: Some(Illuminant::BlackBody(kelvins)) };
         let want = spectrum::black_body(kelvins.into()) / spectrum::luminance(spectrum::black_body(kelvins.into()));
         let white = mean(&render(&wall(matt(Vec3::ONE), lamp(Vec3::Z)), &ahead(), paths(8, ALL, 1)));
         let found = mean(&render(&wall(matt(Vec3::ONE), warm), &ahead(), paths(8, ALL, 1))) / white;
         assert!(found.distance(want) < 1e-3, "{kelvins} K: {found} {want}");
-        // A surface that emits it, and a green wall that it lights, whose colour no product of three numbers tells.
-        let glowing = Material { emission: colour, temperature: Some(kelvins), two_sided: true, ..black() };
+        let glowing =
+            Material { emission: colour, illuminant: Some(Illuminant::BlackBody(kelvins)), two_sided: true, ..black() };
         let mut scene = empty();
         add_wall(&mut scene, glowing, Vec3::NEG_Z * 3.0, 10.0);
         let seen = mean(&render(&scene, &ahead(), paths(8, ALL, 1)));
         assert!(seen.distance(want) < 1e-3, "{kelvins} K: {seen} {want}");
+    }
+}
+
+/// Light of fluorescent lamps, too; and what is behind a coloured wall of both is more than the product of three numbers.
+#[test]
+fn fluorescent_lamps_light_as_their_spectra_say() {
+    let lit = |colour: Vec3, illuminant: Illuminant| {
+        let Light::Point { position, group, .. } = lamp(Vec3::Z) else { panic!("a point light") };
+        let illuminated = Light::Point { position, colour: illuminant.colour(), group, illuminant: Some(illuminant) };
+        mean(&render(&wall(matt(colour), illuminated), &ahead(), paths(8, ALL, 1)))
+    };
+    let white = mean(&render(&wall(matt(Vec3::ONE), lamp(Vec3::Z)), &ahead(), paths(8, ALL, 1)));
+    for lamp in [Fluorescent::Cool, Fluorescent::Broad, Fluorescent::Narrow] {
+        let illuminant = Illuminant::Fluorescent(lamp);
+        let found = lit(Vec3::ONE, illuminant) / white;
+        assert!(found.distance(illuminant.light()) < 1e-3, "{lamp:?}: {found}");
+        let (orange, own) = (Vec3::new(0.9, 0.3, 0.05), illuminant.over_colour());
+        let spectrum = |wavelength: f64| own(wavelength) * spectrum::of_colour(illuminant.colour(), wavelength);
+        let want = spectrum::rgb(&|wavelength| spectrum(wavelength) * spectrum::of_colour(orange, wavelength));
+        let found = lit(orange, illuminant) / white;
+        assert!(found.distance(want) < 1e-3, "{lamp:?}: {found} {want}");
+        assert!(found.distance(orange.as_dvec3() * illuminant.light()) > 5e-3, "{lamp:?}: {found}");
     }
 }
 
@@ -292,9 +315,14 @@ fn all_of_it() -> Scene {
         scene.spheres.push(Sphere { center, radius: 0.5, material: number as u32 });
     }
     add_wall(&mut scene, matt(Vec3::new(0.7, 0.2, 0.4)), Vec3::NEG_Z * 7.0, 4.0);
-    let warm = Material { emission: Vec3::splat(4.0), temperature: Some(2700.0), two_sided: true, ..black() };
+    let warm = Material {
+        emission: Vec3::splat(4.0),
+        illuminant: Some(Illuminant::BlackBody(2700.0)),
+        two_sided: true,
+        ..black()
+    };
     add_wall(&mut scene, warm, Vec3::new(0.0, 6.0, -4.0), 1.0);
-    scene.lights.push(lamp(Vec3::new(2.0, 3.0, 0.0)).of_temperature(Some(9000.0)));
+    scene.lights.push(lamp(Vec3::new(2.0, 3.0, 0.0)).of_spectrum(Some(Illuminant::BlackBody(9000.0))));
     scene.fog = Some(Medium { scattering: Vec3::new(0.01, 0.02, 0.03), ..Medium::default() });
     scene
 }

@@ -63,7 +63,7 @@ fn a_pane_lets_as_much_of_a_sun_pass_as_it_is_not_opaque() {
             add_quad(&mut scene, Material { alpha: Alpha::Blend, opacity, ..black() }, quad(2.0, 1.0));
             let direction = Vec3::new(tilt, -1.0, 0.0).normalize();
             let colour = Vec3::splat(std::f32::consts::PI / -direction.y);
-            scene.lights.push(Light::Directional { direction, colour, group: String::new(), temperature: None });
+            scene.lights.push(Light::Directional { direction, colour, group: String::new(), illuminant: None });
             // Below the pane.
             let picture = picture(&scene, &camera(Vec3::new(0.0, 0.8, 0.8), 20.0), settings(integrator));
             let (got, want) = (mean(&picture), f64::from(1.0 - opacity));

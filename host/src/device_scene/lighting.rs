@@ -66,7 +66,7 @@ impl Lamps {
             let bit = |bit: u32, is_set: bool| if is_set { bit } else { 0 };
             let bits =
                 bit(Emission::TWO_SIDED, material.two_sided) | bit(Emission::COLOURED, material.emission_is_coloured);
-            let illuminant = spectra.light(material.temperature) << Emission::ILLUMINANT;
+            let illuminant = spectra.light(material.illuminant) << Emission::ILLUMINANT;
             let bits = bits | illuminant | groups.number(&material.group) << Emission::FLAGS;
             let sides = UVec4::new(bits, map, opacity.mask.z, opacity_of(&opacity).to_bits());
             (Emission { radiance: colour(material.emission, 0), sides }, fluxes[number])

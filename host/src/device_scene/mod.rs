@@ -255,7 +255,7 @@ fn lights(
 ) -> Result<Vec<LightRecord>> {
     let record = |(i, light): (usize, &Light)| {
         let mut record = records::light(light, i, normalisation)?;
-        record.position.w |= spectra.light(light.temperature()) << LightRecord::ILLUMINANT;
+        record.position.w |= spectra.light(light.illuminant()) << LightRecord::ILLUMINANT;
         Ok(record)
     };
     let mut records: Vec<LightRecord> = lights.iter().enumerate().map(record).collect::<Result<_>>()?;

@@ -7,7 +7,7 @@ use glam::UVec4;
 
 use crate::error::{Error, Result};
 use crate::scene::Scene;
-use crate::spectrum::{self, Glass, Metal};
+use crate::spectrum::{self, Glass, Illuminant, Metal};
 
 /// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,17 +18,17 @@ enum Row {
     Eta(Metal),
     /// The absorbing part.
     K(Metal),
-    /// Light of a temperature in kelvins, as a share of what its colour in red, green and blue has.
-    Light(f32),
+    /// Light of a lamp, as a share of what its colour in red, green and blue has.
+    Light(Illuminant),
 }
 
 impl Row {
-    fn at(self, wavelength: f64) -> f64 {
+    fn curve(self) -> Box<dyn Fn(f64) -> f64> {
         match self {
-            Row::Bends(glass) => glass.bends(wavelength),
-            Row::Eta(metal) => metal.index(wavelength).0,
-            Row::K(metal) => metal.index(wavelength).1,
-            Row::Light(kelvins) => spectrum::share_of_light(kelvins.into(), wavelength),
+            Row::Bends(glass) => Box::new(move |wavelength| glass.bends(wavelength)),
+            Row::Eta(metal) => Box::new(move |wavelength| metal.index(wavelength).0),
+            Row::K(metal) => Box::new(move |wavelength| metal.index(wavelength).1),
+            Row::Light(illuminant) => Box::new(illuminant.over_colour()),
         }
     }
 }
@@ -60,13 +60,13 @@ impl Spectra {
                 add(Row::K(metal));
             }
         }
-        let lights = scene.lights.iter().filter_map(|light| light.temperature());
-        let emissions = scene.materials.iter().filter_map(|material| material.temperature);
-        lights.chain(emissions).for_each(|kelvins| add(Row::Light(kelvins)));
+        let lights = scene.lights.iter().filter_map(|light| light.illuminant());
+        let emissions = scene.materials.iter().filter_map(|material| material.illuminant);
+        lights.chain(emissions).for_each(|light| add(Row::Light(light)));
         let most = SpectrumRow::MOST - SpectrumRow::OWN;
         if rows.len() > most as usize {
             return Err(Error::new(format!(
-                "glasses, metals and temperatures of lamps need more than {most} spectra: let some share theirs"
+                "glasses, metals and lamps need more than {most} spectra: let some share theirs"
             )));
         }
         Ok(Spectra { rows, words: OnceLock::new() })
@@ -83,9 +83,8 @@ impl Spectra {
     /// The whole table.
     pub fn words(&self) -> &[UVec4] {
         self.words.get_or_init(|| {
-            let curves: Vec<_> = self.rows.iter().map(|&row| move |wavelength| row.at(wavelength)).collect();
-            let curves: Vec<spectrum::Curve> = curves.iter().map(|curve| curve as spectrum::Curve).collect();
-            spectrum::words(&curves)
+            let curves: Vec<_> = self.rows.iter().map(|row| row.curve()).collect();
+            spectrum::words(&curves.iter().map(|curve| &**curve).collect::<Vec<_>>())
         })
     }
 
@@ -105,8 +104,8 @@ impl Spectra {
         self.number(metal.map(Row::Eta))
     }
 
-    /// That of light of a temperature.
-    pub fn light(&self, kelvins: Option<f32>) -> u32 {
-        self.number(kelvins.map(Row::Light))
+    /// That of a lamp's light.
+    pub fn light(&self, illuminant: Option<Illuminant>) -> u32 {
+        self.number(illuminant.map(Row::Light))
     }
 }

@@ -63,7 +63,7 @@ pub fn lights() -> Vec<Light> {
         direction,
         colour: Vec3::splat(intensity),
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     };
     vec![light(Vec3::new(0.3, -1.0, -0.7), 0.8), light(Vec3::new(-1.0, -0.2, -0.1), 0.35)]
 }

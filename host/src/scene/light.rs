@@ -4,6 +4,7 @@ use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
 use super::Falloff;
+use crate::spectrum::Illuminant;
 
 /// A light without extent; `colour` is linear RGB times intensity, at least 0.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -17,9 +18,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
-        /// See [`Light::temperature`].
+        /// See [`Light::illuminant`].
         #[serde(default)]
-        temperature: Option<f32>,
+        illuminant: Option<Illuminant>,
     },
     /// Shines one way from infinitely far.
     Directional {
@@ -30,9 +31,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
-        /// See [`Light::temperature`].
+        /// See [`Light::illuminant`].
         #[serde(default)]
-        temperature: Option<f32>,
+        illuminant: Option<Illuminant>,
     },
     /// Shines into a cone.
     Spot {
@@ -52,9 +53,9 @@ pub enum Light {
         /// The group that it is in, empty for none.
         #[serde(default)]
         group: String,
-        /// See [`Light::temperature`].
+        /// See [`Light::illuminant`].
         #[serde(default)]
-        temperature: Option<f32>,
+        illuminant: Option<Illuminant>,
     },
 }
 
@@ -65,13 +66,11 @@ impl Light {
         group
     }
 
-    /// The temperature of the black body whose spectrum its light has, in kelvins; without one it has that of D65. It matters where light
-    /// has wavelengths.
-    pub fn temperature(&self) -> Option<f32> {
-        let (Light::Point { temperature, .. }
-        | Light::Directional { temperature, .. }
-        | Light::Spot { temperature, .. }) = self;
-        *temperature
+    /// The spectrum of its light, where light has wavelengths; without one it is D65's.
+    pub fn illuminant(&self) -> Option<Illuminant> {
+        let (Light::Point { illuminant, .. } | Light::Directional { illuminant, .. } | Light::Spot { illuminant, .. }) =
+            self;
+        *illuminant
     }
 
     /// Where it is and which way it shines, where it does not shine every way.
@@ -94,13 +93,12 @@ impl Light {
         std::mem::discriminant(self) == std::mem::discriminant(other)
     }
 
-    /// The same light of a temperature.
+    /// The same light of another spectrum.
     #[must_use]
-    pub fn of_temperature(mut self, kelvins: Option<f32>) -> Light {
-        let (Light::Point { temperature, .. }
-        | Light::Directional { temperature, .. }
-        | Light::Spot { temperature, .. }) = &mut self;
-        *temperature = kelvins;
+    pub fn of_spectrum(mut self, of: Option<Illuminant>) -> Light {
+        let (Light::Point { illuminant, .. } | Light::Directional { illuminant, .. } | Light::Spot { illuminant, .. }) =
+            &mut self;
+        *illuminant = of;
         self
     }
 

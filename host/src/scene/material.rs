@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::{Alpha, Maps, Physical, Visibility, Volume};
+use crate::spectrum::Illuminant;
 
 /// The thesis' illumination model (chapters 3.1 and 3.3); colours are linear RGB in [0, 1].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -28,10 +29,9 @@ pub struct Material {
     pub checker: Option<Checker>,
     /// Radiance that it sends out, linear RGB, at least 0.
     pub emission: Vec3,
-    /// The temperature of the black body whose spectrum that has, in kelvins; without one it has that of D65. It matters where light has
-    /// wavelengths.
+    /// The spectrum of that, where light has wavelengths; without one it is D65's.
     #[serde(default)]
-    pub temperature: Option<f32>,
+    pub illuminant: Option<Illuminant>,
     /// Does its back emit too? Culling leaves it.
     pub two_sided: bool,
     /// The group of lamps that what is made of it is in, empty for none.

@@ -12,6 +12,7 @@ use crate::scene::{
     Absorption, Alpha, Background, Camera, Conductor, Environment, Falloff, Focus, Integrator, Lens, Light, Mapping,
     Material, Matte, Medium, Physical, Projection, Scene, Settings, Transport, Visibility, Volume, Wall,
 };
+use crate::spectrum::Illuminant;
 
 /// The text of a TOML scene whose one mesh is the file `mesh`, from which `scene` was loaded by itself: its settings, cameras,
 /// lights and surroundings, and the numbers of its materials, for somebody to change. Textures stay in the mesh's file, as do
@@ -260,14 +261,16 @@ fn light(text: &mut Text, of: &Light) {
             }
         }
     }
-    temperature(text, of.temperature());
+    illuminant(text, of.illuminant());
     group(text, of.group());
 }
 
-/// That of lamps.
-fn temperature(text: &mut Text, kelvins: Option<f32>) {
-    if let Some(kelvins) = kelvins {
-        text.value("temperature", kelvins);
+/// The spectrum of lamps.
+fn illuminant(text: &mut Text, of: Option<Illuminant>) {
+    match of {
+        Some(Illuminant::BlackBody(kelvins)) => text.value("temperature", kelvins),
+        Some(Illuminant::Fluorescent(lamp)) => text.key("illuminant", quoted(lamp.name())),
+        None => {}
     }
 }
 
@@ -282,7 +285,7 @@ fn material(text: &mut Text, of: &Material) {
         text.other("ior", of.ior, Material::default().ior);
     }
     text.colour("emission", of.emission, Vec3::ZERO);
-    temperature(text, of.temperature);
+    illuminant(text, of.illuminant);
     text.other("two_sided", of.two_sided, false);
     group(text, &of.group);
     if let Some(lit_by) = &of.lit_by {

@@ -2,11 +2,12 @@
 
 use glam::Vec3;
 
+use super::illuminant;
 use super::keys::Keys;
 use super::table::Table;
 use crate::error::Result;
 use crate::scene::{Light, Range};
-use crate::spectrum;
+use crate::spectrum::Illuminant;
 
 /// Reads every `[[light]]`, and says where each is after so many seconds and when the last key of all is.
 ///
@@ -33,14 +34,14 @@ fn light(mut table: Table, seconds: f64) -> Result<(Light, Option<f32>)> {
     let words = [("point", Kind::Point), ("directional", Kind::Directional), ("spot", Kind::Spot)];
     let kind = table.word("kind", &words)?;
     let kind = table.need("kind", kind)?;
-    let temperature = table.number("temperature", Range::KELVINS)?;
-    let colour = light_colour(&mut table, temperature)?;
+    let illuminant = illuminant::read(&mut table)?;
+    let colour = light_colour(&mut table, illuminant)?;
     let group = table.name("group")?.unwrap_or_default();
     let (light, last) = match kind {
         Kind::Point => {
             table.rename("a point light");
             let ([position], last) = moved(&mut table, ["position"], seconds)?;
-            (Light::Point { position, colour, group, temperature }, last)
+            (Light::Point { position, colour, group, illuminant }, last)
         }
         Kind::Directional => {
             table.rename("a directional light");
@@ -49,11 +50,11 @@ fn light(mut table: Table, seconds: f64) -> Result<(Light, Option<f32>)> {
                 let fault = "the direction is zero; say which way the light travels";
                 return Err(table.fault_of("direction", fault));
             }
-            (Light::Directional { direction, colour, group, temperature }, last)
+            (Light::Directional { direction, colour, group, illuminant }, last)
         }
         Kind::Spot => {
             let (light, last) = spot(&mut table, colour, seconds)?;
-            (light.in_group(&group).of_temperature(temperature), last)
+            (light.in_group(&group).of_spectrum(illuminant), last)
         }
     };
     table.done()?;
@@ -72,7 +73,7 @@ fn spot(table: &mut Table, colour: Vec3, seconds: f64) -> Result<(Light, Option<
     let softness = table.number("softness", Range::SHARE)?.unwrap_or(0.2);
     let falloff = table.choice("falloff")?.unwrap_or_default();
     let inner = outer * (1.0 - softness);
-    Ok((Light::Spot { position, target, colour, outer, inner, falloff, group: String::new(), temperature: None }, last))
+    Ok((Light::Spot { position, target, colour, outer, inner, falloff, group: String::new(), illuminant: None }, last))
 }
 
 /// Places or ways that a table must say, as its keys have them after so many seconds, and when the last key is.
@@ -90,9 +91,9 @@ fn moved<const N: usize>(
     Ok(keys.map_or((own, None), |keys| (keys.at(seconds), Some(keys.last()))))
 }
 
-/// What it shines; that of its temperature where no colour is said.
-fn light_colour(table: &mut Table, temperature: Option<f32>) -> Result<Vec3> {
-    let plain = temperature.map_or(Vec3::ONE, spectrum::colour_of);
+/// What it shines: where no colour is said, that of its spectrum.
+fn light_colour(table: &mut Table, illuminant: Option<Illuminant>) -> Result<Vec3> {
+    let plain = illuminant.map_or(Vec3::ONE, Illuminant::colour);
     let colour = table.triple("color", Range::AMOUNT)?.unwrap_or(plain);
     let intensity = table.number("intensity", Range::AMOUNT)?.unwrap_or(1.0);
     if !(colour * intensity).is_finite() {

@@ -5,11 +5,11 @@ use glam::Vec3;
 use super::bump::{self, Bump};
 use super::map::{self, Images};
 use super::table::Table;
-use super::{medium, physical, visible};
+use super::{illuminant, medium, physical, visible};
 use crate::error::Result;
 use crate::scene::Range;
 use crate::scene::{Alpha, Checker, Maps, Material, Physical, Visibility, Volume};
-use crate::spectrum::{self, Glass};
+use crate::spectrum::{Glass, Illuminant};
 
 /// What a file says of a material; the rest is left to whoever else describes it.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -23,7 +23,7 @@ pub struct Fields {
     pub ior: Option<f32>,
     pub checker: Option<Checker>,
     pub emission: Option<Vec3>,
-    pub temperature: Option<f32>,
+    pub illuminant: Option<Illuminant>,
     pub two_sided: Option<bool>,
     pub emission_is_coloured: Option<bool>,
     pub group: Option<String>,
@@ -54,8 +54,8 @@ impl Fields {
     pub fn read(table: &mut Table, images: &mut Images) -> Result<(String, Fields)> {
         let name = table.name("name")?;
         let name = table.need("name", name)?;
-        let temperature = table.number("temperature", Range::KELVINS)?;
-        let emission = emission(table, temperature)?;
+        let illuminant = illuminant::read(table)?;
+        let emission = emission(table, illuminant)?;
         if table.has("glass") && (table.has("ior") || table.has("abbe")) {
             return Err(table.fault_of("glass", "a glass has an index of its own; remove glass, or ior and abbe"));
         }
@@ -68,7 +68,7 @@ impl Fields {
             transmission: table.triple("transmission", Range::SHARE)?,
             ior: table.number("ior", Range::IOR)?,
             checker: table.table("checker")?.map(checker).transpose()?,
-            temperature,
+            illuminant,
             emission,
             two_sided: table.flag("two_sided")?,
             emission_is_coloured: None,
@@ -108,7 +108,7 @@ impl Fields {
             ior: self.ior.or(under.ior),
             checker: self.checker.or(under.checker),
             emission: self.emission.or(under.emission),
-            temperature: self.temperature.or(under.temperature),
+            illuminant: self.illuminant.or(under.illuminant),
             two_sided: self.two_sided.or(under.two_sided),
             emission_is_coloured: self.emission_is_coloured.or(under.emission_is_coloured),
             group: self.group.or(under.group),
@@ -149,7 +149,7 @@ impl Fields {
             ior,
             checker: self.checker.map(|c| Checker { ambient: self.ambient.unwrap_or(c.ambient), ..c }),
             emission: self.emission.unwrap_or(plain.emission),
-            temperature: self.temperature,
+            illuminant: self.illuminant,
             two_sided: self.two_sided.unwrap_or(plain.two_sided),
             emission_is_coloured: self.emission_is_coloured.unwrap_or(plain.emission_is_coloured),
             group: self.group.unwrap_or_default(),
@@ -221,7 +221,7 @@ impl Default for Material {
             ior: GLASS,
             checker: None,
             emission: Vec3::ZERO,
-            temperature: None,
+            illuminant: None,
             two_sided: false,
             emission_is_coloured: false,
             group: String::new(),
@@ -269,14 +269,14 @@ fn alpha(table: &mut Table) -> Result<Option<Alpha>> {
     }
 }
 
-/// What a `[[material]]` sends out: a colour, or of light of a temperature how bright it is, which is 1 where nobody says it.
-fn emission(table: &mut Table, temperature: Option<f32>) -> Result<Option<Vec3>> {
-    let Some(kelvins) = temperature else { return table.triple("emission", Range::AMOUNT) };
+/// What a `[[material]]` sends out: a colour, or of light of a spectrum how bright it is, which is 1 where nobody says it.
+fn emission(table: &mut Table, illuminant: Option<Illuminant>) -> Result<Option<Vec3>> {
+    let Some(illuminant) = illuminant else { return table.triple("emission", Range::AMOUNT) };
+    let colour = illuminant.colour();
     if table.is_number("emission") {
-        let luminance = table.number("emission", Range::AMOUNT)?.unwrap_or(1.0);
-        return Ok(Some(spectrum::colour_of(kelvins) * luminance));
+        return Ok(table.number("emission", Range::AMOUNT)?.map(|luminance| colour * luminance));
     }
-    Ok(Some(table.triple("emission", Range::AMOUNT)?.unwrap_or(spectrum::colour_of(kelvins))))
+    Ok(Some(table.triple("emission", Range::AMOUNT)?.unwrap_or(colour)))
 }
 
 fn checker(mut table: Table) -> Result<Checker> {

@@ -21,6 +21,7 @@ mod finish;
 mod geometry;
 mod gltf;
 mod grid;
+mod illuminant;
 mod keys;
 mod light_table;
 mod light_unit;

@@ -2,7 +2,9 @@
 //! [`eyerays_shader::spectrum`].
 
 mod cells;
+mod fluorescent;
 mod glass;
+mod illuminant;
 mod metal;
 mod observer;
 mod planck;
@@ -12,11 +14,14 @@ use eyerays_shader::data::{SpectrumRow, pack};
 use glam::{DVec3, UVec4, Vec3};
 
 use self::cells::{SETS, cells};
+pub use self::fluorescent::Fluorescent;
 pub use self::glass::Glass;
+pub use self::illuminant::Illuminant;
 pub use self::metal::Metal;
 use self::observer::at;
-pub use self::planck::{black_body, colour_of, luminance, planck, share_of_light};
+pub use self::planck::{black_body, luminance, planck};
 use self::primaries::PRIMARIES;
+pub use self::primaries::of_colour;
 
 /// What a wavelength in nanometres has.
 pub type Curve<'a> = &'a dyn Fn(f64) -> f64;

@@ -1,9 +1,8 @@
 //! Light of what glows.
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::observer::{D65, at};
-use super::primaries::PRIMARIES;
 use super::rgb;
 use crate::math::exp2;
 
@@ -23,19 +22,6 @@ pub fn planck(kelvins: f64, wavelength: f64) -> f64 {
 /// Linear RGB of the light of a black body, up to a factor that is the same for all temperatures in kelvins.
 pub fn black_body(kelvins: f64) -> DVec3 {
     rgb(&|wavelength| planck(kelvins, wavelength) / at(&D65, wavelength)[0])
-}
-
-/// Linear RGB of the light of a black body whose luminance is 1; what no screen shows of it is left out.
-pub fn colour_of(kelvins: f32) -> Vec3 {
-    let light = black_body(kelvins.into());
-    (light / luminance(light)).max(DVec3::ZERO).as_vec3()
-}
-
-/// What the light of a black body has of a wavelength in nanometres, as a share of what [`colour_of`] it has.
-pub fn share_of_light(kelvins: f64, wavelength: f64) -> f64 {
-    let light = planck(kelvins, wavelength) / at(&D65, wavelength)[0] / luminance(black_body(kelvins));
-    let colour = colour_of(kelvins as f32).as_dvec3().dot(DVec3::from(at(&PRIMARIES, wavelength)));
-    if colour > 0.0 { light / colour } else { 0.0 }
 }
 
 /// The luminance of linear RGB (ITU-R BT.709).

@@ -1,6 +1,6 @@
 //! Spectra of red, green and blue.
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 use super::Curve;
 use super::cells::cells;
@@ -39,6 +39,11 @@ pub const PRIMARIES: [[f64; 3]; COUNT] = [
     [0.999995, 1e-06, 4e-06], [0.999992, 2e-06, 6e-06], [0.999989, 3e-06, 8e-06],
     [0.999986, 5e-06, 9e-06], [0.999984, 6e-06, 1e-05], [0.999982, 7e-06, 1.1e-05],
 ];
+
+/// What a colour, linear RGB, has at a wavelength in nanometres.
+pub fn of_colour(colour: Vec3, wavelength: f64) -> f64 {
+    colour.as_dvec3().dot(DVec3::from(at(&PRIMARIES, wavelength)))
+}
 
 /// What a curve is in the mean where each of the three spectra is bright, as D65 is seen.
 pub fn mean(of: Curve) -> DVec3 {

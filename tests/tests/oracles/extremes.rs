@@ -150,7 +150,7 @@ fn lights_on_surfaces() {
         scene.materials[0] = wall;
         scene.lights = vec![
             lamp(place),
-            Light::Point { position: place, colour: Vec3::splat(1e-30), group: String::new(), temperature: None },
+            Light::Point { position: place, colour: Vec3::splat(1e-30), group: String::new(), illuminant: None },
         ];
         let picture = pictures(&pack(&scene, &scene.cameras[0], scene.settings), &format!("a lamp at {place}"));
         let on_plane = place.z == -2.0;

@@ -209,7 +209,7 @@ fn a_scene_that_can_not_be_measured_is_an_error_or_a_fault_beside_others() {
         position: Vec3::splat(1e30),
         colour: Vec3::ONE,
         group: String::new(),
-        temperature: None,
+        illuminant: None,
     }];
     let error = run(&plan, std::slice::from_ref(&far), &|_| ()).unwrap_err();
     assert!(error.to_string().starts_with("far.toml: light 1 is too far away"), "{error}");

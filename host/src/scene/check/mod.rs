@@ -16,6 +16,7 @@ use super::{
     Scene, Sphere, Stereo, Unplaced,
 };
 use crate::error::{Error, Result};
+use crate::spectrum::Illuminant;
 
 impl Scene {
     /// Refuses numbers that are out of range, or that name what there is not: kernels read through them without checking
@@ -93,9 +94,7 @@ fn material(material: &Material) -> Unplaced<()> {
     owner.number("shininess", material.shininess, Range::AMOUNT)?;
     owner.number("ior", material.ior, Range::IOR)?;
     owner.colour("emission", material.emission, Range::AMOUNT)?;
-    if let Some(kelvins) = material.temperature {
-        owner.number("temperature", kelvins, Range::KELVINS)?;
-    }
+    illuminant(&owner, material.illuminant)?;
     material.physical.iter().try_for_each(|of| physical(&owner, of))?;
     material.volume.iter().try_for_each(|of| medium::volume(&owner, material, of))?;
     covering::material(&owner, material)?;
@@ -129,11 +128,16 @@ fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
     owner.colour("conductor k", conductor.k, Range::INDEX)
 }
 
+fn illuminant(owner: &Owner, of: Option<Illuminant>) -> Unplaced<()> {
+    match of {
+        Some(Illuminant::BlackBody(kelvins)) => owner.number("temperature", kelvins, Range::KELVINS),
+        _ => Ok(()),
+    }
+}
+
 fn light(number: usize, light: &Light) -> Unplaced<()> {
     let owner = Owner(format!("light {number}"));
-    if let Some(kelvins) = light.temperature() {
-        owner.number("temperature", kelvins, Range::KELVINS)?;
-    }
+    illuminant(&owner, light.illuminant())?;
     match *light {
         Light::Point { position, colour, .. } => {
             owner.place("position", position)?;

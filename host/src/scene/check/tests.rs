@@ -43,16 +43,16 @@ fn what_is_out_of_range_is_told_with_what_has_it() {
     };
     let (position, colour, direction) = (Vec3::ONE, Vec3::ONE, Vec3::ZERO);
     assert!(
-        light(Light::Point { position, colour: -colour, group: String::new(), temperature: None })
+        light(Light::Point { position, colour: -colour, group: String::new(), illuminant: None })
             .starts_with("light 0 has the color -1")
     );
     assert!(
-        light(Light::Directional { direction, colour, group: String::new(), temperature: None })
+        light(Light::Directional { direction, colour, group: String::new(), illuminant: None })
             .starts_with("light 0 has no direction")
     );
     let falloff = crate::scene::Falloff::Smooth;
     let spot = |target, outer, inner| {
-        light(Light::Spot { position, target, colour, outer, inner, falloff, group: String::new(), temperature: None })
+        light(Light::Spot { position, target, colour, outer, inner, falloff, group: String::new(), illuminant: None })
     };
     assert!(spot(position, 20.0, 10.0).starts_with("light 0 shines at its own position"));
     assert!(spot(-position, 20.0, 30.0).starts_with("light 0 has the inner angle 30"));

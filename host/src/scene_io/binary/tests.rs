@@ -324,7 +324,7 @@ proptest! {
         let numbers = bits.map(f32::from_bits).into();
         scene.ambient = numbers;
         scene.settings.transport.ao_distance = f32::INFINITY;
-        scene.lights = vec![Light::Point { position: -numbers, colour: numbers, group: String::new(), temperature: None }];
+        scene.lights = vec![Light::Point { position: -numbers, colour: numbers, group: String::new(), illuminant: None }];
         scene.cameras[0].name = name;
         prop_assert_eq!(read(&binary(&scene)), Ok(scene));
     }

@@ -50,8 +50,8 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
     }
     let group = group(light, number, notes);
     Ok(Some(match light.kind.as_str() {
-        "point" => Light::Point { position: view.eye, colour, group, temperature: None },
-        "directional" => Light::Directional { direction: view.direction, colour, group, temperature: None },
+        "point" => Light::Point { position: view.eye, colour, group, illuminant: None },
+        "directional" => Light::Directional { direction: view.direction, colour, group, illuminant: None },
         "spot" => {
             let angles = angles(&light.spot);
             let [outer, inner] = angles.ok_or_else(|| format!("{here}.spot: an angle is out of range; repair it"))?;
@@ -60,8 +60,8 @@ pub fn read(placed: &Placed, all: &[document::Light], unit: LightUnit, notes: &m
                 notes.changed("spot", &text);
             }
             let inner = inner.min(outer);
-            let (falloff, temperature) = (Falloff::Gltf, None);
-            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner, falloff, group, temperature }
+            let (falloff, illuminant) = (Falloff::Gltf, None);
+            Light::Spot { position: view.eye, target: view.target(), colour, outer, inner, falloff, group, illuminant }
         }
         other => return Err(format!("{here}.type: {other:?} is none of point, directional and spot; repair it")),
     }))

@@ -5,7 +5,7 @@ use glam::Vec3;
 use super::{Folder, assert_refused};
 use crate::scene::{Light, Material, Scene};
 use crate::scene_io::describe;
-use crate::spectrum::{self, Glass, Metal};
+use crate::spectrum::{Glass, Illuminant, Metal};
 
 const MESH: &[u8] = b"usemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
@@ -44,18 +44,19 @@ fn a_metal_is_a_conductor_of_its_colour() {
 
 #[test]
 fn light_of_a_temperature_has_its_colour_unless_another_is_said() {
-    let warm = spectrum::colour_of(2700.0);
+    let bulb = Illuminant::BlackBody(2700.0);
+    let warm = bulb.colour();
     for (keys, want) in [("", warm), ("emission = 20", warm * 20.0), ("emission = [1, 2, 3]", Vec3::new(1.0, 2.0, 3.0))]
     {
         let of = material(&format!("temperature = 2700\n{keys}"));
-        assert_eq!((of.temperature, of.emission), (Some(2700.0), want), "{keys}");
+        assert_eq!((of.illuminant, of.emission), (Some(bulb), want), "{keys}");
     }
     let lit = |keys: &str| {
         let text = format!("[[light]]\nkind = \"spot\"\nposition = [0, 1, 0]\ntarget = [0, 0, 0]\nangle = 20\n{keys}");
         scene(&text).lights.remove(0)
     };
-    let Light::Spot { colour, temperature, .. } = lit("temperature = 2700\nintensity = 3") else { panic!("a spot") };
-    assert_eq!((colour, temperature), (warm * 3.0, Some(2700.0)));
+    let Light::Spot { colour, illuminant, .. } = lit("temperature = 2700\nintensity = 3") else { panic!("a spot") };
+    assert_eq!((colour, illuminant), (warm * 3.0, Some(bulb)));
     let Light::Spot { colour, .. } = lit("temperature = 2700\ncolor = [0, 1, 0]") else { panic!("a spot") };
     assert_eq!(colour, Vec3::Y);
 }
@@ -63,7 +64,7 @@ fn light_of_a_temperature_has_its_colour_unless_another_is_said() {
 #[test]
 fn what_is_described_says_all_of_it_again() {
     let text = "[render]\nintegrator = \"path\"\nspectral = true\n[[material]]\nname = \"m\"\ntemperature = 2700\nemission = 3\n\
-        [[light]]\nkind = \"point\"\nposition = [0, 1, 0]\ntemperature = 9000\n";
+        [[light]]\nkind = \"point\"\nposition = [0, 1, 0]\nilluminant = \"f11\"\n";
     for keys in ["", "glass = \"sf11\"", "metal = \"copper\""] {
         let text = text.replace("name = \"m\"\n", &format!("name = \"m\"\n{keys}\n"));
         let first = scene(&text);
@@ -85,6 +86,8 @@ fn what_makes_no_sense_is_refused_in_a_line_with_its_key() {
         ("glass = \"bk7\"\nabbe = 50", 5, "a glass has an index of its own; remove glass, or ior and abbe"),
         ("metal = \"brass\"", 5, "brass"),
         ("metal = \"gold\"\nconductor = { eta = [1, 1, 1], k = [1, 1, 1] }", 6, "remove metal or conductor"),
+        ("illuminant = \"f99\"", 5, "f99"),
+        ("temperature = 2700\nilluminant = \"f2\"", 5, "remove temperature or illuminant"),
         ("temperature = 400", 5, "\"temperature\" must be between 500 and 100000, not 400"),
         ("temperature = nan", 5, "\"temperature\" must be between 500 and 100000, not nan"),
         ("temperature = 2700\nemission = -1", 6, "\"emission\" must be a finite number of at least 0, not -1"),

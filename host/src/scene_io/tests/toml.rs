@@ -54,7 +54,7 @@ fn the_documented_example_loads_as_documented() {
             position: Vec3::new(2.0, 4.0, 3.0),
             colour: Vec3::new(1.0, 0.9, 0.8) * 0.8,
             group: "key".to_owned(),
-            temperature: None
+            illuminant: None
         }
     );
     let Light::Spot { outer, inner, .. } = scene.lights[2] else {

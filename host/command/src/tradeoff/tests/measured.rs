@@ -139,7 +139,7 @@ fn exact_hits_are_right_but_for_edges() {
 fn a_scene_that_can_not_be_packed_is_an_error() {
     let mut subject = subject();
     let (position, colour) = (glam::Vec3::splat(1e30), glam::Vec3::ONE);
-    subject.scene.lights = vec![scene::Light::Point { position, colour, group: String::new(), temperature: None }];
+    subject.scene.lights = vec![scene::Light::Point { position, colour, group: String::new(), illuminant: None }];
     let error = run(&plan(axes()), &subject, on_cpu(), &|_| ()).unwrap_err();
     assert!(error.file == Some(subject.file) && error.message.contains("too far away"), "{error}");
 }

@@ -292,7 +292,7 @@ fn lights_and_cameras_stand_where_their_nodes_are() {
     assert_eq!(lights.len(), 3);
     assert_eq!(
         lights[0],
-        Light::Point { position, colour: Vec3::new(3.0, 1.5, 0.0), group: String::new(), temperature: None }
+        Light::Point { position, colour: Vec3::new(3.0, 1.5, 0.0), group: String::new(), illuminant: None }
     );
     assert!(
         matches!(lights[1], Light::Spot { outer, inner: 0.0, target, .. } if outer == 0.5f32.to_degrees() && target == position - Vec3::Z)

@@ -46,6 +46,8 @@ pub struct Preset {
     /// How a pixel weighs what is around its middle.
     #[serde(serialize_with = "wish")]
     pub pixel_filter: Option<PixelFilter>,
+    /// Is light of single wavelengths followed?
+    pub spectral: Option<bool>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,
     /// Samples of a pixel instead.
@@ -82,6 +84,7 @@ impl Preset {
             sampler: table.choice("sampler")?,
             filter: table.choice("filter")?,
             pixel_filter: table.choice("pixel_filter")?,
+            spectral: table.flag("spectral")?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
             spp: table.whole("spp", 1, Settings::MOST_SPP)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,

@@ -53,9 +53,6 @@ pub(super) struct View {
     /// Let facets of physical materials scatter light once: what is lost between them is not given back
     #[arg(long)]
     no_compensation: bool,
-    /// Follow light of single wavelengths instead of red, green and blue; paths alone do [default: the scene's]
-    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
-    spectral: Option<bool>,
 }
 
 /// How much work a picture is worth.
@@ -77,6 +74,9 @@ pub(super) struct Effort {
     /// How a pixel weighs what is around its middle [default: the scene's, or blackman-harris where light is sampled and else box]
     #[arg(long, value_parser = choice::<PixelFilter>())]
     pixel_filter: Option<PixelFilter>,
+    /// Follow light of single wavelengths instead of red, green and blue; paths alone do [default: the scene's]
+    #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
+    spectral: Option<bool>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
@@ -100,6 +100,7 @@ impl Effort {
             sampler: self.sampler.or(file.sampler),
             filter: self.filter.or(file.filter),
             pixel_filter: self.pixel_filter.or(file.pixel_filter),
+            spectral: self.spectral.or(file.spectral),
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),
@@ -223,7 +224,7 @@ impl View {
             filter: effort.filter.unwrap_or(own.filter),
             pixel_filter: effort.pixel_filter.or(own.pixel_filter),
             transparent: self.transparent.unwrap_or(own.transparent),
-            spectral: self.spectral.unwrap_or(own.spectral),
+            spectral: effort.spectral.unwrap_or(own.spectral),
         };
         Picture::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;

@@ -110,6 +110,9 @@ struct Tried {
     /// What a ray sees of a texture [default: the scene's, and where it has textures all]
     #[arg(long, value_parser = choice::<Filter>(), value_delimiter = ',')]
     filter: Vec<Filter>,
+    /// Whether light of single wavelengths is followed [default: the scene's, and where it is so both]
+    #[arg(long, value_name = "BOOL", value_delimiter = ',')]
+    spectral: Vec<bool>,
     /// Samples along a pixel's edge; the reference has the most [default: the scene's and 1,2,4; 1,2 with --quick]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     samples: Vec<u32>,
@@ -335,6 +338,7 @@ impl Tried {
         replace(&mut axes.samples, &samples);
         replace(&mut axes.samplers, &self.sampler);
         replace(&mut axes.filters, &self.filter);
+        replace(&mut axes.spectral, &self.spectral.iter().copied().map(Some).collect::<Vec<_>>());
         replace(&mut axes.bounces, &self.bounces);
         replace(&mut axes.min_contributions, &self.min_contribution);
         replace(&mut axes.roulettes, &self.roulette);

@@ -41,6 +41,8 @@ pub struct Axes {
     pub samplers: Vec<Sampler>,
     /// How textures are filtered, those that tell most of a texture first.
     pub filters: Vec<Filter>,
+    /// Whether light has wavelengths, where the scene says that it has.
+    pub spectral: Vec<Option<bool>>,
     /// Samples along a pixel's edge and of a pixel, as [`Setting`] has them; the most first.
     pub samples: Vec<(u32, u32)>,
     /// Limits of bounces, the highest first.
@@ -68,6 +70,7 @@ impl Axes {
             integrators: if integrators.is_empty() { vec![base.integrator] } else { integrators.to_vec() },
             samplers: vec![base.sampler],
             filters: vec![base.filter],
+            spectral: vec![base.spectral],
             samples: vec![(base.samples, base.spp)],
             bounces: vec![base.bounces],
             min_contributions: vec![base.min_contribution],
@@ -98,6 +101,9 @@ impl Axes {
         }
         if is_path {
             self.roulettes.extend([Settings::MOST_BOUNCES, 0]);
+        }
+        if is_path && own.spectral {
+            self.spectral.push(Some(false));
         }
         if any(Integrator::chooses_lights) {
             self.clamps.extend(CLAMPS);
@@ -142,6 +148,7 @@ impl Axes {
         self.integrators.sort_by_key(left_out);
         self.samplers.sort_by_key(unevenness);
         self.filters.sort_by_key(|&filter| lost(filter));
+        self.spectral.sort_by_key(|&is_spectral| is_spectral != Some(true));
         self.samples.sort_by_key(|&samples| (std::cmp::Reverse(a_pixel(samples)), samples));
         self.bounces.sort_unstable_by(|a, b| b.cmp(a));
         self.min_contributions.sort_unstable_by(f32::total_cmp);
@@ -150,6 +157,7 @@ impl Axes {
         self.integrators.dedup();
         self.samplers.dedup();
         self.filters.dedup();
+        self.spectral.dedup();
         self.samples.dedup_by_key(|samples| a_pixel(*samples));
         self.bounces.dedup();
         self.min_contributions.dedup();
@@ -172,6 +180,7 @@ impl Axes {
             Axis::Integrator => each(&self.integrators, |integrator| Setting { integrator, ..setting }),
             Axis::Sampler => each(&self.samplers, |sampler| Setting { sampler, ..setting }),
             Axis::Filter => each(&self.filters, |filter| Setting { filter, ..setting }),
+            Axis::Spectral => each(&self.spectral, |spectral| Setting { spectral, ..setting }),
             Axis::Samples => each(&self.samples, |(samples, spp)| Setting { samples, spp, ..setting }),
             Axis::Bounces => each(&self.bounces, |bounces| Setting { bounces, ..setting }),
             Axis::MinContribution => {
@@ -205,12 +214,14 @@ impl Axes {
             },
             ..own.transport
         };
+        let is_spectral = own.spectral || self.spectral[0] == Some(true);
         Settings {
             samples,
             spp,
             bounces: own.bounces.max(self.bounces[0]),
             min_contribution: own.min_contribution.min(self.min_contributions[0]),
             filter: if lost(own.filter) < lost(self.filters[0]) { own.filter } else { self.filters[0] },
+            spectral: is_spectral && transport.integrator == Integrator::Path,
             transport,
             ..own
         }

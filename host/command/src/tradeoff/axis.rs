@@ -19,6 +19,8 @@ pub enum Axis {
     Sampler,
     /// How textures are filtered.
     Filter,
+    /// Whether light has wavelengths.
+    Spectral,
     /// The number of samples.
     Samples,
     /// The limit of bounces.
@@ -33,7 +35,7 @@ pub enum Axis {
 
 impl Axis {
     /// All of them.
-    pub const ALL: [Axis; 12] = [
+    pub const ALL: [Axis; 13] = [
         Axis::Arithmetic,
         Axis::Method,
         Axis::Layout,
@@ -41,6 +43,7 @@ impl Axis {
         Axis::Integrator,
         Axis::Sampler,
         Axis::Filter,
+        Axis::Spectral,
         Axis::Samples,
         Axis::Bounces,
         Axis::MinContribution,
@@ -65,6 +68,7 @@ impl Axis {
             Axis::Integrator => Setting { integrator: other.integrator, ..setting },
             Axis::Sampler => Setting { sampler: other.sampler, ..setting },
             Axis::Filter => Setting { filter: other.filter, ..setting },
+            Axis::Spectral => Setting { spectral: other.spectral, ..setting },
             Axis::Samples => Setting { samples: other.samples, spp: other.spp, ..setting },
             Axis::Bounces => Setting { bounces: other.bounces, ..setting },
             Axis::MinContribution => Setting { min_contribution: other.min_contribution, ..setting },

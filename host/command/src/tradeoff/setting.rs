@@ -35,6 +35,8 @@ pub struct Setting {
     /// How textures are filtered.
     #[serde(serialize_with = "named")]
     pub filter: Filter,
+    /// Is light of single wavelengths followed, where the scene says so?
+    pub spectral: Option<bool>,
     /// Samples along a pixel's edge, 1 where `spp` counts.
     pub samples: u32,
     /// Samples of a pixel; 0 for the square of `samples`.
@@ -61,6 +63,7 @@ impl Setting {
             integrator: own.transport.integrator,
             sampler: own.sampler,
             filter: own.filter,
+            spectral: own.spectral.then_some(true),
             samples: if own.spp > 0 { 1 } else { own.samples },
             spp: own.spp,
             bounces: own.bounces,
@@ -77,11 +80,22 @@ impl Setting {
 
     /// A scene's own settings with these instead.
     pub fn settings(&self, own: Settings) -> Settings {
-        let Setting { integrator, sampler, filter, samples, spp, bounces, min_contribution, roulette, clamp, .. } =
-            *self;
+        let Setting {
+            integrator,
+            sampler,
+            filter,
+            spectral,
+            samples,
+            spp,
+            bounces,
+            min_contribution,
+            roulette,
+            clamp,
+            ..
+        } = *self;
         let transport = Transport { integrator, roulette, clamp, ..own.transport };
         // Paths alone carry wavelengths.
-        let spectral = own.spectral && integrator == Integrator::Path;
+        let spectral = spectral.unwrap_or(own.spectral) && integrator == Integrator::Path;
         Settings { samples, spp, sampler, filter, bounces, min_contribution, spectral, transport, ..own }
     }
 
@@ -95,6 +109,7 @@ impl Setting {
         let (integrator, follows) = (self.integrator, self.bounces > 0);
         let is = |matters: bool, own: f32, other: f32| if matters { own } else { other };
         Setting {
+            spectral: if integrator == Integrator::Path { self.spectral } else { base.spectral },
             bounces: if integrator == Integrator::Ao { base.bounces } else { self.bounces },
             min_contribution: is(follows && has_tree(integrator), self.min_contribution, base.min_contribution),
             roulette: if follows && integrator == Integrator::Path { self.roulette } else { base.roulette },
@@ -115,6 +130,7 @@ impl Setting {
             integrator: Some(self.integrator),
             sampler: Some(self.sampler),
             filter: Some(self.filter),
+            spectral: self.spectral.filter(|_| self.integrator == Integrator::Path),
             // As the scene or the integrator says.
             pixel_filter: None,
             samples: (self.spp == 0).then_some(self.samples),
@@ -146,6 +162,7 @@ impl Setting {
             (self.integrator != other.integrator, name(self.integrator)),
             (self.sampler != other.sampler, name(self.sampler)),
             (self.filter != other.filter, name(self.filter)),
+            (self.spectral != other.spectral, wavelengths(self.spectral).to_owned()),
             ((self.samples, self.spp) != (other.samples, other.spp), samples),
             (self.bounces != other.bounces, counted(self.bounces, "bounce")),
             (self.min_contribution != other.min_contribution, format!("contribution {}", share(self.min_contribution))),
@@ -179,7 +196,10 @@ impl Setting {
         if self.integrator.chooses_lights() {
             words.push(("clamp", self.clamp.to_string()));
         }
-        let options: Vec<String> = words.iter().map(|(option, word)| format!("--{option} {word}")).collect();
+        let mut options: Vec<String> = words.iter().map(|(option, word)| format!("--{option} {word}")).collect();
+        if let Some(is_spectral) = self.spectral.filter(|_| self.integrator == Integrator::Path) {
+            options.push(format!("--spectral={is_spectral}"));
+        }
         options.join(" ")
     }
 }
@@ -187,6 +207,11 @@ impl Setting {
 /// Does it follow mirrored and refracted rays by what they contribute at least?
 pub(super) fn has_tree(integrator: Integrator) -> bool {
     matches!(integrator, Integrator::Whitted | Integrator::Distributed)
+}
+
+/// What light is followed.
+fn wavelengths(spectral: Option<bool>) -> &'static str {
+    if spectral == Some(true) { "single wavelengths" } else { "red, green and blue" }
 }
 
 /// A clamp in words.

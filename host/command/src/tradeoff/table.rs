@@ -43,6 +43,7 @@ fn sections(report: &Report) -> Vec<(&'static str, Vec<&Record>)> {
         (Some(Axis::Integrator), "Integrator"),
         (Some(Axis::Sampler), "Sampler"),
         (Some(Axis::Filter), "Filter of textures"),
+        (Some(Axis::Spectral), "Light of single wavelengths"),
         (Some(Axis::Samples), "Samples"),
         (Some(Axis::Bounces), "Bounces"),
         (Some(Axis::MinContribution), "Least contribution"),

@@ -242,6 +242,29 @@ fn filters_are_tried_where_there_are_textures_and_the_reference_loses_least() {
     assert_eq!(nearest.preset(eyerays::render::DeviceWish::Cpu).filter, Some(Filter::Nearest));
 }
 
+#[test]
+fn red_green_and_blue_are_tried_where_a_scene_has_wavelengths_and_the_reference_has_them() {
+    let plain = scene(0.0);
+    let by = |integrator, spectral| Settings {
+        spectral,
+        transport: eyerays::scene::Transport { integrator, ..plain.settings.transport },
+        ..plain.settings
+    };
+    assert_eq!(Axes::of(&plain, &by(Integrator::Path, false), &[]).spectral, [None]);
+    let own = by(Integrator::Path, true);
+    let axes = Axes::of(&plain, &own, &[]);
+    assert_eq!(axes.spectral, [Some(true), Some(false)]);
+    assert!(axes.reference(own).spectral);
+    let rgb = Setting { spectral: Some(false), ..Setting::of(&own) };
+    assert_eq!(rgb.beside(&Setting::of(&own)), "red, green and blue");
+    assert!(!rgb.settings(own).spectral && rgb.options().ends_with("--spectral=false"));
+    assert_eq!(rgb.preset(eyerays::render::DeviceWish::Cpu).spectral, Some(false));
+    // No other integrator has any.
+    let whitted = Axes::of(&plain, &own, &[Integrator::Whitted]);
+    assert!(!whitted.reference(own).spectral);
+    assert!(!Setting { integrator: Integrator::Whitted, ..Setting::of(&own) }.settings(own).spectral);
+}
+
 /// Nothing is tried that can not be or that makes no difference.
 #[test]
 fn a_search_leaves_out_what_makes_no_difference() {

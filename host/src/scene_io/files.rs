@@ -16,6 +16,7 @@ use super::table::Table;
 use super::{Warning, WarningKind};
 use super::{file, mesh_table, xyzr};
 use crate::error::Result;
+use crate::scene::subdivide::Eye;
 use crate::scene::{Animation, Sphere};
 
 /// What a scene file has of which its meshes may have others.
@@ -46,6 +47,8 @@ pub struct Files<'p> {
     pub animations: Vec<Animation>,
     /// When the last key of the scene file itself is, if it has any.
     last_key: Option<f32>,
+    /// The cameras of the scene file, as edges of surfaces are measured by them.
+    pub eyes: Vec<Eye>,
     /// What meshes may stand on.
     pub objects: Objects,
     /// What several tables are of, if it is placed.
@@ -61,6 +64,7 @@ impl<'p> Files<'p> {
             images: Images::within(folder, budget, loading),
             is_covered: false,
             has: Own::default(),
+            eyes: Vec::new(),
             objects: Objects::default(),
             meshes: HashMap::new(),
             spheres: HashMap::new(),

@@ -34,6 +34,7 @@ use crate::memory::Room;
 use crate::scene::Range;
 use crate::scene::frame;
 use crate::scene::studio;
+use crate::scene::subdivide::Eye;
 use crate::scene::{Background, Integrator, Sampler, Scene, Settings, Transport, Visibility};
 
 /// Loads a TOML scene, a glTF scene, a bare Wavefront or PLY mesh, or a binary scene ([`write`](super::write)), and says in
@@ -251,6 +252,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
     let seconds = holding.moment.seconds.unwrap_or(0.0);
     let (cameras, last) = camera_table::cameras(table.tables("camera")?.unwrap_or_default(), seconds)?;
     files.move_until(last);
+    files.eyes = cameras.iter().map(|camera| Eye::of(camera, settings.size)).collect();
     let lights = table.tables("light")?.map(|tables| light_table::lights(tables, seconds)).transpose()?;
     let (lights, last) = lights.map_or((None, None), |(lights, last)| (Some(lights), last));
     files.move_until(last);

@@ -94,9 +94,11 @@ pub fn read(table: &mut Table, repeated: Option<String>, files: &mut Files) -> R
     let visibility = visible::read(table)?.unwrap_or_default();
     let lit_by = table.names("lit_by")?;
     let surface = Surface::read(table, files)?;
+    // What differs by its place is no copy of what another table says.
+    let repeated = repeated.filter(|_| !surface.differs_by_place());
     let Source { name, mut geometry, faces, mut copies, materials, mut objects } = source(table, &wish, files)?;
     if surface
-        .put((&mut geometry, &faces), &mut copies, &files.budget)
+        .put((&mut geometry, &faces), &mut copies, &places, files)
         .map_err(|(key, why)| table.fault_of(key, why))?
     {
         // Their numbers of triangles are others now.

@@ -6,14 +6,16 @@ use super::face_sizes::FaceSizes;
 use super::files::Files;
 use super::geometry::Geometry;
 use super::table::Table;
+use super::transform::Transform;
 use crate::error::Result;
 use crate::scene::displace::{self, Heights};
-use crate::scene::subdivide::{self, Cage, Subdivision};
+use crate::scene::subdivide::{self, Cage, Fineness, Subdivision};
 use crate::scene::{Mesh, Range, Unplaced};
+use glam::DMat4;
 
 /// What is said of a surface.
 pub struct Surface {
-    subdivision: Option<Subdivision>,
+    subdivision: Option<(Fineness, Option<f32>)>,
     displacement: Option<Displacement>,
 }
 
@@ -35,17 +37,26 @@ impl Surface {
     /// # Errors
     /// A number out of range, or a picture that can't be read.
     pub fn read(table: &mut Table, files: &mut Files) -> Result<Surface> {
-        let levels = table.whole("subdivide", 1, 8)?;
+        let fineness = fineness(table)?;
         let crease = table.number("crease", Range::TURN)?;
-        if levels.is_none() && crease.is_some() {
+        if fineness.is_none() && crease.is_some() {
             let fault = "\"crease\" is of a surface that is divided; add \"subdivide\"";
             return Err(table.fault_of("crease", fault));
         }
-        let subdivision = levels.map(|levels| Subdivision { levels, crease });
+        if matches!(fineness, Some(Fineness::Pixels { .. })) && files.eyes.is_empty() {
+            let fault = "how many pixels edges have is told by the scene's cameras; add a [[camera]], or say how often: subdivide = 3";
+            return Err(table.fault_of("subdivide", fault));
+        }
+        let subdivision = fineness.map(|fineness| (fineness, crease));
         Ok(Surface { subdivision, displacement: displacement(table, files)? })
     }
 
-    /// Puts it in the place of meshes, and tells whether that changes their triangles.
+    /// Does it look otherwise where it stands elsewhere?
+    pub fn differs_by_place(&self) -> bool {
+        matches!(self.subdivision, Some((Fineness::Pixels { .. }, _)))
+    }
+
+    /// Puts it in the place of meshes that will stand in these places, and tells whether that changes their triangles.
     ///
     /// # Errors
     /// What has no such surface, or is too much.
@@ -53,19 +64,31 @@ impl Surface {
         &self,
         (geometry, faces): (&mut Geometry, &FaceSizes),
         copies: &mut Copies,
-        budget: &Budget,
+        places: &[Transform],
+        files: &Files,
     ) -> std::result::Result<bool, Fault> {
-        let mut all: Vec<(&mut Mesh, &[u32])> = copies.meshes.iter_mut().map(|mesh| (mesh, &[][..])).collect();
+        let outer: Vec<DMat4> =
+            if places.is_empty() { vec![DMat4::IDENTITY] } else { places.iter().map(|place| place.matrix()).collect() };
+        let Copies { meshes, places: inner } = copies;
+        let worlds = |number: usize| {
+            let own = inner.iter().filter(move |(mesh, _)| *mesh == number);
+            own.flat_map(|(_, inner)| outer.iter().map(move |outer| *outer * *inner)).collect::<Vec<_>>()
+        };
+        let copies = meshes.iter_mut().enumerate();
+        let mut all: Vec<(&mut Mesh, &[u32], Vec<DMat4>)> =
+            copies.map(|(number, mesh)| (mesh, &[][..], worlds(number))).collect();
         if let Geometry::Mesh(mesh) = geometry {
-            all.push((mesh, faces.sizes()));
+            all.push((mesh, faces.sizes(), outer.clone()));
         } else if self.subdivision.is_some() {
             return Err(("subdivide", "it is round already; leave \"subdivide\" out".into()));
         } else if self.displacement.is_some() {
             return Err(("displace", "it has no vertices that can be moved; \"tessellate\" it".into()));
         }
-        for (mesh, faces) in all.into_iter().filter(|(mesh, _)| !mesh.triangles.is_empty()) {
-            if let Some(how) = self.subdivision {
-                divide(mesh, faces, how, budget).map_err(|why| ("subdivide", why))?;
+        for (mesh, faces, worlds) in all.into_iter().filter(|(mesh, ..)| !mesh.triangles.is_empty()) {
+            if let Some((fineness, crease)) = self.subdivision {
+                let cage = Cage::of(mesh, faces);
+                let levels = fineness.levels(&cage, &worlds, &files.eyes);
+                divide(mesh, cage, Subdivision { levels, crease }, &files.budget).map_err(|why| ("subdivide", why))?;
             }
             if let Some(displacement) = &self.displacement {
                 displacement.displace(mesh).map_err(|why| ("displace", why))?;
@@ -75,12 +98,25 @@ impl Surface {
     }
 }
 
-fn divide(mesh: &mut Mesh, faces: &[u32], how: Subdivision, budget: &Budget) -> Unplaced<()> {
-    let cage = Cage::of(mesh, faces);
+fn divide(mesh: &mut Mesh, cage: Cage, how: Subdivision, budget: &Budget) -> Unplaced<()> {
     let (triangles, vertices) = subdivide::size(&cage, how.levels);
     budget.check(triangles, vertices)?;
     *mesh = subdivide::subdivided(cage, mesh, how);
     Ok(())
+}
+
+/// A number of levels, or how long edges may be in pixels.
+fn fineness(table: &mut Table) -> Result<Option<Fineness>> {
+    let (least, greatest) = (*Fineness::LEVELS.start(), *Fineness::LEVELS.end());
+    if !table.is_table("subdivide") {
+        return Ok(table.whole("subdivide", least, greatest)?.map(Fineness::Levels));
+    }
+    let Some(mut of) = table.table("subdivide")? else { return Ok(None) };
+    let length = of.number("pixels", Range::LENGTH)?;
+    let length = of.need("pixels", length)?;
+    let most = of.whole("most", least, greatest)?.unwrap_or(6);
+    of.done()?;
+    Ok(Some(Fineness::Pixels { length, most }))
 }
 
 fn displacement(table: &mut Table, files: &mut Files) -> Result<Option<Displacement>> {

@@ -96,8 +96,16 @@ impl<'s> Table<'s> {
 
     /// Is the key's value a number? Does not take it.
     pub fn is_number(&self, key: &str) -> bool {
-        let value = self.entries.iter().find(|entry| entry.key == key).and_then(|entry| entry.value.as_ref());
-        value.is_some_and(|value| matches!(value.get_ref(), DeValue::Integer(_) | DeValue::Float(_)))
+        matches!(self.value(key), Some(DeValue::Integer(_) | DeValue::Float(_)))
+    }
+
+    /// Is it a table? Does not take it.
+    pub fn is_table(&self, key: &str) -> bool {
+        matches!(self.value(key), Some(DeValue::Table(_)))
+    }
+
+    fn value(&self, key: &str) -> Option<&DeValue<'s>> {
+        self.entries.iter().find(|entry| entry.key == key)?.value.as_ref().map(Spanned::get_ref)
     }
 
     /// A string.

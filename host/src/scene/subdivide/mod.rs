@@ -2,6 +2,7 @@
 
 mod cage;
 mod edges;
+mod fineness;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use glam::{DVec3, Vec3};
 pub use self::cage::Cage;
 use self::cage::Corner;
 use self::edges::{Around, Edges, Kind};
+pub use self::fineness::{Eye, Fineness};
 use super::Mesh;
 use super::normal::unit;
 

@@ -88,3 +88,44 @@ fn what_can_not_be_divided_is_told() {
     refused("file = \"cage.obj\"\nsubdivide = 0", &["scene.toml:3", "subdivide"]);
     refused("file = \"cage.obj\"\nsubdivide = 2\ncrease = 181", &["scene.toml:4", "between 0 and 180"]);
 }
+
+/// A box of edges of 2 whose nearest ones are 4 from an eye that sees 100 rows of 90 degrees: a pixel is 0.08 wide there.
+fn seen(subdivide: &str, place: &str) -> usize {
+    let camera = "[[camera]]\nname = \"c\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 90\n[render]\nsize = [160, 100]\n";
+    let shape = "shape = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
+    load(&format!("{shape}subdivide = {subdivide}\n{place}\n{camera}"), &[]).triangles.len()
+}
+
+/// Levels of a box come to 6 * 2 * 4^levels triangles.
+#[test]
+fn a_surface_is_as_fine_as_pixels_ask_for() {
+    // Its edges are at most 2 / (0.02 * sqrt(17)) = 24.25 pixels long.
+    for (length, levels) in [(30.0, 1), (12.2, 1), (12.0, 2), (3.1, 3), (3.0, 4), (0.01, 6)] {
+        let found = seen(&format!("{{ pixels = {length:?} }}"), "");
+        assert_eq!(found, 12 << (2 * levels), "{length}");
+    }
+    assert_eq!(seen("{ pixels = 0.01, most = 3 }", ""), 12 << 6);
+    // Far away it needs less, and smaller, too.
+    assert_eq!(seen("{ pixels = 3.0 }", "translate = [0, 0, -100]"), 12 << 2);
+    assert_eq!(seen("{ pixels = 3.0 }", "scale = 0.1"), 12 << 2);
+}
+
+#[test]
+fn pixels_that_make_no_sense_are_refused() {
+    let refused = |subdivide: &str, camera: &str| {
+        let text = format!("[[mesh]]\nshape = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nsubdivide = {subdivide}\n{camera}");
+        Folder::new(&[("a.toml", text.as_bytes())]).refuse("a.toml").to_string()
+    };
+    let camera = "[[camera]]\nname = \"c\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";
+    for (subdivide, camera, why) in [
+        ("{ pixels = 0 }", camera, "\"pixels\" must be a finite number greater than 0, not 0"),
+        ("{ pixels = nan }", camera, "\"pixels\" must be a finite number greater than 0"),
+        ("{ pixels = 1, most = 9 }", camera, "\"most\" must be between 1 and 8, not 9"),
+        ("{ most = 3 }", camera, "[subdivide] needs \"pixels\"; add it"),
+        ("{ pixels = 1, edge = 2 }", camera, "unknown key \"edge\""),
+        ("{ pixels = 1 }", "", "add a [[camera]]"),
+    ] {
+        let found = refused(subdivide, camera);
+        assert!(found.contains(why), "{subdivide}: {found}");
+    }
+}

@@ -158,3 +158,39 @@ fn record(of: &Medium, absorbed: DVec3, (priority, ior): (u32, f32), scale: f64)
         density: Default::default(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use eyerays_shader::data::GlowTable;
+
+    use super::*;
+
+    /// The media of a scene whose first materials glow with so many kelvins.
+    fn hot(grid: &Arc<Grid>, kelvins: &[f32]) -> Media {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes/whitted.toml");
+        let mut scene = crate::scene_io::load(path.as_ref()).unwrap().0;
+        let of = Medium { absorption: Vec3::ONE, emission: Vec3::ONE, ..Medium::default() };
+        for (material, &kelvins) in scene.materials.iter_mut().zip(kelvins) {
+            let temperature = Some(Temperature { grid: grid.clone(), kelvins });
+            material.volume = Some(Volume { temperature, ..Volume::open(of) });
+        }
+        Media::of(&scene, &Normalisation { origin: Vec3::ZERO, scale: 1.0 }).unwrap()
+    }
+
+    #[test]
+    fn grids_of_temperatures_and_tables_of_their_light_are_shared() {
+        let grid = Arc::new(Grid::dense("fire", [1, 1, 2], &[1.0, 2.0], [DVec3::ZERO, DVec3::ONE]));
+        let (one, same, other) = (hot(&grid, &[900.0]), hot(&grid, &[900.0; 2]), hot(&grid, &[900.0, 800.0]));
+        assert!(one.bits.has(Bits::GRIDS) && one.bits.has(Bits::GLOWING));
+        assert_eq!(one.grids, same.grids);
+        assert_eq!(other.grids.len() - one.grids.len(), GlowTable::WORDS as usize);
+        let tables: Vec<u32> =
+            other.records.iter().filter(|record| record.has_temperature()).map(|record| record.density.z).collect();
+        let first = one.grids.len() as u32 - GlowTable::WORDS;
+        assert_eq!(tables, [first, first + GlowTable::WORDS]);
+        // Each number of the grid is half of all steps.
+        assert_eq!(f32::from_bits(one.grids[first as usize]), 127.5);
+    }
+}

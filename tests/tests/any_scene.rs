@@ -9,8 +9,8 @@ use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
     Absorption, Alpha, Coat, Conductor, DiffuseTransmission, Direct, Environment, Filter, FinishMaps, Grid, Integrator,
-    Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Texels, Texture, ThinFilm,
-    Transport, Volume, Wall, Wrap,
+    Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Temperature, Texels, Texture,
+    ThinFilm, Transport, Volume, Wall, Wrap,
 };
 use eyerays::spectrum::{Fluorescent, Glass, Illuminant, Metal};
 use eyerays_tests::random::Random;
@@ -148,7 +148,9 @@ fn volume(random: &mut Random, may_be_open: bool) -> Volume {
         medium: medium(random),
         interface: !may_be_open || chance(random, 0.4),
         priority: one(random, &[0, 0, 7]),
-        density: chance(random, 0.4).then(|| Arc::new(grid)),
+        density: chance(random, 0.4).then(|| Arc::new(grid.clone())),
+        temperature: chance(random, 0.3)
+            .then(|| Temperature { grid: Arc::new(grid), kelvins: one(random, &[0.001, 1.0, 50.0, 1e6]) }),
     }
 }
 

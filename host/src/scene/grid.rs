@@ -1,4 +1,4 @@
-//! Numbers in space: how dense a medium is, where.
+//! Numbers in space: how dense a medium is, or how hot, where.
 
 use std::collections::BTreeMap;
 
@@ -25,6 +25,33 @@ pub struct Grid {
     pub placement: DAffine3,
     /// Does it end half a voxel beyond the outermost, which go on until there? Else it fades to the background, a voxel beyond.
     pub has_edges: bool,
+}
+
+/// What the numbers of a grid are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// What coefficients are multiplied with.
+    Density,
+    /// In units of a [`Temperature`](super::Temperature).
+    Temperature,
+}
+
+impl Quantity {
+    /// The key of scene files, and the name that such a grid has in other files by convention.
+    pub fn name(self) -> &'static str {
+        match self {
+            Quantity::Density => "density",
+            Quantity::Temperature => "temperature",
+        }
+    }
+
+    /// What several of its numbers are called.
+    fn plural(self) -> &'static str {
+        match self {
+            Quantity::Density => "densities",
+            Quantity::Temperature => "temperatures",
+        }
+    }
 }
 
 /// Numbers of 8 x 8 x 8 voxels, x first.
@@ -73,7 +100,7 @@ impl Grid {
     const FARTHEST: i32 = 1 << 22;
 
     /// Refuses a grid without voxels, with those too far away, of no size, or with numbers below nothing.
-    pub(crate) fn check(&self) -> Unplaced<()> {
+    pub(crate) fn check(&self, of: Quantity) -> Unplaced<()> {
         let [first, end] = self.extent;
         if self.size().iter().any(|&voxels| voxels <= 0) {
             return Err("the grid is empty; is it the right one?".to_owned());
@@ -81,14 +108,23 @@ impl Grid {
         if first.iter().chain(&end).any(|at| at.unsigned_abs() > Self::FARTHEST as u32) {
             return Err(format!("the grid has voxels beyond {}; move them to the origin", Self::FARTHEST));
         }
-        let numbers = self.leaves.values().flat_map(|leaf| leaf.numbers()).chain([&self.background]);
-        if let Some(odd) = numbers.copied().find(|&number| !Range::AMOUNT.holds(number)) {
-            return Err(format!("the grid has the number {odd}; densities are finite and at least 0"));
+        if let Some(odd) = self.numbers().find(|&number| !Range::AMOUNT.holds(number)) {
+            return Err(format!("the grid has the number {odd}; {} are finite and at least 0", of.plural()));
         }
         if !self.placement.is_finite() || self.placement.matrix3.determinant() == 0.0 {
             return Err("the grid's voxels have no size; give it another transform".to_owned());
         }
         Ok(())
+    }
+
+    /// All that it has.
+    fn numbers(&self) -> impl Iterator<Item = f32> {
+        self.leaves.values().flat_map(|leaf| leaf.numbers()).chain([&self.background]).copied()
+    }
+
+    /// The greatest number that it has.
+    pub fn greatest(&self) -> f32 {
+        self.numbers().fold(0.0, f32::max)
     }
 
     /// The number of a voxel.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use glam::{DVec3, Vec3};
 use serde::{Deserialize, Serialize};
 
-use super::{Grid, Material, Unplaced};
+use super::{Grid, Material, Temperature, Unplaced};
 
 /// A homogeneous medium (pbrt-v4, chapter 11): what it does to light on a world unit of its way. Colours are linear RGB.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -77,12 +77,32 @@ pub struct Volume {
     /// What the coefficients are multiplied with, where they are not the same everywhere.
     #[serde(skip)]
     pub density: Option<Arc<Grid>>,
+    /// What its emission is multiplied with, where it glows by temperature: then its emission is the radiance of the hottest place.
+    #[serde(skip)]
+    pub temperature: Option<Temperature>,
 }
 
 impl Volume {
     /// A medium without a surface.
     pub fn open(medium: Medium) -> Volume {
-        Volume { medium, interface: false, priority: 0, density: None }
+        Volume { medium, interface: false, priority: 0, density: None, temperature: None }
+    }
+
+    /// Is it denser or hotter in some places?
+    pub(crate) fn has_grid(&self) -> bool {
+        self.density.is_some() || self.temperature.is_some()
+    }
+
+    /// Why its temperature does nothing, and what to do.
+    fn idle_temperature(&self) -> Option<&'static str> {
+        let temperature = self.temperature.as_ref()?;
+        if self.medium.emission == Vec3::ZERO {
+            return Some("its volume has a temperature and an emission of 0; remove one of them");
+        }
+        temperature.is_dark().then_some(
+            "the temperature of its volume is below 500 kelvins everywhere, where nothing is seen to glow; raise its kelvins, \
+             or name another grid",
+        )
     }
 }
 
@@ -95,9 +115,14 @@ impl Material {
         }
     }
 
-    /// Why nobody sees its volume, and what to do.
+    /// Why nobody sees its volume or its temperature, and what to do.
     pub(crate) fn idle_volume(&self) -> Option<&'static str> {
-        let is_hidden = self.volume.as_ref().is_some_and(|volume| volume.interface) && !self.lets_light_in();
-        is_hidden.then_some("its volume is behind an opaque surface; give it transmission or diffuse_transmission, or set interface to false")
+        let volume = self.volume.as_ref()?;
+        if volume.interface && !self.lets_light_in() {
+            return Some(
+                "its volume is behind an opaque surface; give it transmission or diffuse_transmission, or set interface to false",
+            );
+        }
+        volume.idle_temperature()
     }
 }

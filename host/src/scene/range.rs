@@ -39,6 +39,9 @@ impl Range {
     /// The thickness of a film, in nanometres.
     pub const THICKNESS: Range =
         Range { holds: |x| (0.0..=100_000.0).contains(&x), says: "between 0 and 100000 nanometres" };
+    /// How many kelvins a number of a grid is.
+    pub const KELVINS: Range =
+        Range { holds: |x| (0.001..=1e6).contains(&x), says: "between 0.001 and 1000000 kelvins" };
     /// The mean cosine of an angle by which light is scattered.
     pub const ANISOTROPY: Range =
         Range { holds: |x| x.abs() <= Medium::MOST_ANISOTROPY, says: "between -0.999 and 0.999" };

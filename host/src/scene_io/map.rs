@@ -8,7 +8,7 @@ use glam::Vec2;
 
 use super::budget::Budget;
 use super::bump::{Made, ReliefMap, Slopes};
-use super::grid;
+use super::grid::{self, Named};
 use super::load::Loading;
 use super::moment::Instant;
 use super::table::Table;
@@ -17,8 +17,7 @@ use crate::image::{Relief, TextureBudget, read_heights, read_relief, read_textur
 #[cfg(test)]
 use crate::memory::Room;
 use crate::scene::displace::Heights;
-use crate::scene::{FinishMaps, Grid, Map, Maps, Placement, Texture, Wrap};
-use crate::scene::{Range, studio};
+use crate::scene::{FinishMaps, Grid, Map, Maps, Placement, Quantity, Range, Temperature, Texture, Wrap, studio};
 
 /// Pictures already read, since materials share them.
 pub struct Images {
@@ -144,15 +143,32 @@ impl Images {
         }
     }
 
-    /// The grid that a key of a table names.
+    /// The grid of densities that a table names.
     ///
     /// # Errors
     /// Those of [`grid::named`].
-    pub fn grid(&mut self, table: &mut Table, key: &'static str) -> Result<Option<Arc<Grid>>> {
-        let named = grid::named(table, key, &self.folder, &self.room)?;
-        Ok(named.map(|(grid, path)| {
+    pub fn density(&mut self, table: &mut Table) -> Result<Option<Arc<Grid>>> {
+        Ok(self.grid(table, Quantity::Density)?.map(|(grid, _)| grid))
+    }
+
+    /// The grid of temperatures that a table names.
+    ///
+    /// # Errors
+    /// Those of [`grid::named`], and places that are too hot.
+    pub fn temperature(&mut self, table: &mut Table) -> Result<Option<Temperature>> {
+        let Some((grid, kelvins)) = self.grid(table, Quantity::Temperature)? else { return Ok(None) };
+        let temperature = Temperature { grid, kelvins };
+        let (name, key) = (&temperature.grid.name, Quantity::Temperature.name());
+        temperature.check_hottest().map_err(|fault| table.fault_of(key, format!("{name}: {fault}")))?;
+        Ok(Some(temperature))
+    }
+
+    /// A grid, and how many kelvins a number of it is.
+    fn grid(&mut self, table: &mut Table, quantity: Quantity) -> Result<Option<(Arc<Grid>, f32)>> {
+        let named = grid::named(table, quantity, &self.folder, &self.room)?;
+        Ok(named.map(|Named { grid, path, kelvins }| {
             self.grids.push(path);
-            Arc::new(grid)
+            (Arc::new(grid), kelvins)
         }))
     }
 

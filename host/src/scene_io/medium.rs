@@ -5,14 +5,14 @@ use glam::Vec3;
 use super::map::Images;
 use super::table::Table;
 use crate::error::Result;
-use crate::scene::{Medium, Range, Volume};
+use crate::scene::{Medium, Quantity, Range, Volume};
 
 /// Reads `[fog]`.
 ///
 /// # Errors
 /// A number out of range, or an unknown key.
 pub fn fog(mut table: Table) -> Result<Medium> {
-    let medium = medium(&mut table)?;
+    let medium = medium(&mut table, Medium::default().emission)?;
     table.done()?;
     Ok(medium)
 }
@@ -23,20 +23,25 @@ pub fn fog(mut table: Table) -> Result<Medium> {
 /// As of [`fog`].
 pub fn volume(mut table: Table, images: &mut Images) -> Result<Volume> {
     table.rename("volume");
+    // What is said to be hot glows.
+    let is_hot = table.has(Quantity::Temperature.name());
+    let emission = if is_hot { Vec3::ONE } else { Medium::default().emission };
     let volume = Volume {
-        medium: medium(&mut table)?,
+        medium: medium(&mut table, emission)?,
         interface: table.flag("interface")?.unwrap_or(true),
         priority: table.whole("priority", 0, u8::MAX.into())?.unwrap_or(0) as u8,
-        density: images.grid(&mut table, "density")?,
+        density: images.density(&mut table)?,
+        temperature: images.temperature(&mut table)?,
     };
     table.done()?;
     Ok(volume)
 }
 
-fn medium(table: &mut Table) -> Result<Medium> {
+/// What a medium is, and sends where it says nothing of that.
+fn medium(table: &mut Table, emission: Vec3) -> Result<Medium> {
     let default = Medium::default();
     let anisotropy = table.number("anisotropy", Range::ANISOTROPY)?.unwrap_or(default.anisotropy);
-    let emission = table.triple_or_number("emission", Range::AMOUNT)?.unwrap_or(default.emission);
+    let emission = table.triple_or_number("emission", Range::AMOUNT)?.unwrap_or(emission);
     let medium = match coloured(table)? {
         Some((colour, distance)) => Medium { emission, ..Medium::of_colour(colour, distance, anisotropy) },
         None => Medium {
@@ -46,7 +51,8 @@ fn medium(table: &mut Table) -> Result<Medium> {
             emission,
         },
     };
-    medium.check_emission().map_err(|fault| table.fault_of("emission", fault))?;
+    let sends = if table.has("emission") { "emission" } else { Quantity::Temperature.name() };
+    medium.check_emission().map_err(|fault| table.fault_of(sends, fault))?;
     Ok(medium)
 }
 

@@ -1,6 +1,7 @@
-//! Grids of densities as kernels read them, see [`eyerays_shader::data::Grid`].
+//! Grids of densities and temperatures as kernels read them, see [`eyerays_shader::data::Grid`].
 
 mod blocks;
+mod glow;
 #[cfg(test)]
 mod tests;
 
@@ -10,6 +11,7 @@ use eyerays_shader::data::Grid as Words;
 use glam::{DAffine3, DVec3};
 
 use self::blocks::{Block, Blocks};
+pub use self::glow::append as append_glow;
 use super::normalisation::Normalisation;
 use crate::error::{Error, Result};
 use crate::memory::Room;
@@ -42,6 +44,15 @@ pub fn append(grid: &Grid, normalisation: &Normalisation, room: Room, words: &mu
         }
     }
     Ok(())
+}
+
+/// The greatest number of a grid whose words begin there.
+pub fn greatest(words: &[u32], at: u32) -> f32 {
+    let words = &words[at as usize..];
+    let along = &words[Words::BLOCKS as usize..][..3];
+    let count = along.iter().map(|&blocks| blocks as usize).product();
+    let records = words[Words::RECORDS as usize..].chunks_exact(2).take(count);
+    records.map(|record| f32::from_bits(record[0])).fold(0.0, f32::max)
 }
 
 /// The words of a grid at most, which follow `before` others. Kernels look up the record of any block by its place, so that there is one

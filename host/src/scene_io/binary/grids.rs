@@ -1,4 +1,4 @@
-//! Grids of densities in a file: the description tells what they are and who takes them, their numbers lie before the texels of textures.
+//! Grids of densities and temperatures in a file: the description tells what they are and who takes them, their numbers lie before the texels of textures.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -7,7 +7,7 @@ use glam::DAffine3;
 use serde::{Deserialize, Serialize};
 
 use crate::scene::hierarchy::records;
-use crate::scene::{Grid, Leaf, Scene, Unplaced};
+use crate::scene::{Grid, Leaf, Scene, Temperature, Unplaced, Volume};
 
 /// A grid: its leaves follow those of the grid before, the even ones first.
 #[derive(Serialize, Deserialize)]
@@ -28,6 +28,17 @@ struct Stored {
 pub struct Grids {
     grids: Vec<Stored>,
     taken: Vec<[u32; 2]>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    heated: Vec<Heated>,
+}
+
+/// A material that takes a grid for its temperature.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Heated {
+    material: u32,
+    grid: u32,
+    kelvins: f32,
 }
 
 /// Bytes of an even leaf: its place and its number.
@@ -38,18 +49,26 @@ const VOXELS: usize = 12 + 4 * 512;
 impl Grids {
     /// Those of a scene, and the bytes of their leaves.
     pub fn of(scene: &Scene) -> (Grids, Vec<u8>) {
-        let (mut grids, mut bytes, mut known) = (Grids::default(), Vec::new(), Vec::<Arc<Grid>>::new());
-        for (material, number) in scene.materials.iter().zip(0..) {
-            let Some(grid) = material.volume.as_ref().and_then(|volume| volume.density.as_ref()) else { continue };
+        let (mut grids, mut bytes, mut known) = (Vec::new(), Vec::new(), Vec::<Arc<Grid>>::new());
+        let mut place = |grid: &Arc<Grid>| {
             let found = known.iter().position(|other| Arc::ptr_eq(other, grid));
             let place = found.unwrap_or_else(|| {
                 known.push(grid.clone());
-                grids.grids.push(Stored::of(grid, &mut bytes));
+                grids.push(Stored::of(grid, &mut bytes));
                 known.len() - 1
             });
-            grids.taken.push([number, place as u32]);
+            place as u32
+        };
+        let (mut taken, mut heated) = (Vec::new(), Vec::new());
+        for (material, number) in scene.materials.iter().zip(0..) {
+            let Some(volume) = &material.volume else { continue };
+            taken.extend(volume.density.as_ref().map(|grid| [number, place(grid)]));
+            heated.extend(volume.temperature.as_ref().map(|temperature| {
+                let Temperature { grid, kelvins } = temperature;
+                Heated { material: number, grid: place(grid), kelvins: *kelvins }
+            }));
         }
-        (grids, bytes)
+        (Grids { grids, taken, heated }, bytes)
     }
 
     /// Is there none?
@@ -66,15 +85,24 @@ impl Grids {
         for stored in self.grids {
             grids.push(Arc::new(stored.grid(bytes)?));
         }
+        let taken = |place: u32| {
+            let grid = grids.get(place as usize).cloned();
+            grid.ok_or_else(|| format!("something takes grid {place} of {}", grids.len()))
+        };
         for [material, grid] in self.taken {
-            let volume = scene.materials.get_mut(material as usize).and_then(|material| material.volume.as_mut());
-            let volume = volume.ok_or_else(|| format!("material {material} takes a grid without a volume"))?;
-            let count = grids.len();
-            let grid = grids.get(grid as usize).ok_or_else(|| format!("something takes grid {grid} of {count}"))?;
-            volume.density = Some(grid.clone());
+            volume(scene, material)?.density = Some(taken(grid)?);
+        }
+        for Heated { material, grid, kelvins } in self.heated {
+            volume(scene, material)?.temperature = Some(Temperature { grid: taken(grid)?, kelvins });
         }
         Ok(())
     }
+}
+
+/// The volume of a material that takes a grid.
+fn volume(scene: &mut Scene, material: u32) -> Unplaced<&mut Volume> {
+    let volume = scene.materials.get_mut(material as usize).and_then(|material| material.volume.as_mut());
+    volume.ok_or_else(|| format!("material {material} takes a grid without a volume"))
 }
 
 impl Stored {

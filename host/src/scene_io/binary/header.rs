@@ -13,7 +13,7 @@ use crate::scene::{Disk, Instance, Sphere, Unplaced};
 /// No text begins like this.
 const MAGIC: [u8; 8] = *b"\x89EYERAYS";
 /// Of the form that this program writes and reads.
-const VERSION: u32 = 8;
+const VERSION: u32 = 9;
 /// Sections begin at multiples of so many bytes.
 pub const ALIGNMENT: usize = 64;
 /// Bytes that a thread hashes at once.

@@ -270,7 +270,7 @@ fn what_is_no_binary_scene_or_another_version_or_cut_off_or_changed_is_told_so()
     assert!(refused(|b| b.truncate(5)).starts_with("this is no binary scene"));
     assert!(refused(|b| b.truncate(100)).starts_with("its 100 bytes are less than a header"));
     assert!(refused(|b| b[0] = b'v').starts_with("this is no binary scene"));
-    assert!(refused(|b| b[8] = 7).starts_with("version 7 of the binary form, and 8 is what is read"));
+    assert!(refused(|b| b[8] = 8).starts_with("version 8 of the binary form, and 9 is what is read"));
     assert!(refused(|b| b[168] = 1).starts_with("its byte 168, which belongs to no section, is not zero"));
     assert!(refused(|b| b[12] = 1).starts_with("its header has other than zeros in its spare bytes"));
     assert!(refused(|b| b.truncate(1000)).starts_with("its 1000 bytes are not what its header tells"));

@@ -15,21 +15,18 @@ pub fn is(bytes: &[u8]) -> bool {
     [b"NanoVDB0", b"NanoVDB1", b"NanoVDB2"].iter().any(|magic| bytes.starts_with(*magic))
 }
 
-/// The name that a grid of densities has by convention.
-const DENSITY: &str = "density";
-
-/// A grid of such a file: that of a name, or "density", or else the first of single precision.
+/// A grid of such a file: that of a name, or of another by convention, or else the first of single precision.
 ///
 /// # Errors
 /// There is none, it is of other numbers or compressed otherwise, or the file is damaged.
-pub fn grid(bytes: &[u8], name: Option<&str>, title: &str, budget: &Budget) -> Unplaced<Grid> {
+pub fn grid(bytes: &[u8], (name, usual): (Option<&str>, &str), title: &str, budget: &Budget) -> Unplaced<Grid> {
     if bytes.starts_with(b"NanoVDB1") {
         // What is in memory, as it is.
         return tree(Bytes(bytes), title, budget);
     }
     let entries = entries(Bytes(bytes))?;
     let is_right = |entry: &&Entry| name.map_or(entry.kind == FLOAT, |name| entry.name == name);
-    let first = entries.iter().find(|entry| is_right(entry) && (name.is_some() || entry.name == DENSITY));
+    let first = entries.iter().find(|entry| is_right(entry) && (name.is_some() || entry.name == usual));
     let Some(entry) = first.or_else(|| entries.iter().find(is_right)) else {
         let names: Vec<String> = entries.iter().map(|entry| format!("{:?}", entry.name)).collect();
         let wanted = name.map_or("grid of single precision".to_owned(), |name| format!("grid {name:?}"));

@@ -123,7 +123,7 @@ fn parsed(bytes: &[u8], name: Option<&str>) -> Unplaced<Grid> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("g.nvdb");
     std::fs::write(&path, bytes).unwrap();
-    read(&path, name, &budget())
+    read(&path, (Quantity::Density, name), &budget())
 }
 
 #[test]
@@ -162,6 +162,24 @@ fn a_grid_is_found_by_its_name_or_named_where_there_is_none() {
     assert_eq!(refused("flags"), "its grid \"flags\" has numbers of kind 4; only single precision (1) is read");
 }
 
+/// A file of fire has both; what is named in neither way is the first.
+#[test]
+fn densities_and_temperatures_are_told_apart_by_their_names() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("fire.nvdb");
+    let grids = ["density", "flame", "temperature"].map(|name| (name, tree([8 * name.len() as i32, 0, 0], ramp, 1)));
+    let first = |grids: &[(&str, Vec<u8>)], quantity| {
+        std::fs::write(&path, file(grids, 0)).unwrap();
+        read(&path, (quantity, None), &budget()).unwrap().extent[0][0] as usize / 8
+    };
+    assert_eq!(first(&grids, Quantity::Density), "density".len());
+    assert_eq!(first(&grids, Quantity::Temperature), "temperature".len());
+    assert_eq!(first(&grids[1..2], Quantity::Temperature), "flame".len());
+    std::fs::write(&path, tree([0; 3], |_| -1.0, 1)).unwrap();
+    let refused = read(&path, (Quantity::Temperature, None), &budget()).unwrap_err();
+    assert_eq!(refused, "the grid has the number -1; temperatures are finite and at least 0");
+}
+
 #[test]
 fn what_is_not_read_says_why() {
     let of = |bytes: &[u8]| parsed(bytes, None).unwrap_err();
@@ -177,7 +195,7 @@ fn what_is_not_read_says_why() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("g.nvdb");
     std::fs::write(&path, tree([0; 3], ramp, 1)).unwrap();
-    assert!(read(&path, None, &small).unwrap_err().contains("a test leaves"));
+    assert!(read(&path, (Quantity::Density, None), &small).unwrap_err().contains("a test leaves"));
 }
 
 /// A node whose children are all the same node: a small file that would be read for hours.

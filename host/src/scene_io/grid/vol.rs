@@ -30,7 +30,7 @@ pub fn grid(bytes: &[u8], title: &str, budget: &Budget) -> Unplaced<Grid> {
     }
     let channels = bytes.i32(20)?;
     if channels != 1 {
-        return Err(format!("it has {channels} numbers a cell; densities have one"));
+        return Err(format!("it has {channels} numbers a cell; it must have one"));
     }
     let size = size.map(|along| along as u32);
     let count = size.iter().try_fold(1u64, |all, &along| all.checked_mul(along.into())).unwrap_or(u64::MAX);

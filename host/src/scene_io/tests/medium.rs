@@ -3,7 +3,7 @@
 use glam::Vec3;
 
 use super::{Folder, assert_refused};
-use crate::scene::{Medium, Scene, Volume};
+use crate::scene::{Medium, Scene, Temperature, Volume};
 use crate::scene_io::{describe, fingerprint, write};
 
 /// A grid volume of Mitsuba of two cells along x.
@@ -21,6 +21,8 @@ fn folder(text: &str) -> Folder {
         ("scene.toml", text.as_bytes()),
         ("g.vol", &vol([0.5, 3.0])),
         ("bad.vol", &vol([0.5, -1.0])),
+        ("fire.vol", &vol([900.0, 1800.0])),
+        ("ash.vol", &vol([0.0, 0.0])),
         ("no.nvdb", b"hello"),
     ])
 }
@@ -46,7 +48,7 @@ fn a_volume_is_as_it_is_told_and_nothing_where_nothing_is() {
         anisotropy: -0.3,
         emission: Vec3::splat(4.0),
     };
-    assert_eq!(of_material(all), Volume { medium, interface: false, priority: 9, density: None });
+    assert_eq!(of_material(all), Volume { priority: 9, ..Volume::open(medium) });
     let default = Volume { interface: true, ..Volume::open(Medium::default()) };
     assert_eq!(of_material(""), default);
     let scene = load("[fog]\nscattering = 0.1\n[[mesh]]\nshape = \"sphere\"\n");
@@ -87,9 +89,47 @@ fn what_no_medium_may_be_is_refused_where_it_stands() {
     refuse("density = \"bad.vol\"", "the grid has the number -1");
     refuse("density = { file = \"g.vol\", bounds = [[0, 0, 0], [1, 0, 1]] }", "must be greater than the first");
     refuse("density = { file = \"g.vol\", size = 3 }", "size");
+    refuse("density = { file = \"g.vol\", kelvins = 3 }", "kelvins");
+    refuse("temperature = \"fire.vol\"", "what sends red light must absorb red light: give it absorption");
+    refuse("temperature = \"fire.vol\", absorption = [1, 1, 0]", "must absorb blue light");
+    refuse("temperature = \"bad.vol\", absorption = 1", "bad.vol: the grid has the number -1; temperatures are finite");
+    refuse("temperature = { file = \"fire.vol\", kelvins = 0 }, absorption = 1", "must be between 0.001 and 1000000");
+    refuse("temperature = { file = \"fire.vol\", kelvins = nan }, absorption = 1", "must be between 0.001 and 1000000");
+    let hot = "temperature = { file = \"fire.vol\", kelvins = 1e6 }, absorption = 1";
+    refuse(hot, "fire.vol: its hottest place has 1.8e9 kelvins; lower kelvins, to at most 1e9 there");
     let shines = format!("[[material]]\nname = \"m\"\nemission = [1, 1, 1]\nvolume = {{ interface = false }}\n{BALL}");
     let scene = load(&shines);
     assert!(scene.check().unwrap_err().to_string().contains("shines without a surface"));
+}
+
+/// What is hot glows unless it is told otherwise.
+#[test]
+fn a_temperature_is_a_grid_and_its_kelvins() {
+    let told = of_material("temperature = \"fire.vol\", absorption = 1");
+    let temperature = told.temperature.expect("a temperature");
+    assert_eq!((told.medium.emission, temperature.kelvins), (Vec3::ONE, 1.0));
+    assert_eq!((temperature.grid.number([0, 0, 0]), temperature.grid.number([1, 0, 0])), (900.0, 1800.0));
+    assert_eq!(told.density, None);
+    let told =
+        "temperature = { file = \"g.vol\", kelvins = 1000, bounds = [[-1, -1, -1], [1, 1, 1]] }, density = \"g.vol\"";
+    let told = of_material(&format!("{told}, absorption = 1, emission = [4, 5, 6]"));
+    let temperature = told.temperature.expect("a temperature");
+    assert_eq!((told.medium.emission, temperature.kelvins), (Vec3::new(4.0, 5.0, 6.0), 1000.0));
+    assert_eq!(temperature.grid.bounds()[0], glam::DVec3::splat(-1.0));
+    assert_eq!(told.density.expect("a density").bounds()[0], glam::DVec3::ZERO);
+}
+
+#[test]
+fn a_temperature_of_which_nobody_sees_anything_is_a_warning() {
+    let warned = |volume: &str, why: &str| {
+        let text =
+            format!("[[material]]\nname = \"m\"\nvolume = {{ {volume}, absorption = 1, interface = false }}\n{BALL}");
+        let (_, warnings) = folder(&text).load("scene.toml").unwrap();
+        assert!(warnings.len() == 1 && warnings[0].contains(why), "{warnings:?}");
+    };
+    warned("temperature = \"ash.vol\"", "below 500 kelvins everywhere");
+    warned("temperature = \"g.vol\"", "raise its kelvins, or name another grid");
+    warned("temperature = \"fire.vol\", emission = 0", "an emission of 0; remove one of them");
 }
 
 #[test]
@@ -122,4 +162,46 @@ fn binary_scenes_keep_grids() {
     let grid = std::sync::Arc::make_mut(volume.density.as_mut().unwrap());
     grid.background = 1.0;
     assert_ne!(fingerprint(&other).unwrap(), fingerprint(&scene).unwrap());
+}
+
+/// One grid of both is kept once, and one of another unit is another scene.
+#[test]
+fn binary_scenes_keep_temperatures() {
+    let told = "temperature = { file = \"g.vol\", kelvins = 1000 }, absorption = 2, interface = false";
+    let mut scene = load(&format!("[[material]]\nname = \"m\"\nvolume = {{ {told} }}\n{BALL}"));
+    let kept = |scene: &Scene| {
+        let mut bytes = Vec::new();
+        write(scene, None, &mut bytes).unwrap();
+        let (again, _) = Folder::new(&[("scene.eyerays", &bytes)]).load("scene.eyerays").unwrap();
+        assert_eq!(again.materials, scene.materials);
+        assert_eq!(fingerprint(&again).unwrap(), fingerprint(scene).unwrap());
+        bytes.len()
+    };
+    let one = kept(&scene);
+    let volume = scene.materials[0].volume.as_mut().unwrap();
+    volume.density = volume.temperature.as_ref().map(|temperature| temperature.grid.clone());
+    let both = kept(&scene);
+    assert!(both < one + 200, "{both} bytes after {one}");
+    let mut other = scene.clone();
+    other.materials[0].volume.as_mut().unwrap().temperature.as_mut().unwrap().kelvins = 1001.0;
+    assert_ne!(fingerprint(&other).unwrap(), fingerprint(&scene).unwrap());
+}
+
+/// What code makes is refused as what files hold is.
+#[test]
+fn temperatures_of_code_are_checked() {
+    let scene = load(&format!(
+        "[[material]]\nname = \"m\"\nvolume = {{ temperature = \"fire.vol\", absorption = 2, interface = false }}\n{BALL}"
+    ));
+    let refused = |spoil: &dyn Fn(&mut Temperature)| {
+        let mut scene = scene.clone();
+        spoil(scene.materials[0].volume.as_mut().unwrap().temperature.as_mut().unwrap());
+        scene.check().unwrap_err().message()
+    };
+    let kelvins = refused(&|temperature| temperature.kelvins = f32::NAN);
+    assert!(kelvins.contains("material \"m\" has the kelvins of temperature NaN; it must be"), "{kelvins}");
+    let hot = refused(&|temperature| temperature.kelvins = 1e6);
+    assert!(hot.contains("material \"m\", \"fire.vol\": its hottest place has 1.8e9 kelvins"), "{hot}");
+    let odd = refused(&|temperature| std::sync::Arc::make_mut(&mut temperature.grid).background = -3.0);
+    assert!(odd.contains("the grid has the number -3; temperatures are finite"), "{odd}");
 }

@@ -109,7 +109,7 @@ impl Reader<'_, '_, '_> {
             return Ok(());
         }
         let medium = Medium::of_colour(colour, Absorption { colour: left, distance }.mean_way(), anisotropy);
-        self.fields.volume = Some(Filled { medium, interface: true, priority: 0, density: None });
+        self.fields.volume = Some(Filled { interface: true, ..Filled::open(medium) });
         // What is absorbed is the medium's.
         self.fields.physical.absorption = None;
         Ok(())

@@ -1,5 +1,7 @@
 //! Participating media against closed forms and published tables, with standard errors from pixels that see the same.
 
+mod temperatures;
+
 use std::sync::Arc;
 
 use eyerays::cpu;
@@ -215,10 +217,7 @@ fn what_absorbs_nothing_is_not_seen_in_a_white_furnace() {
         ("back", open(scatters(-0.5))),
         (
             "glass",
-            Material {
-                volume: Some(Volume { medium: scatters(0.3), interface: true, priority: 0, density: None }),
-                ..glass(Vec3::ONE)
-            },
+            Material { volume: Some(Volume { interface: true, ..Volume::open(scatters(0.3)) }), ..glass(Vec3::ONE) },
         ),
     ] {
         let mut scene = empty();
@@ -236,7 +235,7 @@ fn what_absorbs_nothing_is_not_seen_in_a_white_furnace() {
 fn bodies_within_bodies_reflect_by_the_indices_on_both_sides() {
     let filled = |ior: f32, priority: u8| Material {
         ior,
-        volume: Some(Volume { medium: Medium::default(), interface: true, priority, density: None }),
+        volume: Some(Volume { interface: true, priority, ..Volume::open(Medium::default()) }),
         ..glass(Vec3::ONE)
     };
     let physical = |ior: f32, priority: u8| Material {
@@ -379,7 +378,7 @@ fn every_method_gives_the_same_bits() {
     let mut scene = empty();
     scene.fog = Some(medium(0.05, 0.01, 0.4));
     add_box(&mut scene, open(medium(1.0, 0.2, 0.5)), Vec3::new(-2.0, -1.0, -6.0), Vec3::new(0.5, 1.0, -4.0));
-    let volume = Some(Volume { medium: medium(0.3, 1.0, 0.0), interface: true, priority: 2, density: None });
+    let volume = Some(Volume { interface: true, priority: 2, ..Volume::open(medium(0.3, 1.0, 0.0)) });
     scene.materials.push(Material { volume, ..glass(Vec3::ONE) });
     scene.spheres.push(Sphere { center: Vec3::new(0.5, 0.2, -5.0), radius: 0.9, material: 1 });
     add_wall(&mut scene, shining(4.0), Vec3::new(0.0, 0.0, -9.0), 2.0);

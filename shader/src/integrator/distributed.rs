@@ -1,7 +1,8 @@
 //! Distributed ray tracing (Cook, Porter and Carpenter, 1984; thesis 3.4.1): Whitted's tree of reflected and refracted rays, where
 //! lights have extent and each vertex asks one of them.
 
-use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};

@@ -1,6 +1,7 @@
 //! What the camera sees first, instead of light: for those who denoise a picture, or put pictures together.
 
-use super::sampled::{ScatterContext, Scattered, Vertex};
+use super::sampled::{ScatterContext, Scattered};
+use super::vertex::Vertex;
 use crate::buffer::read;
 use crate::data::{Effects, Launch, Physical, numbers};
 use crate::material::{Seen, Surface};

@@ -2,7 +2,8 @@
 //! them on their way, or scatters them there, with one sample of a light and one of the phase function.
 
 use super::path::{may_find_light, survive, weight};
-use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use crate::buffer::read;
 use crate::data::{Filling, Launch, Media, Medium, numbers};
 use crate::light::{EmitterSample, Viewpoint};

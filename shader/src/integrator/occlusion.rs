@@ -1,6 +1,7 @@
 //! Ambient occlusion (thesis 3.4.2): how much of a white sky a surface sees, as far as it looks.
 
-use super::sampled::{Scattered, Vertex};
+use super::sampled::Scattered;
+use super::vertex::Vertex;
 use crate::material::{Surface, cosine_direction, lifted};
 use crate::real::{Scalar, V3};
 use crate::scene::{LaunchContext, ShadingData};

@@ -3,7 +3,8 @@
 
 use super::feature::albedo;
 use super::medium;
-use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use crate::background::gradient;
 use crate::buffer::read;
 use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Media, Primitive, numbers};

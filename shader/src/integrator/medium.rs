@@ -10,7 +10,6 @@ use crate::light::{EmitterSample, Viewpoint};
 use crate::medium::{Chain, Flight, MOST_CROSSINGS, Phase, delta, glow, transmittance};
 use crate::ray::Ray;
 use crate::real::{FAINT, Scalar, TINY, V3};
-use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{Contribution, FirstSurface, PathState, Segment, ShadowRay, Split};
 
@@ -88,7 +87,7 @@ pub(super) fn at<R: Scalar>(
     let path = PathState { weight: path.weight.times(albedo).map(|c| c.flush(FAINT)), ..path };
     let vertex = &Vertex { path, ..*vertex };
     let phase = Phase(R::splat(f32::from_bits(medium.albedo.w)));
-    let decisions = vertex.draws.set(DECISIONS + path.bounces);
+    let decisions = vertex.decisions();
     let shadow = if is_lit(launch) {
         let view = Viewpoint { origin, side: 0, time: vertex.found.time };
         let pair = vertex.draws.pair(path.bounces);

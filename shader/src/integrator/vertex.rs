@@ -9,8 +9,10 @@ use crate::light::EmitterSample;
 use crate::material::{Seen, transmittance};
 use crate::medium::Inside;
 use crate::real::{FAINT, Real, Scalar, V3};
+use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{Contribution, Found, PathState, Segment, ShadowRay};
+use glam::UVec4;
 
 /// What is known where a slot's ray has hit something.
 #[derive(Clone, Copy)]
@@ -46,6 +48,12 @@ impl<R: Scalar> Vertex<R> {
         let left = transmittance(launch, &material, self.found.t);
         let weight = self.path.weight.times(left).map(|c| c.flush(FAINT));
         Vertex { path: PathState { weight, ..self.path }, ..*self }
+    }
+
+    /// The numbers that decide what comes of it.
+    #[inline(always)]
+    pub fn decisions(&self) -> UVec4 {
+        self.draws.set(DECISIONS + self.path.bounces)
     }
 
     /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.

@@ -16,19 +16,19 @@ pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    seen: &Seen<R>,
 ) -> Scattered<R> {
-    let seen = vertex.met(launch);
     let feature = if launch.spec.launch.has(Launch::PLACE) {
-        place(launch, &seen)
+        place(launch, seen)
     } else if launch.spec.launch.has(Launch::POSITION) {
         seen.interaction.position
     } else {
         let covering = seen.covering(launch, &context.shading);
-        let surface = Surface::new(launch, &context.shading, &seen, &covering);
+        let surface = Surface::new(launch, &context.shading, seen, &covering);
         if launch.spec.launch.has(Launch::NORMAL) {
             surface.normal
         } else {
-            albedo(launch, context.physicals, (&seen, &surface), &covering)
+            albedo(launch, context.physicals, (seen, &surface), &covering)
         }
     };
     Scattered::once(feature.map(|c| c.flush(FAINT)), ShadowRay::none(), vertex.path, false)

@@ -6,6 +6,7 @@ use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
 use super::vertex::Vertex;
 use crate::buffer::read;
 use crate::data::{Filling, Launch, Media, Medium, numbers};
+use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Viewpoint};
 use crate::medium::{Chain, Flight, MOST_CROSSINGS, Phase, delta, glow, transmittance};
 use crate::ray::Ray;
@@ -161,21 +162,23 @@ pub(super) fn dimmed<R: Scalar>(launch: &LaunchContext<'_>, media: &[Medium], ra
     ShadowRay { light: ray.light.times(left).map(|c| c.flush(FAINT)), ..ray }
 }
 
-/// Is the surface that a path has met not there: by itself, or since what is there is the same on both sides of it?
+/// Is the surface that a path has met, from its front or from its back, not there: by itself, or since what is there is the same on both
+/// sides of it?
 #[inline(always)]
 pub(super) fn is_crossed<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    front: bool,
 ) -> bool {
     let media = launch.spec.media;
     if media.has(Media::OPEN) && vertex.filling.is_open() {
         return true;
     }
-    if !media.has(Media::NESTED) || vertex.filling.medium() == 0 || vertex.found.is_nothing() {
+    if !media.has(Media::NESTED) || vertex.filling.medium() == 0 {
         return false;
     }
-    let (before, after) = sides(launch, context, vertex, vertex.met(launch).interaction.front);
+    let (before, after) = sides(launch, context, vertex, front);
     before == after
 }
 
@@ -212,10 +215,8 @@ pub(super) fn around<R: Scalar>(
 // A function of its own on a CPU, where what no scene has would take registers from the rest.
 #[cfg_attr(target_arch = "spirv", inline(always))]
 #[cfg_attr(not(target_arch = "spirv"), inline(never))]
-pub(super) fn crossed<R: Scalar>(launch: &LaunchContext<'_>, vertex: &Vertex<R>) -> Scattered<R> {
+pub(super) fn crossed<R: Scalar>(vertex: &Vertex<R>, interaction: SurfaceInteraction<R>) -> Scattered<R> {
     let path = vertex.path;
-    let seen = vertex.met(launch);
-    let interaction = &seen.interaction;
     let inside = path.inside.across(interaction.front, vertex.filling.medium());
     let next = PathState {
         origin: interaction.offset_ray_origin(path.direction),

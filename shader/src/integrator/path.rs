@@ -24,11 +24,11 @@ pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    seen: &Seen<R>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting, .. } = context;
-    let seen = vertex.met(launch);
-    let vertex = &vertex.arrived(launch, physicals, &seen);
+    let vertex = &vertex.arrived(launch, physicals, seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
     if vertex.after_catcher && seen.primitive.has(Primitive::CATCHER) {
@@ -36,24 +36,24 @@ pub(super) fn at<R: Scalar>(
         return Scattered::once(V3::zero(), ShadowRay::none(), path, false);
     }
     let covering = seen.whole_covering(launch, context, is_last);
-    let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
-    let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, &seen));
+    let light = share(launch, &path, emitted(launch, lighting, vertex, seen, &covering));
+    let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, seen));
     if is_last {
         return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
-    let surface = Surface::new(launch, shading, &seen, &covering);
+    let surface = Surface::new(launch, shading, seen, &covering);
     let surface = if launch.spec.media.has(Media::NESTED) {
         surface.within(medium::around(launch, context, vertex, seen.interaction.front))
     } else {
         surface
     };
     if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
-        let albedo = albedo(launch, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
+        let albedo = albedo(launch, physicals, (seen, &surface), &covering).map(|c| c.flush(FAINT));
         let normal = surface.normal.map(|c| c.flush(FAINT));
         outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
     }
-    let passes = lets_through(launch, context, &seen);
-    let seen = if passes { seen } else { Seen { interaction: lifted(launch, shading, &seen), ..seen } };
+    let passes = lets_through(launch, context, seen);
+    let seen = if passes { *seen } else { Seen { interaction: lifted(launch, shading, seen), ..*seen } };
     if effects.has(Effects::PHYSICAL) {
         // Drawn before the closure only where that asks for one of them, so that others need not keep them meanwhile.
         let is_dispersive = launch.spec.finishes.has(Finishes::DISPERSIVE);

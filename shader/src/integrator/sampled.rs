@@ -5,7 +5,7 @@ use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::{Effects, Filling, Finish, Launch, Media, Medium, Physical, Primitive};
 use crate::light::{Environment, Lighting};
-use crate::material::Albedos;
+use crate::material::{Albedos, Seen};
 use crate::medium::{Chain, MOST_CROSSINGS};
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::Key;
@@ -147,8 +147,6 @@ pub fn scatter<R: Scalar>(
     // The ray of a slot outside the image hits nothing.
     let mut scattered = if media.has(Media::PRESENT) && collides {
         medium::at(launch, context, &vertex)
-    } else if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex) {
-        medium::crossed(launch, &vertex)
     } else if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
@@ -159,21 +157,19 @@ pub fn scatter<R: Scalar>(
             outputs: Outputs::of(Contribution::<R>::SURROUNDINGS, launch.frame.group),
             ..Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
         }
-    } else if is_hole(launch, &path, &found) {
-        word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
-        Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
-        if after_catcher && launch.placed(found.index, found.instance, found.time).has(Primitive::CATCHER) {
-            caught = caught.open();
-        }
-        if bits.has(Launch::FEATURE) {
-            feature::at(launch, context, &vertex)
-        } else if bits.has(Launch::OCCLUSION) {
-            occlusion::at(launch, &context.shading, &vertex)
-        } else if bits.has(Launch::TREE) {
-            distributed::at(launch, context, &vertex)
+        let seen = vertex.met(launch);
+        let Seen { primitive, interaction, .. } = seen;
+        if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex, interaction.front) {
+            medium::crossed(&vertex, interaction)
+        } else if is_hole(launch, &path, &primitive) {
+            word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
+            Scattered::once(V3::zero(), ShadowRay::none(), path, false)
         } else {
-            path::at(launch, context, &vertex)
+            if after_catcher && primitive.has(Primitive::CATCHER) {
+                caught = caught.open();
+            }
+            integrated(launch, context, &vertex, &seen)
         }
     };
     if bits.has(Launch::CATCHER) && scattered.catches {
@@ -202,12 +198,30 @@ pub fn scatter<R: Scalar>(
     follow(launch, slot, &path, scattered, paths)
 }
 
+/// What the integrator that a launch asks for makes of a surface.
+#[inline(always)]
+fn integrated<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+    seen: &Seen<R>,
+) -> Scattered<R> {
+    let bits = launch.spec.launch;
+    if bits.has(Launch::FEATURE) {
+        feature::at(launch, context, vertex, seen)
+    } else if bits.has(Launch::OCCLUSION) {
+        occlusion::at(launch, &context.shading, vertex, seen)
+    } else if bits.has(Launch::TREE) {
+        distributed::at(launch, context, vertex, seen)
+    } else {
+        path::at(launch, context, vertex, seen)
+    }
+}
+
 /// Does the camera's ray meet what cuts a hole into the picture?
 #[inline(always)]
-fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, found: &Found<R>) -> bool {
-    launch.spec.effects.has(Effects::HOLDOUT)
-        && path.bounces == 0
-        && launch.placed(found.index, found.instance, found.time).has(Primitive::HOLDOUT)
+fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive: &Primitive) -> bool {
+    launch.spec.effects.has(Effects::HOLDOUT) && path.bounces == 0 && primitive.has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.

@@ -1,5 +1,6 @@
 //! What lies on surfaces by microfacets, and what else their bases do with light.
 
+use super::word;
 use bytemuck::{Pod, Zeroable};
 use glam::UVec4;
 
@@ -88,7 +89,6 @@ impl FinishMaps {
         } else {
             self.third
         };
-        let two = if number & 2 == 0 { (four.x, four.y) } else { (four.z, four.w) };
-        if number & 1 == 0 { two.0 } else { two.1 }
+        word(four, number)
     }
 }

@@ -59,6 +59,13 @@ pub fn numbers(q: UVec4) -> Vec3 {
     Vec3::new(f32::from_bits(q.x), f32::from_bits(q.y), f32::from_bits(q.z))
 }
 
+/// One of four integers, by the last two bits of a number.
+#[inline(always)]
+fn word(four: UVec4, number: u32) -> u32 {
+    let two = if number & 2 == 0 { (four.x, four.y) } else { (four.z, four.w) };
+    if number & 1 == 0 { two.0 } else { two.1 }
+}
+
 /// The most triangles a leaf holds (thesis chapter 6: "less than six").
 pub const MAX_LEAF: u32 = 5;
 /// Entries of a traversal stack; `eyerays-bvh` builds no tree that needs more.

@@ -1,5 +1,6 @@
 //! Textures, and where surfaces take them from.
 
+use super::word;
 use bytemuck::{Pod, Zeroable};
 use glam::UVec4;
 
@@ -72,9 +73,7 @@ impl Maps {
     /// The map of a number.
     #[inline(always)]
     pub fn of(&self, number: u32) -> u32 {
-        let four = if number < 4 { self.first } else { self.second };
-        let two = if number & 2 == 0 { (four.x, four.y) } else { (four.z, four.w) };
-        if number & 1 == 0 { two.0 } else { two.1 }
+        word(if number < 4 { self.first } else { self.second }, number)
     }
 }
 

@@ -1,7 +1,8 @@
 //! Distributed ray tracing (Cook, Porter and Carpenter, 1984; thesis 3.4.1): Whitted's tree of reflected and refracted rays, where
 //! lights have extent and each vertex asks one of them.
 
-use super::sampled::{ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use super::whitted::counts;
 use crate::buffer::read;
 use crate::data::{Effects, numbers};
@@ -22,14 +23,14 @@ pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    seen: &Seen<R>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
     let ScatterContext { shading, lighting, physicals, .. } = context;
-    let seen = vertex.met(launch);
-    let vertex = &vertex.arrived(launch, physicals, &seen);
+    let vertex = &vertex.arrived(launch, physicals, seen);
     let covering = seen.covering(launch, shading);
-    let surface = Surface::new(launch, shading, &seen, &covering);
-    let seen = Seen { interaction: lifted(launch, shading, &seen), ..seen };
+    let surface = Surface::new(launch, shading, seen, &covering);
+    let seen = Seen { interaction: lifted(launch, shading, seen), ..*seen };
     let (path, interaction) = (vertex.path, seen.interaction);
     if effects.has(Effects::PHYSICAL) {
         let channels = Channels { weight: path.weight, draw: 0 };

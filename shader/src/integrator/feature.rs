@@ -1,6 +1,7 @@
 //! What the camera sees first, instead of light: for those who denoise a picture, or put pictures together.
 
-use super::sampled::{ScatterContext, Scattered, Vertex};
+use super::sampled::{ScatterContext, Scattered};
+use super::vertex::Vertex;
 use crate::buffer::read;
 use crate::data::{Effects, Launch, Physical, numbers};
 use crate::material::{Seen, Surface};
@@ -15,19 +16,19 @@ pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    seen: &Seen<R>,
 ) -> Scattered<R> {
-    let seen = vertex.met(launch);
     let feature = if launch.spec.launch.has(Launch::PLACE) {
-        place(launch, &seen)
+        place(launch, seen)
     } else if launch.spec.launch.has(Launch::POSITION) {
         seen.interaction.position
     } else {
         let covering = seen.covering(launch, &context.shading);
-        let surface = Surface::new(launch, &context.shading, &seen, &covering);
+        let surface = Surface::new(launch, &context.shading, seen, &covering);
         if launch.spec.launch.has(Launch::NORMAL) {
             surface.normal
         } else {
-            albedo(launch, context.physicals, (&seen, &surface), &covering)
+            albedo(launch, context.physicals, (seen, &surface), &covering)
         }
     };
     Scattered::once(feature.map(|c| c.flush(FAINT)), ShadowRay::none(), vertex.path, false)

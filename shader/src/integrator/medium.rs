@@ -2,14 +2,15 @@
 //! them on their way, or scatters them there, with one sample of a light and one of the phase function.
 
 use super::path::{may_find_light, survive, weight};
-use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use crate::buffer::read;
 use crate::data::{Filling, Launch, Media, Medium, numbers};
+use crate::geometry::SurfaceInteraction;
 use crate::light::{EmitterSample, Viewpoint};
 use crate::medium::{Chain, Flight, MOST_CROSSINGS, Phase, delta, glow, transmittance};
 use crate::ray::Ray;
 use crate::real::{FAINT, Scalar, TINY, V3};
-use crate::sampler::DECISIONS;
 use crate::scene::LaunchContext;
 use crate::stage::{Contribution, FirstSurface, PathState, Segment, ShadowRay, Split};
 
@@ -87,7 +88,7 @@ pub(super) fn at<R: Scalar>(
     let path = PathState { weight: path.weight.times(albedo).map(|c| c.flush(FAINT)), ..path };
     let vertex = &Vertex { path, ..*vertex };
     let phase = Phase(R::splat(f32::from_bits(medium.albedo.w)));
-    let decisions = vertex.draws.set(DECISIONS + path.bounces);
+    let decisions = vertex.decisions();
     let shadow = if is_lit(launch) {
         let view = Viewpoint { origin, side: 0, time: vertex.found.time };
         let pair = vertex.draws.pair(path.bounces);
@@ -161,21 +162,23 @@ pub(super) fn dimmed<R: Scalar>(launch: &LaunchContext<'_>, media: &[Medium], ra
     ShadowRay { light: ray.light.times(left).map(|c| c.flush(FAINT)), ..ray }
 }
 
-/// Is the surface that a path has met not there: by itself, or since what is there is the same on both sides of it?
+/// Is the surface that a path has met, from its front or from its back, not there: by itself, or since what is there is the same on both
+/// sides of it?
 #[inline(always)]
 pub(super) fn is_crossed<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    front: bool,
 ) -> bool {
     let media = launch.spec.media;
     if media.has(Media::OPEN) && vertex.filling.is_open() {
         return true;
     }
-    if !media.has(Media::NESTED) || vertex.filling.medium() == 0 || vertex.found.is_nothing() {
+    if !media.has(Media::NESTED) || vertex.filling.medium() == 0 {
         return false;
     }
-    let (before, after) = sides(launch, context, vertex, vertex.met(launch).interaction.front);
+    let (before, after) = sides(launch, context, vertex, front);
     before == after
 }
 
@@ -212,10 +215,8 @@ pub(super) fn around<R: Scalar>(
 // A function of its own on a CPU, where what no scene has would take registers from the rest.
 #[cfg_attr(target_arch = "spirv", inline(always))]
 #[cfg_attr(not(target_arch = "spirv"), inline(never))]
-pub(super) fn crossed<R: Scalar>(launch: &LaunchContext<'_>, vertex: &Vertex<R>) -> Scattered<R> {
+pub(super) fn crossed<R: Scalar>(vertex: &Vertex<R>, interaction: SurfaceInteraction<R>) -> Scattered<R> {
     let path = vertex.path;
-    let seen = vertex.met(launch);
-    let interaction = &seen.interaction;
     let inside = path.inside.across(interaction.front, vertex.filling.medium());
     let next = PathState {
         origin: interaction.offset_ray_origin(path.direction),

@@ -2,11 +2,13 @@
 //! go on. The host's file of the same name has its stages in their order.
 
 mod distributed;
+mod draws;
 mod feature;
 mod medium;
 mod occlusion;
 mod path;
 mod sampled;
+mod vertex;
 mod whitted;
 
 pub use sampled::{Exchange, ScatterContext, scatter};

@@ -3,7 +3,8 @@
 
 use super::feature::albedo;
 use super::medium;
-use super::sampled::{Outputs, ScatterContext, Scattered, Vertex, is_lit, share};
+use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
+use super::vertex::Vertex;
 use crate::background::gradient;
 use crate::buffer::read;
 use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Media, Primitive, numbers};
@@ -11,11 +12,11 @@ use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Channels, Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
 use crate::ray::Ray;
-use crate::real::{FAINT, SMALL, Scalar, V3};
-use crate::sampler::DECISIONS;
+use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::scene::LaunchContext;
 use crate::stage::{Caught, Contribution, FirstSurface, PathState, ShadowRay, Split, brightness};
 use crate::texture::{Covering, Place};
+use glam::UVec4;
 
 /// Adds what the surface emits, asks for the light of one light, and goes on.
 #[inline(always)]
@@ -23,11 +24,11 @@ pub(super) fn at<R: Scalar>(
     launch: &LaunchContext<'_>,
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
+    seen: &Seen<R>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting, .. } = context;
-    let seen = vertex.met(launch);
-    let vertex = &vertex.arrived(launch, physicals, &seen);
+    let vertex = &vertex.arrived(launch, physicals, seen);
     let path = vertex.path;
     let is_last = path.bounces > launch.frame.bounces;
     if vertex.after_catcher && seen.primitive.has(Primitive::CATCHER) {
@@ -35,38 +36,38 @@ pub(super) fn at<R: Scalar>(
         return Scattered::once(V3::zero(), ShadowRay::none(), path, false);
     }
     let covering = seen.whole_covering(launch, context, is_last);
-    let light = share(launch, &path, emitted(launch, lighting, vertex, &seen, &covering));
-    let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, &seen));
+    let light = share(launch, &path, emitted(launch, lighting, vertex, seen, &covering));
+    let mut outputs = Outputs::of(Contribution::<R>::SURFACE, group(launch, lighting, seen));
     if is_last {
         return Scattered { outputs, ..Scattered::once(light, ShadowRay::none(), path, false) };
     }
-    let surface = Surface::new(launch, shading, &seen, &covering);
+    let surface = Surface::new(launch, shading, seen, &covering);
     let surface = if launch.spec.media.has(Media::NESTED) {
         surface.within(medium::around(launch, context, vertex, seen.interaction.front))
     } else {
         surface
     };
     if launch.spec.aovs.has(Aovs::ALBEDO | Aovs::NORMAL) && path.bounces == 0 {
-        let albedo = albedo(launch, physicals, (&seen, &surface), &covering).map(|c| c.flush(FAINT));
+        let albedo = albedo(launch, physicals, (seen, &surface), &covering).map(|c| c.flush(FAINT));
         let normal = surface.normal.map(|c| c.flush(FAINT));
         outputs.surface = FirstSurface { albedo, normal, ..outputs.surface };
     }
-    let seen = if lets_through(launch, context, &seen) {
-        seen
-    } else {
-        Seen { interaction: lifted(launch, shading, &seen), ..seen }
-    };
+    let passes = lets_through(launch, context, seen);
+    let seen = if passes { *seen } else { Seen { interaction: lifted(launch, shading, seen), ..*seen } };
     if effects.has(Effects::PHYSICAL) {
+        // Drawn before the closure only where that asks for one of them, so that others need not keep them meanwhile.
         let is_dispersive = launch.spec.finishes.has(Finishes::DISPERSIVE);
+        let early = if is_dispersive { vertex.decisions() } else { UVec4::ZERO };
         // Of this number nobody else asks the last bits.
-        let draw = if is_dispersive { vertex.draws.set(DECISIONS + path.bounces).y } else { 0 };
-        let channels = Channels { weight: path.weight, draw };
+        let channels = Channels { weight: path.weight, draw: early.y };
         let closure = closure(launch, context, (&seen, &surface), &covering, channels);
-        return scattered(launch, context, vertex, (&seen, &closure), (light, outputs));
+        let decisions = if is_dispersive { early } else { vertex.decisions() };
+        return scattered(launch, context, vertex, (&seen, &closure), Known { light, outputs, passes, decisions });
     }
     let interaction = seen.interaction;
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    scattered(launch, context, vertex, (&seen, &lobes), (light, outputs))
+    let known = Known { light, outputs, passes, decisions: vertex.decisions() };
+    scattered(launch, context, vertex, (&seen, &lobes), known)
 }
 
 /// The group of lamps that a surface is in, where somebody asks for it.
@@ -93,6 +94,18 @@ fn lets_through<R: Scalar>(launch: &LaunchContext<'_>, context: &ScatterContext<
         || launch.spec.finishes.has(Finishes::TRANSLUCENT) && read(context.finishes, seen.material()).is_translucent()
 }
 
+/// What is known of a vertex before its closure is asked.
+struct Known<R: Real> {
+    /// What the surface itself sends, linear RGB that reaches the pixel.
+    light: V3<R>,
+    /// What arbitrary output variables ask of it.
+    outputs: Outputs<R>,
+    /// Does the surface send light of its far side to the viewer?
+    passes: bool,
+    /// See [`Vertex::decisions`].
+    decisions: UVec4,
+}
+
 /// The light of one light, and the next ray, by a surface's closure.
 #[inline(always)]
 fn scattered<R: Scalar>(
@@ -100,13 +113,11 @@ fn scattered<R: Scalar>(
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     (seen, closure): (&Seen<R>, &impl Closure<R>),
-    (light, mut outputs): (V3<R>, Outputs<R>),
+    Known { light, mut outputs, passes, decisions }: Known<R>,
 ) -> Scattered<R> {
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
-    let decisions = vertex.draws.set(DECISIONS + bounces);
     let ScatterContext { shading, lighting, media, .. } = context;
-    let passes = lets_through(launch, context, seen);
     let view = Viewpoint::on(&interaction, closure.normal(), passes).at(seen.time);
     let is_asked = is_lit(launch) && closure.is_rough();
     let unlit = unlit(launch, shading.materials, seen);

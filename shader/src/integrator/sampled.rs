@@ -4,19 +4,17 @@ use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
 use crate::data::{Effects, Filling, Finish, Launch, Media, Medium, Physical, Primitive};
-use crate::geometry::SurfaceInteraction;
-use crate::light::{EmitterSample, Environment, Lighting};
-use crate::material::{Albedos, Seen, transmittance};
-use crate::medium::{Chain, Inside, MOST_CROSSINGS};
+use crate::light::{Environment, Lighting};
+use crate::material::{Albedos, Seen};
+use crate::medium::{Chain, MOST_CROSSINGS};
 use crate::real::{FAINT, Real, Scalar, V3};
-use crate::sampler::{self, AFTER_LENS, FLIGHTS, Key};
+use crate::sampler::Key;
 use crate::scene::{LaunchContext, ShadingData};
-use crate::stage::{
-    AovSlot, CLEARED, Caught, Contribution, FirstSurface, Found, NON_FINITE, PathState, Segment, ShadowRay,
-};
-use glam::UVec4;
+use crate::stage::{AovSlot, CLEARED, Caught, Contribution, FirstSurface, Found, NON_FINITE, PathState, ShadowRay};
 
+use super::draws::Draws;
 use super::path::weight;
+use super::vertex::Vertex;
 use super::{distributed, feature, medium, occlusion, path};
 
 /// The records that the stages of a wave exchange.
@@ -52,95 +50,6 @@ pub struct ScatterContext<'a> {
     pub media: &'a [Medium],
     /// Where they are denser ([`Media::GRIDS`]).
     pub grids: &'a [u32],
-}
-
-/// What is known where a slot's ray has hit something.
-#[derive(Clone, Copy)]
-pub(super) struct Vertex<R: Real> {
-    pub path: PathState<R>,
-    /// What it came to.
-    pub found: Found<R>,
-    pub draws: Draws,
-    /// Did the path start on a shadow catcher, as its first vertex? Of the light of that, catchers tell no more than what is shadowed.
-    pub after_catcher: bool,
-    /// What is inside of the surface ([`Media::PRESENT`]).
-    pub filling: Filling,
-}
-
-impl<R: Scalar> Vertex<R> {
-    /// What is hit.
-    #[inline(always)]
-    pub fn met(&self, launch: &LaunchContext<'_>) -> Seen<R> {
-        let (Found { t, coordinates, index, instance, time }, direction) = (self.found, self.path.direction);
-        let primitive = launch.placed(index, instance, time);
-        let interaction = SurfaceInteraction::new(launch.spec.effects, &primitive, coordinates, direction);
-        let cone = self.path.cone(launch, t, self.draws.sample);
-        Seen { index, instance, time, primitive, interaction, direction, cone }
-    }
-
-    /// With what of the path has come through the body whose inside it hits.
-    #[inline(always)]
-    pub fn arrived(&self, launch: &LaunchContext<'_>, physicals: &[Physical], seen: &Seen<R>) -> Self {
-        if !launch.spec.effects.has(Effects::ABSORBING) || seen.interaction.front {
-            return *self;
-        }
-        let material = read(physicals, seen.material());
-        let left = transmittance(launch, &material, self.found.t);
-        let weight = self.path.weight.times(left).map(|c| c.flush(FAINT));
-        Vertex { path: PathState { weight, ..self.path }, ..*self }
-    }
-
-    /// Asks for `light` of a sampled light, which this vertex scatters once more, from `origin` on.
-    #[inline(always)]
-    pub fn asks(
-        &self,
-        launch: &LaunchContext<'_>,
-        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
-        sample: &EmitterSample<R>,
-        light: V3<R>,
-    ) -> ShadowRay<R> {
-        let EmitterSample { direction, limit, .. } = *sample;
-        let segment = Segment { origin, direction, limit, source_primitive: interaction.source_primitive(direction) };
-        let path = PathState { bounces: self.path.bounces + 1, ..self.path };
-        let tag = if launch.spec.aovs.any() { Contribution::<R>::tag(sample.group, path.bounces) } else { 0 };
-        let inside = self.inside(interaction, direction);
-        ShadowRay { segment, light: share(launch, &path, light), tag, inside, ..ShadowRay::none() }
-    }
-
-    /// What a ray is in that leaves the surface towards a direction.
-    #[inline(always)]
-    fn inside(&self, interaction: &SurfaceInteraction<R>, direction: V3<R>) -> Inside {
-        let inside = self.path.inside.scattered();
-        if interaction.receives(direction) { inside } else { inside.across(interaction.front, self.filling.medium()) }
-    }
-
-    /// Is it on a shadow catcher that the camera sees?
-    #[inline(always)]
-    pub fn catches(&self, launch: &LaunchContext<'_>, primitive: &Primitive) -> bool {
-        launch.spec.launch.has(Launch::CATCHER) && self.path.bounces == 0 && primitive.has(Primitive::CATCHER)
-    }
-
-    /// The path that goes on from here: `factor` of its light counts, `density` is that of its direction.
-    #[inline(always)]
-    pub fn on(
-        &self,
-        (interaction, origin): (&SurfaceInteraction<R>, V3<R>),
-        direction: V3<R>,
-        factor: V3<R>,
-        density: R,
-    ) -> PathState<R> {
-        PathState {
-            origin,
-            direction,
-            source_primitive: interaction.source_primitive(direction),
-            weight: self.path.weight.times(factor).map(|c| c.flush(FAINT)),
-            bounces: self.path.bounces + 1,
-            density,
-            from: origin,
-            inside: self.inside(interaction, direction),
-            ..self.path
-        }
-    }
 }
 
 /// Is there any light to sample?
@@ -197,40 +106,6 @@ impl<R: Scalar> Scattered<R> {
     }
 }
 
-/// The numbers that a slot draws.
-#[derive(Clone, Copy)]
-pub(super) struct Draws {
-    launch: Launch,
-    key: Key,
-    sample: u32,
-    has_lens: bool,
-}
-
-impl Draws {
-    /// The numbers of a way through a medium, by how often its path was scattered and has crossed surfaces since that are not there.
-    #[inline(always)]
-    pub fn flight(self, bounces: u32, crossings: u32) -> UVec4 {
-        self.set(FLIGHTS + ((bounces << 8) | crossings))
-    }
-
-    /// A set of numbers, see [`sampler::set`].
-    #[inline(always)]
-    pub fn set(self, set: u32) -> UVec4 {
-        sampler::set(self.launch, self.key, self.sample, set)
-    }
-
-    /// The pair that belongs to the ray that finds a vertex. That of the camera's is the lens' where there is one.
-    #[inline(always)]
-    pub fn pair(self, vertex: u32) -> (u32, u32) {
-        if self.has_lens && vertex == 0 {
-            let set = self.set(AFTER_LENS);
-            return (set.x, set.y);
-        }
-        let set = self.set(vertex);
-        (set.z, set.w)
-    }
-}
-
 /// Scatters a slot's path at its hit. Returns whether it has another ray to trace.
 #[inline(always)]
 pub fn scatter<R: Scalar>(
@@ -272,8 +147,6 @@ pub fn scatter<R: Scalar>(
     // The ray of a slot outside the image hits nothing.
     let mut scattered = if media.has(Media::PRESENT) && collides {
         medium::at(launch, context, &vertex)
-    } else if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex) {
-        medium::crossed(launch, &vertex)
     } else if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };
@@ -284,21 +157,19 @@ pub fn scatter<R: Scalar>(
             outputs: Outputs::of(Contribution::<R>::SURROUNDINGS, launch.frame.group),
             ..Scattered::once(share(launch, &path, light), ShadowRay::none(), path, false)
         }
-    } else if is_hole(launch, &path, &found) {
-        word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
-        Scattered::once(V3::zero(), ShadowRay::none(), path, false)
     } else {
-        if after_catcher && launch.placed(found.index, found.instance, found.time).has(Primitive::CATCHER) {
-            caught = caught.open();
-        }
-        if bits.has(Launch::FEATURE) {
-            feature::at(launch, context, &vertex)
-        } else if bits.has(Launch::OCCLUSION) {
-            occlusion::at(launch, &context.shading, &vertex)
-        } else if bits.has(Launch::TREE) {
-            distributed::at(launch, context, &vertex)
+        let seen = vertex.met(launch);
+        let Seen { primitive, interaction, .. } = seen;
+        if media.has(Media::OPEN | Media::NESTED) && medium::is_crossed(launch, context, &vertex, interaction.front) {
+            medium::crossed(&vertex, interaction)
+        } else if is_hole(launch, &path, &primitive) {
+            word = if bits.has(Launch::CLEAR) { word | CLEARED } else { word };
+            Scattered::once(V3::zero(), ShadowRay::none(), path, false)
         } else {
-            path::at(launch, context, &vertex)
+            if after_catcher && primitive.has(Primitive::CATCHER) {
+                caught = caught.open();
+            }
+            integrated(launch, context, &vertex, &seen)
         }
     };
     if bits.has(Launch::CATCHER) && scattered.catches {
@@ -327,12 +198,30 @@ pub fn scatter<R: Scalar>(
     follow(launch, slot, &path, scattered, paths)
 }
 
+/// What the integrator that a launch asks for makes of a surface.
+#[inline(always)]
+fn integrated<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    context: &ScatterContext<'_>,
+    vertex: &Vertex<R>,
+    seen: &Seen<R>,
+) -> Scattered<R> {
+    let bits = launch.spec.launch;
+    if bits.has(Launch::FEATURE) {
+        feature::at(launch, context, vertex, seen)
+    } else if bits.has(Launch::OCCLUSION) {
+        occlusion::at(launch, &context.shading, vertex, seen)
+    } else if bits.has(Launch::TREE) {
+        distributed::at(launch, context, vertex, seen)
+    } else {
+        path::at(launch, context, vertex, seen)
+    }
+}
+
 /// Does the camera's ray meet what cuts a hole into the picture?
 #[inline(always)]
-fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, found: &Found<R>) -> bool {
-    launch.spec.effects.has(Effects::HOLDOUT)
-        && path.bounces == 0
-        && launch.placed(found.index, found.instance, found.time).has(Primitive::HOLDOUT)
+fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive: &Primitive) -> bool {
+    launch.spec.effects.has(Effects::HOLDOUT) && path.bounces == 0 && primitive.has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.

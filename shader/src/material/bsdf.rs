@@ -113,6 +113,12 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         self.finishes.has(Finishes::TRANSLUCENT) && R::splat(0.0).lt(self.layers.beyond.greatest())
     }
 
+    /// Does light that rough facets lose come out from between them?
+    #[inline(always)]
+    fn is_compensated(&self) -> bool {
+        self.effects.has(Effects::COMPENSATED) && !self.is_smooth
+    }
+
     #[inline(always)]
     fn passes(&self) -> bool {
         passes(self.effects, &self.layers)
@@ -140,7 +146,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     /// side; and the share of that light which the base is given and sends there.
     #[inline(always)]
     fn under(&self, to: V3<R>) -> (V3<R>, R) {
-        if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
+        if self.is_compensated() {
             let (out, left) = self.energy.near_side(self.effects, self.albedos, to);
             return (out, if self.layers.is_coated { left } else { R::splat(1.0) });
         }
@@ -159,7 +165,7 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
     fn matt(&self, to: V3<R>) -> (V3<R>, V3<R>) {
         let cosine = (to.z * R::splat(INVERSE_PI)).flush(FAINT);
         let (out, share) = self.under(to);
-        if self.effects.has(Effects::COMPENSATED) && !self.is_smooth {
+        if self.is_compensated() {
             let base = self.layers.diffuse * share;
             return ((base + out) * cosine, base * cosine);
         }

@@ -91,7 +91,8 @@ fn what_can_not_be_divided_is_told() {
 
 /// A box of edges of 2 whose nearest ones are 4 from an eye that sees 100 rows of 90 degrees: a pixel is 0.08 wide there.
 fn seen(subdivide: &str, place: &str) -> usize {
-    let camera = "[[camera]]\nname = \"c\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 90\n[render]\nsize = [160, 100]\n";
+    let camera =
+        "[[camera]]\nname = \"c\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 90\n[render]\nsize = [160, 100]\n";
     let shape = "shape = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n";
     load(&format!("{shape}subdivide = {subdivide}\n{place}\n{camera}"), &[]).triangles.len()
 }
@@ -113,7 +114,9 @@ fn a_surface_is_as_fine_as_pixels_ask_for() {
 #[test]
 fn pixels_that_make_no_sense_are_refused() {
     let refused = |subdivide: &str, camera: &str| {
-        let text = format!("[[mesh]]\nshape = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nsubdivide = {subdivide}\n{camera}");
+        let text = format!(
+            "[[mesh]]\nshape = \"box\"\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nsubdivide = {subdivide}\n{camera}"
+        );
         Folder::new(&[("a.toml", text.as_bytes())]).refuse("a.toml").to_string()
     };
     let camera = "[[camera]]\nname = \"c\"\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n";

@@ -46,7 +46,8 @@ impl Range {
     pub const ANISOTROPY: Range =
         Range { holds: |x| x.abs() <= Medium::MOST_ANISOTROPY, says: "between -0.999 and 0.999" };
     /// The temperature of what glows.
-    pub const KELVINS: Range = Range { holds: |x| (500.0..=100_000.0).contains(&x), says: "between 500 and 100000" };
+    pub const TEMPERATURE: Range =
+        Range { holds: |x| (500.0..=100_000.0).contains(&x), says: "between 500 and 100000" };
     /// A part of a conductor's complex index of refraction.
     pub const INDEX: Range = Range { holds: |x| (0.0..=100.0).contains(&x), says: "between 0 and 100" };
 

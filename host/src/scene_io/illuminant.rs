@@ -14,7 +14,7 @@ pub fn read(table: &mut Table) -> Result<Option<Illuminant>> {
         let fault = "a lamp has a temperature or the spectrum of an illuminant; remove temperature or illuminant";
         return Err(table.fault_of("temperature", fault));
     }
-    let kelvins = table.number("temperature", Range::KELVINS)?;
+    let kelvins = table.number("temperature", Range::TEMPERATURE)?;
     let lamp = table.choice("illuminant")?;
     Ok(kelvins.map(Illuminant::BlackBody).or(lamp.map(Illuminant::Fluorescent)))
 }

@@ -130,7 +130,7 @@ fn physical(owner: &Owner, of: &Physical) -> Unplaced<()> {
 
 fn illuminant(owner: &Owner, of: Option<Illuminant>) -> Unplaced<()> {
     match of {
-        Some(Illuminant::BlackBody(kelvins)) => owner.number("temperature", kelvins, Range::KELVINS),
+        Some(Illuminant::BlackBody(kelvins)) => owner.number("temperature", kelvins, Range::TEMPERATURE),
         _ => Ok(()),
     }
 }

@@ -12,7 +12,7 @@ use eyerays::scene::{
     Scene, Settings, Sphere, Texels, Texture, ThinFilm, Transport, Volume,
 };
 use eyerays::spectrum::{self, Fluorescent, Glass, Illuminant, Metal};
-use eyerays_tests::model::{add, add_quad, add_wall, black, empty, glass, lamp, matt};
+use eyerays_tests::model::{add, add_quad, add_wall, black, empty, glass, lamp, matt, sun};
 use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu};
 use glam::{DVec3, Vec3};
 
@@ -59,7 +59,7 @@ fn wall(material: Material, light: Light) -> Scene {
 #[test]
 fn a_colour_in_white_light_is_what_it_is_in_red_green_and_blue() {
     for colour in [Vec3::ONE, Vec3::splat(0.18), Vec3::new(0.9, 0.1, 0.02), Vec3::new(0.0, 0.4, 1.0)] {
-        let scene = wall(matt(colour), lamp(Vec3::Z));
+        let scene = wall(matt(colour), sun(Vec3::NEG_Z));
         let spectral = render(&scene, &ahead(), paths(8, ALL, 1));
         let plain = render(&scene, &ahead(), Settings { spectral: false, ..paths(8, ALL, 1) });
         for (own, want) in spectral.pixels.iter().zip(&plain.pixels) {
@@ -188,7 +188,8 @@ fn bow(drop: &Material, degrees: f64, settings: Settings) -> DVec3 {
     scene.materials.push(drop.clone());
     scene.spheres.push(Sphere { center: Vec3::ZERO, radius: 1.0, material: 0 });
     let sun = Camera::new("sun", Vec3::Y * 5.0, Vec3::ZERO, Projection::Orthographic { height: 2.0 });
-    mean(&render(&scene, &Camera { up: Vec3::Z, ..sun }, settings))
+    scene.cameras = vec![Camera { up: Vec3::Z, ..sun }];
+    mean(&render(&scene, &scene.cameras[0], settings))
 }
 
 /// Descartes' angle of the rainbow: the least deviation of light that is mirrored once within a drop.

@@ -23,7 +23,7 @@ pub(super) struct Vertex<R: Real> {
     pub draws: Draws,
     /// Did the path start on a shadow catcher, as its first vertex? Of the light of that, catchers tell no more than what is shadowed.
     pub after_catcher: bool,
-    /// What is inside of the surface ([`Media::PRESENT`]).
+    /// What is inside of the surface ([`Media::PRESENT`](crate::data::Media)).
     pub filling: Filling,
 }
 

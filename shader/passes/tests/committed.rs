@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Aovs, Effects, Finishes, Launch, Layout, Media, Order, Specialisation};
+use eyerays_shader::data::{Aovs, Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Waves};
 use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
@@ -21,6 +21,10 @@ fn between(spec: Specialisation, bits: u32) -> Specialisation {
 
 fn finished(spec: Specialisation, bits: u32) -> Specialisation {
     Specialisation { finishes: Finishes(bits), ..spec }
+}
+
+fn spectral(spec: Specialisation, bits: u32) -> Specialisation {
+    Specialisation { waves: Waves(bits), ..spec }
 }
 
 /// Nothing, everything, and what together makes the kernels of most branches.
@@ -62,6 +66,10 @@ fn specialisations() -> Vec<Specialisation> {
         finished(effects(Effects::PHYSICAL | Effects::LIT | Effects::REFRACTION | Effects::TEXTURED), u32::MAX),
         finished(effects(Effects::PHYSICAL | Effects::EMISSIVE), Finishes::COATED | Finishes::TRANSLUCENT),
         finished(between(all, u32::MAX), u32::MAX),
+        spectral(path, Waves::SPECTRAL),
+        spectral(between(path, Media::PRESENT | Media::GRIDS | Media::OPEN), Waves::SPECTRAL | Waves::ILLUMINANTS),
+        spectral(path, Waves::ILLUMINANTS),
+        spectral(finished(effects(Effects::PHYSICAL | Effects::EMISSIVE | Effects::REFRACTION), u32::MAX), u32::MAX),
     ]
 }
 

@@ -49,8 +49,8 @@ const DUMMY: [Edit; 5] = [
     ("src/entry/mod.rs", "colours tangents environment] {", "colours tangents environment dummy] {"),
     (
         "src/entry/mod.rs",
-        "colours tangents environment albedos light_nodes media grids finishes] {",
-        "colours tangents environment albedos light_nodes media grids finishes dummy] {",
+        "albedos light_nodes media grids finishes\n             spectra] {",
+        "albedos light_nodes media grids finishes\n             spectra dummy] {",
     ),
     (
         "src/entry/mod.rs",

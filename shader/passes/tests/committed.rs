@@ -260,6 +260,31 @@ fn finishes_are_in_no_kernel_of_a_scene_without() {
     }
 }
 
+/// Wavelengths cost nothing where light has none; lamps of other spectra have one more integer looked at where it does not matter.
+#[test]
+fn spectra_are_in_no_kernel_of_a_picture_without() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let lit = effects(Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL | Effects::CONDUCTOR);
+    let cut = |entry, spec, bits| kernels.cut(entry, &spectral(spec, bits).constants()).unwrap();
+    let bare = cut("exact::scatter", lit, 0);
+    assert!(!bare.bindings().contains(&binding::SPECTRA));
+    let plain = cut("exact::scatter", lit, Waves::ILLUMINANTS | Waves::MEASURED);
+    assert!(!plain.bindings().contains(&binding::SPECTRA));
+    assert!(plain.instructions() < bare.instructions() + 16);
+    let all = cut("exact::scatter", lit, Waves::SPECTRAL);
+    assert!(all.bindings().contains(&binding::SPECTRA));
+    for more in [Waves::ILLUMINANTS, Waves::MEASURED] {
+        assert!(cut("exact::scatter", lit, Waves::SPECTRAL | more).instructions() > all.instructions(), "{more:#x}");
+    }
+    let smoky = between(lit, Media::PRESENT | Media::GRIDS);
+    assert!(!cut("exact::transmit", smoky, 0).bindings().contains(&binding::SPECTRA));
+    assert!(cut("exact::transmit", smoky, Waves::SPECTRAL).bindings().contains(&binding::SPECTRA));
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate", "exact::shade"]
+    {
+        assert_eq!(cut(entry, lit, Waves::SPECTRAL | Waves::MEASURED).words(), cut(entry, lit, 0).words(), "{entry}");
+    }
+}
+
 /// Functions of their own that one effect, or any of some, alone needs.
 #[test]
 fn a_kernel_reaches_no_function_of_an_effect_that_nothing_has() {

@@ -33,7 +33,7 @@ def arguments(doc, scenes):
     parser.add_argument("--size", type=int, default=64)
     parser.add_argument("--samples", type=int, default=64)
     parser.add_argument("--seeds", type=int, default=16)
-    asked = parser.parse_args()
+    asked = parser.parse_intermixed_args()
     print("| scene | beside | greatest z of 64 | root mean square of z | difference of the image |\n|---|---|---|---|---|")
     return asked
 

@@ -130,10 +130,15 @@ def surface(inputs):
 
 def of_cycles(asked, folder, inputs):
     bpy.ops.wm.read_factory_settings(use_empty=True)
-    scene = bpy.context.scene
     own = surface(inputs)
     for name, corners, material in (("floor", FLOOR, own), ("wall", WALL, own), ("lamp", LAMP, lamp("lamp", 8)), ("behind", BEHIND, lamp("behind", 5))):
         quad(name, corners, material)
+    yield from pictures(asked, folder, BOUNCES)
+
+
+def pictures(asked, folder, bounces):
+    """What Cycles sees of the things in Blender's scene, a seed each."""
+    scene = bpy.context.scene
     camera = bpy.data.cameras.new("front")
     camera.sensor_fit, camera.angle = "VERTICAL", math.radians(FOV)
     front = bpy.data.objects.new("front", camera)
@@ -152,8 +157,8 @@ def of_cycles(asked, folder, inputs):
     cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0
     cycles.pixel_filter_type = "BOX"
     cycles.blur_glossy = 0
-    for kind in ("max", "diffuse", "glossy", "transmission", "transparent"):
-        setattr(cycles, "max_bounces" if kind == "max" else f"{kind}_bounces" if kind != "transparent" else "transparent_max_bounces", BOUNCES)
+    for kind in ("max", "diffuse", "glossy", "transmission", "volume", "transparent_max"):
+        setattr(cycles, f"{kind}_bounces", bounces)
     scene.render.filepath = str(folder / "cycles.exr")
     for seed in range(asked.seeds):
         cycles.seed = seed

@@ -92,6 +92,6 @@ mod tests {
     #[test]
     fn no_cell_adds_many_times_more_than_another_of_its_colour() {
         let most = cells().iter().map(|cell| cell.response.abs().max_element() * (3 * SETS) as f64).fold(0.0, f64::max);
-        assert!(most < 4.0, "{most}");
+        assert!(most < 4.5, "{most}");
     }
 }

@@ -279,8 +279,7 @@ fn spectra_are_in_no_kernel_of_a_picture_without() {
     let smoky = between(lit, Media::PRESENT | Media::GRIDS);
     assert!(!cut("exact::transmit", smoky, 0).bindings().contains(&binding::SPECTRA));
     assert!(cut("exact::transmit", smoky, Waves::SPECTRAL).bindings().contains(&binding::SPECTRA));
-    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate", "exact::shade"]
-    {
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate"] {
         assert_eq!(cut(entry, lit, Waves::SPECTRAL | Waves::MEASURED).words(), cut(entry, lit, 0).words(), "{entry}");
     }
 }

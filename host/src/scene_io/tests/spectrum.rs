@@ -7,11 +7,11 @@ use crate::scene::{Light, Material, Scene};
 use crate::scene_io::describe;
 use crate::spectrum::{Glass, Illuminant, Metal};
 
-const MESH: &[u8] = b"usemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+const MESH: &[u8] = b"mtllib a.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
 
 fn folder(text: &str) -> Folder {
     let text = format!("[[mesh]]\nfile = \"a.obj\"\n{text}");
-    Folder::new(&[("a.toml", text.as_bytes()), ("a.obj", MESH)])
+    Folder::new(&[("a.toml", text.as_bytes()), ("a.obj", MESH), ("a.mtl", b"newmtl m\n")])
 }
 
 fn scene(text: &str) -> Scene {
@@ -70,7 +70,7 @@ fn what_is_described_says_all_of_it_again() {
         let first = scene(&text);
         assert!(first.settings.spectral);
         let told = describe(&first, "a.obj");
-        let again = Folder::new(&[("a.toml", told.as_bytes()), ("a.obj", MESH)]);
+        let again = Folder::new(&[("a.toml", told.as_bytes()), ("a.obj", MESH), ("a.mtl", b"newmtl m\n")]);
         let (second, warnings) = again.load("a.toml").unwrap_or_else(|error| panic!("{error}\n{told}"));
         assert!(warnings.is_empty(), "{warnings:?}\n{told}");
         assert_eq!((&second.materials, &second.lights), (&first.materials, &first.lights), "{told}");

@@ -38,7 +38,7 @@ def numbers_of(file, name):
     """A table of numbers of the program's own sources."""
     text = (SPECTRA / file).read_text()
     body = text[text.index("= [", text.index(f"const {name}:")) + 2 : ]
-    return np.array([float(n) for n in re.findall(r"\d+\.\d+(?:e-?\d+)?", body[: body.index("];")])])
+    return np.array([float(n) for n in re.findall(r"\d+(?:\.\d+)?(?:e-?\d+)?", body[: body.index("];")])])
 
 
 PRIMARIES = numbers_of("primaries.rs", "PRIMARIES").reshape(-1, 3)
@@ -57,7 +57,7 @@ def metal(corners, name, table, alpha):
 
 
 def lamp(corners, toml, light):
-    black = dict(corners=corners, toml=f"diffuse = [0, 0, 0]\n{toml}", bsdf=lambda: {"type": "diffuse", "reflectance": irregular((380, 780), (0, 0))})
+    black = dict(corners=corners, toml=f"diffuse = [0, 0, 0]\n{toml}", bsdf=lambda: {"type": "diffuse", "reflectance": {"type": "uniform", "value": 0.0}})
     return dict(black, emitter=light)
 
 

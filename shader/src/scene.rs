@@ -35,7 +35,7 @@ impl<'a> LaunchContext<'a> {
     /// Of red, green and blue light.
     #[inline(always)]
     pub fn new(frame: &'a Frame, spec: Specialisation, primitives: &'a [UVec4], instances: &'a [Instance]) -> Self {
-        LaunchContext { frame, spec, primitives, instances, bands: Bands::default() }
+        LaunchContext { frame, spec, primitives, instances, bands: Bands::none() }
     }
 
     /// For a sample of a pixel, which draws its wavelengths where light has any.
@@ -45,7 +45,7 @@ impl<'a> LaunchContext<'a> {
         let bands = if self.spec.waves.has(Waves::SPECTRAL) {
             Bands::drawn(spectra, sampler::set(self.spec.launch, key, sample, WAVELENGTHS).x)
         } else {
-            Bands::default()
+            Bands::none()
         };
         LaunchContext { bands, ..*self }
     }

@@ -9,32 +9,32 @@
 use crate::buffer::read;
 use crate::data::{SpectrumRow, numbers};
 use crate::real::{FAINT, Scalar, V3};
-use glam::{UVec4, Vec3};
+use glam::UVec4;
 
-/// Three rows of three numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+/// Three rows of three numbers, which are no vectors: naga takes a structure of those for longer than it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
 struct Matrix {
-    a: Vec3,
-    b: Vec3,
-    c: Vec3,
+    a: V3<f32>,
+    b: V3<f32>,
+    c: V3<f32>,
 }
 
 impl Matrix {
     #[inline(always)]
     fn load(spectra: &[UVec4], first: u32, set: u32) -> Self {
-        let row = |number| numbers(read(spectra, SpectrumRow(first + number).at(set)));
+        let row = |number| V3::splat(numbers(read(spectra, SpectrumRow(first + number).at(set))));
         Matrix { a: row(0), b: row(1), c: row(2) }
     }
 
     #[inline(always)]
     fn times<R: Scalar>(&self, v: V3<R>) -> V3<R> {
-        let row = |row: Vec3| V3::<R>::splat(row).dot(v).flush(FAINT);
+        let row = |V3 { x, y, z }: V3<f32>| V3::new(R::splat(x), R::splat(y), R::splat(z)).dot(v).flush(FAINT);
         V3::new(row(self.a), row(self.b), row(self.c))
     }
 }
 
 /// Three wavelengths of light.
-#[derive(Clone, Copy, Debug, PartialEq, Default)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bands {
     /// Their number among all sets.
     set: u32,
@@ -45,6 +45,13 @@ pub struct Bands {
 }
 
 impl Bands {
+    /// None: light is red, green and blue.
+    #[inline(always)]
+    pub fn none() -> Self {
+        let zero = Matrix { a: V3::zero(), b: V3::zero(), c: V3::zero() };
+        Bands { set: 0, of_rgb: zero, to_rgb: zero }
+    }
+
     /// The set that a number means which was drawn, see [`SpectrumRow`].
     #[inline(always)]
     pub fn drawn(spectra: &[UVec4], drawn: u32) -> Self {

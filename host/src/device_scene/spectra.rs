@@ -6,7 +6,7 @@ use eyerays_shader::data::{SpectrumRow, Waves};
 use glam::UVec4;
 
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::scene::{Physical, Scene};
 use crate::spectrum::{self, Glass, Illuminant, Metal};
 
 /// A row of the table.
@@ -47,27 +47,27 @@ impl Spectra {
     /// # Errors
     /// They are more than records can tell.
     pub fn of(scene: &Scene) -> Result<Spectra> {
-        let mut rows = Vec::new();
-        let mut add = |row: Row| {
-            if !rows.contains(&row) {
-                rows.push(row);
-            }
+        let of_material = |physical: Physical| {
+            let metal = physical.conductor.and_then(|conductor| conductor.metal);
+            let index = metal.into_iter().flat_map(|metal| [Row::Eta(metal), Row::K(metal)]);
+            physical.glass.map(Row::Bends).into_iter().chain(index)
         };
-        for physical in scene.materials.iter().filter_map(|material| material.physical) {
-            physical.glass.into_iter().for_each(|glass| add(Row::Bends(glass)));
-            if let Some(metal) = physical.conductor.and_then(|conductor| conductor.metal) {
-                add(Row::Eta(metal));
-                add(Row::K(metal));
-            }
-        }
+        let materials = scene.materials.iter().filter_map(|material| material.physical).flat_map(of_material);
         let lights = scene.lights.iter().filter_map(|light| light.illuminant());
         let emissions = scene.materials.iter().filter_map(|material| material.illuminant);
-        lights.chain(emissions).for_each(|light| add(Row::Light(light)));
-        let most = SpectrumRow::MOST - SpectrumRow::OWN;
-        if rows.len() > most as usize {
-            return Err(Error::new(format!(
-                "glasses, metals and lamps need more than {most} spectra: let some share theirs"
-            )));
+        let most = (SpectrumRow::MOST - SpectrumRow::OWN) as usize;
+        let mut rows = Vec::new();
+        for row in materials.chain(lights.chain(emissions).map(Row::Light)) {
+            if rows.contains(&row) {
+                continue;
+            }
+            // At once, before a hundred thousand are compared with each other.
+            if rows.len() == most {
+                return Err(Error::new(format!(
+                    "glasses, metals and lamps need more than {most} spectra: let some share theirs"
+                )));
+            }
+            rows.push(row);
         }
         Ok(Spectra { rows, words: OnceLock::new() })
     }

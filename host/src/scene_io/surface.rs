@@ -67,18 +67,13 @@ impl Surface {
         places: &[Transform],
         files: &Files,
     ) -> std::result::Result<bool, Fault> {
-        let outer: Vec<DMat4> =
-            if places.is_empty() { vec![DMat4::IDENTITY] } else { places.iter().map(|place| place.matrix()).collect() };
-        let Copies { meshes, places: inner } = copies;
-        let worlds = |number: usize| {
-            let own = inner.iter().filter(move |(mesh, _)| *mesh == number);
-            own.flat_map(|(_, inner)| outer.iter().map(move |outer| *outer * *inner)).collect::<Vec<_>>()
-        };
-        let copies = meshes.iter_mut().enumerate();
+        // Most surfaces are the same wherever they stand.
+        let (outer, inner) = if self.differs_by_place() { worlds(copies, places) } else { Default::default() };
+        let inner = inner.into_iter().chain(std::iter::repeat_with(Vec::new));
         let mut all: Vec<(&mut Mesh, &[u32], Vec<DMat4>)> =
-            copies.map(|(number, mesh)| (mesh, &[][..], worlds(number))).collect();
+            copies.meshes.iter_mut().zip(inner).map(|(mesh, worlds)| (mesh, &[][..], worlds)).collect();
         if let Geometry::Mesh(mesh) = geometry {
-            all.push((mesh, faces.sizes(), outer.clone()));
+            all.push((mesh, faces.sizes(), outer));
         } else if self.subdivision.is_some() {
             return Err(("subdivide", "it is round already; leave \"subdivide\" out".into()));
         } else if self.displacement.is_some() {
@@ -96,6 +91,19 @@ impl Surface {
         }
         Ok(self.subdivision.is_some())
     }
+}
+
+/// Where a mesh comes to stand in these places, and each of the copies' meshes.
+fn worlds(copies: &Copies, places: &[Transform]) -> (Vec<DMat4>, Vec<Vec<DMat4>>) {
+    let outer: Vec<DMat4> = match places {
+        [] => vec![DMat4::IDENTITY],
+        places => places.iter().map(|place| place.matrix()).collect(),
+    };
+    let mut inner = vec![Vec::new(); copies.meshes.len()];
+    for (mesh, own) in &copies.places {
+        inner[*mesh].extend(outer.iter().map(|outer| *outer * *own));
+    }
+    (outer, inner)
 }
 
 fn divide(mesh: &mut Mesh, cage: Cage, how: Subdivision, budget: &Budget) -> Unplaced<()> {

@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 
-use super::{primaries, rgb};
+use super::{observer, primaries, rgb};
 use crate::choice::choices;
 use crate::scene::Conductor;
 
@@ -23,9 +23,7 @@ choices! {
     }
 }
 
-/// The first wavelength of the tables, in nanometres.
-const FIRST: f64 = 380.0;
-/// From one to the next.
+/// From one wavelength of the tables to the next, in nanometres; the first is [`observer::FIRST`].
 const STEP: f64 = 20.0;
 /// How many there are.
 const COUNT: usize = 21;
@@ -82,9 +80,7 @@ impl Metal {
 
     /// Both parts of its index at a wavelength in nanometres.
     pub fn index(self, wavelength: f64) -> (f64, f64) {
-        let place = ((wavelength - FIRST) / STEP).clamp(0.0, (COUNT - 1) as f64);
-        let before = (place as usize).min(COUNT - 2);
-        let share = place - before as f64;
+        let (before, share) = observer::place(wavelength, STEP, COUNT);
         let ((a, b), (c, d)) = (self.table()[before], self.table()[before + 1]);
         (a + (c - a) * share, b + (d - b) * share)
     }

@@ -57,8 +57,14 @@ pub const D65: [[f64; 1]; COUNT] = [
 
 /// A table's number at a wavelength: between two as a straight line has it, beyond as at its end.
 pub fn at<const N: usize>(table: &[[f64; N]; COUNT], wavelength: f64) -> [f64; N] {
-    let place = ((wavelength - FIRST) / STEP).clamp(0.0, (COUNT - 1) as f64);
-    let before = (place as usize).min(COUNT - 2);
-    let share = place - before as f64;
+    let (before, share) = place(wavelength, STEP, COUNT);
     std::array::from_fn(|i| table[before][i] * (1.0 - share) + table[before + 1][i] * share)
+}
+
+/// The entry before a wavelength of a table of so many from [`FIRST`] on, a step apart, and the share of the way to the next; beyond the
+/// table at its ends.
+pub fn place(wavelength: f64, step: f64, count: usize) -> (usize, f64) {
+    let place = ((wavelength - FIRST) / step).clamp(0.0, (count - 1) as f64);
+    let before = (place as usize).min(count - 2);
+    (before, place - before as f64)
 }

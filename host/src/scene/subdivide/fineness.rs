@@ -27,9 +27,9 @@ impl Fineness {
 
     /// The levels of a cage that stands in some places of the world, as some eyes see it.
     pub fn levels(self, cage: &Cage, places: &[DMat4], eyes: &[Eye]) -> u32 {
-        let Fineness::Pixels { length, most } = self else {
-            let Fineness::Levels(levels) = self else { unreachable!("there is no other") };
-            return levels;
+        let (length, most) = match self {
+            Fineness::Levels(levels) => return levels,
+            Fineness::Pixels { length, most } => (length, most),
         };
         let longest = places.iter().map(|place| cage.longest(place, eyes)).fold(0.0, f64::max);
         // Each level halves the edges.

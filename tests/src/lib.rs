@@ -8,6 +8,7 @@ pub mod driver;
 pub mod machine;
 pub mod model;
 pub mod numbers;
+pub mod prism;
 pub mod random;
 pub mod surface;
 
@@ -16,7 +17,7 @@ use std::sync::{Mutex, PoisonError};
 
 use eyerays::compare::compare;
 use eyerays::cpu;
-use eyerays::gpu::{AdapterRequest, Gpu, wgpu};
+use eyerays::gpu::{AdapterRequest, Gpu, Renderer, wgpu};
 use eyerays::job::Job;
 use eyerays::method::{Layout, Method, Order, Scheduling, Traversal};
 use eyerays::picture::Picture;
@@ -195,6 +196,24 @@ fn rendered<R: cpu::Number>(posed: &Posed) -> (Picture, Rays) {
 pub fn assert_same_bits(a: &Picture, b: &Picture, what: &str) {
     let comparison = compare(a, b).unwrap_or_else(|e| panic!("{what}: {e}"));
     assert!(a.bits_equal(b) && comparison.bit_equal, "{what}:\n{comparison}");
+}
+
+/// Asserts that all methods of a CPU, and a GPU that compiles kernels of paths soon, give a scene the same bits, all of them finite.
+///
+/// # Panics
+/// They do not.
+pub fn assert_same_on_all_ways(posed: &Posed) {
+    let (want, rays) = on_cpu(posed);
+    assert_eq!(rays.non_finite, 0);
+    for method in Method::ALL {
+        let (got, _) = cpu::render::<f32>(posed, &posed.view, method, 2, &|_| ()).unwrap();
+        assert_same_bits(&want, &got, &format!("{method:?}"));
+    }
+    if let Some(gpu) = quick_gpu() {
+        let mut renderer = Renderer::new(&gpu, posed, true, Traversal::default()).unwrap();
+        let got = renderer.render(&posed.view, &|_| ()).unwrap().film.develop().unwrap();
+        assert_same_bits(&got, &want, "GPU");
+    }
 }
 
 /// The mean of the green of all pixels, which see the same, and its standard error.

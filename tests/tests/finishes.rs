@@ -1,14 +1,12 @@
 //! What lies on surfaces and what else their bases do, by pictures: against closed forms, and with the same bits on all ways.
 
-use eyerays::cpu;
-use eyerays::gpu::Renderer;
-use eyerays::method::{Method, Traversal};
 use eyerays::scene::{
     Background, Camera, Coat, DiffuseTransmission, Integrator, Material, Physical, Projection, Sampler, Scene,
     Settings, Sheen, Sphere, ThinFilm, Transport, Wall,
 };
-use eyerays_tests::model::{add, add_quad, add_wall, black, empty, glass, matt};
-use eyerays_tests::{assert_same_bits, mean, on_cpu, pack, quick_gpu};
+use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, matt};
+use eyerays_tests::prism::Prism;
+use eyerays_tests::{assert_same_on_all_ways, mean, on_cpu, pack};
 use glam::{DVec3, Vec3};
 
 fn paths(size: u32, spp: u32, bounces: u32) -> Settings {
@@ -67,30 +65,10 @@ fn white_finishes_are_not_seen_in_a_white_furnace() {
     }
 }
 
-/// The way of a ray through a prism of some index by Snell's law, in double precision: where it leaves, and which way.
-fn through_prism(index: f64, apex: f64) -> DVec3 {
-    let refract = |d: DVec3, n: DVec3, eta: f64| {
-        let cosine = -d.dot(n);
-        eta * d + (eta * cosine - (1.0 - eta * eta * (1.0 - cosine * cosine)).sqrt()) * n
-    };
-    let (left, right) = (
-        DVec3::new(-(apex / 2.0).cos(), (apex / 2.0).sin(), 0.0),
-        DVec3::new((apex / 2.0).cos(), (apex / 2.0).sin(), 0.0),
-    );
-    let inside = refract(incident(apex), left, 1.0 / index);
-    refract(inside, -right, index)
-}
-
-/// Symmetric for an index of 1.6.
-fn incident(apex: f64) -> DVec3 {
-    let angle = (1.6 * (apex / 2.0).sin()).asin() - apex / 2.0;
-    DVec3::new(angle.cos(), angle.sin(), 0.0)
-}
-
 /// A prism of 60 degrees sends red, green and blue light each where its index does: to a lamp that only this channel finds.
 #[test]
 fn a_prism_sends_each_channel_where_its_index_does() {
-    let apex = 60f64.to_radians();
+    let prism = Prism { apex: 60f64.to_radians(), symmetric: 1.6 };
     let abbe = 15.0;
     let spread = 0.6 / (2.0 * abbe);
     for (channel, index) in [1.6 - spread, 1.6, 1.6 + spread].into_iter().enumerate() {
@@ -102,13 +80,13 @@ fn a_prism_sends_each_channel_where_its_index_does() {
             abbe: Some(abbe as f32),
             ..Physical::default()
         };
-        prism(&mut scene, Material { physical: Some(flint), ior: 1.6, ..glass(Vec3::ONE) }, apex);
-        let way = through_prism(index, apex);
+        prism.add(&mut scene, Material { physical: Some(flint), ior: 1.6, ..glass(Vec3::ONE) });
+        let way = prism.through(index);
         let (place, side) = (40.0 * way, 0.3 * way.cross(DVec3::Z));
         let up = 0.3 * DVec3::Z;
         let corners = [place - side - up, place + side - up, place + side + up, place - side + up];
         add_quad(&mut scene, Material { two_sided: true, ..shining(1.0) }, corners.map(|c| c.as_vec3()));
-        let eye = (-30.0 * incident(apex)).as_vec3();
+        let eye = (-30.0 * prism.incident()).as_vec3();
         let camera =
             Camera { up: Vec3::Z, ..Camera::new("c", eye, Vec3::ZERO, Projection::Perspective { fov: 0.001 }) };
         let (picture, _) = on_cpu(&pack(&scene, &camera, paths(8, 4000, 8)));
@@ -119,22 +97,6 @@ fn a_prism_sends_each_channel_where_its_index_does() {
             assert!(want.contains(&seen), "of channel {other} the lamp of {channel} has {seen}: {r} {g} {b}");
         }
     }
-}
-
-/// A long prism around the third axis, whose edge is up.
-fn prism(scene: &mut Scene, material: Material, apex: f64) {
-    let (half, height) = ((apex / 2.0).sin() as f32, (apex / 2.0).cos() as f32);
-    let at = |x: f32, y: f32, z: f32| Vec3::new(x, y + 0.5 * height, z);
-    let corners = [
-        at(0.0, 0.0, -1.0),
-        at(-half, -height, -1.0),
-        at(half, -height, -1.0),
-        at(0.0, 0.0, 1.0),
-        at(-half, -height, 1.0),
-        at(half, -height, 1.0),
-    ];
-    let faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
-    add(scene, material, &corners, &faces);
 }
 
 /// Crown glass BK7 in the light of helium's d line: by a prism of 60 degrees the least deviation is 38.647 degrees.
@@ -171,16 +133,5 @@ fn all_of_it() -> Scene {
 fn every_method_and_device_gives_the_same_bits() {
     let scene = all_of_it();
     let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 50.0 });
-    let posed = pack(&scene, &camera, paths(24, 4, 12));
-    let (want, rays) = on_cpu(&posed);
-    assert_eq!(rays.non_finite, 0);
-    for method in Method::ALL {
-        let (got, _) = cpu::render::<f32>(&posed, &posed.view, method, 2, &|_| ()).unwrap();
-        assert_same_bits(&want, &got, &format!("{method:?}"));
-    }
-    if let Some(gpu) = quick_gpu() {
-        let mut renderer = Renderer::new(&gpu, &posed, true, Traversal::default()).unwrap();
-        let got = renderer.render(&posed.view, &|_| ()).unwrap().film.develop().unwrap();
-        assert_same_bits(&got, &want, "GPU");
-    }
+    assert_same_on_all_ways(&pack(&scene, &camera, paths(24, 4, 12)));
 }

@@ -3,17 +3,15 @@
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-use eyerays::cpu;
-use eyerays::gpu::Renderer;
-use eyerays::method::{Method, Traversal};
 use eyerays::picture::Picture;
 use eyerays::scene::{
     Background, Camera, Environment, Integrator, Light, Material, Medium, Physical, PixelFilter, Projection, Sampler,
     Scene, Settings, Sphere, Texels, Texture, ThinFilm, Transport, Volume,
 };
 use eyerays::spectrum::{self, Fluorescent, Glass, Illuminant, Metal};
-use eyerays_tests::model::{add, add_quad, add_wall, black, empty, glass, lamp, matt, sun};
-use eyerays_tests::{assert_same_bits, on_cpu, pack, quick_gpu};
+use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, lamp, matt, sun};
+use eyerays_tests::prism::Prism;
+use eyerays_tests::{assert_same_on_all_ways, on_cpu, pack};
 use glam::{DVec3, Vec3};
 
 /// As many samples as there are sets of wavelengths, of which Sobol's points draw each once.
@@ -236,7 +234,8 @@ fn red_is_outside_of_blue_in_a_rainbow() {
 /// A prism of flint sends each wavelength where its index does: to a lamp that only those near it find, which has their colour.
 #[test]
 fn a_prism_sends_each_wavelength_where_its_index_does() {
-    let (apex, flint) = (60f64.to_radians(), Glass::Sf11);
+    let flint = Glass::Sf11;
+    let prism = Prism { apex: 60f64.to_radians(), symmetric: 1.78 };
     for wavelength in [460.0, 545.0, 610.0] {
         let mut scene = empty();
         let physical = Physical {
@@ -246,14 +245,14 @@ fn a_prism_sends_each_wavelength_where_its_index_does() {
             ior: flint.ior(),
             ..Physical::default()
         };
-        prism(&mut scene, Material { physical: Some(physical), ior: flint.ior(), ..glass(Vec3::ONE) }, apex);
+        prism.add(&mut scene, Material { physical: Some(physical), ior: flint.ior(), ..glass(Vec3::ONE) });
         // Those 10 nm to either side.
-        let ways = [wavelength - 10.0, wavelength + 10.0].map(|end| through_prism(flint.index(end), apex));
+        let ways = [wavelength - 10.0, wavelength + 10.0].map(|end| prism.through(flint.index(end)));
         let up = 0.3 * DVec3::Z;
         let [a, b] = ways.map(|way| 40.0 * way);
         let shining = Material { emission: Vec3::ONE, two_sided: true, ..black() };
         add_quad(&mut scene, shining, [a - up, b - up, b + up, a + up].map(|corner| corner.as_vec3()));
-        let eye = (-30.0 * incident(apex)).as_vec3();
+        let eye = (-30.0 * prism.incident()).as_vec3();
         let camera =
             Camera { up: Vec3::Z, ..Camera::new("c", eye, Vec3::ZERO, Projection::Perspective { fov: 0.001 }) };
         let found = mean(&render(&scene, &camera, paths(8, 16 * ALL, 4)));
@@ -263,33 +262,6 @@ fn a_prism_sends_each_wavelength_where_its_index_does() {
         assert!((0.6..1.0).contains(&share), "{wavelength}: {found} {want}");
         assert!(found.distance(want * share) < 0.08 * want.length(), "{wavelength}: {found} {want}");
     }
-}
-
-/// The direction of a ray behind a prism of some index by Snell's law.
-fn through_prism(index: f64, apex: f64) -> DVec3 {
-    let refract = |d: DVec3, n: DVec3, eta: f64| {
-        let cosine = -d.dot(n);
-        eta * d + (eta * cosine - (1.0 - eta * eta * (1.0 - cosine * cosine)).sqrt()) * n
-    };
-    let face = |side: f64| DVec3::new(side * (apex / 2.0).cos(), (apex / 2.0).sin(), 0.0);
-    let inside = refract(incident(apex), face(-1.0), 1.0 / index);
-    refract(inside, -face(1.0), index)
-}
-
-/// Symmetric for an index of 1.78.
-fn incident(apex: f64) -> DVec3 {
-    let angle = (1.78 * (apex / 2.0).sin()).asin() - apex / 2.0;
-    DVec3::new(angle.cos(), angle.sin(), 0.0)
-}
-
-/// A long prism around the third axis, whose edge is up.
-fn prism(scene: &mut Scene, material: Material, apex: f64) {
-    let (half, height) = ((apex / 2.0).sin() as f32, (apex / 2.0).cos() as f32);
-    let at = |x: f32, y: f32, z: f32| Vec3::new(x, y + 0.5 * height, z);
-    let end = |z: f32| [at(0.0, 0.0, z), at(-half, -height, z), at(half, -height, z)];
-    let corners = [end(-1.0), end(1.0)].concat();
-    let faces = [[0, 2, 1], [3, 4, 5], [0, 1, 4], [0, 4, 3], [1, 2, 5], [1, 5, 4], [2, 0, 3], [2, 3, 5]];
-    add(scene, material, &corners, &faces);
 }
 
 /// Of lamps, glass, metal, films, fog and colours.
@@ -339,18 +311,7 @@ fn every_method_and_device_gives_the_same_bits() {
         material: smoky.materials.len() as u32 - 1,
     });
     for scene in [all_of_it(), smoky] {
-        let posed = pack(&scene, &ahead(), paths(24, 4, 12));
-        let (want, rays) = on_cpu(&posed);
-        assert_eq!(rays.non_finite, 0);
-        for method in Method::ALL {
-            let (got, _) = cpu::render::<f32>(&posed, &posed.view, method, 2, &|_| ()).unwrap();
-            assert_same_bits(&want, &got, &format!("{method:?}"));
-        }
-        if let Some(gpu) = quick_gpu() {
-            let mut renderer = Renderer::new(&gpu, &posed, true, Traversal::default()).unwrap();
-            let got = renderer.render(&posed.view, &|_| ()).unwrap().film.develop().unwrap();
-            assert_same_bits(&got, &want, "GPU");
-        }
+        assert_same_on_all_ways(&pack(&scene, &ahead(), paths(24, 4, 12)));
     }
 }
 

@@ -4,15 +4,13 @@ mod temperatures;
 
 use std::sync::Arc;
 
-use eyerays::cpu;
-use eyerays::method::Method;
 use eyerays::picture::Picture;
 use eyerays::scene::{
     Background, Camera, Direct, Grid, Integrator, Light, Material, Medium, Physical, Projection, Sampler, Scene,
     Settings, Sphere, Transport, Volume,
 };
 use eyerays_tests::model::{add_box, add_wall, black, empty, glass, matt};
-use eyerays_tests::{assert_same_bits, by, mean, on_cpu, pack};
+use eyerays_tests::{assert_same_bits, assert_same_on_all_ways, by, mean, on_cpu, pack};
 use glam::{DVec3, Vec3};
 
 const WAYS: [Direct; 4] = [Direct::Power, Direct::Balance, Direct::Light, Direct::Surface];
@@ -383,10 +381,5 @@ fn every_method_gives_the_same_bits() {
     scene.spheres.push(Sphere { center: Vec3::new(0.5, 0.2, -5.0), radius: 0.9, material: 1 });
     add_wall(&mut scene, shining(4.0), Vec3::new(0.0, 0.0, -9.0), 2.0);
     let camera = Camera::new("c", Vec3::ZERO, Vec3::NEG_Z, Projection::Perspective { fov: 50.0 });
-    let posed = pack(&scene, &camera, paths(4, 20));
-    let (want, _) = on_cpu(&posed);
-    for method in Method::ALL {
-        let (got, _) = cpu::render::<f32>(&posed, &posed.view, method, 2, &|_| ()).unwrap();
-        assert_same_bits(&want, &got, &format!("{method:?}"));
-    }
+    assert_same_on_all_ways(&pack(&scene, &camera, paths(4, 20)));
 }

@@ -18,6 +18,7 @@ import mitsuba as mi
 import numpy as np
 
 from blocks import arguments, blocks, of_eyerays, row
+from mitsuba_parts import mesh, pictures, read, sensor
 
 mi.set_variant("scalar_rgb")
 
@@ -109,10 +110,6 @@ def write_scene(folder, surfaces, media):
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 
 
-def read(path):
-    return np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
-
-
 def rgb(values):
     return {"type": "rgb", "value": [float(value) for value in values]}
 
@@ -136,15 +133,6 @@ def medium_of_mitsuba(of, folder, number):
     return mi.load_dict({"type": "heterogeneous", "albedo": volume(albedo), "sigma_t": grid, "phase": phase})
 
 
-def mesh_of_mitsuba(name, corners, faces, properties):
-    mesh = mi.Mesh(name, len(corners), len(faces), props=properties)
-    parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = np.array(corners, dtype=np.float32).ravel()
-    parameters["faces"] = np.array(faces, dtype=np.uint32).ravel()
-    parameters.update()
-    return mesh
-
-
 def box(low, high):
     (x, y, z), (u, v, w) = low, high
     corners = [(x, y, z), (u, y, z), (u, v, z), (x, v, z), (x, y, w), (u, y, w), (u, v, w), (x, v, w)]
@@ -153,25 +141,16 @@ def box(low, high):
 
 
 def of_mitsuba(asked, folder, surfaces, media):
-    T = mi.ScalarTransform4f
     inside = lambda of: all(low < at < high for low, at, high in zip(of["low"], EYE, of["high"]))
     made = [medium_of_mitsuba(of, folder, number) for number, of in enumerate(media)]
     around = [own for of, own in zip(media, made) if inside(of)]
-    sensor = {
-        "type": "perspective",
-        "fov": FOV,
-        "fov_axis": "y",
-        "to_world": T().look_at(list(EYE), list(TARGET), [0, 1, 0]),
-        "film": {"type": "hdrfilm", "width": asked.size, "height": asked.size, "rfilter": {"type": "box"},
-                 "component_format": "float32", "pixel_format": "rgb"},
-        "sampler": {"type": "independent", "sample_count": asked.samples},
-    }
+    camera = sensor(asked, EYE, TARGET, FOV)
     if around:
-        sensor["medium"] = around[0]
+        camera["medium"] = around[0]
     scene = {
         "type": "scene",
         "integrator": {"type": "volpath", "max_depth": BOUNCES + 1, "rr_depth": 6},
-        "sensor": sensor,
+        "sensor": camera,
         "sky": {"type": "constant", "radiance": rgb((0.1, 0.12, 0.15))},
     }
     for number, (corners, colour, light) in enumerate(surfaces):
@@ -182,15 +161,13 @@ def of_mitsuba(asked, folder, surfaces, media):
         # What lies in a medium has it on both sides.
         if around:
             properties["exterior"] = around[0]
-        scene[f"s{number}"] = mesh_of_mitsuba(f"s{number}", corners, [(0, 1, 2), (0, 2, 3)], properties)
+        scene[f"s{number}"] = mesh(f"s{number}", corners, [(0, 1, 2), (0, 2, 3)], properties)
     for number, (of, own) in enumerate(zip(media, made)):
         properties = mi.Properties()
         glass = {"type": "dielectric", "int_ior": of["glass"], "ext_ior": 1.0} if of["glass"] else {"type": "null"}
         properties["bsdf"], properties["interior"] = mi.load_dict(glass), own
-        scene[f"m{number}"] = mesh_of_mitsuba(f"m{number}", *box(of["low"], of["high"]), properties)
-    scene = mi.load_dict(scene)
-    for seed in range(asked.seeds):
-        yield np.array(mi.render(scene, seed=seed))
+        scene[f"m{number}"] = mesh(f"m{number}", *box(of["low"], of["high"]), properties)
+    return pictures(asked, scene)
 
 
 def main():
@@ -205,8 +182,8 @@ def main():
                 "Mitsuba volpath": of_mitsuba(asked, folder, surfaces, media),
                 "Mitsuba, 5 % denser": of_mitsuba(asked, folder, surfaces, [denser(of, 1.05) for of in media]),
             }
-            for other, pictures in others.items():
-                row(name, other, own, pictures)
+            for other, seen in others.items():
+                row(name, other, own, seen)
 
 
 if __name__ == "__main__":

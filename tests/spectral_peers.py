@@ -16,6 +16,7 @@ import mitsuba as mi
 import numpy as np
 
 from blocks import arguments, blocks, of_eyerays, row
+from mitsuba_parts import mesh, pictures, read, sensor
 
 mi.set_variant("scalar_spectral")
 
@@ -143,30 +144,12 @@ def write_scene(folder, surfaces, media, is_spectral):
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 
 
-def read(path):
-    return np.array(mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, False))
-
-
-def quad(name, corners, properties):
-    mesh = mi.Mesh(name, 4, 2, props=properties)
-    parameters = mi.traverse(mesh)
-    parameters["vertex_positions"] = np.array(corners, dtype=np.float32).ravel()
-    parameters["faces"] = np.array([0, 1, 2, 0, 2, 3], dtype=np.uint32)
-    parameters.update()
-    return mesh
-
-
 def of_mitsuba(asked, surfaces, media):
     T = mi.ScalarTransform4f
     scene = {
         "type": "scene",
         "integrator": {"type": "volpath", "max_depth": BOUNCES + 1, "rr_depth": 6},
-        "sensor": {
-            "type": "perspective", "fov": FOV, "fov_axis": "y", "to_world": T().look_at(list(EYE), list(TARGET), [0, 1, 0]),
-            "film": {"type": "hdrfilm", "width": asked.size, "height": asked.size, "rfilter": {"type": "box"},
-                     "component_format": "float32", "pixel_format": "rgb"},
-            "sampler": {"type": "independent", "sample_count": asked.samples},
-        },
+        "sensor": sensor(asked, EYE, TARGET, FOV),
     }
     for number, of in enumerate(surfaces):
         properties = mi.Properties()
@@ -174,7 +157,7 @@ def of_mitsuba(asked, surfaces, media):
         properties["bsdf"] = mi.load_dict({"type": "twosided", "inner": bsdf})
         if "emitter" in of:
             properties["emitter"] = mi.load_dict({"type": "area", "radiance": of["emitter"]()})
-        scene[f"s{number}"] = quad(f"s{number}", of["corners"], properties)
+        scene[f"s{number}"] = mesh(f"s{number}", of["corners"], [(0, 1, 2), (0, 2, 3)], properties)
     for number, of in enumerate(media):
         # This program makes a spectrum of the extinction and of the share that is scattered.
         extinction = np.add(of["scattering"], of["absorption"])
@@ -184,9 +167,7 @@ def of_mitsuba(asked, surfaces, media):
         low, high = np.array(BOX[0], float), np.array(BOX[1], float)
         to_world = T().translate(list((low + high) / 2)).scale(list((high - low) / 2))
         scene[f"m{number}"] = {"type": "cube", "to_world": to_world, "bsdf": {"type": "null"}, "interior": medium}
-    scene = mi.load_dict(scene)
-    for seed in range(asked.seeds):
-        yield np.array(mi.render(scene, seed=seed))
+    return pictures(asked, scene)
 
 
 def main():
@@ -199,10 +180,10 @@ def main():
             own = list(of_eyerays(asked, folder, read))
             write_scene(folder, surfaces, media, False)
             others = {"Mitsuba": list(of_mitsuba(asked, surfaces, media)), "red, green and blue": list(of_eyerays(asked, folder, read))}
-            for other, pictures in others.items():
+            for other, seen in others.items():
                 for number, channel in enumerate(("red", "green", "blue")):
                     of = lambda all: [picture[..., number : number + 1] for picture in all]
-                    row(f"{name}, {channel}", other, blocks(of(own)), of(pictures))
+                    row(f"{name}, {channel}", other, blocks(of(own)), of(seen))
 
 
 if __name__ == "__main__":

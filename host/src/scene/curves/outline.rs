@@ -110,8 +110,14 @@ impl Skin<'_> {
         Some(bezier(piece, station.share))
     }
 
+    /// The number of the vertex that will be added next.
+    pub fn next_number(&self) -> u32 {
+        self.mesh.positions.len() as u32
+    }
+
     /// Adds a vertex and returns its number.
     pub fn vertex(&mut self, vertex: &Vertex) -> u32 {
+        let number = self.next_number();
         let Skin { mesh, curves, along, colour, .. } = self;
         mesh.positions.push(vertex.place.as_vec3());
         mesh.normals.push(unit(vertex.normal));
@@ -123,7 +129,7 @@ impl Skin<'_> {
             mesh.tangents.push(unit(vertex.tangent).extend(1.0));
         }
         mesh.colours.extend(*colour);
-        mesh.positions.len() as u32 - 1
+        number
     }
 
     /// Adds a triangle, unless two of its corners are at one place, as at a tip: then its neighbours meet there.

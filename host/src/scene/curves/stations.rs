@@ -3,7 +3,7 @@
 use glam::{DVec3, DVec4};
 
 use super::basis::halves;
-use super::{Basis, Strand};
+use super::{Basis, ControlPoint, Strand};
 use crate::math;
 
 /// A place along a strand.
@@ -43,7 +43,7 @@ pub fn each<E>(
     visit: impl FnMut(Station) -> Result<(), E>,
 ) -> Result<(), E> {
     let Ok(pieces) = basis.pieces(strand.points.len()) else { return Ok(()) };
-    let far = |most: f32, at: &super::ControlPoint| most.max(at.position.abs().max_element());
+    let far = |most: f32, at: &ControlPoint| most.max(at.position.abs().max_element());
     let nothing = ROUNDING * f64::from(strand.points.iter().fold(0.0, far));
     let most_halves = if basis == Basis::Linear { 0 } else { MOST_HALVES };
     let mut walk = Walk { tolerance, nothing, most_halves, last: None, visit };
@@ -200,19 +200,19 @@ impl<E, V: FnMut(Station) -> Result<(), E>> Walk<V> {
         let steps = (angle / most - 1e-6).ceil().max(1.0);
         let mut step = 1.0;
         while step < steps {
-            (self.visit)(between(&from, &to, (step / steps, angle)))?;
+            (self.visit)(between(&from, &to, step / steps))?;
             step += 1.0;
         }
         Ok(())
     }
 }
 
-/// At a share of the way from one station to another, between whose tangents there is an angle.
-fn between(from: &Station, to: &Station, (share, angle): (f64, f64)) -> Station {
+/// At a share of the way from one station to another.
+fn between(from: &Station, to: &Station, share: f64) -> Station {
     // What turns back may do so any way.
     let axis = from.tangent.cross(to.tangent).try_normalize();
     let axis = axis.unwrap_or_else(|| from.tangent.any_orthonormal_vector());
-    let (sine, cosine) = math::sin_cos(share * angle);
+    let (sine, cosine) = math::sin_cos(share * angle(from.tangent, to.tangent));
     let lerp = |a: f64, b: f64| a + (b - a) * share;
     let own = if from.piece == to.piece { lerp(from.share, to.share) } else { to.share };
     Station {

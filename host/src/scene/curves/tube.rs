@@ -20,6 +20,7 @@ pub struct Tube {
 
 /// A ring of vertices around a station.
 struct Ring {
+    /// The number of its first vertex.
     first: u32,
     station: Station,
     /// From the centre to the first corner.
@@ -64,27 +65,26 @@ impl Tube {
         }
     }
 
-    /// From the centre of a ring to a corner.
-    fn spoke(&self, ring: (&Station, DVec3), corner: usize) -> DVec3 {
-        let ((station, normal), [sine, cosine]) = (ring, self.corners[corner % self.corners.len()]);
-        normal * cosine + station.tangent.cross(normal) * sine
-    }
-
     fn ring(&self, skin: &mut Skin, station: &Station, normal: DVec3) -> Ring {
+        let ring = Ring { first: skin.next_number(), station: *station, normal };
         let Station { center, radius, tangent, slope, .. } = *station;
-        let mut first = None;
         for corner in 0..self.columns {
-            let spoke = self.spoke((station, normal), corner);
+            let spoke = self.spoke(&ring, corner);
             // Where a strand gets thinner its surface faces ahead.
-            let number = skin.vertex(&Vertex {
+            skin.vertex(&Vertex {
                 place: center + spoke * radius,
                 normal: spoke - tangent * slope,
                 tangent: tangent + spoke * slope,
                 across: corner as f64 / self.corners.len() as f64,
             });
-            first.get_or_insert(number);
         }
-        Ring { first: first.unwrap_or_default(), station: *station, normal }
+        ring
+    }
+
+    /// The unit vector from the centre of a ring to a corner.
+    fn spoke(&self, ring: &Ring, corner: usize) -> DVec3 {
+        let [sine, cosine] = self.corners[corner % self.corners.len()];
+        ring.normal * cosine + ring.station.tangent.cross(ring.normal) * sine
     }
 
     /// The surface between two rings.
@@ -107,7 +107,7 @@ impl Tube {
         let outwards = if is_last { tangent } else { -tangent };
         let sides = self.corners.len();
         let corner = |corner: usize| Vertex {
-            place: center + self.spoke((&ring.station, ring.normal), corner) * radius,
+            place: center + self.spoke(ring, corner) * radius,
             normal: outwards,
             tangent: ring.normal,
             across: corner as f64 / sides as f64,
@@ -121,10 +121,10 @@ impl Tube {
 
 /// An even number of sides whose middles are no farther than the tolerance from the circle through their corners.
 fn sides(tolerance: f64, radius: f64) -> u32 {
-    let (least, most) = (4.0, f64::from(*Curves::SIDES.end()));
+    const LEAST: u32 = 4;
     if tolerance >= radius {
-        return least as u32;
+        return LEAST;
     }
     let half = PI / math::acos(1.0 - tolerance / radius) / 2.0;
-    (2.0 * half.ceil()).clamp(least, most) as u32
+    ((2.0 * half.ceil()) as u32).clamp(LEAST, *Curves::SIDES.end())
 }

@@ -38,7 +38,7 @@ pub fn is(bytes: &[u8]) -> bool {
 /// A file that is cut off, whose numbers contradict each other, or for whose points there is no room.
 pub fn parse(bytes: &[u8], radius: Option<f32>, budget: Budget) -> Unplaced<Listed> {
     let file = Hair::read(Bytes(bytes))?;
-    listed::check_room(u64::from(file.point_count).saturating_add(u64::from(file.strand_count)), budget)?;
+    listed::check_room(file.point_count.into(), budget)?;
     let mut strands = Strands::default();
     let (mut points, mut colours) = (Vec::new(), Vec::new());
     let mut next = 0;

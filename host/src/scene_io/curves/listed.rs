@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 use std::path::Path;
 
-use super::Sound;
 use crate::error::{Error, Result};
 use crate::scene::Unplaced;
 use crate::scene::curves::{Basis, ControlPoint, Strand, Strands};
@@ -12,9 +11,9 @@ use crate::scene_io::tally::Tally;
 use crate::scene_io::{Warning, WarningKind};
 
 /// What becomes of strands that make no sense.
-pub const LEFT_OUT: &str = ": the strand is left out";
+pub const LEFT_OUT: &str = "left out";
 /// What becomes of a file of no others.
-pub const NONE_LEFT: &str = "and no other strand is there; correct them";
+pub const NONE_LEFT: &str = "left out, and no strand is left";
 /// What a control point and its strand take of memory, in bytes, in lists that double as they grow.
 const POINT: u64 = 2 * (size_of::<ControlPoint>() + size_of::<[f32; 4]>() + 2 * size_of::<usize>()) as u64;
 
@@ -35,12 +34,12 @@ impl Listed {
     ///
     /// # Errors
     /// There is none.
-    pub fn sound(&self, path: &Path, basis: Basis) -> Result<(Sound<'_>, Option<Warning>)> {
+    pub fn sound(&self, path: &Path, basis: Basis) -> Result<(Cow<'_, Strands>, Option<Warning>)> {
         let mut tally = Tally::default();
         for (strand, &place) in self.strands.iter().zip(&self.places) {
             if let Some(fault) = strand.fault(basis) {
-                let what = format!("{} {fault}", if self.has_lines { "the strand from here on" } else { "the strand" });
-                tally.add(place, what);
+                let what = if self.has_lines { "strand " } else { "" };
+                tally.add(place, format!("{what}(it {fault})"));
             }
         }
         let Some(fault) = tally.fault(path, LEFT_OUT) else { return Ok((Cow::Borrowed(&self.strands), None)) };
@@ -58,7 +57,7 @@ impl Listed {
     fn placed(&self, fault: Error) -> Error {
         match fault.place() {
             Some((path, Some(number))) if !self.has_lines => {
-                Error::file(path, format!("strand number {number}: {}", fault.message()))
+                Error::file(path, format!("strand number {number} {}", fault.message()))
             }
             _ => fault,
         }

@@ -6,7 +6,6 @@ mod keys;
 mod listed;
 mod text;
 
-use std::borrow::Cow;
 use std::path::Path;
 
 pub use self::listed::Listed;
@@ -76,6 +75,3 @@ fn mesh(table: &Table, curves: &Curves, strands: &Strands, budget: Budget) -> Re
     fits.map_err(|fault| table.fault(format!("{fault} strands, fewer sides or a greater tolerance")))?;
     Ok(curves.mesh(strands))
 }
-
-/// What is borrowed where all of it is sound.
-type Sound<'s> = Cow<'s, Strands>;

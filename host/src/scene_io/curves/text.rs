@@ -64,7 +64,7 @@ fn add(open: &mut Open, line: usize, point: Unplaced<ControlPoint>) {
 
 fn close(open: &mut Open, listed: &mut Listed, tally: &mut Tally) {
     match open.fault.take() {
-        Some((line, fault)) => tally.add(line, fault),
+        Some((line, fault)) => tally.add(line, format!("strand ({fault})")),
         None if open.points.is_empty() => {}
         None => {
             listed.strands.push(Strand { points: &open.points, ups: &[], colours: &[] });

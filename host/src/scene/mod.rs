@@ -7,6 +7,7 @@ pub mod bump;
 mod camera;
 mod check;
 mod copies;
+pub mod curves;
 pub mod displace;
 mod environment;
 pub(crate) mod extent;

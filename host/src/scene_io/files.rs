@@ -3,9 +3,8 @@
 use std::collections::{HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use glam::Vec3;
-
 use super::budget::Budget;
+use super::curves::{self, Listed};
 use super::gltf::{self, Gltf};
 use super::load::Loading;
 use super::map::Images;
@@ -35,10 +34,14 @@ pub struct Files<'p> {
     pub images: Images,
     /// Do materials of the scene file cover meshes with textures?
     pub is_covered: bool,
+    /// Do they ask for tangents?
+    pub has_axes: bool,
     /// Has the scene file lights of its own, and cameras?
     pub has: Own,
     meshes: HashMap<PathBuf, Obj>,
     spheres: HashMap<PathBuf, Vec<Sphere>>,
+    /// With the bits of the radius that they were read with.
+    strands: HashMap<(PathBuf, Option<u32>), Listed>,
     /// What was ignored in them.
     pub warnings: Vec<Warning>,
     /// Every file that was read, material files too.
@@ -63,11 +66,13 @@ impl<'p> Files<'p> {
             budget,
             images: Images::within(folder, budget, loading),
             is_covered: false,
+            has_axes: false,
             has: Own::default(),
             eyes: Vec::new(),
             objects: Objects::default(),
             meshes: HashMap::new(),
             spheres: HashMap::new(),
+            strands: HashMap::new(),
             warnings: Vec::new(),
             paths: Vec::new(),
             animations: Vec::new(),
@@ -133,6 +138,21 @@ impl<'p> Files<'p> {
         }
         Ok(&self.spheres[path])
     }
+
+    /// Strands, whose radius is this one where the file has none, or of a `.hair` file wherever.
+    ///
+    /// # Errors
+    /// Those of [`curves::load`].
+    pub fn strands(&mut self, path: &Path, radius: Option<f32>) -> Result<&Listed> {
+        let key = (path.to_owned(), radius.map(f32::to_bits));
+        if !self.strands.contains_key(&key) {
+            let mut listed = curves::load(path, radius, self.budget)?;
+            self.warnings.extend(listed.warning.take());
+            self.paths.push(path.to_owned());
+            self.strands.insert(key.clone(), listed);
+        }
+        Ok(&self.strands[&key])
+    }
 }
 
 /// Reads a Wavefront mesh or, by its ending, a PLY mesh, whose material is the default, white beneath colours of vertices; the other
@@ -145,11 +165,7 @@ pub fn read_mesh(path: &Path, budget: Budget, images: &mut Images, is_covered: b
         return obj::load(path, budget, images, is_covered);
     }
     let Ply { mesh, faces, warnings } = ply::load(path, budget)?;
-    let mut materials = mesh_table::plain();
-    if !mesh.colours.is_empty() {
-        // Vertices say what colour it is.
-        materials[0].1.diffuse = Some(Vec3::ONE);
-    }
+    let materials = if mesh.colours.is_empty() { mesh_table::plain() } else { mesh_table::white() };
     Ok(Obj { mesh, faces, materials, warnings, ..Obj::default() })
 }
 

@@ -266,6 +266,7 @@ fn parse_once(path: &Path, bytes: &[u8], budget: Budget, loading: Loading) -> Re
         return Err(Error::file(path, fault));
     }
     files.is_covered = overrides.values().any(Override::has_maps) || meshes.iter().any(|mesh| mesh.has("displace"));
+    files.has_axes = overrides.values().any(Override::has_axes);
     let Merged { mesh, spheres, disks, shared, instances, objects, materials, bumps } =
         merge(meshes, &overrides, &mut files)?.finish();
     let animations = files.take_animations();

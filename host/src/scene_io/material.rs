@@ -128,6 +128,12 @@ impl Fields {
         self.bump.is_some() || self.maps.all().next().is_some()
     }
 
+    /// Do its surfaces need tangents, as [`Material::has_axes`] has it?
+    pub fn has_axes(&self) -> bool {
+        let has_normals = self.bump.is_some() || self.maps.normal.is_some() || self.maps.finish.coat_normal.is_some();
+        has_normals || self.physical.anisotropy.is_some_and(|anisotropy| anisotropy > 0.0)
+    }
+
     /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse. Of one by microfacets the thesis'
     /// model keeps what it can.
     pub fn finish(mut self, name: &str) -> Material {

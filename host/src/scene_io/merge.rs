@@ -37,6 +37,11 @@ impl Override {
         self.fields.has_maps()
     }
 
+    /// Does it ask for tangents?
+    pub fn has_axes(&self) -> bool {
+        self.fields.has_axes()
+    }
+
     fn over(&self, fields: Fields) -> Fields {
         self.used.set(true);
         self.fields.clone().over(fields)

@@ -2,6 +2,7 @@
 
 use super::budget::Budget;
 use super::copies::Copies;
+use super::curves;
 use super::face_sizes::FaceSizes;
 use super::files::{Files, is, is_gltf};
 use super::geometry::Geometry;
@@ -14,7 +15,7 @@ use super::table::Table;
 use super::{Instant, visible};
 use crate::error::Result;
 use crate::scene::{Instance, Mesh, Object, Primitives, Unplaced, Visibility, extent, normal};
-use glam::DMat4;
+use glam::{DMat4, Vec3};
 
 /// Geometry in place, and the materials that it numbers.
 pub struct Placed {
@@ -168,7 +169,7 @@ fn source(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source> {
     match (table.has("file"), table.has("shape")) {
         (true, false) => from_file(table, wish, files),
         (false, true) => {
-            let (word, geometry) = named::read(table, wish, files.budget, files.is_covered)?;
+            let (word, geometry) = named::read(table, wish, files)?;
             let mut source = Source::plain(word, geometry);
             if let ("quad" | "box", Geometry::Mesh(mesh)) = (word, &source.geometry) {
                 (0..mesh.triangles.len() / 2).for_each(|_| source.faces.push(2));
@@ -191,8 +192,14 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
         let geometry = named::spheres(table, wish, budget, files.spheres(&path)?)?;
         return Ok(Source::plain(name, geometry));
     }
+    if curves::is(&path) {
+        let (mesh, has_colours) = curves::of_file(table, &path, files)?;
+        let materials = if has_colours { white() } else { plain() };
+        return Ok(Source { materials, ..Source::plain(name, Geometry::Mesh(mesh)) });
+    }
     if !is(&path, "obj") && !is(&path, "ply") && !is_gltf(&path) {
-        let fault = format!("{name:?} is no .obj, .ply, .gltf, .glb or .xyzr; name a mesh or a list of spheres");
+        let fault =
+            format!("{name:?} is no .obj, .ply, .gltf, .glb, .xyzr, .hair or .txt; name a mesh, spheres or curves");
         return Err(table.fault_of("file", fault));
     }
     let Obj { mesh, faces, copies, materials, objects, .. } = files.mesh(&path)?;
@@ -205,4 +212,9 @@ fn from_file(table: &mut Table, wish: &Wish, files: &mut Files) -> Result<Source
 /// The materials of what names none.
 pub fn plain() -> Vec<(String, Fields)> {
     vec![(DEFAULT.into(), Fields::default())]
+}
+
+/// The same beneath colours of vertices, which say what colour it is.
+pub fn white() -> Vec<(String, Fields)> {
+    vec![(DEFAULT.into(), Fields { diffuse: Some(Vec3::ONE), ..Fields::default() })]
 }

@@ -11,6 +11,7 @@ mod budget;
 mod bump;
 mod camera_table;
 mod copies;
+mod curves;
 mod describe;
 mod document;
 mod face_areas;

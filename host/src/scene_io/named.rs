@@ -3,6 +3,8 @@
 use glam::Vec3;
 
 use super::budget::Budget;
+use super::curves;
+use super::files::Files;
 use super::geometry::Geometry;
 use super::shape;
 use super::table::Table;
@@ -40,6 +42,7 @@ enum Shape {
     Disk,
     Quad,
     Box,
+    Curves,
 }
 
 /// Reads the keys of a table that has a `shape`: its word, and what it is before it is moved. Where it may be covered by a texture, a
@@ -47,8 +50,15 @@ enum Shape {
 ///
 /// # Errors
 /// An unknown word, a number that is missing or out of range, or more triangles than the budget has room for.
-pub fn read(table: &mut Table, wish: &Wish, budget: Budget, is_covered: bool) -> Result<(&'static str, Geometry)> {
-    let words = [("sphere", Shape::Sphere), ("disk", Shape::Disk), ("quad", Shape::Quad), ("box", Shape::Box)];
+pub fn read(table: &mut Table, wish: &Wish, files: &Files) -> Result<(&'static str, Geometry)> {
+    let budget = files.budget;
+    let words = [
+        ("sphere", Shape::Sphere),
+        ("disk", Shape::Disk),
+        ("quad", Shape::Quad),
+        ("box", Shape::Box),
+        ("curves", Shape::Curves),
+    ];
     let shape = table.word("shape", &words)?;
     match table.need("shape", shape)? {
         Shape::Sphere => {
@@ -77,10 +87,11 @@ pub fn read(table: &mut Table, wish: &Wish, budget: Budget, is_covered: bool) ->
                 return Err(table.fault_of("max", fault));
             }
             // Sides that share their corners can have smooth edges.
-            let of_sides = is_covered && wish.smooth != Some(true);
+            let of_sides = files.is_covered && wish.smooth != Some(true);
             let make = if of_sides { shape::covered_cuboid } else { shape::cuboid };
             Ok(("box", Geometry::Mesh(make(min, max))))
         }
+        Shape::Curves => Ok(("curves", Geometry::Mesh(curves::inline(table, files)?))),
     }
 }
 

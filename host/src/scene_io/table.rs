@@ -26,7 +26,8 @@ struct Entry<'s> {
     value: Option<Spanned<DeValue<'s>>>,
 }
 
-type Value<'s> = Spanned<DeValue<'s>>;
+/// What a key has, and where in the text.
+pub(super) type Value<'s> = Spanned<DeValue<'s>>;
 
 impl<'s> Table<'s> {
     /// A table that begins at byte `at` and is called `name` in messages.
@@ -54,6 +55,11 @@ impl<'s> Table<'s> {
     pub fn fault_of(&self, key: &str, message: impl Into<String>) -> Error {
         let entry = self.entries.iter().find(|entry| entry.key == key);
         self.source.fault(entry.map_or(self.at, |entry| entry.at), message)
+    }
+
+    /// A fault of a value in a list.
+    pub(super) fn fault_at(&self, value: &Value<'_>, message: impl Into<String>) -> Error {
+        self.source.fault(value.span().start, message)
     }
 
     /// The value of `key`, or the error that it is missing, or that a key which nobody took misspells it.
@@ -285,7 +291,12 @@ impl<'s> Table<'s> {
         })
     }
 
-    fn map<T>(&mut self, key: &'static str, read: impl FnOnce(&Self, Value<'s>) -> Result<T>) -> Result<Option<T>> {
+    /// What `read` makes of a key's value.
+    pub(super) fn map<T>(
+        &mut self,
+        key: &'static str,
+        read: impl FnOnce(&Self, Value<'s>) -> Result<T>,
+    ) -> Result<Option<T>> {
         self.asked.push(key);
         let entry = self.entries.iter_mut().find(|entry| entry.key == key);
         match entry.and_then(|entry| entry.value.take()) {
@@ -294,7 +305,8 @@ impl<'s> Table<'s> {
         }
     }
 
-    fn mismatch(&self, key: &str, wanted: &str, value: &Value<'s>) -> Error {
+    /// A value that is not what is wanted.
+    pub(super) fn mismatch(&self, key: &str, wanted: &str, value: &Value<'s>) -> Error {
         let found = value.get_ref().type_str();
         let message = format!("{key:?} must be {wanted}, not {} {found}", article(found));
         self.source.fault(value.span().start, message)
@@ -311,7 +323,8 @@ impl<'s> Table<'s> {
         Ok(array.iter().collect())
     }
 
-    fn check_triple(&self, key: &str, value: &Value<'s>, range: &Range) -> Result<Vec3> {
+    /// Three numbers in the range, of a value in a list.
+    pub(super) fn check_triple(&self, key: &str, value: &Value<'s>, range: &Range) -> Result<Vec3> {
         let items = self.items(key, value, "three numbers", 3)?;
         Ok(Vec3::new(
             self.check(key, items[0], range)?,
@@ -320,7 +333,8 @@ impl<'s> Table<'s> {
         ))
     }
 
-    fn check(&self, key: &str, value: &Value<'s>, range: &Range) -> Result<f32> {
+    /// A number in the range, likewise.
+    pub(super) fn check(&self, key: &str, value: &Value<'s>, range: &Range) -> Result<f32> {
         let digits = match value.get_ref() {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str(),
             DeValue::Float(number) => number.as_str(),

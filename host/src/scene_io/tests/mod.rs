@@ -1,6 +1,7 @@
 //! Tests of loading: what must be refused, and what must come out right.
 
 mod bump;
+mod curves;
 mod displace;
 mod effect;
 mod finish;

@@ -146,7 +146,7 @@ fn spheres_and_disks_that_make_no_sense_are_refused_where_they_stand() {
         ("file = \"heap.xyzr\"\nradius = 1", 3, "unknown key \"radius\" in a file of spheres"),
         ("file = \"heap.xyzr\"\ntranslate = [1e8, 0, 0]", 1, "the sphere number 2 is too small"),
         ("file = \"none.xyzr\"", 2, "no such file"),
-        ("file = \"heap.stl\"", 2, "is no .obj, .ply, .gltf, .glb or .xyzr"),
+        ("file = \"heap.stl\"", 2, "is no .obj, .ply, .gltf, .glb, .xyzr, .hair or .txt"),
     ] {
         let text = format!("[[mesh]]\n{keys}\n");
         let files: [(&str, &[u8]); 3] =

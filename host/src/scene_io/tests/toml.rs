@@ -25,7 +25,7 @@ fn the_documented_example_loads_as_documented() {
     assert!(warnings.is_empty(), "{warnings:?}");
     let names: Vec<_> = scene.materials.iter().map(|m| m.name.as_str()).collect();
     assert_eq!(names, ["floor", "glass", "mirror", "lamp", "default"]);
-    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 2 + 12 + 2 * 6);
+    assert_eq!(scene.mesh.triangles.len(), 2 + 20 * 256 + 2 + (2 * 12 * 5 + 2 * 10) + 2 * 8 + 12 + 2 * 6);
     assert_eq!((scene.spheres.len(), scene.disks.len()), (1 + 3, 1));
     assert_eq!(scene.mesh.materials.len(), scene.mesh.triangles.len());
     assert_eq!(scene.mesh.normals.len(), scene.mesh.positions.len());

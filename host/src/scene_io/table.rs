@@ -134,12 +134,11 @@ impl<'s> Table<'s> {
     pub fn names(&mut self, key: &'static str) -> Result<Option<Vec<String>>> {
         const WANTED: &str = "a list of names in quotes";
         self.map(key, |table, value| {
-            let DeValue::Array(items) = value.get_ref() else { return Err(table.mismatch(key, WANTED, &value)) };
             let name = |item: &Value<'_>| match item.get_ref() {
                 DeValue::String(text) => Ok(text.clone().into_owned()),
                 _ => Err(table.mismatch(key, WANTED, item)),
             };
-            items.iter().map(name).collect()
+            table.list(key, WANTED, &value)?.iter().map(name).collect()
         })
     }
 
@@ -305,20 +304,24 @@ impl<'s> Table<'s> {
         }
     }
 
-    /// A value that is not what is wanted.
-    pub(super) fn mismatch(&self, key: &str, wanted: &str, value: &Value<'s>) -> Error {
+    /// The values of a list, which may be in another.
+    pub(super) fn list<'v>(&self, key: &str, wanted: &str, value: &'v Value<'s>) -> Result<&'v [Value<'s>]> {
+        match value.get_ref() {
+            DeValue::Array(items) => Ok(items),
+            _ => Err(self.mismatch(key, wanted, value)),
+        }
+    }
+
+    fn mismatch(&self, key: &str, wanted: &str, value: &Value<'s>) -> Error {
         let found = value.get_ref().type_str();
         let message = format!("{key:?} must be {wanted}, not {} {found}", article(found));
         self.source.fault(value.span().start, message)
     }
 
     fn items<'v>(&self, key: &str, value: &'v Value<'s>, wanted: &str, count: usize) -> Result<Vec<&'v Value<'s>>> {
-        let DeValue::Array(array) = value.get_ref() else {
-            return Err(self.mismatch(key, wanted, value));
-        };
+        let array = self.list(key, wanted, value)?;
         if array.len() != count {
-            let message = format!("{key:?} must be {wanted}, not {} of them", array.len());
-            return Err(self.source.fault(value.span().start, message));
+            return Err(self.fault_at(value, format!("{key:?} must be {wanted}, not {} of them", array.len())));
         }
         Ok(array.iter().collect())
     }

@@ -6,7 +6,6 @@ use crate::error::Result;
 use crate::scene::Range;
 use crate::scene::curves::{ControlPoint, Curves, Strand, Strands};
 use crate::scene_io::table::{Table, Value};
-use toml::de::DeValue;
 
 const STRANDS: &str = "a list of strands, each of points: [[[x, y, z, radius], ...], ...]";
 const NORMALS: &str = "a list of strands, each of normals: [[[x, y, z], ...], ...]";
@@ -18,7 +17,7 @@ const NORMALS: &str = "a list of strands, each of normals: [[[x, y, z], ...], ..
 pub fn read(table: &mut Table, curves: &Curves, radius: Option<f32>) -> Result<Strands> {
     let normals = table.map("normals", |table, value| normals(table, &value))?.unwrap_or_default();
     let strands = table.map("strands", |table, value| {
-        let items = list(table, ("strands", STRANDS), &value)?;
+        let items = table.list("strands", STRANDS, &value)?;
         if items.is_empty() {
             return Err(table.fault_at(&value, "there is no strand; add one, as a list of points [x, y, z, radius]"));
         }
@@ -50,7 +49,7 @@ pub fn read(table: &mut Table, curves: &Curves, radius: Option<f32>) -> Result<S
 fn points(table: &Table, strand: &Value, radius: Option<f32>) -> Result<Vec<ControlPoint>> {
     const KEY: &str = "strands";
     let point = |value: &Value| {
-        let numbers = list(table, (KEY, STRANDS), value)?;
+        let numbers = table.list(KEY, STRANDS, value)?;
         let ([x, y, z] | [x, y, z, _]) = numbers else {
             let fault = format!("a control point is [x, y, z, radius], not {} numbers; correct it", numbers.len());
             return Err(table.fault_at(value, fault));
@@ -63,21 +62,14 @@ fn points(table: &Table, strand: &Value, radius: Option<f32>) -> Result<Vec<Cont
         let number = |value| table.check(KEY, value, &Range::ANY);
         Ok(ControlPoint { position: Vec3::new(number(x)?, number(y)?, number(z)?), radius })
     };
-    list(table, (KEY, STRANDS), strand)?.iter().map(point).collect()
+    table.list(KEY, STRANDS, strand)?.iter().map(point).collect()
 }
 
 fn normals(table: &Table, value: &Value) -> Result<Vec<Vec<Vec3>>> {
-    const KEY: (&str, &str) = ("normals", NORMALS);
+    const KEY: &str = "normals";
     let of_strand = |strand: &Value| {
-        let all = list(table, KEY, strand)?.iter();
-        all.map(|normal| table.check_triple(KEY.0, normal, &Range::ANY)).collect()
+        let all = table.list(KEY, NORMALS, strand)?.iter();
+        all.map(|normal| table.check_triple(KEY, normal, &Range::ANY)).collect()
     };
-    list(table, KEY, value)?.iter().map(of_strand).collect()
-}
-
-fn list<'v, 's>(table: &Table, (key, wanted): (&str, &str), value: &'v Value<'s>) -> Result<&'v [Value<'s>]> {
-    match value.get_ref() {
-        DeValue::Array(items) => Ok(items),
-        _ => Err(table.mismatch(key, wanted, value)),
-    }
+    table.list(KEY, NORMALS, value)?.iter().map(of_strand).collect()
 }

@@ -3,9 +3,10 @@ mod random;
 
 use std::collections::HashMap;
 
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 use super::*;
+use crate::scene::normal;
 
 fn point(position: DVec3, radius: f64) -> ControlPoint {
     ControlPoint { position: position.as_vec3(), radius: radius as f32 }
@@ -32,7 +33,7 @@ fn corners(mesh: &Mesh) -> impl Iterator<Item = [DVec3; 3]> {
 /// How often there is an edge from one place to another, each way.
 fn edges(mesh: &Mesh) -> Vec<[u32; 2]> {
     let mut edges: HashMap<_, u32> = HashMap::new();
-    let place = |vertex: u32| (mesh.positions[vertex as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    let place = |vertex: u32| normal::place(mesh.positions[vertex as usize]);
     for [a, b, c] in mesh.triangles.iter().map(|corners| corners.map(place)) {
         [(a, b), (b, c), (c, a)].into_iter().for_each(|edge| *edges.entry(edge).or_default() += 1);
     }

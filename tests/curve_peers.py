@@ -16,6 +16,7 @@ import mitsuba as mi
 
 mi.set_variant("scalar_rgb")
 
+import scene_text  # noqa: E402
 from blocks import arguments, blocks, of_eyerays, row  # noqa: E402
 from mitsuba_parts import mesh, pictures, read, sensor  # noqa: E402
 
@@ -65,14 +66,12 @@ def strands(folder, curves, share=1.0):
 
 
 def write_scene(folder, keys):
-    text = [f'light = []\n[render]\nintegrator = "path"\nsampler = "sobol"\nbounces = {BOUNCES}\npixel_filter = "box"\ncompensation = false']
-    text += [f"[background]\ncolor = {list(SKY)}"]
-    text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
+    text = scene_text.head(BOUNCES, SKY, (EYE, TARGET, FOV), "\ncompensation = false")
     text += [f'[[material]]\nname = "own"\n{keys}', '[[material]]\nname = "floor"\ndiffuse = [0.6, 0.6, 0.6]']
     text += ['[[material]]\nname = "lamp"\ndiffuse = [0, 0, 0]\nemission = [9, 9, 9]']
     text += ['[[mesh]]\nfile = "strands.txt"\nbasis = "b-spline"\nmaterial = "own"\nsides = 48\ntolerance = 1e-4']
     for corners, material in ((FLOOR, "floor"), (LAMP, "lamp")):
-        text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in corners]}\nmaterial = "{material}"']
+        text += [scene_text.quad(corners, material)]
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 
 
@@ -104,7 +103,7 @@ def main():
         of, keys, bsdf = SCENES[name]
         with tempfile.TemporaryDirectory() as folder:
             folder = Path(folder)
-            path = strands(folder, of())
+            strands(folder, of())
             write_scene(folder, keys)
             own = blocks(of_eyerays(asked, folder, read))
             for other, share in (("Mitsuba", 1.0), ("Mitsuba, a tenth thinner", 0.9)):

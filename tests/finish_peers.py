@@ -18,6 +18,7 @@ import mathutils
 import numpy as np
 import OpenEXR
 
+import scene_text
 from blocks import arguments, blocks, of_eyerays, row
 
 BOUNCES = 32
@@ -61,14 +62,12 @@ SCENES = {
 
 
 def write_scene(folder, keys):
-    text = [f'light = []\n[render]\nintegrator = "path"\nsampler = "sobol"\nbounces = {BOUNCES}\npixel_filter = "box"']
-    text += [f"[background]\ncolor = {list(SKY)}"]
-    text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
+    text = scene_text.head(BOUNCES, SKY, (EYE, TARGET, FOV))
     text += [f'[[material]]\nname = "own"\n{keys}']
     for name, light in (("lamp", 8.0), ("behind", 5.0)):
         text += [f'[[material]]\nname = "{name}"\ndiffuse = [0, 0, 0]\nemission = {[light] * 3}']
     for corners, material in ((FLOOR, "own"), (WALL, "own"), (LAMP, "lamp"), (BEHIND, "behind")):
-        text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in corners]}\nmaterial = "{material}"']
+        text += [scene_text.quad(corners, material)]
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 
 

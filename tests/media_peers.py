@@ -17,6 +17,7 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 
+import scene_text
 from blocks import arguments, blocks, of_eyerays, row
 from mitsuba_parts import mesh, pictures, read, sensor
 
@@ -91,12 +92,10 @@ def write_grid(path, numbers, low, high):
 
 
 def write_scene(folder, surfaces, media):
-    text = [f'light = []\n[render]\nintegrator = "path"\nsampler = "sobol"\nbounces = {BOUNCES}\npixel_filter = "box"']
-    text += ["[background]\ncolor = [0.1, 0.12, 0.15]"]
-    text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
+    text = scene_text.head(BOUNCES, (0.1, 0.12, 0.15), (EYE, TARGET, FOV))
     for number, (corners, colour, light) in enumerate(surfaces):
         text += [f'[[material]]\nname = "s{number}"\ndiffuse = {list(colour)}\nemission = {list(light)}']
-        text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in corners]}\nmaterial = "s{number}"']
+        text += [scene_text.quad(corners, f"s{number}")]
     for number, of in enumerate(media):
         keys = f'scattering = {list(of["scattering"])}, absorption = {list(of["absorption"])}, anisotropy = {of["g"]}'
         glass = of["glass"]

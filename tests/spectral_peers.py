@@ -15,6 +15,7 @@ from pathlib import Path
 import mitsuba as mi
 import numpy as np
 
+import scene_text
 from blocks import arguments, blocks, of_eyerays, row
 from mitsuba_parts import mesh, pictures, read, sensor
 
@@ -131,12 +132,11 @@ SCENES = dict(walls=walls, warm=warm, gold=gold, copper=copper, cloud=cloud)
 
 
 def write_scene(folder, surfaces, media, is_spectral):
-    text = [f'light = []\n[render]\nintegrator = "path"\nsampler = "sobol"\nbounces = {BOUNCES}\npixel_filter = "box"\ncompensation = false']
-    text += [f"spectral = {str(is_spectral).lower()}\n[background]\ncolor = [0, 0, 0]"]
-    text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
+    keys = f"\ncompensation = false\nspectral = {str(is_spectral).lower()}"
+    text = scene_text.head(BOUNCES, (0, 0, 0), (EYE, TARGET, FOV), keys)
     for number, of in enumerate(surfaces):
         text += [f'[[material]]\nname = "s{number}"\n{of["toml"]}']
-        text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in of["corners"]]}\nmaterial = "s{number}"']
+        text += [scene_text.quad(of["corners"], f"s{number}")]
     for number, of in enumerate(media):
         keys = f'scattering = {list(of["scattering"])}, absorption = {list(of["absorption"])}, anisotropy = {of["g"]}, interface = false'
         text += [f'[[material]]\nname = "m{number}"\nvolume = {{ {keys} }}']

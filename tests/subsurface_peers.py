@@ -18,6 +18,7 @@ from pathlib import Path
 
 import bpy
 
+import scene_text
 from blocks import arguments, blocks, of_eyerays, row
 from finish_peers import EYE, FLOOR, FOV, LAMP, SKY, TARGET, in_blender, lamp, node_material, pictures, quad, read
 
@@ -68,9 +69,7 @@ def write_scene(folder, body, colour, distance, above, behind, seen):
     corners, faces = body
     lines = [f"v {x} {y} {z}" for x, y, z in corners] + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]
     (folder / "body.obj").write_text("\n".join(lines) + "\n")
-    text = [f'light = []\n[render]\nintegrator = "path"\nsampler = "sobol"\nbounces = {BOUNCES}\npixel_filter = "box"']
-    text += [f"[background]\ncolor = {list(SKY)}"]
-    text += [f'[[camera]]\nname = "front"\neye = {list(EYE)}\ntarget = {list(TARGET)}\nfov = {FOV}']
+    text = scene_text.head(BOUNCES, SKY, (EYE, TARGET, FOV))
     text += [f'[[material]]\nname = "floor"\ndiffuse = {[GREY] * 3}']
     for name, _, light in lamps(above, behind):
         text += [f'[[material]]\nname = "{name}"\ndiffuse = [0, 0, 0]\nemission = {[light] * 3}']
@@ -80,7 +79,7 @@ def write_scene(folder, body, colour, distance, above, behind, seen):
     else:
         text += [f'[[material]]\nname = "body"\ntransmission = [1, 1, 1]\nior = {IOR}\nvolume = {{ {volume} }}']
     for name, corners, _ in [("floor", FLOOR, 0), *lamps(above, behind)]:
-        text += [f'[[mesh]]\nshape = "quad"\ncorners = {[list(corner) for corner in corners]}\nmaterial = "{name}"']
+        text += [scene_text.quad(corners, name)]
     text += ['[[mesh]]\nfile = "body.obj"\nmaterial = "body"']
     (folder / "scene.toml").write_text("\n".join(text) + "\n")
 

@@ -1,5 +1,6 @@
 //! Files of numbers in space: how dense a medium is, or how hot.
 
+mod blosc;
 pub(super) mod bytes;
 mod nvdb;
 #[cfg(test)]

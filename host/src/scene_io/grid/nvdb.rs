@@ -6,6 +6,7 @@ use std::io::Read;
 
 use glam::{DAffine3, DMat3, DVec3};
 
+use super::blosc;
 use super::bytes::Bytes;
 use crate::scene::{Grid, LEAF, Leaf, Unplaced};
 use crate::scene_io::budget::Budget;
@@ -40,10 +41,10 @@ pub fn grid(bytes: &[u8], (name, usual): (Option<&str>, &str), title: &str, budg
     match entry.codec {
         0 => tree(data, title, budget),
         1 => tree(Bytes(&inflated(data, entry.size, budget)?), title, budget),
-        other => {
-            let how = if other == 2 { "by Blosc".to_owned() } else { format!("as {other}") };
-            Err(format!("it is compressed {how}, which is not read; write it with ZIP or without compression"))
-        }
+        2 => tree(Bytes(&unpacked(data, entry.size, budget)?), title, budget),
+        other => Err(format!(
+            "it is compressed as {other}, which is not read; write it with ZIP, Blosc or without compression"
+        )),
     }
 }
 
@@ -94,9 +95,26 @@ fn entries(bytes: Bytes<'_>) -> Unplaced<Vec<Entry>> {
     Ok(entries)
 }
 
+/// Is there memory for a grid of such a size?
+fn check(size: u64, budget: &Budget) -> Unplaced<()> {
+    budget.check_bytes(size).map_err(|why| format!("its {size} bytes {why}; make it coarser"))
+}
+
+/// What a grid is before it was compressed by Blosc, in chunks behind their sizes.
+fn unpacked(data: Bytes<'_>, size: u64, budget: &Budget) -> Unplaced<Vec<u8>> {
+    check(size, budget)?;
+    let (mut bytes, mut at) = (Vec::new(), 0);
+    while (bytes.len() as u64) < size {
+        let stored = data.u64(at)?;
+        blosc::unpack(data.part(at + 8, stored)?, size - bytes.len() as u64, &mut bytes)?;
+        at += 8 + stored;
+    }
+    Ok(bytes)
+}
+
 /// What a grid is before it was compressed by zlib.
 fn inflated(data: Bytes<'_>, size: u64, budget: &Budget) -> Unplaced<Vec<u8>> {
-    budget.check_bytes(size).map_err(|why| format!("its {size} bytes {why}; make it coarser"))?;
+    check(size, budget)?;
     let packed = data.part(8, data.u64(0)?)?;
     let mut bytes = Vec::new();
     let read = flate2::read::ZlibDecoder::new(packed.0).take(size).read_to_end(&mut bytes);

@@ -87,6 +87,17 @@ fn ramp([x, y, z]: [i32; 3]) -> f32 {
     (x * 100 + y * 10 + z) as f32
 }
 
+/// Two chunks of Blosc, which hold their bytes as they are.
+fn chunks(bytes: &[u8]) -> Vec<u8> {
+    let chunk = |part: &[u8]| {
+        let (size, stored) = (part.len() as u32, part.len() as u32 + 16);
+        let header = [&[2, 1, 2, 4][..], &size.to_le_bytes(), &size.to_le_bytes(), &stored.to_le_bytes()].concat();
+        [&u64::from(stored).to_le_bytes()[..], &header, part].concat()
+    };
+    let (first, second) = bytes.split_at(bytes.len() / 3);
+    [chunk(first), chunk(second)].concat()
+}
+
 /// A file of grids in one segment.
 fn file(grids: &[(&str, Vec<u8>)], codec: u16) -> Vec<u8> {
     let stored: Vec<Vec<u8>> = grids
@@ -98,6 +109,7 @@ fn file(grids: &[(&str, Vec<u8>)], codec: u16) -> Vec<u8> {
                 std::io::Read::read_to_end(&mut packed, &mut out).unwrap();
                 [&(out.len() as u64).to_le_bytes()[..], &out].concat()
             }
+            2 => chunks(bytes),
             _ => bytes.clone(),
         })
         .collect();
@@ -133,7 +145,8 @@ fn every_voxel_of_a_file_is_found_where_it_is() {
         for (what, bytes) in [
             ("as it is", bytes.clone()),
             ("in a file", file(&[("temperature", tree([0; 3], ramp, 1)), ("density", bytes.clone())], 0)),
-            ("compressed", file(&[("density", bytes)], 1)),
+            ("compressed by ZIP", file(&[("density", bytes.clone())], 1)),
+            ("compressed by Blosc", file(&[("density", bytes)], 2)),
         ] {
             let grid = parsed(&bytes, None).unwrap_or_else(|fault| panic!("{what}, {origin:?}: {fault}"));
             assert_eq!(grid.leaves.len(), 2, "{what}");
@@ -185,7 +198,7 @@ fn what_is_not_read_says_why() {
     let of = |bytes: &[u8]| parsed(bytes, None).unwrap_err();
     assert!(of(b" BDV\0\0\0\0").contains("convert it to NanoVDB"));
     assert!(of(b"hello").contains("neither NanoVDB"));
-    assert!(of(&file(&[("density", tree([0; 3], ramp, 1))], 2)).contains("by Blosc"));
+    assert!(of(&file(&[("density", tree([0; 3], ramp, 1))], 3)).contains("compressed as 3"));
     assert!(of(&tree([0; 3], |_| -1.0, 1)).contains("the number -1; densities"));
     assert!(of(&tree([0; 3], |_| f32::NAN, 1)).contains("densities are finite"));
     let mut level_set = tree([0; 3], ramp, 1);
@@ -216,6 +229,53 @@ fn nodes_that_lie_in_each_other_are_refused() {
     assert!(parsed(&even, None).unwrap_err().contains("large even parts"));
 }
 
+/// Numbers of `blosc/*.blosc`, which c-blosc 1.21.7 wrote (`blosc.compress(.., typesize=4, clevel=.., shuffle=1, cname="lz4")`), and three
+/// bytes after them: 700 have noise in their first bytes, so that one stream is stored as it was; 36,000 take three blocks.
+fn numbers(count: u32) -> Vec<u8> {
+    let mut state = 1u32;
+    let noise = (0..count).map(|i| {
+        state = state.wrapping_mul(1_103_515_245).wrapping_add(12_345) & 0x7fff_ffff;
+        if count < 1000 { state >> 16 & 255 } else { (i / 512) & 255 }
+    });
+    let numbers = noise.enumerate().flat_map(|(i, low)| ((i as u32 / 64) << 8 | low).to_le_bytes());
+    numbers.chain(*b"end").collect()
+}
+
+#[test]
+fn chunks_that_c_blosc_wrote_give_their_bytes() {
+    for (count, chunk) in [(700, &include_bytes!("blosc/700.blosc")[..]), (36_000, include_bytes!("blosc/36000.blosc"))]
+    {
+        let (mut out, expected) = (b"before".to_vec(), numbers(count));
+        blosc::unpack(bytes::Bytes(chunk), expected.len() as u64, &mut out).unwrap();
+        assert!(out.strip_prefix(b"before") == Some(&expected), "{count} differ");
+    }
+    let mut stored = [2, 1, 2, 4, 5, 0, 0, 0, 5, 0, 0, 0, 21, 0, 0, 0].to_vec();
+    stored.extend(b"smoke");
+    let mut out = Vec::new();
+    blosc::unpack(bytes::Bytes(&stored), 5, &mut out).unwrap();
+    assert_eq!(out, b"smoke");
+}
+
+#[test]
+fn chunks_that_are_damaged_are_refused() {
+    let chunk = include_bytes!("blosc/700.blosc");
+    let unpacked = |chunk: &[u8], most: u64| blosc::unpack(bytes::Bytes(chunk), most, &mut Vec::new());
+    let with = |at: usize, bytes: &[u8]| {
+        let mut chunk = chunk.to_vec();
+        chunk[at..at + bytes.len()].copy_from_slice(bytes);
+        unpacked(&chunk, 2803).unwrap_err()
+    };
+    assert!(unpacked(chunk, 2802).unwrap_err().contains("damaged"));
+    assert!(unpacked(&chunk[..800], 2803).unwrap_err().contains("is it whole?"));
+    assert!(with(2, &[0x81]).contains("LZ4; write it with ZIP"));
+    assert!(with(2, &[0x25]).contains("LZ4; write it with ZIP"));
+    assert!(with(3, &[0]).contains("damaged"));
+    assert!(with(8, &[0; 4]).contains("damaged"));
+    assert!(with(16, &[0xff; 4]).contains("is it whole?"));
+    // The first stream, stored as it was, with a byte less: what follows is no stream.
+    assert!(with(24, &699u32.to_le_bytes()).contains("damaged"));
+}
+
 #[test]
 fn mitsubas_volumes_fill_their_box() {
     let mut bytes = b"VOL\x03".to_vec();
@@ -235,9 +295,9 @@ proptest! {
     /// Whatever is damaged: a grid or a line, at once.
     #[test]
     fn damaged_files_are_read_or_refused(
-        changes in proptest::collection::vec((0usize..3000, any::<u8>()), 1..6), cut in 0usize..4000, packed in any::<bool>(),
+        changes in proptest::collection::vec((0usize..3000, any::<u8>()), 1..6), cut in 0usize..4000, codec in 0u16..3,
     ) {
-        let mut bytes = file(&[("density", tree([8, 0, -8], ramp, 1))], u16::from(packed));
+        let mut bytes = file(&[("density", tree([8, 0, -8], ramp, 1))], codec);
         for (at, value) in changes {
             let at = at % bytes.len();
             bytes[at] = value;
@@ -247,5 +307,15 @@ proptest! {
         }
         let read = parsed(&bytes, None);
         prop_assert!(read.is_ok() || !read.unwrap_err().is_empty());
+    }
+
+    /// Whatever is damaged: no more than was asked for, at once.
+    #[test]
+    fn no_damage_to_a_chunk_breaks_its_reader(at in 0usize..834, byte in any::<u8>(), end in 0usize..=834) {
+        let mut chunk = include_bytes!("blosc/700.blosc").to_vec();
+        chunk[at] = byte;
+        let mut out = Vec::new();
+        let read = blosc::unpack(bytes::Bytes(&chunk[..end]), 2803, &mut out);
+        prop_assert!(read.is_err() || out.len() <= 2803);
     }
 }

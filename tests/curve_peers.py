@@ -54,6 +54,20 @@ SCENES = {
         {"type": "roughconductor", "distribution": "ggx", "alpha": 0.25}
         | {key: {"type": "rgb", "value": value} for key, value in STEEL.items()},
     ),
+    "hair": (
+        hair,
+        "hair = { melanin = 0.3, roughness = 0.3, radial_roughness = 0.3, tilt = 2 }\nior = 1.55",
+        {
+            "type": "hair",
+            "eumelanin": 0.3,
+            "pheomelanin": 0.0,
+            "longitudinal_roughness": 0.3,
+            "azimuthal_roughness": 0.3,
+            "scale_tilt": 2.0,
+            "int_ior": 1.55,
+            "ext_ior": 1.0,
+        },
+    ),
 }
 
 

@@ -1,7 +1,7 @@
 //! Scenes made by code, so that a test knows every number in them.
 
 use eyerays::scene::{Background, Camera, Light, Material, Mesh, Projection, Scene, Settings};
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 
 /// A scene without surfaces or lights before black, seen from the origin along -z, a pixel large.
 pub fn empty() -> Scene {
@@ -60,6 +60,9 @@ pub fn add(scene: &mut Scene, material: Material, corners: &[Vec3], triangles: &
     mesh.positions.extend(corners);
     if !mesh.normals.is_empty() {
         mesh.normals.resize(mesh.positions.len(), Vec3::ZERO);
+    }
+    if !mesh.tangents.is_empty() {
+        mesh.tangents.resize(mesh.positions.len(), Vec4::ZERO);
     }
     mesh.triangles.extend(triangles.iter().map(|triangle| triangle.map(|corner| first + corner)));
     mesh.materials.resize(mesh.triangles.len(), scene.materials.len() as u32);

@@ -8,9 +8,9 @@ use eyerays::device_scene::Feature;
 use eyerays::gpu::{Gpu, Renderer};
 use eyerays::method::Traversal;
 use eyerays::scene::{
-    Absorption, Alpha, Coat, Conductor, DiffuseTransmission, Direct, Environment, Filter, FinishMaps, Grid, Integrator,
-    Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Temperature, Texels, Texture,
-    ThinFilm, Transport, Volume, Wall, Wrap,
+    Absorption, Alpha, Coat, Conductor, DiffuseTransmission, Direct, Environment, Filter, FinishMaps, Grid, Hair,
+    Integrator, Map, Maps, Material, Medium, Physical, Placement, Sampler, Scene, Settings, Sheen, Temperature, Texels,
+    Texture, ThinFilm, Transport, Volume, Wall, Wrap,
 };
 use eyerays::spectrum::{Fluorescent, Glass, Illuminant, Metal};
 use eyerays_tests::random::Random;
@@ -111,6 +111,11 @@ fn physical(random: &mut Random) -> Physical {
         }),
         abbe: one(random, &[None, Some(1.0), Some(30.0)]),
         glass: one(random, &[None, None, Some(Glass::Sf11), Some(Glass::Diamond)]),
+        hair: chance(random, 0.2).then(|| Hair {
+            roughness: one(random, &[0.0, 0.3, 1.0]),
+            radial_roughness: one(random, &[0.0, 0.3, 1.0]),
+            tilt: one(random, &[-10.0, 0.0, 2.0]),
+        }),
     }
 }
 

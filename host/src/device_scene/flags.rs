@@ -36,6 +36,7 @@ fn of_material(m: &Material) -> u32 {
     flag(Primitive::TRANSPARENT, is_transparent(m))
         | flag(Primitive::CUTOUT, is_cutout(m))
         | flag(Primitive::OPEN, is_open(m))
+        | flag(Primitive::HAIR, m.physical.is_some_and(|p| p.hair.is_some()))
         // Culling would leave a medium without an end.
         | flag(Primitive::TWO_SIDED, m.two_sided || m.volume.is_some())
 }

@@ -16,8 +16,8 @@ use super::spectra::Spectra;
 use crate::error::{Error, Result};
 use crate::math;
 use crate::scene::{
-    Absorption, Alpha, Background, Coat, Conductor, DiffuseTransmission, Falloff, Integrator, Light, Material, Matte,
-    Physical, Scene, Settings, Sheen, ThinFilm, Visibility, Wall,
+    Absorption, Alpha, Background, Coat, Conductor, DiffuseTransmission, Falloff, Hair, Integrator, Light, Material,
+    Matte, Physical, Scene, Settings, Sheen, ThinFilm, Visibility, Wall,
 };
 
 /// A colour and an integer.
@@ -247,7 +247,8 @@ pub(super) fn finish_bits(scene: &Scene) -> Finishes {
             | bit(Finishes::FIBROUS, fibrous)
             | bit(Finishes::TRANSLUCENT, used(&is_translucent))
             | bit(Finishes::FILMED, used(&|p| p.film.is_some_and(|film| film.weight > 0.0)))
-            | bit(Finishes::DISPERSIVE, used(&|p| p.dispersion() > 0.0)),
+            | bit(Finishes::DISPERSIVE, used(&|p| p.dispersion() > 0.0))
+            | bit(Finishes::HAIR, used(&|p| p.hair.is_some())),
     )
 }
 
@@ -270,8 +271,17 @@ pub(super) fn finish(m: &Material, maps: FinishMaps, spectra: &Spectra) -> Finis
         sheen: colour(sheen.colour, flushed_number(sheen.roughness).to_bits()),
         beyond: colour(beyond.colour, flushed_number(beyond.weight).to_bits()),
         film: colour(Vec3::new(least, most, p.dispersion()), spectra.glass(p.glass)),
+        hair: p.hair.map_or(UVec4::ZERO, hair),
         maps,
     }
+}
+
+/// What kernels know of hair, see [`Finish::hair`].
+fn hair(of: Hair) -> UVec4 {
+    let (over, scale) = (std::f64::consts::LN_2 / of.fit(), of.scale() / std::f64::consts::TAU);
+    let lean = math::sin(f64::from(of.tilt).to_radians());
+    let numbers = Vec3::new(over as f32, of.variance() as f32, scale as f32);
+    pack(numbers, flushed_number(lean as f32).to_bits())
 }
 
 /// A light's record; `index` is for the message.

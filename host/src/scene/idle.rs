@@ -7,6 +7,9 @@ use super::{Maps, Physical, Wall};
 impl Physical {
     /// What of it does nothing beside the rest, covered with these maps, and what to do.
     pub fn idle(&self, maps: &Maps) -> Option<&'static str> {
+        if self.hair.is_some() {
+            return self.on_hair();
+        }
         let of_base = if self.conductor.is_some() { self.on_conductor() } else { self.of_base(maps) };
         of_base.or_else(|| self.inside()).or_else(|| self.of_film(maps))
     }
@@ -20,6 +23,25 @@ impl Physical {
         }
         self.film
             .map(|_| "a conductor has no film; remove film, or give it base_color and metallic in place of conductor")
+    }
+
+    fn on_hair(&self) -> Option<&'static str> {
+        let idle = [
+            (self.conductor.is_some(), "hair has a color instead of a complex index; remove conductor or hair"),
+            (self.metallic > 0.0, "hair is no metal; remove metallic or hair"),
+            (self.transmission != Vec3::ZERO, "hair lets light pass by itself; remove transmission or hair"),
+            (
+                self.diffuse_transmission.is_some(),
+                "hair lets light pass by itself; remove diffuse_transmission or hair",
+            ),
+            (self.absorption.is_some(), "hair absorbs light by its base_color; remove absorption or hair"),
+            (self.coat.is_some(), "hair is a fibre as a whole; remove coat or hair"),
+            (self.sheen.is_some(), "hair is a fibre as a whole; remove sheen or hair"),
+            (self.film.is_some(), "hair is a fibre as a whole; remove film or hair"),
+            (self.anisotropy > 0.0, "hair has a direction of its own; remove anisotropy or hair"),
+            (self.abbe.is_some() || self.glass.is_some(), "hair bends all light alike; remove abbe, glass or hair"),
+        ];
+        idle.into_iter().find_map(|(is_idle, why)| is_idle.then_some(why))
     }
 
     fn of_base(&self, maps: &Maps) -> Option<&'static str> {

@@ -82,6 +82,6 @@ impl Material {
     pub(crate) fn has_axes(&self) -> bool {
         self.maps.normal.is_some()
             || self.maps.finish.coat_normal.is_some()
-            || self.physical.is_some_and(|p| p.anisotropy > 0.0)
+            || self.physical.is_some_and(|p| p.anisotropy > 0.0 || p.hair.is_some())
     }
 }

@@ -4,6 +4,7 @@ use glam::Vec3;
 use serde::{Deserialize, Serialize};
 
 use super::finish::{Coat, DiffuseTransmission, Sheen, ThinFilm};
+use super::hair::Hair;
 use crate::choice::choices;
 use crate::math;
 use crate::spectrum::{Glass, Metal};
@@ -55,6 +56,9 @@ pub struct Physical {
     /// What bends light of each wavelength as was measured; `ior` is its index for yellow light, and `abbe` is not asked.
     #[serde(default)]
     pub glass: Option<Glass>,
+    /// A fibre of the base's colour in place of all but that, `ior` and what it emits.
+    #[serde(default)]
+    pub hair: Option<Hair>,
 }
 
 choices! {
@@ -127,6 +131,7 @@ impl Default for Physical {
             film: None,
             abbe: None,
             glass: None,
+            hair: None,
         }
     }
 }
@@ -134,12 +139,12 @@ impl Default for Physical {
 impl Physical {
     /// Does light pass?
     pub fn is_transparent(&self) -> bool {
-        self.transmission != Vec3::ZERO && self.conductor.is_none()
+        self.transmission != Vec3::ZERO && self.conductor.is_none() && self.hair.is_none()
     }
 
     /// Does its base scatter light to its far side?
     pub fn scatters_through(&self) -> bool {
-        self.diffuse_transmission.is_some_and(|of| of.weight > 0.0) && self.conductor.is_none()
+        self.diffuse_transmission.is_some_and(|of| of.weight > 0.0) && self.conductor.is_none() && self.hair.is_none()
     }
 
     /// Does light pass its surface into something inside?

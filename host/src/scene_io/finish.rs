@@ -2,6 +2,7 @@
 
 use glam::Vec3;
 
+use super::hair;
 use super::table::Table;
 use crate::choice::Named;
 use crate::error::Result;
@@ -17,6 +18,7 @@ pub struct Fields {
     pub film: Option<FilmFields>,
     pub abbe: Option<f32>,
     pub glass: Option<Glass>,
+    pub hair: Option<hair::Fields>,
 }
 
 /// What is said of a [`Coat`].
@@ -70,11 +72,14 @@ impl Fields {
             film: table.table("film")?.map(film).transpose()?,
             abbe: table.number("abbe", Range::ABBE)?,
             glass: table.choice("glass")?,
+            hair: hair::Fields::read(table)?,
         })
     }
 
     /// These fields, and `under` where they say nothing.
     pub fn over(self, under: Fields) -> Fields {
+        // Hair is in the place of all of it.
+        let under = if self.hair.is_some() { Fields { hair: under.hair, ..Fields::default() } } else { under };
         Fields {
             coat: self.coat.or(under.coat),
             sheen: self.sheen.or(under.sheen),
@@ -82,6 +87,7 @@ impl Fields {
             film: self.film.or(under.film),
             abbe: self.abbe.or(under.abbe),
             glass: self.glass.or(under.glass),
+            hair: self.hair.or(under.hair),
         }
     }
 
@@ -134,6 +140,9 @@ impl Fields {
             thickness: of.thickness.unwrap_or([FILM_THICKNESS[1]; 2]),
         });
         (to.abbe, to.glass) = (self.abbe, self.glass);
+        if let Some(hair) = self.hair {
+            hair.give(to);
+        }
     }
 }
 
@@ -188,5 +197,6 @@ pub fn described(of: &Physical) -> Vec<(&'static str, String)> {
     }
     keys.extend(of.abbe.map(|abbe| ("abbe", format!("{abbe:?}"))));
     keys.extend(of.glass.map(|glass| ("glass", format!("{:?}", glass.name()))));
+    keys.extend(of.hair.map(hair::described));
     keys
 }

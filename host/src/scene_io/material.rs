@@ -8,7 +8,7 @@ use super::table::Table;
 use super::{illuminant, medium, physical, visible};
 use crate::error::Result;
 use crate::scene::Range;
-use crate::scene::{Alpha, Checker, Maps, Material, Physical, Visibility, Volume};
+use crate::scene::{Alpha, Checker, Hair, Maps, Material, Physical, Visibility, Volume};
 use crate::spectrum::{Glass, Illuminant};
 
 /// What a file says of a material; the rest is left to whoever else describes it.
@@ -131,14 +131,16 @@ impl Fields {
     /// Do its surfaces need tangents, as [`Material::has_axes`] has it?
     pub fn has_axes(&self) -> bool {
         let has_normals = self.bump.is_some() || self.maps.normal.is_some() || self.maps.finish.coat_normal.is_some();
-        has_normals || self.physical.anisotropy.is_some_and(|anisotropy| anisotropy > 0.0)
+        let is_brushed = self.physical.anisotropy.is_some_and(|anisotropy| anisotropy > 0.0);
+        has_normals || is_brushed || self.physical.finish.hair.is_some()
     }
 
     /// The whole material: grey and matt where nothing is said (glass black), ambient as diffuse. Of one by microfacets the thesis'
     /// model keeps what it can.
     pub fn finish(mut self, name: &str) -> Material {
         self.take_pictures();
-        let ior = self.physical.finish.glass.map(Glass::ior).or(self.ior).unwrap_or(GLASS);
+        let ior = self.physical.finish.glass.map(Glass::ior).or(self.ior);
+        let ior = ior.unwrap_or(if self.physical.finish.hair.is_some() { Hair::IOR } else { GLASS });
         let physical = self.physical.finish(self.diffuse, self.transmission, ior);
         let plain = physical.map_or_else(|| self.plain(), |physical| approximated(&physical));
         // Who gives an opacity means it.

@@ -22,6 +22,7 @@ mod finish;
 mod geometry;
 mod gltf;
 mod grid;
+mod hair;
 mod illuminant;
 mod keys;
 mod light_table;

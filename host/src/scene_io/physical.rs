@@ -47,6 +47,9 @@ impl Fields {
 
     /// These fields, and `under` where they say nothing.
     pub fn over(self, under: Fields) -> Fields {
+        let is_hair = self.finish.hair.is_some();
+        let under =
+            if is_hair { Fields { base: under.base, finish: under.finish, ..Fields::default() } } else { under };
         Fields {
             base: self.base.or(under.base),
             metallic: self.metallic.or(under.metallic),
@@ -69,7 +72,7 @@ impl Fields {
         }
         let plain = Physical::default();
         let mut physical = Physical {
-            base: self.base.or(diffuse).unwrap_or(plain.base),
+            base: self.base.or(self.finish.hair.and_then(|hair| hair.colour())).or(diffuse).unwrap_or(plain.base),
             metallic: self.metallic.unwrap_or(plain.metallic),
             roughness: self.roughness.unwrap_or(if self.finish.glass.is_some() { 0.0 } else { plain.roughness }),
             anisotropy: self.anisotropy.unwrap_or(plain.anisotropy),

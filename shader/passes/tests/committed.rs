@@ -249,14 +249,18 @@ fn finishes_are_in_no_kernel_of_a_scene_without() {
     let cut = |spec, bits| kernels.cut("exact::scatter", &finished(spec, bits).constants()).unwrap();
     let bare = cut(physical, 0);
     assert!(!bare.bindings().contains(&binding::FINISHES));
-    for one in [Finishes::COATED, Finishes::FIBROUS, Finishes::TRANSLUCENT, Finishes::FILMED, Finishes::DISPERSIVE] {
+    let each = [Finishes::COATED, Finishes::FIBROUS, Finishes::TRANSLUCENT, Finishes::FILMED, Finishes::DISPERSIVE];
+    for one in each.into_iter().chain([Finishes::HAIR]) {
         let with = cut(physical, one);
         assert!(with.bindings().contains(&binding::FINISHES), "{one:#x}");
         assert!(with.instructions() > bare.instructions(), "{one:#x}");
     }
     for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate"] {
         let of = |bits| kernels.cut(entry, &finished(physical, bits).constants()).unwrap();
-        assert_eq!(of(u32::MAX).words(), of(0).words(), "{entry}");
+        assert_eq!(of(u32::MAX & !Finishes::HAIR).words(), of(0).words(), "{entry}");
+        // Rays do not meet hair from behind.
+        let is_traced = entry.contains("if_if");
+        assert_eq!(of(Finishes::HAIR).words() != of(0).words(), is_traced, "{entry}");
     }
 }
 

@@ -21,6 +21,10 @@ pub struct Finish {
     /// blue and red light; the integer is the row of the spectrum ([`SpectrumRow`](super::SpectrumRow)) of what the index is above that of
     /// yellow light, over the third number, or 0 for Cauchy's.
     pub film: UVec4,
+    /// Of hair, which has nothing else of this: one over the number by whose square a colour's logarithm to the base 2 tells what is
+    /// absorbed, the variance of what is reflected along it, more than 0, and the scale of that around it, in turns; the integer is
+    /// the bits of the sine of the angle by which its scales lean. Zeros of what is no hair.
+    pub hair: UVec4,
     /// The maps of all that.
     pub maps: FinishMaps,
 }
@@ -32,8 +36,15 @@ impl Finish {
         sheen: UVec4::ZERO,
         beyond: UVec4::ZERO,
         film: UVec4::ZERO,
+        hair: UVec4::ZERO,
         maps: FinishMaps::NONE,
     };
+
+    /// Is it hair?
+    #[inline(always)]
+    pub fn is_hair(&self) -> bool {
+        self.hair.y != 0
+    }
 
     /// Does the base send light to its far side?
     #[inline(always)]

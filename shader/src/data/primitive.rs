@@ -56,8 +56,10 @@ impl Primitive {
     pub const CATCHER: u32 = 512;
     /// The flag of one that is not there, but what is inside of it: only paths know of it, see [`Media::OPEN`](super::Media).
     pub const OPEN: u32 = 1024;
+    /// The flag of one of hair, which rays do not meet from behind: light leaves a fibre where it came in.
+    pub const HAIR: u32 = 2048;
     /// How far the flags are shifted beside the material of an indexed vertex.
-    pub const FLAGS_SHIFT: u32 = 21;
+    pub const FLAGS_SHIFT: u32 = 20;
     /// The bits of the material there.
     pub const MATERIAL: u32 = (1 << Self::FLAGS_SHIFT) - 1;
 

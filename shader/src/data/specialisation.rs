@@ -128,6 +128,8 @@ bits! {
         FILMED = 3;
         /// Some bodies bend blue light more than red.
         DISPERSIVE = 4;
+        /// Some are hair.
+        HAIR = 5;
     }
 }
 

@@ -91,6 +91,7 @@ fn unlit<R: Scalar>(launch: &LaunchContext<'_>, materials: &[Material], seen: &S
 #[inline(always)]
 fn lets_through<R: Scalar>(launch: &LaunchContext<'_>, context: &ScatterContext<'_>, seen: &Seen<R>) -> bool {
     seen.primitive.is_transparent()
+        || launch.spec.finishes.has(Finishes::HAIR) && seen.primitive.has(Primitive::HAIR)
         || launch.spec.finishes.has(Finishes::TRANSLUCENT) && read(context.finishes, seen.material()).is_translucent()
 }
 

@@ -4,7 +4,7 @@
 use super::bsdf::{Bsdf, Chosen, LEAST, STEPS, steps};
 use super::closure::{Closure, ClosureSample, Scattering};
 use super::facet::Facet;
-use super::{Coat, Sheen};
+use super::{Coat, Hair, Sheen};
 use crate::data::Finishes;
 use crate::geometry::SurfaceInteraction;
 use crate::real::{FAINT, Real, Scalar, V3};
@@ -18,6 +18,8 @@ pub struct Coated<'a, R: Real> {
     pub base: Bsdf<'a, R>,
     coat: Coat<R>,
     sheen: Sheen<R>,
+    /// In the place of all of it.
+    hair: Hair<R>,
     /// The share of light that gets below the coat.
     below: R,
     /// The share of that which gets below the fibres.
@@ -36,6 +38,7 @@ impl Layer {
     const BASE: Layer = Layer(0);
     const SHEEN: Layer = Layer(1);
     const COAT: Layer = Layer(2);
+    const HAIR: Layer = Layer(3);
 }
 
 impl<'a, R: Scalar> Coated<'a, R> {
@@ -59,7 +62,18 @@ impl<'a, R: Scalar> Coated<'a, R> {
             0
         };
         let sheen_steps = if finishes.has(Finishes::FIBROUS) { steps(fibres, rest, LEAST) } else { 0 };
-        Coated { finishes, base, coat, sheen, below, between, coat_steps, sheen_steps }
+        Coated { finishes, base, coat, sheen, hair: Hair::none(), below, between, coat_steps, sheen_steps }
+    }
+
+    /// Hair in the place of all of it, if there is any.
+    #[inline(always)]
+    pub fn or_hair(self, hair: Hair<R>) -> Self {
+        Coated { hair, ..self }
+    }
+
+    #[inline(always)]
+    fn is_hair(&self) -> bool {
+        self.finishes.has(Finishes::HAIR) && self.hair.is_some
     }
 
     /// The share of light that gets to the base.
@@ -80,6 +94,9 @@ impl<'a, R: Scalar> Coated<'a, R> {
     /// The layer of a step of [`STEPS`], and the step within it.
     #[inline(always)]
     fn layer(&self, step: i32) -> (Layer, i32) {
+        if self.is_hair() {
+            return (Layer::HAIR, step);
+        }
         if self.finishes.has(Finishes::COATED) && step < self.coat_steps {
             return (Layer::COAT, step);
         }
@@ -94,6 +111,9 @@ impl<'a, R: Scalar> Coated<'a, R> {
     /// Is the direction of a layer's step drawn? That of a mirror and of a lens is not.
     #[inline(always)]
     fn draws(&self, layer: Layer, step: i32) -> bool {
+        if self.finishes.has(Finishes::HAIR) && layer == Layer::HAIR {
+            return true;
+        }
         if self.finishes.has(Finishes::COATED) && layer == Layer::COAT {
             return !self.coat.is_smooth;
         }
@@ -103,6 +123,10 @@ impl<'a, R: Scalar> Coated<'a, R> {
     /// Where a layer sends the path.
     #[inline(always)]
     fn choose(&self, layer: Layer, draws: (i32, u32), pair: UVec4) -> Chosen<R> {
+        if self.finishes.has(Finishes::HAIR) && layer == Layer::HAIR {
+            let to = self.hair.sample(draws.0, draws.1, pair);
+            return Chosen { to, reflects: R::splat(0.0).lt(to.z), is_rough: true, facet: Facet::none() };
+        }
         if self.finishes.has(Finishes::COATED) && layer == Layer::COAT {
             let to = self.base.local(self.coat.sample(pair));
             return Chosen { to, reflects: true, is_rough: !self.coat.is_smooth, facet: Facet::none() };
@@ -116,6 +140,9 @@ impl<'a, R: Scalar> Coated<'a, R> {
     /// [`Closure::eval`] of a direction, in the base's frame and in the world.
     #[inline(always)]
     fn agreeing(&self, interaction: &SurfaceInteraction<R>, to: V3<R>, direction: V3<R>) -> Scattering<R> {
+        if self.is_hair() {
+            return self.hair.scattering(to);
+        }
         if !self.base.agrees(interaction, to, direction) {
             return Scattering::none();
         }
@@ -160,7 +187,7 @@ impl<R: Scalar> Closure<R> for Coated<'_, R> {
     fn is_rough(&self) -> bool {
         let coat = self.finishes.has(Finishes::COATED) && self.coat_steps > 0 && !self.coat.is_smooth;
         let fibres = self.finishes.has(Finishes::FIBROUS) && self.sheen_steps > 0;
-        !self.base.is_smooth || self.base.matt > 0 || coat || fibres
+        self.is_hair() || !self.base.is_smooth || self.base.matt > 0 || coat || fibres
     }
 
     #[inline(always)]

@@ -13,6 +13,7 @@ mod finish;
 mod frame;
 mod fresnel;
 mod ggx;
+mod hair;
 mod lambert;
 mod layers;
 mod lobes;
@@ -37,6 +38,7 @@ pub use fresnel::Reflectance;
 #[cfg(not(target_arch = "spirv"))]
 pub use fresnel::conductor_mean;
 pub use ggx::Ggx;
+pub use hair::Hair;
 pub use lambert::{INVERSE_PI, cosine_direction};
 pub use layers::{Layers, Way};
 pub use lobes::Lobes;

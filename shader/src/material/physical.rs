@@ -5,9 +5,9 @@ use super::bsdf::Bsdf;
 use super::finish::{Channels, above, finished};
 use super::fresnel::Reflectance;
 use super::layers::{Layers, Way};
-use super::{Coat, Coated, Ggx, Seen, Sheen, Surface, axes};
+use super::{Coat, Coated, Ggx, Hair, Seen, Sheen, Surface, axes};
 use crate::buffer::read;
-use crate::data::{Effects, Finish, Media, Physical, Waves, numbers};
+use crate::data::{Effects, Finish, Finishes, Media, Physical, Waves, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::integrator::ScatterContext;
 use crate::light::Lighting;
@@ -118,7 +118,9 @@ pub fn closure<'a, R: Scalar>(
     } else {
         (Coat::none(), Sheen::none())
     };
-    Coated::new(finishes, base, on)
+    let is_hair = finishes.has(Finishes::HAIR) && finish.is_hair();
+    let hair = if is_hair { Hair::new(&finish, base.viewer, at.base, at.ior) } else { Hair::none() };
+    Coated::new(finishes, base, on).or_hair(hair)
 }
 
 /// glTF 2.0, appendix B, with KHR_materials_ior, specular, transmission, volume and anisotropy; or a conductor.

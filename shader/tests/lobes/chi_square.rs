@@ -1,11 +1,13 @@
 //! Samples fall where their density says (Pearson's test, as Mitsuba and pbrt have it).
 
 use eyerays_shader::material::Layers;
+use glam::DVec3;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use std::f64::consts::{PI, TAU};
 
+use super::hair::hair;
 use super::integral::Rectangle;
-use super::surface::{BLACK, Over, Seen, direction, facets, glass, gold, leaf, pane, plastic};
+use super::surface::{BLACK, Over, Seen, V, direction, facets, glass, gold, leaf, pane, plastic};
 
 /// Bins over the polar angle and the azimuth.
 const BINS: (usize, usize) = (80, 160);
@@ -82,13 +84,18 @@ fn test(name: &str, of: impl Fn(f64, f64) -> Layers<f64>) {
 /// The same below what lies on them.
 fn test_below(name: &str, over: Over, of: impl Fn(f64, f64) -> Layers<f64>) {
     let roughnesses = [(0.1, 0.1), (0.4, 0.4), (1.0, 1.0), (0.4, 0.1), (0.1, 0.4), (1.0, 0.2)];
+    test_seen(name, &roughnesses, |(x, y), viewer| Seen::below(over, of(x, y), viewer));
+}
+
+/// Tests what is seen of some roughness, from every angle.
+fn test_seen(name: &str, roughnesses: &[(f64, f64)], of: impl Fn((f64, f64), DVec3) -> Seen) {
     let (count, runs) = effort();
     // Sidak: of so many tests one fails by chance no more often than of one.
     let tests = f64::from(runs) * (roughnesses.len() * ANGLES.len()) as f64;
     let least = 1.0 - (1.0 - SIGNIFICANCE).powf(1.0 / tests);
-    for (x, y) in roughnesses {
+    for &(x, y) in roughnesses {
         for angle in ANGLES {
-            let seen = Seen::below(over, of(x, y), direction(angle, 0.7));
+            let seen = of((x, y), direction(angle, 0.7));
             let expected = expected(&seen, count);
             for run in 0..runs {
                 let likely = likelihood(&expected, &counted(&seen, run, count));
@@ -142,6 +149,12 @@ fn fibres_below_a_coat_are_sampled_by_their_density() {
 #[test]
 fn leaves_are_sampled_by_their_density() {
     test("leaf", leaf);
+}
+
+#[test]
+fn hair_is_sampled_by_its_density() {
+    let of = |(x, y), viewer| Seen::hair(&hair(x, y, 2.0), viewer, V::new(0.2, 0.5, 0.9), 1.55);
+    test_seen("hair", &[(0.2, 0.3), (0.5, 0.2), (1.0, 1.0)], of);
 }
 
 /// The test notices a density that is off by a fifth at half of the azimuths.

@@ -4,6 +4,7 @@ mod albedo;
 mod chi_square;
 mod finish;
 mod furnace;
+mod hair;
 mod integral;
 mod reciprocity;
 mod surface;

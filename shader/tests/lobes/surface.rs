@@ -1,10 +1,10 @@
 //! Surfaces to test, in double precision: flat, facing up the third axis.
 
-use eyerays_shader::data::{Effects, Finishes};
+use eyerays_shader::data::{Effects, Finish, Finishes};
 use eyerays_shader::geometry::SurfaceInteraction;
 use eyerays_shader::material::{
-    ALBEDOS, Albedos, Bsdf, Closure, ClosureSample, Coat, Coated, Ggx, Layers, Reflectance, Scattering, Sheen, Way,
-    conductor_mean,
+    ALBEDOS, Albedos, Bsdf, Closure, ClosureSample, Coat, Coated, Ggx, Hair, Layers, Reflectance, Scattering, Sheen,
+    Way, conductor_mean,
 };
 use eyerays_shader::real::V3;
 use eyerays_shader::sampler::hash;
@@ -102,6 +102,12 @@ impl Seen {
     /// Where facets scatter once.
     pub fn once(layers: Layers<f64>, viewer: DVec3) -> Self {
         Self::by(Effects(!Effects::COMPENSATED), layers, Over::default(), viewer)
+    }
+
+    /// Hair of a colour and an index of refraction along the first axis, from above.
+    pub fn hair(finish: &Finish, viewer: DVec3, colour: V, ior: f64) -> Self {
+        let seen = Self::by(Effects(u32::MAX), plastic(0.5, 0.5), Over::default(), viewer);
+        Seen { closure: seen.closure.or_hair(Hair::new(finish, of(viewer), colour, ior)), ..seen }
     }
 
     fn by(effects: Effects, layers: Layers<f64>, over: Over, viewer: DVec3) -> Self {

@@ -22,5 +22,10 @@ pub(super) fn finish(owner: &Owner, of: &Physical) -> Unplaced<()> {
         owner.number("film ior", film.ior, Range::IOR)?;
         film.thickness.into_iter().try_for_each(|at| owner.number("film thickness", at, Range::THICKNESS))?;
     }
+    if let Some(hair) = of.hair {
+        owner.number("hair roughness", hair.roughness, Range::SHARE)?;
+        owner.number("hair radial_roughness", hair.radial_roughness, Range::SHARE)?;
+        owner.number("hair tilt", hair.tilt, Range::LEAN)?;
+    }
     of.abbe.map_or(Ok(()), |abbe| owner.number("abbe", abbe, Range::ABBE))
 }

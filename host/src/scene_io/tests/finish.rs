@@ -7,7 +7,7 @@ use image::{ImageFormat, RgbImage};
 
 use super::{Folder, assert_refused};
 use crate::scene::{
-    Coat, DiffuseTransmission, FinishMaps, Material, Physical, Scene, Sheen, Texels, Texture, ThinFilm,
+    Coat, DiffuseTransmission, FinishMaps, Hair, Material, Physical, Pigment, Scene, Sheen, Texels, Texture, ThinFilm,
 };
 use crate::scene_io::{describe, fingerprint, write};
 
@@ -18,6 +18,10 @@ const ALL: &str = "base_color = [0.5, 0.25, 0.125]\ntransmission = [0.5, 0.5, 0.
     coat = { weight = 0.5, roughness = 0.25 }\nsheen = { color = [0.1, 0.2, 0.3], roughness = 0.4 }\n\
     diffuse_transmission = { weight = 0.75, color = [0.4, 0.5, 0.6] }\n\
     film = { weight = 0.3, ior = 1.7, thickness = 250 }\nabbe = 55\n";
+
+/// All keys of hair.
+const HAIR: &str =
+    "base_color = [0.5, 0.25, 0.125]\nhair = { roughness = 0.2, radial_roughness = 0.4, tilt = -3 }\nior = 1.6\n";
 
 fn folder(keys: &str) -> Folder {
     let mut picture = Cursor::new(Vec::new());
@@ -58,6 +62,20 @@ fn what_a_file_says_of_a_finish_is_what_the_material_has() {
     assert_eq!(physical.diffuse_transmission, Some(through));
     assert_eq!(physical.film, Some(ThinFilm { weight: 0.3, ior: 1.7, thickness: [250.0; 2] }));
     assert_eq!(physical.abbe, Some(55.0));
+}
+
+#[test]
+fn hair_has_the_color_of_its_base_or_of_its_pigment() {
+    let told = physical(HAIR);
+    assert_eq!(told.hair, Some(Hair { roughness: 0.2, radial_roughness: 0.4, tilt: -3.0 }));
+    assert_eq!((told.base, told.ior), (Vec3::new(0.5, 0.25, 0.125), 1.6));
+    let plain = physical("hair = {}\ndiffuse = [0.5, 0.4, 0.3]\n");
+    assert_eq!((plain.hair, plain.ior), (Some(Hair::default()), Hair::IOR));
+    assert_eq!(plain.base, Vec3::new(0.5, 0.4, 0.3));
+    let brown = physical("hair = { melanin = 1.3 }\n");
+    assert_eq!(brown.base, Hair::default().colour(Pigment::Melanin(1.3, 0.0)));
+    let dyed = physical("hair = { absorption = [0.1, 0.2, 0.4] }\ndiffuse = [1, 1, 1]\n");
+    assert_eq!(dyed.base, Hair::default().colour(Pigment::Absorption(Vec3::new(0.1, 0.2, 0.4))));
 }
 
 #[test]
@@ -137,7 +155,7 @@ fn light_that_is_scattered_through_has_the_picture_of_the_base_unless_it_has_its
 
 #[test]
 fn a_described_scene_says_its_finish_again() {
-    let told = [ALL, "film = { ior = 1.5, thickness = [20, 300] }\nfilm_thickness_texture = \"a.png\"\n"];
+    let told = [HAIR, ALL, "film = { ior = 1.5, thickness = [20, 300] }\nfilm_thickness_texture = \"a.png\"\n"];
     for keys in told.into_iter().chain(["conductor = { eta = [1, 1, 1], k = [4, 3, 2] }\ncoat = {}\nsheen = {}\n"]) {
         let first = scene(keys);
         let mut text = describe(&first, "a.obj");
@@ -174,6 +192,14 @@ fn a_finish_that_makes_no_sense_is_refused_in_a_line_with_its_key() {
         ("film = { thickness = inf }", "\"thickness\" must be between 0 and 100000 nanometres, not inf"),
         ("film = { thickness = [1, 2, 3] }", "\"thickness\" must be two numbers, not 3 of them"),
         ("film = { thickness = \"400\" }", "\"thickness\" must be a decimal number, not a string"),
+        ("hair = { roughness = 2 }", "\"roughness\" must be between 0 and 1, not 2"),
+        ("hair = { radial_roughness = -1 }", "\"radial_roughness\" must be between 0 and 1, not -1"),
+        ("hair = { tilt = 11 }", "\"tilt\" must be between -10 and 10 degrees, not 11"),
+        ("hair = { melanin = -1 }", "\"melanin\" must be between 0 and 100, not -1"),
+        ("hair = { absorption = [1, 2] }", "\"absorption\" must be three numbers"),
+        ("hair = { absorption = [1, 2, 3], melanin = 1 }", "remove absorption or melanin"),
+        ("hair = { melanin = 1 }\nbase_color = [1, 1, 1]", "base_color says the color of hair; remove it or melanin"),
+        ("hair = { roughnes = 1 }", "unknown key \"roughnes\" in [hair]; did you mean \"roughness\"?"),
         ("abbe = 0.5", "\"abbe\" must be between 1 and 1000, not 0.5"),
         ("abbe = 1e9", "\"abbe\" must be between 1 and 1000, not 1e9"),
         ("coat_texture = \"no.png\"", "no.png"),
@@ -192,6 +218,13 @@ fn what_of_a_finish_does_nothing_is_said_with_what_to_do() {
     let film = "film_thickness_texture = \"a.png\"\n";
     let rough = "metallic_roughness_texture = \"a.png\"\n";
     for (keys, why) in [
+        (["hair = {}\n", silver, ""], "hair has a color instead of a complex index; remove conductor or hair"),
+        (["hair = {}\n", "metallic = 1\n", ""], "hair is no metal; remove metallic or hair"),
+        (["hair = {}\n", glass, ""], "hair lets light pass by itself; remove transmission or hair"),
+        (["hair = {}\n", leaf, ""], "hair lets light pass by itself; remove diffuse_transmission or hair"),
+        (["hair = {}\n", "sheen = {}\n", ""], "hair is a fibre as a whole; remove sheen or hair"),
+        (["hair = {}\n", "film = {}\n", ""], "hair is a fibre as a whole; remove film or hair"),
+        (["hair = {}\n", "anisotropy = 1\n", ""], "hair has a direction of its own; remove anisotropy or hair"),
         ([silver, leaf, ""], "no light passes a conductor; remove conductor or diffuse_transmission"),
         ([silver, "film = {}\n", ""], "a conductor has no film; remove film"),
         ([silver, "sheen = {}\n", "coat = {}\n"], ""),

@@ -4,7 +4,7 @@ use super::primitives::counts;
 use super::{Identity, Meeting, accept, hidden};
 #[cfg(not(target_arch = "spirv"))]
 use crate::bvh8::{MOST, Triangle4};
-use crate::data::{Effects, Launch, Primitive};
+use crate::data::{Effects, Finishes, Launch, Primitive};
 use crate::geometry::{Candidate, intersect_moller_trumbore, intersect_watertight};
 use crate::ray::{Hit, Ray};
 #[cfg(not(target_arch = "spirv"))]
@@ -125,6 +125,9 @@ fn accept_candidate<Q: Query, R: Real>(
     let (number, effects) = (identity.number, context.base.spec.effects);
     let mut inside = candidate.inside & !R::equals(number, ray.source_primitive);
     if effects.has(Effects::CULLING) && !Q::ANY && triangle.is_culled() {
+        inside = inside & candidate.front;
+    }
+    if context.base.spec.finishes.has(Finishes::HAIR) && triangle.has(Primitive::HAIR) {
         inside = inside & candidate.front;
     }
     inside = hidden::met::<Q, R>(context.base.spec, triangle, ray, inside);

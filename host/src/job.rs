@@ -4,7 +4,9 @@ use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
 
 use eyerays_bvh::Quality;
-use eyerays_shader::data::{Aovs, Effects, Finishes, Frame, Launch, Layout, Media, Specialisation, Waves, pack};
+use eyerays_shader::data::{
+    Aovs, Caustics, Effects, Finishes, Frame, Launch, Layout, Media, Specialisation, Waves, pack,
+};
 use eyerays_shader::material::ALBEDOS;
 use eyerays_shader::medium::Inside;
 use glam::{UVec4, Vec3};
@@ -85,6 +87,11 @@ impl Job {
                 "the scene has media (volume, fog), which paths alone go through: set the integrator to \"path\"",
             ));
         }
+        if settings.caustics > 0.0 && settings.transport.integrator != Integrator::Path {
+            return Err(Error::new(
+                "photons tell of caustics to paths alone (caustics): set the integrator to \"path\" (--integrator path)",
+            ));
+        }
         if settings.spectral && settings.transport.integrator != Integrator::Path {
             return Err(Error::new(
                 "light of single wavelengths (spectral) is what paths alone carry: set the integrator to \"path\" (--integrator path)",
@@ -116,6 +123,11 @@ impl Job {
     /// The integrator traces no paths, or groups of lamps are asked of a scene without any.
     pub fn keeping(&self, aovs: Aovs) -> Result<Job> {
         layers::check(aovs, self.settings.transport.integrator, self.light_groups())?;
+        if self.has_photons() && aovs.has(Aovs::GROUPS) {
+            return Err(Error::new(
+                "photons (caustics) do not tell the light of lamps by their groups: leave out the layers of groups, or caustics",
+            ));
+        }
         if self.settings.spectral && aovs.has(Aovs::LOBES) {
             return Err(Error::new(
                 "layers of what is diffuse, glossy and transmitted are of red, green and blue light: leave them out, or spectral",
@@ -188,6 +200,7 @@ impl Job {
             media: self.media_bits(),
             finishes: self.finish_bits(),
             waves: self.waves(),
+            caustics: Caustics(if self.has_photons() { Caustics::GATHERED } else { 0 }),
         }
     }
 
@@ -207,6 +220,20 @@ impl Job {
     /// Words of the table of spectra, see [`eyerays_shader::data::SpectrumRow`]; empty where light has no wavelengths.
     pub fn spectra(&self) -> &[UVec4] {
         if self.waves().has(Waves::SPECTRAL) { self.scene.own_spectra().words() } else { &[] }
+    }
+
+    /// Do photons tell of caustics? Only where something casts them, and to paths.
+    pub fn has_photons(&self) -> bool {
+        let is_asked = self.follows_paths() && self.settings.caustics > 0.0 && self.settings.bounces > 0;
+        is_asked && !self.casters().is_empty() && !self.lighting().emitters.is_empty()
+    }
+
+    /// How many photons a sample of a picture of some size has: 0 where none tell of caustics.
+    pub fn photons(&self, (width, height): (u32, u32)) -> u32 {
+        /// More are no use: samples have others.
+        const MOST: f64 = (1 << 18) as f64;
+        let wished = f64::from(width) * f64::from(height) * f64::from(self.settings.caustics);
+        if self.has_photons() { wished.round().clamp(1.0, MOST) as u32 } else { 0 }
     }
 
     /// What of the media its kernels know: only paths go through them.

@@ -3,10 +3,12 @@
 use std::ops::Range;
 
 use eyerays_shader::camera::{self, FILTER_STEPS};
-use eyerays_shader::data::{Frame, Launch, Order};
+use eyerays_shader::data::{Frame, Launch, Order, Projection, numbers};
+use eyerays_shader::photon::LISTS;
 use eyerays_shader::stage::{FilmWords, film_words};
 use serde::{Deserialize, Serialize};
 
+use crate::device_scene::casters_extent;
 use crate::error::{Error, Result};
 use crate::film::Part;
 use crate::job::Job;
@@ -225,9 +227,41 @@ impl View {
             rows: region.height,
             pixel_slots,
             slots: count * pixel_slots,
+            photons: self.photons(scene),
+            heads: lists(self.photons(scene), count),
+            radius: self.radius(scene),
             ..frame
         }
     }
+
+    /// How many photons each sample has, see [`Job::photons`].
+    pub fn photons(&self, scene: &Job) -> u32 {
+        scene.photons((self.width, self.height))
+    }
+
+    /// The record of a launch of the photons of `count` samples, from sample `first` on.
+    pub fn launch_of_photons(&self, scene: &Job, first: u32, count: u32, order: Order) -> Frame {
+        let frame = self.launch(scene, self.window, first, count, order);
+        Frame { pixel_slots: frame.photons, slots: count * frame.photons, ..frame }
+    }
+
+    /// How far the first sample of a pixel looks for photons, in the normalised scene: a pixel where casters are.
+    fn radius(&self, scene: &Job) -> f32 {
+        /// Cells of a grid are numbers of single precision.
+        const LEAST: f32 = 1.0 / (1 << 18) as f32;
+        let Some((middle, reach)) = casters_extent(scene.casters()) else { return 0.0 };
+        let eye = numbers(self.record.camera.eye);
+        let is_parallel = self.record.camera.eye.w == Projection::PARALLEL;
+        // Who is among them looks at what is as far away as they reach.
+        let distance = if is_parallel { 1.0 } else { eye.distance(middle).max(0.5 * reach) };
+        (self.record.spread * self.grid as f32 * distance).clamp(LEAST, 0.125)
+    }
+}
+
+/// Lists of the grid of so many photons of each of some samples: a power of two, at most two for each.
+fn lists(photons: u32, samples: u32) -> u32 {
+    let most = u64::from(LISTS) * u64::from(photons) * u64::from(samples);
+    if most == 0 { 0 } else { 1 << most.ilog2().min(31) }
 }
 
 #[cfg(test)]

@@ -3,6 +3,8 @@
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch, Light, Material, Medium, Specialisation};
 use eyerays_shader::integrator::{self, Exchange, ScatterContext, Wave};
+use eyerays_shader::light::Lighting;
+use eyerays_shader::photon::{Casters, Photons};
 use eyerays_shader::real::{Scalar, SimdIsa, Task};
 use eyerays_shader::scene::{LaunchContext, ShadingData, TraceContext};
 use eyerays_shader::stage::{self, CameraTables, FilmWords, Found, TransmitInputs};
@@ -67,12 +69,21 @@ pub trait Number: Scalar<Record: Send + Sync> {
     /// Shades a wave.
     fn shade(scene: &Shown<'_>, queues: Queues<'_>, records: &mut Records<Self>);
 
-    /// Scatters the paths of a wave, with the instructions of an [`Isa`].
+    /// Scatters the paths of a wave, which look for photons, with the instructions of an [`Isa`].
     fn scatter(
         isa: Isa,
         launch: &LaunchContext<'_>,
         context: &ScatterContext<'_>,
-        queues: Queues<'_>,
+        of: (Queues<'_>, Photons<'_>),
+        records: &mut Records<Self>,
+    );
+
+    /// Starts the photons of some slots.
+    fn emit(
+        launch: &LaunchContext<'_>,
+        lighting: &Lighting<'_>,
+        casters: &Casters<'_>,
+        slots: &[u32],
         records: &mut Records<Self>,
     );
 
@@ -119,10 +130,23 @@ macro_rules! number {
                 isa: Isa,
                 launch: &LaunchContext<'_>,
                 context: &ScatterContext<'_>,
-                queues: Queues<'_>,
+                (queues, photons): (Queues<'_>, Photons<'_>),
                 records: &mut Records<Self>,
             ) {
-                isa.run(Scatter { launch, context, queues, records });
+                isa.run(Scatter { launch, context, queues, photons, records });
+            }
+
+            fn emit(
+                launch: &LaunchContext<'_>,
+                lighting: &Lighting<'_>,
+                casters: &Casters<'_>,
+                slots: &[u32],
+                Records { paths, hits, landed, .. }: &mut Records<Self>,
+            ) {
+                for &slot in slots {
+                    let records = (&mut paths[..], &mut hits[..], &mut landed[..]);
+                    integrator::emit::<Self>(launch, lighting, casters, slot, records);
+                }
             }
 
             fn transmit(
@@ -173,17 +197,26 @@ struct Scatter<'t, R: Scalar> {
     launch: &'t LaunchContext<'t>,
     context: &'t ScatterContext<'t>,
     queues: Queues<'t>,
+    photons: Photons<'t>,
     records: &'t mut Records<R>,
 }
 
 impl<R: Scalar> Task<R> for Scatter<'_, R> {
     #[inline(always)]
     fn run<V: SimdIsa<R>>(self) {
-        let Records { paths, hits, shadows, segments, sums } = self.records;
+        let Records { paths, hits, shadows, segments, sums, landed } = self.records;
         let starts = !self.launch.spec.launch.has(Launch::SECONDARY);
         for &slot in self.queues.now {
-            let exchange =
-                Exchange::<R> { paths: &mut *paths, hits, shadows, segments: &mut *segments, sums: &mut *sums, starts };
+            let exchange = Exchange::<R> {
+                paths: &mut *paths,
+                hits,
+                shadows,
+                segments: &mut *segments,
+                sums: &mut *sums,
+                starts,
+                photons: self.photons,
+                landed: &mut *landed,
+            };
             if integrator::scatter(self.launch, self.context, slot, exchange) {
                 self.queues.next.push(slot);
             }

@@ -1,6 +1,7 @@
 //! What the stages of a launch exchange.
 
 use eyerays_shader::real::Scalar;
+use glam::UVec4;
 
 /// The memory that the stages of a launch exchange.
 pub struct Records<R: Scalar> {
@@ -14,4 +15,6 @@ pub struct Records<R: Scalar> {
     pub segments: Vec<R::Record>,
     /// Colour and counts by slot.
     pub sums: Vec<R::Record>,
+    /// Photons that have landed, by slot and record, see [`Landed`](eyerays_shader::photon::Landed); empty but where slots are photons.
+    pub landed: Vec<UVec4>,
 }

@@ -16,6 +16,7 @@ pub mod material;
 pub mod medium;
 pub mod methods;
 pub mod numerics;
+pub mod photon;
 pub mod ray;
 pub mod real;
 pub mod refit;

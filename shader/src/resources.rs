@@ -66,6 +66,10 @@ macro_rules! resources {
             34 grids GRIDS: Read u32, "grids";
             35 finishes FINISHES: Read Finish, "finishes of materials";
             36 spectra SPECTRA: Read UVec4, "spectra";
+            37 casters CASTERS: Read UVec4, "balls around what casts caustics";
+            38 photons PHOTONS: Read UVec4, "photons";
+            39 heads HEADS: Write u32, "lists of photons";
+            40 landed LANDED: Write UVec4, "photons that land";
         }
     };
 }

@@ -228,6 +228,7 @@ fn any_settings(random: &mut Random, scene: &Scene) -> Settings {
         culling: chance(random, 0.2),
         compensation: chance(random, 0.8),
         spectral: transport.integrator == Integrator::Path && chance(random, 0.4),
+        caustics: if transport.integrator == Integrator::Path { one(random, &[0.0, 0.0, 0.5, 3.0]) } else { 0.0 },
         filter: one(random, &[Filter::Nearest, Filter::Bilinear, Default::default()]),
         transport,
         ..Settings::default()

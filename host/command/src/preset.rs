@@ -48,6 +48,8 @@ pub struct Preset {
     pub pixel_filter: Option<PixelFilter>,
     /// Is light of single wavelengths followed?
     pub spectral: Option<bool>,
+    /// Photons for each pixel of a sample, 0 for none.
+    pub caustics: Option<f32>,
     /// Samples along a pixel's edge.
     pub samples: Option<u32>,
     /// Samples of a pixel instead.
@@ -85,6 +87,7 @@ impl Preset {
             filter: table.choice("filter")?,
             pixel_filter: table.choice("pixel_filter")?,
             spectral: table.flag("spectral")?,
+            caustics: table.number("caustics", Range::PHOTONS)?,
             samples: table.whole("samples", 1, Settings::MOST_SAMPLES)?,
             spp: table.whole("spp", 1, Settings::MOST_SPP)?,
             bounces: table.whole("bounces", 0, Settings::MOST_BOUNCES)?,

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use eyerays_kernels_cpu::Number;
+use eyerays_shader::stage::BLOCK;
 use rayon::prelude::*;
 
 use super::render::Renderer;
@@ -27,17 +28,23 @@ impl Renderer {
     /// The sums of whole blocks of samples of some cells.
     pub(crate) fn cells<R: Number>(&self, view: &View, cells: &[Region], samples: Range<u32>) -> CellSums {
         let words = self.planned.film_words();
-        let done: Vec<(Chunk, Vec<u32>, u64)> = self.install(|| {
-            let run = |chunk: Chunk| {
-                let (sums, secondary) = self.planned.blocks::<R>(view, chunk.piece, chunk.samples.clone());
-                (chunk, sums, secondary)
-            };
-            chunks(cells, samples).into_par_iter().with_max_len(1).map(run).collect()
-        });
         let mut all = CellSums { sums: cells.iter().map(|&cell| self.planned.film(cell)).collect(), secondary: 0 };
-        for (chunk, sums, secondary) in done {
-            Layout { region: cells[chunk.cell], words }.add(&mut all.sums[chunk.cell], chunk.piece, &sums);
-            all.secondary += secondary;
+        // Photons are those of a block, for all cells.
+        let step = if self.planned.photons.is_some() { BLOCK as usize } else { samples.len().max(1) };
+        for first in samples.clone().step_by(step) {
+            let samples = first..samples.end.min(first + step as u32);
+            let done: Vec<(Chunk, Vec<u32>, u64)> = self.install(|| {
+                let map = self.planned.map::<R>(view, first, BLOCK);
+                let run = |chunk: Chunk| {
+                    let (sums, secondary) = self.planned.blocks::<R>(view, chunk.piece, (chunk.samples.clone(), &map));
+                    (chunk, sums, secondary)
+                };
+                chunks(cells, samples).into_par_iter().with_max_len(1).map(run).collect()
+            });
+            for (chunk, sums, secondary) in done {
+                Layout { region: cells[chunk.cell], words }.add(&mut all.sums[chunk.cell], chunk.piece, &sums);
+                all.secondary += secondary;
+            }
         }
         all
     }

@@ -3,6 +3,7 @@
 mod cast;
 mod cells;
 mod enclosing;
+mod photons;
 mod pool;
 mod render;
 mod tile;

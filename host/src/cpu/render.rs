@@ -121,17 +121,26 @@ impl Renderer {
         let view = view.part(part.region, part.samples)?;
         self.threads.install(|| film.make_room())?;
         let film = Mutex::new(film);
-        self.threads.install(|| {
-            // A tile a task: coarser splitting leaves threads idle at the end.
-            self.tiles(&view).into_par_iter().with_max_len(1).for_each(|region| {
-                let mut sums = self.planned.film(region);
-                let secondary = self.planned.add(&view, region, view.range(), &mut sums, observer);
-                let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
-                film.add_part_alone(region, &sums);
-                film.add_rays(secondary);
-                done(region.pixels());
+        let (tiles, range) = (self.tiles(&view), view.range());
+        let at_once = self.planned.samples_at_once(&view);
+        let share = |samples: u32, pixels: u64| pixels * u64::from(samples) / u64::from(range.end - range.start);
+        for first in range.clone().step_by(at_once as usize) {
+            let samples = first..range.end.min(first.saturating_add(at_once));
+            let maps = self.threads.install(|| self.planned.maps::<R>(&view, samples.clone()));
+            let shared = |pixels| share(samples.end - range.start, pixels) - share(first - range.start, pixels);
+            self.threads.install(|| {
+                // A tile a task: coarser splitting leaves threads idle at the end.
+                tiles.par_iter().with_max_len(1).for_each(|&region| {
+                    let mut sums = self.planned.film(region);
+                    let of = (samples.clone(), &maps[..]);
+                    let secondary = self.planned.add_by(&view, region, of, &mut sums, observer);
+                    let mut film = film.lock().unwrap_or_else(PoisonError::into_inner);
+                    film.add_part_alone(region, &sums);
+                    film.add_rays(secondary);
+                    done(shared(region.pixels()));
+                });
             });
-        });
+        }
         film.into_inner().unwrap_or_else(PoisonError::into_inner).cover(view.whole());
         Ok(())
     }

@@ -5,11 +5,13 @@ use std::ops::Range;
 use eyerays_kernels_cpu::{Between, Isa, Number, Query, Queues, Records, Shown};
 use eyerays_shader::camera;
 use eyerays_shader::data::{Frame, Launch as Bits};
+use eyerays_shader::photon::Casters;
 use eyerays_shader::real::V3;
 use eyerays_shader::resources::binding;
 use eyerays_shader::scene::TraceContext;
 use eyerays_shader::stage::{BLOCK, CameraTables, FilmWords, Found, ShadowInputs};
 
+use super::photons::{Map, NONE};
 use crate::device_scene::SceneView;
 use crate::error::Result;
 use crate::method::{Method, Processor};
@@ -28,7 +30,7 @@ impl<R: Number> Observer<R> for () {
 }
 
 /// Empty records for the slots of a launch.
-fn records<R: Number>(plan: &Plan, slots: u32) -> Records<R> {
+pub(super) fn records<R: Number>(plan: &Plan, slots: u32) -> Records<R> {
     let count = |binding, bytes| (plan.bytes_of(binding) / bytes) as usize * slots as usize;
     let records = |binding| vec![R::store(V3::zero(), 0); count(binding, 16)];
     Records {
@@ -37,6 +39,7 @@ fn records<R: Number>(plan: &Plan, slots: u32) -> Records<R> {
         shadows: vec![0; count(binding::SHADOWS, 4)],
         segments: records(binding::SEGMENTS),
         sums: records(binding::SUMS),
+        landed: Vec::new(),
     }
 }
 
@@ -47,6 +50,8 @@ pub struct Planned {
     pub(super) plan: Plan,
     /// For whole blocks of samples.
     blocks: Option<Plan>,
+    /// For photons, where they tell of caustics.
+    pub(super) photons: Option<Plan>,
     pub(super) isa: Isa,
 }
 
@@ -54,10 +59,11 @@ impl Planned {
     /// Plans pictures of a scene, with the instructions of an Isa.
     pub fn new(laid: SceneView, isa: Isa) -> Self {
         let traversal = laid.traversal;
-        let plan = Plan::new(&laid.job, &traversal, |coherence| Ok(traversal.resolved(Processor::Cpu, coherence)));
-        let plan = plan.expect("a CPU has every method");
+        let resolve = |coherence| Ok(traversal.resolved(Processor::Cpu, coherence));
+        let plan = Plan::new(&laid.job, &traversal, resolve).expect("a CPU has every method");
+        let photons = Plan::of_photons(&laid.job, &traversal, resolve).expect("a CPU has every method");
         let blocks = plan.in_blocks(0);
-        Planned { laid, plan, blocks, isa }
+        Planned { laid, plan, blocks, photons, isa }
     }
 
     /// Words of a pixel of a film.
@@ -83,9 +89,24 @@ impl Planned {
         film: &mut [u32],
         observer: &dyn Observer<R>,
     ) -> u64 {
+        let samples = samples.start..samples.end.min(view.range().end);
+        let maps = self.maps::<R>(view, samples.clone());
+        self.add_by(view, region, (samples, &maps), film, observer)
+    }
+
+    /// The same with the photons of each sample, none where none tell of caustics.
+    pub(super) fn add_by<R: Number>(
+        &self,
+        view: &View,
+        region: Region,
+        (samples, maps): (Range<u32>, &[Map]),
+        film: &mut [u32],
+        observer: &dyn Observer<R>,
+    ) -> u64 {
         let order = self.laid.specialisation().order;
         let frame = |sample| view.launch(&self.laid.job, region, sample, 1, order);
-        let frames = (samples.start..samples.end.min(view.range().end)).map(frame);
+        let map = |sample| maps.get((sample - samples.start) as usize).unwrap_or(&NONE);
+        let frames = samples.clone().map(|sample| (frame(sample), map(sample)));
         self.run(&self.plan, frames, film, observer)
     }
 
@@ -93,31 +114,34 @@ impl Planned {
     ///
     /// # Panics
     /// If the integrator does not sample.
-    pub(super) fn blocks<R: Number>(&self, view: &View, region: Region, samples: Range<u32>) -> (Vec<u32>, u64) {
+    pub(super) fn blocks<R: Number>(
+        &self,
+        view: &View,
+        region: Region,
+        (samples, map): (Range<u32>, &Map),
+    ) -> (Vec<u32>, u64) {
         let plan = self.blocks.as_ref().expect("noise is of integrators that sample");
         let order = self.laid.specialisation().order;
-        let frame = |first| view.launch(&self.laid.job, region, first, BLOCK, order);
+        let frame = |first| (view.launch(&self.laid.job, region, first, BLOCK, order), map);
         let mut film = self.film(region);
         let secondary = self.run::<R>(plan, samples.step_by(BLOCK as usize).map(frame), &mut film, &());
         (film, secondary)
     }
 
     /// Runs launches of the same slots, and returns how many secondary rays they took.
-    fn run<R: Number>(
+    fn run<'m, R: Number>(
         &self,
         plan: &Plan,
-        frames: impl Iterator<Item = Frame>,
+        frames: impl Iterator<Item = (Frame, &'m Map)>,
         film: &mut [u32],
         observer: &dyn Observer<R>,
     ) -> u64 {
         let order = self.laid.specialisation().order;
         let (mut memory, mut secondary) = (None, 0);
-        for frame in frames {
+        for (frame, map) in frames {
             let records = memory.take().unwrap_or_else(|| records(plan, frame.slots));
             let pixels = (0..frame.slots).filter(|&slot| camera::pixel(&frame, order, slot).inside);
-            let (queue, next) = (pixels.collect(), Vec::new());
-            let mut launch =
-                Launch { planned: self, frame: &frame, queue, next, records, film, observer, secondary: 0 };
+            let mut launch = Launch::new((self, &frame), pixels.collect(), (records, film), observer, map);
             plan::run(plan, &mut launch).expect("a CPU reports no errors");
             secondary += launch.secondary;
             memory = Some(launch.records);
@@ -127,7 +151,7 @@ impl Planned {
 }
 
 /// One sample of a region.
-struct Launch<'l, R: Number> {
+pub(super) struct Launch<'l, R: Number> {
     planned: &'l Planned,
     frame: &'l Frame,
     /// Slots of the wave.
@@ -137,7 +161,27 @@ struct Launch<'l, R: Number> {
     records: Records<R>,
     film: &'l mut [u32],
     observer: &'l dyn Observer<R>,
+    /// The photons of its samples.
+    map: &'l Map,
     secondary: u64,
+}
+
+impl<'l, R: Number> Launch<'l, R> {
+    /// One of some slots, with its memory.
+    pub fn new(
+        (planned, frame): (&'l Planned, &'l Frame),
+        queue: Vec<u32>,
+        (records, film): (Records<R>, &'l mut [u32]),
+        observer: &'l dyn Observer<R>,
+        map: &'l Map,
+    ) -> Self {
+        Launch { planned, frame, queue, next: Vec::new(), records, film, observer, map, secondary: 0 }
+    }
+
+    /// What it has left in its memory.
+    pub fn into_records(self) -> Records<R> {
+        self.records
+    }
 }
 
 impl<R: Number> Executor for Launch<'_, R> {
@@ -160,6 +204,9 @@ impl<R: Number> Executor for Launch<'_, R> {
                 R::generate(self.frame, step.spec, tables, &self.queue, &mut self.records);
             }
             Stage::Scatter => self.scatter(&scene),
+            Stage::Emit => self.emit(&scene),
+            // A map has its lists made when all photons have landed.
+            Stage::File => {}
             Stage::Gather => R::gather(self.frame, step.spec, &self.records, self.film),
             Stage::Accumulate => R::accumulate(self.frame, step.spec, &mut self.records, self.film),
         }
@@ -218,6 +265,11 @@ impl<R: Number> Launch<'_, R> {
         self.observer.wave(scene, &self.queue, &self.records);
         let (isa, context) = (self.planned.isa, self.planned.laid.scattering());
         let queues = Queues { now: &self.queue, next: &mut self.next };
-        R::scatter(isa, &scene.base, &context, queues, &mut self.records);
+        R::scatter(isa, &scene.base, &context, (queues, self.map.photons()), &mut self.records);
+    }
+
+    fn emit(&mut self, scene: &TraceContext<'_>) {
+        let (laid, casters) = (&self.planned.laid, Casters { records: self.planned.laid.job.casters() });
+        R::emit(&scene.base, &laid.scattering().lighting, &casters, &self.queue, &mut self.records);
     }
 }

@@ -9,6 +9,8 @@ use eyerays_shader::data::{
     Physical as PhysicalRecord, Primitive,
 };
 
+use glam::UVec4;
+
 use super::spectra::Spectra;
 use super::{DeviceScene, Feature, Lighting, Movement, Normalisation, Textures, hierarchy, records, two_levels};
 use crate::error::{Error, Result};
@@ -103,7 +105,12 @@ impl DeviceScene {
         &self.finishes
     }
 
-    /// What kernels are compiled for that know of it.
+    /// Where photons are sent; empty if nothing casts caustics.
+    pub(crate) fn casters(&self) -> &[UVec4] {
+        &self.casters
+    }
+
+    /// What kernels are compiled for that know of what lies on materials.
     pub(crate) fn finish_bits(&self) -> Finishes {
         self.finish_bits
     }

@@ -8,10 +8,12 @@ use eyerays_shader::data::{
     Bounds, CentredPair, CwbvhNode, Effects, Finish, FinishMaps, Finishes, Instance as InstanceRecord,
     Light as LightRecord, Material as MaterialRecord, Normals, Physical as PhysicalRecord, Primitive,
 };
+use glam::UVec4;
 
 mod accessors;
 mod alias;
 mod boxes;
+mod casters;
 mod copies;
 mod environment;
 mod feature;
@@ -36,6 +38,7 @@ mod view;
 mod words;
 
 pub use boxes::NodeBox;
+pub(crate) use casters::extent as casters_extent;
 pub use copies::fitted;
 pub(crate) use copies::{unfit_objects, unfit_triangles};
 pub use feature::Feature;
@@ -91,6 +94,8 @@ pub struct DeviceScene {
     background_group: u32,
     has_catchers: bool,
     lamps: Lamps,
+    /// Where photons are sent, see [`eyerays_shader::photon::Casters`].
+    casters: Vec<UVec4>,
     /// Those of any settings.
     effects: Effects,
     background: Background,
@@ -175,6 +180,7 @@ impl DeviceScene {
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let background_group = groups.number(&scene.background_group);
         let shining = shining::of(scene, &normalisation, (&primitives, top.1), (&instances, &places))?;
+        let casters = casters::of(scene, (&primitives, top.1), &places);
         let lamps = Lamps::new((&scene.materials, &groups, &spectra), &shining, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new(
@@ -212,6 +218,7 @@ impl DeviceScene {
             background_group,
             has_catchers: flags::mattes(scene).any(|matte| matte == Matte::Catcher),
             lamps,
+            casters,
             effects: Effects(effects.0 & !dark | many),
             background: scene.background,
             optics: Optics::of(&scene.cameras),

@@ -209,11 +209,13 @@ impl Queue {
 pub(super) struct Launch<'l> {
     kernels: &'l [Kernel],
     memory: &'l Memory,
-    /// For the steps that bind the film.
-    film: &'l wgpu::BindGroup,
+    /// For the steps that bind the film; none of photons.
+    film: Option<&'l wgpu::BindGroup>,
     frame: &'l Frame,
     queue: &'l mut Queue,
     plan: &'l Plan,
+    /// The counters that rays are counted by.
+    counted: &'l wgpu::Buffer,
     // Before the encoder, since it must be dropped first.
     pass: Option<wgpu::ComputePass<'static>>,
     encoder: wgpu::CommandEncoder,
@@ -245,6 +247,36 @@ impl<'l> Launch<'l> {
             queue.read(memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
         }
         queue.uncounted += rays;
+        let counted = memory.buffers.of(binding::COUNTERS);
+        Ok(Self::begun(plan, kernels, memory, frame, queue, counted, Some(film)))
+    }
+
+    /// One of photons, whose rays are not counted; `counted` are the counters of those that are.
+    pub fn of_photons(
+        plan: &'l Plan,
+        kernels: &'l [Kernel],
+        memory: &'l Memory,
+        frame: &'l Frame,
+        queue: &'l mut Queue,
+        counted: &'l wgpu::Buffer,
+    ) -> Result<Self> {
+        if queue.is_timer_full() {
+            queue.read(counted, &[], |_, _| ())?;
+        }
+        let mut launch = Self::begun(plan, kernels, memory, frame, queue, counted, None);
+        launch.encoder.clear_buffer(memory.buffers.of(binding::HEADS), 0, None);
+        Ok(launch)
+    }
+
+    fn begun(
+        plan: &'l Plan,
+        kernels: &'l [Kernel],
+        memory: &'l Memory,
+        frame: &'l Frame,
+        queue: &'l mut Queue,
+        counted: &'l wgpu::Buffer,
+        film: Option<&'l wgpu::BindGroup>,
+    ) -> Self {
         queue.gpu.queue.write_buffer(memory.buffers.of(binding::FRAME), 0, bytemuck::bytes_of(frame));
         let mut encoder = queue.gpu.device.create_command_encoder(&Default::default());
         encoder.clear_buffer(memory.buffers.of(binding::COUNTERS), 0, Some(4 * u64::from(counter::LAUNCH)));
@@ -252,20 +284,21 @@ impl<'l> Launch<'l> {
             Waves::AtMost(count) if count <= UNSEEN => count,
             _ => queue.waves.clamp(FEW, MOST_WAVES),
         };
-        Ok(Launch {
+        Launch {
             kernels,
             memory,
             film,
             frame,
             queue,
             plan,
+            counted,
             pass: None,
             encoder,
             is_second: false,
             unseen,
             next: unseen,
             recorded: 0,
-        })
+        }
     }
 
     /// Ends the launch, which finishes so many pixels.
@@ -290,11 +323,12 @@ impl<'l> Launch<'l> {
         self.flush();
         let look = |bytes: &[u8]| readback::words(bytes).collect::<Vec<u32>>();
         let counters = self.queue.counters.read(&self.queue.gpu, COUNTERS, look)?;
-        if counters[counter::RAYS as usize] > u32::MAX / 2 {
-            self.queue.count(self.memory.buffers.of(binding::COUNTERS), counters[counter::RAYS as usize]);
+        let is_counted = self.film.is_some();
+        if is_counted && counters[counter::RAYS as usize] > u32::MAX / 2 {
+            self.queue.count(self.counted, counters[counter::RAYS as usize]);
         }
         if self.queue.is_timer_full() {
-            self.queue.read(self.memory.buffers.of(binding::COUNTERS), &[], |_, _| ())?;
+            self.queue.read(self.counted, &[], |_, _| ())?;
         }
         let waves = counters[counter::WAVES as usize];
         self.queue.waves = self.queue.waves.max(waves);
@@ -310,7 +344,7 @@ impl Executor for Launch<'_> {
         let kernel = &self.kernels[index];
         let group = match &self.memory.groups[index] {
             Some(groups) => &groups[usize::from(self.is_second)],
-            None => self.film,
+            None => self.film.expect("photons bind no film"),
         };
         let pass = self.pass.get_or_insert_with(|| self.queue.pass(&mut self.encoder));
         let rows = if step.stage == Stage::Shadow { self.frame.shadow_rays } else { 1 };

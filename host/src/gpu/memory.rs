@@ -82,11 +82,24 @@ impl LaunchBuffers {
         Ok(LaunchBuffers { slots, buffers })
     }
 
+    /// The same with counters of their own.
+    pub fn with_own_counters(&self, gpu: &Gpu) -> Self {
+        let mut own = self.clone();
+        let size = 4 * u64::from(counter::LENGTH);
+        let usage = Use::STORAGE | Use::COPY_SRC | Use::COPY_DST;
+        for (_, counters) in own.buffers.iter_mut().filter(|(own, _)| *own == binding::COUNTERS) {
+            *counters = buffer(gpu, binding::COUNTERS, size, usage);
+        }
+        own
+    }
+
     /// The buffer of a resource. Every second wave, the queue is what was the next queue of the wave before.
     pub fn find(&self, binding: u32, is_second: bool) -> Option<&wgpu::Buffer> {
         let binding = match (binding, is_second) {
             (binding::QUEUE, true) => binding::NEXT,
             (binding::NEXT, true) => binding::QUEUE,
+            // What lands is looked through.
+            (binding::PHOTONS, _) => binding::LANDED,
             (other, _) => other,
         };
         self.buffers.iter().find(|(own, _)| *own == binding).map(|(_, buffer)| buffer)

@@ -30,7 +30,7 @@ impl<'a> SceneRecords<'a> {
     }
 
     /// Every binding with its bytes, none where the scene has no use for it.
-    pub fn bytes(&self) -> [(u32, &[u8]); 25] {
+    pub fn bytes(&self) -> [(u32, &[u8]); 26] {
         let (packed, textures) = (self.packed, self.packed.textures());
         let wide = if self.wide { packed.wide() } else { &[] };
         let is_chosen = packed.settings().transport.integrator.chooses_lights();
@@ -39,6 +39,7 @@ impl<'a> SceneRecords<'a> {
         let finishes = if packed.finish_bits().any() { packed.finishes() } else { &[] };
         let normals = if packed.effects().has(Effects::SMOOTH) { packed.normals() } else { &[] };
         let media = if packed.media_bits().has(Media::PRESENT) { packed.media() } else { &[] };
+        let casters = if packed.has_photons() { packed.casters() } else { &[] };
         let grids = if packed.media_bits().has(Media::GRIDS) { packed.grids() } else { &[] };
         [
             (binding::NODES, self.nodes.as_ref().map_or(&[], |nodes| bytemuck::cast_slice(nodes.words(packed)))),
@@ -65,6 +66,7 @@ impl<'a> SceneRecords<'a> {
             (binding::MEDIA, bytemuck::cast_slice(media)),
             (binding::GRIDS, bytemuck::cast_slice(grids)),
             (binding::SPECTRA, bytemuck::cast_slice(packed.spectra())),
+            (binding::CASTERS, bytemuck::cast_slice(casters)),
             (binding::OPTICS, bytemuck::cast_slice(packed.optic_tables())),
         ]
     }

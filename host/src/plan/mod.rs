@@ -2,7 +2,8 @@
 
 mod run;
 
-use eyerays_shader::data::{Aovs, Effects, Launch, Media, Specialisation};
+use eyerays_shader::data::{Aovs, Caustics, Effects, Launch, Media, Specialisation};
+use eyerays_shader::photon;
 use eyerays_shader::resources::binding;
 use eyerays_shader::stage::{FilmWords, Found, film_words, sum_records};
 
@@ -30,6 +31,10 @@ pub enum Stage {
     Shade,
     /// Scatters its paths.
     Scatter,
+    /// Starts photons at lamps.
+    Emit,
+    /// Puts those that have landed into lists.
+    File,
     /// Adds what slots have summed to the film.
     Gather,
     /// The same, with the light that their last vertices waited for.
@@ -47,6 +52,8 @@ impl Stage {
             Stage::Transmit => "transmit",
             Stage::Shade => "shade",
             Stage::Scatter => "scatter",
+            Stage::Emit => "emit",
+            Stage::File => "file",
             Stage::Gather => "gather",
             Stage::Accumulate => "accumulate",
         }
@@ -110,10 +117,15 @@ impl Plan {
         let has_further = waves != Waves::AtMost(0);
         let spec = spec.with_launch(if has_further { stages.goes_on } else { 0 });
         // Rays are the same whatever films keep, and so are the kernels that follow them.
-        let of_rays = |spec| Specialisation { aovs: Aovs(0), ..spec };
-        let plain = |stage, spec| {
-            let sums = matches!(stage, Stage::Scatter | Stage::Accumulate);
-            Step { stage, traversal: None, spec: if sums { spec } else { of_rays(spec) } }
+        let of_rays = |spec| Specialisation { aovs: Aovs(0), caustics: Caustics(0), ..spec };
+        let plain = |stage, spec: Specialisation| {
+            let spec = match stage {
+                Stage::Scatter => spec,
+                Stage::Accumulate => Specialisation { caustics: Caustics(0), ..spec },
+                Stage::Generate => Specialisation { aovs: Aovs(0), ..spec },
+                _ => of_rays(spec),
+            };
+            Step { stage, traversal: None, spec }
         };
         let wave = |spec: Specialisation, traced, shadowed| -> Result<Vec<Step>> {
             let step = |&stage: &Stage| {
@@ -145,10 +157,55 @@ impl Plan {
         let last = vec![plain(stages.last, spec)];
         // Rays of the camera that lie in memory take the place of a path.
         let paths = if spec.launch.has(Launch::KEPT) { needs.paths.max(1) } else { needs.paths };
-        let records = Records { sums, hits: Found::<f32>::records(spec.effects), media: spec.media };
+        let has_photons = spec.caustics.has(Caustics::GATHERED);
+        let records = Records { sums, hits: Found::<f32>::records(spec.effects), media: spec.media, has_photons };
         let slot_bytes = slot_bytes(&Needs { paths, ..*needs }, records, has_further);
         let film_words = FilmWords { light: film_words(spec.launch, stages.tells_noise), aovs };
         Ok(Plan { first, further, last, waves, shadow_rays, slot_bytes, film_words })
+    }
+
+    /// What the photons take that tell of caustics before a launch of a job, in the memory of its plan; none where there are none.
+    ///
+    /// # Errors
+    /// Those of `resolve`.
+    pub fn of_photons(
+        packed: &Job,
+        traversal: &Traversal,
+        resolve: impl Fn(Coherence) -> Result<Traversal>,
+    ) -> Result<Option<Plan>> {
+        if !packed.has_photons() {
+            return Ok(None);
+        }
+        let spec = packed.specialisation(traversal);
+        // Of a camera and of films photons know nothing.
+        let samplers = Launch::JITTERED | Launch::RANDOM | Launch::SOBOL;
+        let kept = Launch::MOLLER | samplers | Launch::NEAREST | Launch::MIPMAPPED | Launch::MOVING;
+        let spec = Specialisation {
+            launch: Launch(spec.launch.0 & kept).with(Launch::GOES_ON),
+            aovs: Aovs(0),
+            caustics: Caustics(Caustics::PHOTONS),
+            ..spec
+        };
+        let of_rays = Specialisation { caustics: Caustics(0), ..spec };
+        let plain = |stage, spec| Step { stage, traversal: None, spec };
+        let wave = |launch: u32| -> Result<[Step; 2]> {
+            let traversal = Some(resolve(Coherence::Scattered)?);
+            let trace = Step { stage: Stage::Trace, traversal, spec: of_rays.with_launch(launch | Launch::STREAM) };
+            Ok([trace, plain(Stage::Scatter, spec.with_launch(launch))])
+        };
+        let advance = plain(Stage::Advance, of_rays.with_launch(Launch::SECONDARY));
+        // A photon may be mirrored as often as a path, and then meets what has it.
+        let is_open = packed.media_bits().has(Media::OPEN);
+        let waves = if is_open { Waves::Branching } else { Waves::AtMost(packed.settings().bounces) };
+        Ok(Some(Plan {
+            first: [&[plain(Stage::Emit, spec)][..], &wave(0)?].concat(),
+            further: [&[advance][..], &wave(Launch::SECONDARY)?].concat(),
+            last: vec![plain(Stage::File, of_rays)],
+            waves,
+            shadow_rays: 0,
+            slot_bytes: Vec::new(),
+            film_words: FilmWords::of_light(0),
+        }))
     }
 
     /// The same for whole blocks of samples, whose film keeps the squares of blocks; with `launch`, what else its launches are. None of an
@@ -202,10 +259,11 @@ struct Records {
     sums: u32,
     hits: u32,
     media: Media,
+    has_photons: bool,
 }
 
 /// Bytes that a sample in flight takes of each buffer, none of those that it has no use for.
-fn slot_bytes(needs: &Needs, Records { sums, hits, media }: Records, has_queue: bool) -> Vec<(u32, u64)> {
+fn slot_bytes(needs: &Needs, Records { sums, hits, media, has_photons }: Records, has_queue: bool) -> Vec<(u32, u64)> {
     let Needs { shadow_rays, paths, stages, .. } = *needs;
     let records = |count: u32| u64::from(count) * Plan::RECORD_BYTES;
     let queue = if has_queue { 4 } else { 0 };
@@ -217,6 +275,8 @@ fn slot_bytes(needs: &Needs, Records { sums, hits, media }: Records, has_queue: 
         (binding::SUMS, records(sums)),
         (binding::QUEUE, queue),
         (binding::NEXT, queue),
+        (binding::LANDED, if has_photons { records(photon::RECORDS) } else { 0 }),
+        (binding::HEADS, if has_photons { 4 * u64::from(photon::LISTS) } else { 0 }),
     ];
     all.into_iter().filter(|&(_, bytes)| bytes > 0).collect()
 }

@@ -78,6 +78,21 @@ pub struct Checker {
 }
 
 impl Material {
+    /// May it mirror or refract light, so that it casts caustics? What has a picture of its roughness may wherever that is dark.
+    pub(crate) fn casts(&self) -> bool {
+        /// Less rough, it is a mirror or a lens.
+        const ROUGH: f32 = 1.0 / 32.0;
+        let Some(physical) = &self.physical else {
+            return self.reflection != Vec3::ZERO || self.transmission != Vec3::ZERO;
+        };
+        let is_smooth = |roughness: f32, has_map: bool| roughness < ROUGH || has_map;
+        let coat = physical.coat.is_some_and(|coat| {
+            coat.weight > 0.0 && is_smooth(coat.roughness, self.maps.finish.coat_roughness.is_some())
+        });
+        let facets = is_smooth(physical.roughness, self.maps.metallic_roughness.is_some());
+        physical.hair.is_none() && (facets || coat)
+    }
+
     /// Do its surfaces need tangents?
     pub(crate) fn has_axes(&self) -> bool {
         self.maps.normal.is_some()

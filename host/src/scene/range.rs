@@ -30,6 +30,8 @@ impl Range {
     /// A full angle that may go all around, in degrees.
     pub const CIRCLE: Range =
         Range { holds: |x| x > 0.0 && x <= 360.0, says: "greater than 0 and at most 360 degrees" };
+    /// Photons for each pixel.
+    pub const PHOTONS: Range = Range { holds: |x| (0.0..=16.0).contains(&x), says: "between 0 and 16" };
     /// By how much the scales of hair lean, in degrees.
     pub const LEAN: Range = Range { holds: |x| (-10.0..=10.0).contains(&x), says: "between -10 and 10 degrees" };
     /// An index of refraction.

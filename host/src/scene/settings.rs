@@ -39,6 +39,9 @@ pub struct Settings {
     /// Do paths carry light of single wavelengths?
     #[serde(default)]
     pub spectral: bool,
+    /// Photons for each pixel of a sample, which tell of light that comes by mirrors and glass, in [0, 16]; 0 leaves caustics to chance.
+    #[serde(default)]
+    pub caustics: f32,
     /// How light is carried.
     pub transport: Transport,
 }
@@ -84,6 +87,8 @@ impl Settings {
     pub const MOST_SAMPLES: u32 = 64;
     /// The most samples of a pixel, which single precision still counts.
     pub const MOST_SPP: u32 = 1 << 24;
+    /// The most photons for each pixel.
+    pub const MOST_PHOTONS: f32 = 16.0;
     /// The largest limit of bounces.
     pub const MOST_BOUNCES: u32 = 65_535;
 }
@@ -103,6 +108,7 @@ impl Default for Settings {
             pixel_filter: None,
             transparent: false,
             spectral: false,
+            caustics: 0.0,
             transport: Transport::default(),
         }
     }

@@ -155,6 +155,7 @@ fn settings(text: &mut Text, of: &Settings) {
     }
     text.other("transparent", of.transparent, default.transparent);
     text.other("spectral", of.spectral, default.spectral);
+    text.other("caustics", of.caustics, default.caustics);
     let Transport { integrator, seed, roulette, clamp, direct, ao_distance } = of.transport;
     let default = default.transport;
     text.word("integrator", integrator, Integrator::Whitted);

@@ -28,6 +28,7 @@ pub fn settings(mut table: Table) -> Result<Settings> {
         filter: table.choice("filter")?.unwrap_or(default.filter),
         pixel_filter: table.choice("pixel_filter")?,
         transparent: table.flag("transparent")?.unwrap_or(default.transparent),
+        caustics: table.number("caustics", Range::PHOTONS)?.unwrap_or(default.caustics),
         spectral: table.flag("spectral")?.unwrap_or(default.spectral),
         transport: transport(&mut table)?,
     };

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::process::{Command, Stdio};
 
 use eyerays_passes::Kernels;
-use eyerays_shader::data::{Aovs, Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Waves};
+use eyerays_shader::data::{Aovs, Caustics, Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Waves};
 use eyerays_shader::resources::binding;
 
 fn modules() -> [&'static [u8]; 2] {
@@ -25,6 +25,10 @@ fn finished(spec: Specialisation, bits: u32) -> Specialisation {
 
 fn spectral(spec: Specialisation, bits: u32) -> Specialisation {
     Specialisation { waves: Waves(bits), ..spec }
+}
+
+fn caustic(spec: Specialisation, bits: u32) -> Specialisation {
+    Specialisation { caustics: Caustics(bits), ..spec }
 }
 
 /// Nothing, everything, and what together makes the kernels of most branches.
@@ -69,6 +73,10 @@ fn specialisations() -> Vec<Specialisation> {
         spectral(path, Waves::SPECTRAL),
         spectral(between(path, Media::PRESENT | Media::GRIDS | Media::OPEN), Waves::SPECTRAL | Waves::ILLUMINANTS),
         spectral(path, Waves::ILLUMINANTS),
+        caustic(path, Caustics::GATHERED),
+        caustic(between(all, u32::MAX), Caustics::GATHERED),
+        caustic(path, Caustics::PHOTONS),
+        caustic(finished(between(all, u32::MAX), u32::MAX), Caustics::PHOTONS),
         spectral(finished(effects(Effects::PHYSICAL | Effects::EMISSIVE | Effects::REFRACTION), u32::MAX), u32::MAX),
     ]
 }
@@ -285,6 +293,26 @@ fn spectra_are_in_no_kernel_of_a_picture_without() {
     assert!(cut("exact::transmit", smoky, Waves::SPECTRAL).bindings().contains(&binding::SPECTRA));
     for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate"] {
         assert_eq!(cut(entry, lit, Waves::SPECTRAL | Waves::MEASURED).words(), cut(entry, lit, 0).words(), "{entry}");
+    }
+}
+
+/// Photons cost nothing where there are none; a launch of them asks no lamp and adds to no sum.
+#[test]
+fn photons_are_in_no_kernel_of_a_picture_without() {
+    let kernels = Kernels::parse(eyerays_modules::exact()).unwrap();
+    let lit = effects(Effects::LIT | Effects::EMISSIVE | Effects::PHYSICAL | Effects::REFRACTION);
+    let cut = |entry, bits| kernels.cut(entry, &caustic(lit, bits).constants()).unwrap();
+    let binds = |bits, resource| cut("exact::scatter", bits).bindings().contains(&resource);
+    for resource in [binding::PHOTONS, binding::HEADS, binding::LANDED] {
+        assert!(!binds(0, resource), "{resource}");
+    }
+    assert!(binds(Caustics::GATHERED, binding::PHOTONS) && binds(Caustics::GATHERED, binding::HEADS));
+    assert!(!binds(Caustics::GATHERED, binding::LANDED) && binds(Caustics::PHOTONS, binding::LANDED));
+    for resource in [binding::PHOTONS, binding::SUMS, binding::SEGMENTS, binding::EMITTERS] {
+        assert!(!binds(Caustics::PHOTONS, resource), "{resource}");
+    }
+    for entry in ["exact::if_if::trace", "exact::if_if::shadow", "exact::accumulate", "exact::generate"] {
+        assert_eq!(cut(entry, Caustics::GATHERED).words(), cut(entry, 0).words(), "{entry}");
     }
 }
 

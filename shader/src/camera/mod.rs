@@ -12,7 +12,7 @@ pub use clip::limit;
 pub use filter::FILTER_STEPS;
 pub use lens::{MOST_CORNERS, OUTLINE};
 pub use ray::{CameraRay, plain_ray, ray};
-pub use shutter::{panned, time};
+pub use shutter::{common_time, panned, time};
 
 use crate::buffer::read;
 use crate::data::{Frame, Order};
@@ -101,6 +101,12 @@ fn even(place: u32) -> u32 {
     let x = (x | (x >> 1)) & 0x333;
     let x = (x | (x >> 2)) & 0x70f;
     (x | (x >> 4)) & 0x3f
+}
+
+/// What the numbers are drawn from that all pixels have in common where photons tell of light, since these are the same for all.
+#[inline(always)]
+pub fn common_key(frame: &Frame) -> Key {
+    Key::new((0, 0), frame.seed)
 }
 
 /// What a pixel's numbers are drawn from, whichever region a launch renders.

@@ -1,9 +1,9 @@
 //! The time in which the shutter is open (thesis 3.4.7; Cook, Porter and Carpenter, Distributed Ray Tracing, 1984): each sample is of a
 //! moment of it.
 
-use super::{CameraRay, Pixel, key};
+use super::{CameraRay, Pixel, common_key, key};
 use crate::buffer::read;
-use crate::data::{Frame, Instance, numbers};
+use crate::data::{Frame, Instance, Launch, numbers};
 use crate::real::{Scalar, TINY, V3};
 use crate::sampler;
 
@@ -13,6 +13,13 @@ use crate::sampler;
 pub fn time(frame: &Frame, pixel: Pixel) -> f32 {
     let row = (frame.top + pixel.y) as f32;
     row * frame.row_delay + frame.exposure * sampler::time(key(frame, pixel), pixel.sample)
+}
+
+/// The same where photons tell of light ([`Caustics::GATHERED`](crate::data::Caustics)): all rays of a sample are of one moment, as its photons
+/// are. Those have no row.
+#[inline(always)]
+pub fn common_time(frame: &Frame, launch: Launch, sample: u32) -> f32 {
+    if launch.has(Launch::MOVING) { frame.exposure * sampler::time(common_key(frame), sample) } else { 0.0 }
 }
 
 /// A ray of a camera that moves, which was made where the shutter opens, at a time: carried on as the camera is.

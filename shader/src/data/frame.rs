@@ -104,6 +104,14 @@ pub struct Frame {
     pub keys: u32,
     /// What the camera is in (see [`Inside`](crate::medium::Inside)) and, in the upper eight bits, [`Frame::fog`].
     pub media: u32,
+    /// Photons of a sample of the picture; 0 without them ([`photon`](crate::photon)).
+    pub photons: u32,
+    /// The first of a sample's photons that a launch of photons follows.
+    pub photon: u32,
+    /// Lists of their grid, a power of two.
+    pub heads: u32,
+    /// How far the first sample of a pixel looks for photons, in the normalised scene.
+    pub radius: f32,
 }
 
 impl Frame {

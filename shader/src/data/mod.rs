@@ -41,7 +41,7 @@ pub use physical::Physical;
 pub use primitive::{Bounds, Primitive};
 pub use quanta::Quanta;
 pub use shading::{Light, Material, Normals};
-pub use specialisation::{Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Tuning, Waves};
+pub use specialisation::{Caustics, Effects, Finishes, Launch, Layout, Media, Order, Specialisation, Tuning, Waves};
 pub use spectrum::SpectrumRow;
 pub use texture::{Colours, Maps, Opacity, TexCoords, TextureMap};
 

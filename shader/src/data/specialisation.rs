@@ -133,6 +133,16 @@ bits! {
     }
 }
 
+bits! {
+    /// What of light comes by mirrors and glass, see [`photon`](crate::photon).
+    Caustics {
+        /// Photons tell it where paths are scattered that look for them.
+        GATHERED = 0;
+        /// The launch's paths are those of photons.
+        PHOTONS = 1;
+    }
+}
+
 impl Finishes {
     /// Is there anything at all?
     #[inline(always)]
@@ -314,6 +324,8 @@ pub struct Specialisation {
     pub finishes: Finishes,
     /// How light has wavelengths.
     pub waves: Waves,
+    /// What of it photons tell.
+    pub caustics: Caustics,
 }
 
 impl Specialisation {
@@ -328,8 +340,8 @@ impl Specialisation {
     }
 
     /// The value of each specialisation constant by its number; the entry points declare them in this order.
-    pub fn constants(&self) -> [(u32, u32); 9] {
-        let Specialisation { effects, launch, layout, order, tuning, aovs, media, finishes, waves } = *self;
+    pub fn constants(&self) -> [(u32, u32); 10] {
+        let Specialisation { effects, launch, layout, order, tuning, aovs, media, finishes, waves, caustics } = *self;
         [
             (1, effects.0),
             (2, tuning.0),
@@ -340,6 +352,7 @@ impl Specialisation {
             (7, media.0),
             (8, finishes.0),
             (9, waves.0),
+            (10, caustics.0),
         ]
     }
 }

@@ -7,6 +7,7 @@ use crate::integrator::{self, Exchange, ScatterContext, Wave};
 use crate::launch::{ROW, WORKGROUP, argument, counter};
 use crate::light::Lighting;
 use crate::material::Albedos;
+use crate::photon::{self, Casters, Photons};
 use crate::real::Scalar;
 use crate::resources::resources;
 use crate::scene::{LaunchContext, ShadingData, TraceContext};
@@ -18,7 +19,7 @@ use crate::traverse::{
 };
 use crate::warp::{Alone, Subgroup, append, take};
 use glam::{UVec3, UVec4};
-use spirv_std::arch::{IndexUnchecked, atomic_i_add};
+use spirv_std::arch::{IndexUnchecked, atomic_exchange, atomic_i_add};
 use spirv_std::memory::{Scope, Semantics};
 use spirv_std::spirv;
 
@@ -65,6 +66,16 @@ fn enqueue(spec: Specialisation, goes_on: bool, slot: u32, next: &mut [u32], cou
     };
     if goes_on {
         write(next, position, slot);
+    }
+}
+
+/// Gives a list another first entry, and returns the one before.
+#[inline(always)]
+fn exchange(heads: &mut [u32], list: u32, first: u32) -> u32 {
+    // SAFETY: the host tells no more lists than there are words.
+    unsafe {
+        let head = heads.index_unchecked_mut(list as usize);
+        atomic_exchange::<u32, { Scope::QueueFamily as u32 }, { Semantics::NONE.bits() }>(head, first)
     }
 }
 

@@ -45,6 +45,7 @@ macro_rules! declare_entry {
                     #[spirv(spec_constant(id = 7, default = 0))] media_bits: u32,
                     #[spirv(spec_constant(id = 8, default = 0))] finish_bits: u32,
                     #[spirv(spec_constant(id = 9, default = 0))] waves: u32,
+                    #[spirv(spec_constant(id = 10, default = 0))] caustics: u32,
                     $d($d have)*
                 ) {
                     let $d spec = Specialisation {
@@ -57,6 +58,7 @@ macro_rules! declare_entry {
                         media: Media(media_bits),
                         finishes: Finishes(finish_bits),
                         waves: Waves(waves),
+                        caustics: Caustics(caustics),
                     };
                     $d body
                 }
@@ -101,7 +103,7 @@ macro_rules! shading {
             scatter<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
             [frame primitives instances normals materials paths hits shadows segments sums queue next counters emitters emissions
              physicals maps textures texels coordinates colours tangents environment albedos light_nodes media grids finishes
-             spectra] {
+             spectra photons heads landed] {
                 // One kernel for all waves, since it is the one that drivers take longest to compile.
                 let starts = !spec.launch.has(Launch::GOES_ON) || read(counters, counter::WAVES) == 0;
                 let count = if starts { frame.slots } else { read(counters, counter::COUNT) };
@@ -115,7 +117,8 @@ macro_rules! shading {
                 let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment, spectra };
                 let context =
                     ScatterContext { shading, physicals, finishes, albedos: Albedos(albedos), lighting, media, grids };
-                let exchange = Exchange { paths, hits, shadows, segments, sums, starts };
+                let photons = Photons { records: photons, heads };
+                let exchange = Exchange { paths, hits, shadows, segments, sums, starts, photons, landed };
                 let goes_on = integrator::scatter::<$R>(&launch, &context, slot, exchange);
                 if spec.launch.has(Launch::GOES_ON) {
                     enqueue(spec, goes_on, slot, next, counters);
@@ -147,6 +150,30 @@ macro_rules! shading {
                 if id.x < frame.slots {
                     let tables = CameraTables { cells, optics, instances };
                     stage::generate::<$R>(frame, spec, tables, id.x, (paths, hits));
+                }
+            }
+        }
+
+        entry! {
+            /// Starts the photons of a launch.
+            emit<64>(#[spirv(global_invocation_id)] id: UVec3,) spec
+            [frame primitives instances paths hits emitters emissions textures texels coordinates colours environment light_nodes
+             spectra casters landed] {
+                if id.x < frame.slots {
+                    let launch = LaunchContext::new(frame, spec, primitives, instances);
+                    let textures = Textures { textures, texels, coordinates, colours };
+                    let lighting = Lighting { emitters, nodes: light_nodes, emissions, textures, environment, spectra };
+                    let casters = Casters { records: casters };
+                    integrator::emit::<$R>(&launch, &lighting, &casters, id.x, (paths, hits, landed));
+                }
+            }
+        }
+
+        entry! {
+            /// Puts the photons of a launch into the lists of their grid.
+            file<64>(#[spirv(global_invocation_id)] id: UVec3,) _spec [frame heads landed] {
+                if id.x < frame.slots {
+                    photon::file(frame, id.x, landed, move |list, first| exchange(heads, list, first));
                 }
             }
         }

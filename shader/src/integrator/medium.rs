@@ -142,6 +142,7 @@ fn scattered<R: Scalar>(vertex: &Vertex<R>, phase: Phase<R>, origin: V3<R>) -> P
         density,
         inside: path.inside.scattered(),
         unlit: 0,
+        gathered: false,
         beside: (R::splat(0.0), R::splat(0.0)),
         ..path
     }
@@ -218,12 +219,15 @@ pub(super) fn around<R: Scalar>(
 pub(super) fn crossed<R: Scalar>(vertex: &Vertex<R>, interaction: SurfaceInteraction<R>) -> Scattered<R> {
     let path = vertex.path;
     let inside = path.inside.across(interaction.front, vertex.filling.medium());
+    let is_open = vertex.filling.is_open();
     let next = PathState {
         origin: interaction.offset_ray_origin(path.direction),
         source_primitive: interaction.source_primitive(path.direction),
         inside: inside.crossed(),
         // Light that is sampled does not get through a surface that is there for others.
-        density: if vertex.filling.is_open() { path.density } else { R::splat(0.0) },
+        density: if is_open { path.density } else { R::splat(0.0) },
+        // Nor does a photon that has come so far alone lie there as light that was sampled.
+        beside: if is_open { path.beside } else { (path.beside.0, R::splat(1.0)) },
         ..path
     };
     let goes_on = inside.crossings() < MOST_CROSSINGS && R::splat(0.0).lt(path.weight.greatest());

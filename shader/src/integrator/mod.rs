@@ -7,9 +7,11 @@ mod feature;
 mod medium;
 mod occlusion;
 mod path;
+mod photon;
 mod sampled;
 mod vertex;
 mod whitted;
 
+pub use photon::emit;
 pub use sampled::{Exchange, ScatterContext, scatter};
 pub use whitted::{Wave, shade};

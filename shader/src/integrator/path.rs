@@ -2,15 +2,16 @@
 //! weighted together by multiple importance sampling (Veach and Guibas 1995).
 
 use super::feature::albedo;
-use super::medium;
 use super::sampled::{Outputs, ScatterContext, Scattered, is_lit, share};
 use super::vertex::Vertex;
+use super::{medium, photon};
 use crate::background::gradient;
 use crate::buffer::read;
-use crate::data::{Aovs, Effects, Finishes, Frame, Launch, Material, Media, Primitive, numbers};
+use crate::data::{Aovs, Caustics, Effects, Finishes, Frame, Launch, Material, Media, Primitive, numbers};
 use crate::geometry::SurfaceInteraction;
 use crate::light::{Density, EmitterSample, Lighting, Viewpoint, glowing};
 use crate::material::{Channels, Closure, Lobes, Scattering, Seen, Surface, closure, lifted};
+use crate::photon::Photons;
 use crate::ray::Ray;
 use crate::real::{FAINT, Real, SMALL, Scalar, V3};
 use crate::scene::LaunchContext;
@@ -25,6 +26,7 @@ pub(super) fn at<R: Scalar>(
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     seen: &Seen<R>,
+    around: Around<'_>,
 ) -> Scattered<R> {
     let effects = launch.spec.effects;
     let ScatterContext { shading, physicals, lighting, .. } = context;
@@ -62,11 +64,12 @@ pub(super) fn at<R: Scalar>(
         let channels = Channels { weight: path.weight, draw: early.y };
         let closure = closure(launch, context, (&seen, &surface), &covering, channels);
         let decisions = if is_dispersive { early } else { vertex.decisions() };
-        return scattered(launch, context, vertex, (&seen, &closure), Known { light, outputs, passes, decisions });
+        let known = Known { light, outputs, passes, decisions, around };
+        return scattered(launch, context, vertex, (&seen, &closure), known);
     }
     let interaction = seen.interaction;
     let lobes = Lobes::new(effects, &surface, &interaction, path.direction);
-    let known = Known { light, outputs, passes, decisions: vertex.decisions() };
+    let known = Known { light, outputs, passes, decisions: vertex.decisions(), around };
     scattered(launch, context, vertex, (&seen, &lobes), known)
 }
 
@@ -95,8 +98,17 @@ fn lets_through<R: Scalar>(launch: &LaunchContext<'_>, context: &ScatterContext<
         || launch.spec.finishes.has(Finishes::TRANSLUCENT) && read(context.finishes, seen.material()).is_translucent()
 }
 
+/// The photons of a launch, and the slot that looks for them.
+#[derive(Clone, Copy)]
+pub(super) struct Around<'a> {
+    /// In device memory.
+    pub photons: Photons<'a>,
+    /// The slot.
+    pub slot: u32,
+}
+
 /// What is known of a vertex before its closure is asked.
-struct Known<R: Real> {
+struct Known<'a, R: Real> {
     /// What the surface itself sends, linear RGB that reaches the pixel.
     light: V3<R>,
     /// What arbitrary output variables ask of it.
@@ -105,6 +117,8 @@ struct Known<R: Real> {
     passes: bool,
     /// See [`Vertex::decisions`].
     decisions: UVec4,
+    /// Where photons are found.
+    around: Around<'a>,
 }
 
 /// The light of one light, and the next ray, by a surface's closure.
@@ -114,13 +128,14 @@ fn scattered<R: Scalar>(
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     (seen, closure): (&Seen<R>, &impl Closure<R>),
-    Known { light, mut outputs, passes, decisions }: Known<R>,
+    Known { light, mut outputs, passes, decisions, around }: Known<'_, R>,
 ) -> Scattered<R> {
     let interaction = seen.interaction;
     let bounces = vertex.path.bounces;
     let ScatterContext { shading, lighting, media, .. } = context;
     let view = Viewpoint::on(&interaction, closure.normal(), passes).at(seen.time);
-    let is_asked = is_lit(launch) && closure.is_rough();
+    let caustics = launch.spec.caustics;
+    let is_asked = is_lit(launch) && closure.is_rough() && !caustics.has(Caustics::PHOTONS);
     let unlit = unlit(launch, shading.materials, seen);
     let lamp = if is_asked {
         let lamp = EmitterSample::new(launch, lighting, &view, decisions.x, vertex.draws.pair(bounces));
@@ -131,6 +146,10 @@ fn scattered<R: Scalar>(
     };
     let (at, draws) = ((&interaction, view.origin), (decisions.y, decisions.w));
     let (arriving, sample) = closure.eval_and_sample(at, lamp.direction, draws, || vertex.draws.set(bounces + 1));
+    if caustics.has(Caustics::PHOTONS) {
+        let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
+        return photon::met(launch, vertex, (seen, closure), next, decisions);
+    }
     if launch.spec.aovs.has(Aovs::LOBES) && bounces == 0 {
         let passes = |direction| !interaction.receives(direction);
         let sampled = Split::new(arriving.value, arriving.diffuse, passes(lamp.direction));
@@ -154,12 +173,22 @@ fn scattered<R: Scalar>(
     let width = if is_wide { seen.cone.width } else { R::splat(0.0) };
     // What a lamp's density depends on that the path finds.
     let side = if launch.spec.effects.has(Effects::MANY_LIGHTS) { view.side } else { 0 };
-    let next = PathState { beside: (width, R::splat(side as f32)), unlit, ..next };
+    let is_told = caustics.has(Caustics::GATHERED) && closure.is_wide() && !catches;
+    let is_straight = sample.density.eq(R::splat(0.0));
+    let gathered = if is_straight { vertex.path.gathered } else { is_told };
+    let next = PathState { beside: (width, R::splat(side as f32)), unlit, gathered, ..next };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
     // The last ray finds only what emits.
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
     let light = if catches { V3::zero() } else { light };
-    Scattered { catches, outputs, ..Scattered::once(light, shadow, next, goes_on) }
+    let caustic = if is_told {
+        let path = PathState { unlit, ..vertex.path };
+        let light = photon::gathered(launch, &around.photons, (around.slot, &path), (seen, closure));
+        share(launch, &PathState { bounces: bounces + 1, ..path }, light)
+    } else {
+        V3::zero()
+    };
+    Scattered { catches, outputs, caustic, ..Scattered::once(light, shadow, next, goes_on) }
 }
 
 /// What a vertex on a shadow catcher asks for: a sampled light, and the surroundings along the next ray.
@@ -211,7 +240,9 @@ fn emitted<R: Scalar>(
 ) -> V3<R> {
     let effects = launch.spec.effects;
     let is_lit = vertex.path.is_lit_by(effects, group(launch, lighting, seen));
-    if !effects.has(Effects::EMISSIVE) || !is_lit {
+    // Photons are not what they meet, and of light that they tell of, chance counts for nothing.
+    let is_told = vertex.path.gathered && vertex.path.density.eq(R::splat(0.0));
+    if !effects.has(Effects::EMISSIVE) || !is_lit || is_told || launch.spec.caustics.has(Caustics::PHOTONS) {
         return V3::zero();
     }
     let Seen { primitive, interaction, .. } = *seen;
@@ -319,6 +350,7 @@ mod tests {
             beside: (0.0, 0.0),
             from: V3::zero(),
             inside: Default::default(),
+            gathered: false,
         };
         may_find_light(&frame, &path)
     }

@@ -3,19 +3,21 @@
 use crate::background::background;
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Filling, Finish, Launch, Media, Medium, Physical, Primitive};
+use crate::data::{Caustics, Effects, Filling, Finish, Launch, Media, Medium, Physical, Primitive};
 use crate::light::{Environment, Lighting};
 use crate::material::{Albedos, Seen};
 use crate::medium::{Chain, MOST_CROSSINGS};
+use crate::photon::{Landed, Photons};
 use crate::real::{FAINT, Real, Scalar, V3};
 use crate::sampler::Key;
 use crate::scene::{LaunchContext, ShadingData};
 use crate::stage::{AovSlot, CLEARED, Caught, Contribution, FirstSurface, Found, NON_FINITE, PathState, ShadowRay};
+use glam::UVec4;
 
 use super::draws::Draws;
-use super::path::weight;
+use super::path::{Around, weight};
 use super::vertex::Vertex;
-use super::{distributed, feature, medium, occlusion, path};
+use super::{distributed, feature, medium, occlusion, path, photon};
 
 /// The records that the stages of a wave exchange.
 pub struct Exchange<'a, R: Scalar> {
@@ -31,6 +33,10 @@ pub struct Exchange<'a, R: Scalar> {
     pub sums: &'a mut [R::Record],
     /// Are they the camera's rays, before which there are neither sums nor shadow rays?
     pub starts: bool,
+    /// The photons of the launch, which are looked through ([`Caustics::GATHERED`]).
+    pub photons: Photons<'a>,
+    /// [`Landed`] by slot of a launch of photons ([`Caustics::PHOTONS`]).
+    pub landed: &'a mut [UVec4],
 }
 
 /// What scatters in a scene, and what emits.
@@ -76,6 +82,12 @@ pub(super) struct Scattered<R: Real> {
     pub catches: bool,
     /// What arbitrary output variables ask of it.
     pub outputs: Outputs<R>,
+    /// What it scatters of the light of photons, linear RGB that reaches the pixel.
+    pub caustic: V3<R>,
+    /// What a photon is there.
+    pub landed: Landed,
+    /// Is it one?
+    pub lands: bool,
 }
 
 /// What the film's arbitrary output variables ask of a vertex.
@@ -102,7 +114,19 @@ impl<R: Scalar> Scattered<R> {
     #[inline(always)]
     pub fn once(light: V3<R>, shadow: ShadowRay<R>, next: PathState<R>, goes_on: bool) -> Self {
         let outputs = Outputs::of(Contribution::<R>::SURFACE, 0);
-        Scattered { light, shadow, next, goes_on, other: next, waits: false, catches: false, outputs }
+        Scattered {
+            light,
+            shadow,
+            next,
+            goes_on,
+            other: next,
+            waits: false,
+            catches: false,
+            outputs,
+            caustic: V3::zero(),
+            landed: Landed::none(),
+            lands: false,
+        }
     }
 }
 
@@ -114,13 +138,14 @@ pub fn scatter<R: Scalar>(
     slot: u32,
     exchange: Exchange<'_, R>,
 ) -> bool {
-    let Exchange { paths, hits, shadows, segments, sums, starts } = exchange;
+    let Exchange { paths, hits, shadows, segments, sums, starts, photons, landed } = exchange;
     let slots = launch.frame.slots;
     let (bits, aovs, media) = (launch.spec.launch, launch.spec.aovs, launch.spec.media);
-    let path = PathState::<R>::load(slots, slot, 0, paths).unpacked(launch.spec.effects);
+    let path = PathState::<R>::load(slots, slot, 0, paths).unpacked(launch.spec);
     let path = if media.has(Media::PRESENT) { path.with_medium(slots, slot, paths) } else { path };
+    let is_photon = launch.spec.caustics.has(Caustics::PHOTONS);
     let outputs = AovSlot::new(launch.frame, launch.spec, slot);
-    let (sum, mut word, mut caught) = if starts {
+    let (sum, mut word, mut caught) = if starts || is_photon {
         (V3::zero(), 0, Caught::nothing())
     } else {
         let (sum, word) = R::load(read(sums, slot));
@@ -134,10 +159,12 @@ pub fn scatter<R: Scalar>(
     };
     let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
     let found = Found::<R>::load(launch, slot, hits);
-    let key = Key::new((path.pixel & 0xffff, path.pixel >> 16), launch.frame.seed);
+    let draws = drawn(launch, slot, path.pixel);
     let sample = camera::sample(launch.frame, slot);
-    let draws = Draws { launch: bits, key, sample, has_lens: launch.frame.has_lens(bits) };
-    let launch = &launch.of_sample(context.lighting.spectra, key, sample);
+    // Photons have the wavelengths of all paths of their sample.
+    let is_common = launch.spec.caustics.has(Caustics::GATHERED | Caustics::PHOTONS);
+    let waves = if is_common { camera::common_key(launch.frame) } else { draws.key };
+    let launch = &launch.of_sample(context.lighting.spectra, waves, sample);
     let mut vertex = Vertex { path, found, draws, after_catcher, filling: Filling::default() };
     let mut collides = false;
     if media.has(Media::PRESENT) {
@@ -169,14 +196,20 @@ pub fn scatter<R: Scalar>(
             if after_catcher && primitive.has(Primitive::CATCHER) {
                 caught = caught.open();
             }
-            integrated(launch, context, &vertex, &seen)
+            let around = Around { photons, slot };
+            integrated(launch, context, &vertex, &seen, around)
         }
     };
+    if is_photon {
+        photon::keep(&scattered, slot, landed);
+        return follow(launch, slot, &path, scattered, paths);
+    }
     if bits.has(Launch::CATCHER) && scattered.catches {
         caught = path::caught(launch, &scattered);
     }
     caught.store(bits, launch.frame, slot, sums);
     scattered.light = launch.rgb(scattered.light);
+    scattered.caustic = launch.rgb(scattered.caustic);
     scattered.outputs.surface.albedo = launch.rgb(scattered.outputs.surface.albedo);
     if !media.has(Media::OPEN | Media::GRIDS) {
         // Else it is dimmed first.
@@ -188,6 +221,7 @@ pub fn scatter<R: Scalar>(
         output(outputs, (is_first, path.bounces), &scattered, sums);
     }
     let (sum, word) = added(sum, word, &scattered);
+    let sum = if launch.spec.caustics.has(Caustics::GATHERED) { sum + scattered.caustic } else { sum };
     write(sums, slot, R::store(sum, word));
     scattered.shadow.store(slots, slot, segments);
     if media.has(Media::OPEN | Media::GRIDS) {
@@ -198,6 +232,19 @@ pub fn scatter<R: Scalar>(
     follow(launch, slot, &path, scattered, paths)
 }
 
+/// What a slot draws, whose path is of a pixel, or a photon.
+#[inline(always)]
+fn drawn(launch: &LaunchContext<'_>, slot: u32, pixel: u32) -> Draws {
+    let (frame, bits) = (launch.frame, launch.spec.launch);
+    let sample = camera::sample(frame, slot);
+    if launch.spec.caustics.has(Caustics::PHOTONS) {
+        let key = crate::photon::key(frame, sample);
+        return Draws { launch: bits, key, sample: crate::photon::number(frame, slot), has_lens: false };
+    }
+    let key = Key::new((pixel & 0xffff, pixel >> 16), frame.seed);
+    Draws { launch: bits, key, sample, has_lens: frame.has_lens(bits) }
+}
+
 /// What the integrator that a launch asks for makes of a surface.
 #[inline(always)]
 fn integrated<R: Scalar>(
@@ -205,6 +252,7 @@ fn integrated<R: Scalar>(
     context: &ScatterContext<'_>,
     vertex: &Vertex<R>,
     seen: &Seen<R>,
+    around: Around<'_>,
 ) -> Scattered<R> {
     let bits = launch.spec.launch;
     if bits.has(Launch::FEATURE) {
@@ -214,21 +262,23 @@ fn integrated<R: Scalar>(
     } else if bits.has(Launch::TREE) {
         distributed::at(launch, context, vertex, seen)
     } else {
-        path::at(launch, context, vertex, seen)
+        path::at(launch, context, vertex, seen, around)
     }
 }
 
 /// Does the camera's ray meet what cuts a hole into the picture?
 #[inline(always)]
 fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive: &Primitive) -> bool {
-    launch.spec.effects.has(Effects::HOLDOUT) && path.bounces == 0 && primitive.has(Primitive::HOLDOUT)
+    let is_seen = path.bounces == 0 && !launch.spec.caustics.has(Caustics::PHOTONS);
+    launch.spec.effects.has(Effects::HOLDOUT) && is_seen && primitive.has(Primitive::HOLDOUT)
 }
 
 /// What a path gets from beyond the scene, by the weight of the strategy that found it.
 #[inline(always)]
 fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
     let (effects, frame) = (launch.spec.effects, launch.frame);
-    if launch.spec.launch.has(Launch::FEATURE) || !path.is_lit_by(effects, frame.group) {
+    let is_told = effects.has(Effects::ENVIRONMENT) && path.gathered && path.density.eq(R::splat(0.0));
+    if launch.spec.launch.has(Launch::FEATURE) || !path.is_lit_by(effects, frame.group) || is_told {
         return V3::zero();
     }
     let seen = launch.banded(background(effects, frame, lighting.environment, path.direction, path.bounces == 0));
@@ -257,7 +307,7 @@ fn follow<R: Scalar>(
         if launch.spec.media.has(Media::PRESENT) {
             scattered.next.store_medium(launch.frame.slots, slot, paths);
         }
-        scattered.next.packed(launch.spec.effects).store(launch.frame.slots, slot, 0, paths);
+        scattered.next.packed(launch.spec).store(launch.frame.slots, slot, 0, paths);
     }
     scattered.goes_on
 }
@@ -302,6 +352,10 @@ fn output<R: Scalar>(
     if is_finite(scattered.light) {
         let light = Contribution { light: scattered.light, bounces, group: *group, found: *found };
         outputs.add(&light, sums);
+    }
+    if R::splat(0.0).lt(scattered.caustic.greatest()) {
+        let found = Contribution::<R>::SURFACE;
+        outputs.add(&Contribution { light: scattered.caustic, bounces: bounces + 1, group: 0, found }, sums);
     }
 }
 

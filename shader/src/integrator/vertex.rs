@@ -104,6 +104,7 @@ impl<R: Scalar> Vertex<R> {
             density,
             from: origin,
             inside: self.inside(interaction, direction),
+            gathered: false,
             ..self.path
         }
     }

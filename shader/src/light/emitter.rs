@@ -105,7 +105,7 @@ impl<R: Scalar> EmitterSample<R> {
 
     /// Samples a light that was chosen with some probability.
     #[inline(always)]
-    fn of(
+    pub(super) fn of(
         launch: &LaunchContext<'_>,
         lighting: &Lighting<'_>,
         (emitter, probability): (&Emitter, R),
@@ -168,30 +168,12 @@ impl<R: Scalar> EmitterSample<R> {
         (origin, place): (V3<R>, (u32, u32)),
     ) -> Self {
         let (effects, index) = (launch.spec.effects, emitter.light.axis.w);
-        let coordinates = if effects.has(Effects::DISK) && primitive.is_disk() {
-            let (x, y) = on_circle::<R>(place.1);
-            let reach = R::splat(unit(place.0)).sqrt();
-            (x * reach, y * reach)
-        } else {
-            in_triangle(R::splat(unit(place.0)), R::splat(unit(place.1)))
-        };
+        let coordinates = drawn_on(effects, primitive, place);
         let at = SurfaceInteraction::new(effects, primitive, coordinates, V3::zero());
         let sample = Self::of_place((emission, per_area), at.position, at.normal, origin);
-        let sample = if effects.has(Effects::CUTOUT) && primitive.is_triangle() && primitive.is_cutout() {
-            let place = Place { index, weights: coordinates, count: launch.frame.vertices };
-            let light = sample.light * opacity(launch, &lighting.textures, emission, &place);
-            EmitterSample { light: light.map(|c| c.flush(FAINT)), ..sample }
-        } else {
-            sample
-        };
         let place = Place { index, weights: coordinates, count: launch.frame.vertices };
-        let light = glowing(effects, &lighting.textures, emission, &place, sample.light);
-        let sample = EmitterSample { light, ..sample };
-        if !effects.has(Effects::TEXTURED) || emission.sides.y == 0 {
-            return sample;
-        }
-        let texel = lighting.textures.at(launch.spec.launch, emission.sides.y, &place, R::splat(0.0)).1;
-        EmitterSample { light: sample.light.times(texel.colour).map(|c| c.flush(FAINT)), ..sample }
+        let light = covered(launch, lighting, (primitive, emission), &place, sample.light);
+        EmitterSample { light, ..sample }
     }
 
     /// A place on a surface that emits, sampled by area, with its front's normal.
@@ -310,9 +292,41 @@ impl<R: Scalar> Cone<R> {
     }
 }
 
+/// Where on a triangle or a disk a pair of draws means, each place as likely.
+#[inline(always)]
+pub(super) fn drawn_on<R: Scalar>(effects: Effects, primitive: &Primitive, place: (u32, u32)) -> (R, R) {
+    if effects.has(Effects::DISK) && primitive.is_disk() {
+        let (x, y) = on_circle::<R>(place.1);
+        let reach = R::splat(unit(place.0)).sqrt();
+        return (x * reach, y * reach);
+    }
+    in_triangle(R::splat(unit(place.0)), R::splat(unit(place.1)))
+}
+
+/// Light from a place on a triangle or a disk, as its opacity, the colours of its vertices and its map leave it.
+#[inline(always)]
+pub(super) fn covered<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    (primitive, emission): (&Primitive, &Emission),
+    place: &Place<R>,
+    light: V3<R>,
+) -> V3<R> {
+    let (effects, mut light) = (launch.spec.effects, light);
+    if effects.has(Effects::CUTOUT) && primitive.is_triangle() && primitive.is_cutout() {
+        light = (light * opacity(launch, &lighting.textures, emission, place)).map(|c| c.flush(FAINT));
+    }
+    light = glowing(effects, &lighting.textures, emission, place, light);
+    if !effects.has(Effects::TEXTURED) || emission.sides.y == 0 {
+        return light;
+    }
+    let texel = lighting.textures.at(launch.spec.launch, emission.sides.y, place, R::splat(0.0)).1;
+    light.times(texel.colour).map(|c| c.flush(FAINT))
+}
+
 /// The row of the spectrum that a light has, where some have one of their own; 0 for that of D65.
 #[inline(always)]
-fn illuminant(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
+pub(super) fn illuminant(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
     if !launch.spec.waves.has(Waves::SPECTRAL) || !launch.spec.waves.has(Waves::ILLUMINANTS) {
         return 0;
     }
@@ -324,7 +338,7 @@ fn illuminant(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emi
 
 /// The group that a light is in, where somebody asks for it.
 #[inline(always)]
-fn group(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
+pub(super) fn group(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, emitter: &Emitter) -> u32 {
     if !launch.spec.aovs.has(Aovs::GROUPS) && !launch.spec.effects.has(Effects::LINKED) {
         return 0;
     }

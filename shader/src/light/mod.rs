@@ -4,6 +4,7 @@
 mod choice;
 mod emitter;
 mod environment;
+mod leaving;
 mod moving;
 mod tree;
 mod viewpoint;
@@ -11,6 +12,7 @@ mod viewpoint;
 pub use emitter::{Density, EmitterSample, Lighting};
 pub(crate) use emitter::{glowing, on_circle};
 pub use environment::{Environment, HEADER};
+pub use leaving::{Leaving, LeavingDraws};
 pub use moving::at_time;
 pub use tree::{Chosen, Guide, descend};
 pub use viewpoint::Viewpoint;

@@ -136,6 +136,25 @@ impl<'a, R: Scalar> Bsdf<'a, R> {
         if self.is_thin() { R::splat(1.0) } else { self.layers.reflectance.eta }
     }
 
+    /// How much more radiance is on the viewer's side of what passes than on the other.
+    #[inline(always)]
+    pub(super) fn compression(&self) -> R {
+        self.eta() * self.eta()
+    }
+
+    /// Are its facets mirrors or lenses, or so rough that they scatter widely?
+    #[inline(always)]
+    pub(super) fn is_wide(&self) -> bool {
+        self.is_smooth || self.layers.ggx.is_wide()
+    }
+
+    /// The probability of a part that is no mirror and no lens.
+    #[inline(always)]
+    pub(super) fn rough_share(&self) -> R {
+        let (near, far, _) = self.shares();
+        if self.is_smooth { near + far } else { R::splat(1.0) }
+    }
+
     /// A facet of unit normal `h`, seen from the viewer.
     #[inline(always)]
     fn facet(&self, h: V3<R>) -> Facet<R> {

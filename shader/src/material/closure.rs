@@ -35,6 +35,18 @@ pub trait Closure<R: Scalar> {
     /// May it scatter light of any other direction than those of mirrors and lenses?
     fn is_rough(&self) -> bool;
 
+    /// Is all of what it scatters otherwise scattered widely, so that photons tell of it?
+    fn is_wide(&self) -> bool;
+
+    /// Does the first draw of [`Closure::eval_and_sample`] choose a part that scatters widely or not, but not as a mirror or a lens?
+    fn chooses_rough(&self, part: u32) -> bool;
+
+    /// How likely that is.
+    fn rough_share(&self) -> R;
+
+    /// How much more radiance is on the viewer's side of what it lets pass than on the other.
+    fn compression(&self) -> R;
+
     /// The unit normal that light sees, on the viewer's side.
     fn normal(&self) -> V3<R>;
 

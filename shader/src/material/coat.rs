@@ -59,6 +59,12 @@ impl<R: Scalar> Coat<R> {
         Coat { albedo: weight * one_way, is_smooth, weight, ggx, axes, viewer }
     }
 
+    /// Is it a mirror, or so rough that it scatters widely?
+    #[inline(always)]
+    pub fn is_wide(&self) -> bool {
+        self.is_smooth || self.ggx.is_wide()
+    }
+
     /// What it sends to the viewer of light from a unit direction, with its own cosine, and the density with which it is sampled.
     #[inline(always)]
     pub fn scattering(&self, direction: V3<R>) -> (R, R) {

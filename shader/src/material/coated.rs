@@ -191,6 +191,31 @@ impl<R: Scalar> Closure<R> for Coated<'_, R> {
     }
 
     #[inline(always)]
+    fn is_wide(&self) -> bool {
+        let coat = !self.finishes.has(Finishes::COATED) || self.coat_steps == 0 || self.coat.is_wide();
+        !self.is_hair() && self.is_rough() && self.base.is_wide() && coat
+    }
+
+    #[inline(always)]
+    fn chooses_rough(&self, part: u32) -> bool {
+        let (layer, step) = self.layer((part >> 9) as i32);
+        self.draws(layer, step)
+    }
+
+    #[inline(always)]
+    fn rough_share(&self) -> R {
+        let (zero, (coat, fibres, rest)) = (R::splat(0.0), self.shares());
+        let coat = if self.finishes.has(Finishes::COATED) && !self.coat.is_smooth { coat } else { zero };
+        let fibres = if self.finishes.has(Finishes::FIBROUS) { fibres } else { zero };
+        if self.is_hair() { R::splat(1.0) } else { coat + fibres + rest * self.base.rough_share() }
+    }
+
+    #[inline(always)]
+    fn compression(&self) -> R {
+        self.base.compression()
+    }
+
+    #[inline(always)]
     fn normal(&self) -> V3<R> {
         self.base.normal()
     }

@@ -18,6 +18,16 @@ pub struct Ggx<R: Real> {
     pub y: R,
 }
 
+impl<R: Scalar> Ggx<R> {
+    /// Is it so rough that light of a direction goes to half of all others?
+    #[inline(always)]
+    pub fn is_wide(self) -> bool {
+        /// The square of the perceived roughness of 1/4.
+        const LEAST: f32 = 1.0 / 16.0;
+        R::splat(LEAST).le(self.y)
+    }
+}
+
 // Functions of their own on the GPU, so that a module holds them once.
 impl<R: Scalar> Ggx<R> {
     /// The least roughness that is told from a mirror: the cone of its highlight is a tenth of a degree wide.

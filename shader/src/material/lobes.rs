@@ -38,6 +38,7 @@ impl<R: Scalar> Lobes<R> {
             lens: V3::zero(),
             passes: false,
             is_lens: false,
+            compression: R::splat(1.0),
         };
         let diffuse_only = Lobes { diffuse: STEPS, reflected: STEPS, specular: none, colour, normal };
         if !effects.has(Effects::REFLECTION | Effects::REFRACTION) {
@@ -75,6 +76,26 @@ impl<R: Scalar> Closure<R> for Lobes<R> {
     #[inline(always)]
     fn is_rough(&self) -> bool {
         self.diffuse > 0
+    }
+
+    #[inline(always)]
+    fn is_wide(&self) -> bool {
+        self.diffuse > 0
+    }
+
+    #[inline(always)]
+    fn chooses_rough(&self, part: u32) -> bool {
+        ((part >> 9) as i32) < self.diffuse
+    }
+
+    #[inline(always)]
+    fn rough_share(&self) -> R {
+        self.diffuse_probability()
+    }
+
+    #[inline(always)]
+    fn compression(&self) -> R {
+        self.specular.compression
     }
 
     #[inline(always)]

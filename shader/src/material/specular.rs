@@ -20,6 +20,8 @@ pub struct Specular<R: Real> {
     pub passes: bool,
     /// Is it a lens?
     pub is_lens: bool,
+    /// How much more radiance is on the viewer's side of a lens than on the other.
+    pub compression: R,
 }
 
 impl<R: Scalar> Specular<R> {
@@ -29,8 +31,9 @@ impl<R: Scalar> Specular<R> {
         let mirrored = mirrored(direction, interaction, surface);
         let is_lens = effects.has(Effects::REFRACTION) && !surface.ior.eq(R::splat(0.0));
         if !is_lens {
-            let (refracted, lens) = (direction, V3::zero());
-            return Specular { mirrored, mirror: surface.reflection, refracted, lens, passes: false, is_lens };
+            let (refracted, lens, compression) = (direction, V3::zero(), R::splat(1.0));
+            let mirror = surface.reflection;
+            return Specular { mirrored, mirror, refracted, lens, passes: false, is_lens, compression };
         }
         let eta = interaction.relative_ior(surface.ior);
         let at = refract(direction, surface.normal, eta);
@@ -41,7 +44,8 @@ impl<R: Scalar> Specular<R> {
         // Radiance is compressed into the narrower cones of a denser body.
         let through = (R::splat(1.0) - share) * eta * eta;
         let lens = (surface.transmission * through).map(|c| c.flush(FAINT));
-        Specular { mirrored, mirror: V3::new(share, share, share), refracted, lens, passes, is_lens }
+        let mirror = V3::new(share, share, share);
+        Specular { mirrored, mirror, refracted, lens, passes, is_lens, compression: eta * eta }
     }
 
     /// Where a ray starts in one of the directions: a lens' on its own line, since glass magnifies a step beside it; a mirror has

@@ -3,7 +3,7 @@
 use super::segment::NOWHERE;
 use super::{Found, Path, PathState};
 use crate::camera::{self, CameraRay};
-use crate::data::{Frame, Instance, Launch, Media, Specialisation};
+use crate::data::{Caustics, Frame, Instance, Launch, Media, Specialisation};
 use crate::ray::{Hit, Ray};
 use crate::real::{Scalar, V3};
 
@@ -31,7 +31,11 @@ pub fn generate<R: Scalar>(
     let pixel = if spec.launch.has(Launch::CELLS) { camera::in_cell(frame, cells, pixel) } else { pixel };
     let mut ray = camera::ray::<R>(frame, spec.launch, optics, pixel);
     if spec.launch.has(Launch::MOVING | Launch::PANNED) {
-        let time = camera::time(frame, pixel);
+        let time = if spec.caustics.has(Caustics::GATHERED) {
+            (frame.top + pixel.y) as f32 * frame.row_delay + camera::common_time(frame, spec.launch, pixel.sample)
+        } else {
+            camera::time(frame, pixel)
+        };
         if spec.launch.has(Launch::PANNED) {
             ray = camera::panned(frame, instances, time, ray);
         }
@@ -67,6 +71,7 @@ pub fn generate<R: Scalar>(
         pixel: (frame.left + pixel.x) | ((frame.top + pixel.y) << 16),
         from: origin,
         inside: frame.inside(),
+        gathered: false,
     };
     if spec.media.has(Media::PRESENT) {
         path.store_medium(frame.slots, slot, paths);

@@ -31,7 +31,7 @@ pub use generate::{CameraTables, generate};
 pub use path::{Path, RECORDS};
 pub use path_state::{LINKED_GROUPS, PathState, ShadowRay, sampled, shadow_records, state_records};
 pub use persistent::persistent;
-pub use segment::Segment;
+pub use segment::{NOWHERE, Segment};
 pub use shadow::{FACES_AWAY, REACHED, SHADOWED, ShadowInputs, shadow, shadow_ray, visibility};
 #[cfg(not(target_arch = "spirv"))]
 pub use together::{most, shadow_together, trace_together};

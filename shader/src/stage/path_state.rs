@@ -4,7 +4,7 @@ use super::segment::NOWHERE;
 use super::{Caught, REACHED, Sample, Segment};
 use crate::buffer::{read, write};
 use crate::camera;
-use crate::data::{Effects, Frame, Launch, Media};
+use crate::data::{Caustics, Effects, Frame, Launch, Media, Specialisation};
 use crate::light::Viewpoint;
 use crate::medium::{Chain, Inside};
 use crate::ray::Ray;
@@ -62,6 +62,8 @@ pub struct PathState<R: Real> {
     pub from: V3<R>,
     /// What it is in ([`Media::PRESENT`]).
     pub inside: Inside,
+    /// Did photons tell the light that comes to where it was scattered last by mirrors and lenses ([`Caustics::GATHERED`])?
+    pub gathered: bool,
 }
 
 /// A ray to a sampled light, and the light that arrives if nothing is between.
@@ -101,6 +103,7 @@ impl<R: Scalar> PathState<R> {
             unlit: 0,
             from: origin,
             inside: Inside::default(),
+            gathered: false,
         }
     }
 
@@ -133,19 +136,26 @@ impl<R: Scalar> PathState<R> {
         (self.origin - self.from).map(|c| c.flush(SMALL)).direction_and_length().1
     }
 
-    /// As it lies in memory where some surfaces are not lit by all lamps: groups above its bounces.
+    /// As it lies in memory: where some surfaces are not lit by all lamps, with groups above its bounces, and where photons tell of caustics,
+    /// with a side below zero if they have.
     #[inline(always)]
-    pub fn packed(self, effects: Effects) -> Self {
-        let bounces = if effects.has(Effects::LINKED) { self.bounces | self.unlit << BOUNCES } else { self.bounces };
-        PathState { bounces, ..self }
+    pub fn packed(self, spec: Specialisation) -> Self {
+        let is_linked = spec.effects.has(Effects::LINKED);
+        let bounces = if is_linked { self.bounces | self.unlit << BOUNCES } else { self.bounces };
+        let is_told = spec.caustics.has(Caustics::GATHERED) && self.gathered;
+        let beside = if is_told { (self.beside.0, -(self.beside.1 + R::splat(1.0))) } else { self.beside };
+        PathState { bounces, beside, ..self }
     }
 
     /// As it was before.
     #[inline(always)]
-    pub fn unpacked(self, effects: Effects) -> Self {
-        let unlit = if effects.has(Effects::LINKED) { self.bounces >> BOUNCES } else { 0 };
-        let bounces = if effects.has(Effects::LINKED) { self.bounces & ((1 << BOUNCES) - 1) } else { self.bounces };
-        PathState { bounces, unlit, ..self }
+    pub fn unpacked(self, spec: Specialisation) -> Self {
+        let is_linked = spec.effects.has(Effects::LINKED);
+        let unlit = if is_linked { self.bounces >> BOUNCES } else { 0 };
+        let bounces = if is_linked { self.bounces & ((1 << BOUNCES) - 1) } else { self.bounces };
+        let gathered = spec.caustics.has(Caustics::GATHERED) && self.beside.1.lt(R::splat(0.0));
+        let beside = if gathered { (self.beside.0, -self.beside.1 - R::splat(1.0)) } else { self.beside };
+        PathState { bounces, unlit, beside, gathered, ..self }
     }
 
     /// Does a group of lamps light where it starts?

@@ -6,6 +6,7 @@ use eyerays::method::Traversal;
 use eyerays_shader::camera;
 use eyerays_shader::data::Launch;
 use eyerays_shader::integrator::{self, Exchange, Wave};
+use eyerays_shader::photon::Photons;
 use eyerays_shader::real::{Scalar, V3};
 use eyerays_shader::stage::{self, CameraTables, RECORDS, ShadowInputs, shadow_records, state_records};
 use eyerays_shader::traverse::{IfIf, Primitives};
@@ -73,7 +74,10 @@ fn sampled<R: Scalar>(posed: &Posed) -> Vec<V3<R>> {
         queue.retain(|&slot| {
             let (paths, segments, sums) = (&mut paths, &mut segments, &mut sums);
             let starts = !spec.launch.has(Launch::SECONDARY);
-            let exchange = Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums, starts };
+            // Of scenes without caustics.
+            let (photons, landed) = (Photons { records: &[], heads: &[] }, &mut []);
+            let exchange =
+                Exchange::<R> { paths, hits: &hits, shadows: &shadows, segments, sums, starts, photons, landed };
             integrator::scatter::<R>(&base, &scene.scattering(), slot, exchange)
         });
         for slot in wave {

@@ -169,15 +169,16 @@ pub(super) fn device(ui: &mut Ui, device: &mut Device) {
 
 /// How light is followed.
 pub(super) fn transport(ui: &mut Ui, settings: &mut Settings) {
-    let Settings { transport, bounces, sampler, spectral, .. } = settings;
+    let Settings { transport, bounces, sampler, spectral, caustics, .. } = settings;
     pick(ui, "integrator", &mut transport.integrator);
     pick(ui, "sampler", sampler);
     ui.add(Slider::new(bounces, 0..=32).text("bounces"));
     if transport.integrator == Integrator::Path {
         slide(ui, "clamp", &mut transport.clamp, 0.0..=100.0);
         ui.checkbox(spectral, "light of single wavelengths");
+        slide(ui, "photons of caustics", caustics, 0.0..=4.0);
     } else {
-        *spectral = false;
+        (*spectral, *caustics) = (false, 0.0);
     }
     if transport.integrator.samples() && sampler.has_cells() {
         *sampler = Sampler::Sobol;

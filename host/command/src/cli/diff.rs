@@ -41,7 +41,7 @@ pub(super) struct Diff {
         "precision", "method", "stack_max", "cut", "scheduling", "order", "layout", "triangle", "adapter", "threads",
         "no_passthrough", "size", "samples", "sampler", "filter", "camera", "eye", "target", "fov", "projection", "orthographic", "aperture",
         "f_stop", "focus", "focus_on", "blades", "transparent", "pixel_filter", "bounces", "min_contribution",
-        "cull", "no_compensation", "spectral", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
+        "cull", "no_compensation", "spectral", "caustics", "bvh", "spp", "integrator", "seed", "roulette", "clamp", "direct", "ao_distance",
         "allow_outside", "light_unit", "instances",
     ])]
     second: Option<PathBuf>,

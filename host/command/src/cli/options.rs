@@ -77,6 +77,9 @@ pub(super) struct Effort {
     /// Follow light of single wavelengths instead of red, green and blue; paths alone do [default: the scene's]
     #[arg(long, value_name = "BOOL", num_args = 0..=1, require_equals = true, default_missing_value = "true")]
     spectral: Option<bool>,
+    /// Let photons tell light that comes by mirrors and glass: so many for each pixel and sample, 0 to 16; 1 if it is not said how many, 0 for none [default: the scene's]
+    #[arg(long, value_name = "PHOTONS", num_args = 0..=1, require_equals = true, default_missing_value = "1")]
+    caustics: Option<f32>,
     /// How often a ray is reflected or refracted at most [default: the scene's]
     #[arg(long, value_name = "N")]
     bounces: Option<u32>,
@@ -101,6 +104,7 @@ impl Effort {
             filter: self.filter.or(file.filter),
             pixel_filter: self.pixel_filter.or(file.pixel_filter),
             spectral: self.spectral.or(file.spectral),
+            caustics: self.caustics.or(file.caustics),
             bounces: self.bounces.or(file.bounces),
             min_contribution: self.min_contribution.or(file.min_contribution),
             bvh: self.bvh.or(file.bvh),
@@ -225,6 +229,7 @@ impl View {
             pixel_filter: effort.pixel_filter.or(own.pixel_filter),
             transparent: self.transparent.unwrap_or(own.transparent),
             spectral: effort.spectral.unwrap_or(own.spectral),
+            caustics: effort.caustics.unwrap_or(own.caustics),
         };
         Picture::check_size(settings.size.0, settings.size.1)?;
         within("--samples", &[settings.samples], 1..=Settings::MOST_SAMPLES)?;
@@ -232,6 +237,7 @@ impl View {
         settings.grid()?;
         within("--bounces", &[settings.bounces], 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &[settings.min_contribution], 0.0..=1.0)?;
+        within("--caustics", &[settings.caustics], 0.0..=Settings::MOST_PHOTONS)?;
         Ok(settings)
     }
 

@@ -113,6 +113,9 @@ struct Tried {
     /// Whether light of single wavelengths is followed [default: the scene's, and where it is so both]
     #[arg(long, value_name = "BOOL", value_delimiter = ',')]
     spectral: Vec<bool>,
+    /// Photons for each pixel and sample that tell of caustics, 0 for none [default: the scene's, and where it has some none]
+    #[arg(long, value_name = "PHOTONS", value_delimiter = ',')]
+    caustics: Vec<f32>,
     /// Samples along a pixel's edge; the reference has the most [default: the scene's and 1,2,4; 1,2 with --quick]
     #[arg(long, value_name = "N", value_delimiter = ',')]
     samples: Vec<u32>,
@@ -328,6 +331,7 @@ impl Tried {
         within("--spp", &self.spp, 1..=Settings::MOST_SPP)?;
         within("--bounces", &self.bounces, 0..=Settings::MOST_BOUNCES)?;
         within("--min-contribution", &self.min_contribution, 0.0..=1.0)?;
+        within("--caustics", &self.caustics, 0.0..=Settings::MOST_PHOTONS)?;
         replace(&mut axes.methods, &self.methods);
         replace(&mut axes.layouts, &self.layout);
         replace(&mut axes.bvhs, &self.bvh);
@@ -339,6 +343,7 @@ impl Tried {
         replace(&mut axes.samplers, &self.sampler);
         replace(&mut axes.filters, &self.filter);
         replace(&mut axes.spectral, &self.spectral.iter().copied().map(Some).collect::<Vec<_>>());
+        replace(&mut axes.caustics, &self.caustics.iter().copied().map(Some).collect::<Vec<_>>());
         replace(&mut axes.bounces, &self.bounces);
         replace(&mut axes.min_contributions, &self.min_contribution);
         replace(&mut axes.roulettes, &self.roulette);

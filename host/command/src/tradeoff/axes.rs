@@ -43,6 +43,8 @@ pub struct Axes {
     pub filters: Vec<Filter>,
     /// Whether light has wavelengths, where the scene says that it has.
     pub spectral: Vec<Option<bool>>,
+    /// Photons for each pixel that tell of caustics, where the scene has some, the most first.
+    pub caustics: Vec<Option<f32>>,
     /// Samples along a pixel's edge and of a pixel, as [`Setting`] has them; the most first.
     pub samples: Vec<(u32, u32)>,
     /// Limits of bounces, the highest first.
@@ -71,6 +73,7 @@ impl Axes {
             samplers: vec![base.sampler],
             filters: vec![base.filter],
             spectral: vec![base.spectral],
+            caustics: vec![base.caustics],
             samples: vec![(base.samples, base.spp)],
             bounces: vec![base.bounces],
             min_contributions: vec![base.min_contribution],
@@ -104,6 +107,9 @@ impl Axes {
         }
         if is_path && own.spectral {
             self.spectral.push(Some(false));
+        }
+        if is_path && own.caustics > 0.0 {
+            self.caustics.push(Some(0.0));
         }
         if any(Integrator::chooses_lights) {
             self.clamps.extend(CLAMPS);
@@ -149,6 +155,7 @@ impl Axes {
         self.samplers.sort_by_key(unevenness);
         self.filters.sort_by_key(|&filter| lost(filter));
         self.spectral.sort_by_key(|&is_spectral| is_spectral != Some(true));
+        self.caustics.sort_by(|a, b| b.unwrap_or(0.0).total_cmp(&a.unwrap_or(0.0)));
         self.samples.sort_by_key(|&samples| (std::cmp::Reverse(a_pixel(samples)), samples));
         self.bounces.sort_unstable_by(|a, b| b.cmp(a));
         self.min_contributions.sort_unstable_by(f32::total_cmp);
@@ -158,6 +165,7 @@ impl Axes {
         self.samplers.dedup();
         self.filters.dedup();
         self.spectral.dedup();
+        self.caustics.dedup();
         self.samples.dedup_by_key(|samples| a_pixel(*samples));
         self.bounces.dedup();
         self.min_contributions.dedup();
@@ -181,6 +189,7 @@ impl Axes {
             Axis::Sampler => each(&self.samplers, |sampler| Setting { sampler, ..setting }),
             Axis::Filter => each(&self.filters, |filter| Setting { filter, ..setting }),
             Axis::Spectral => each(&self.spectral, |spectral| Setting { spectral, ..setting }),
+            Axis::Caustics => each(&self.caustics, |caustics| Setting { caustics, ..setting }),
             Axis::Samples => each(&self.samples, |(samples, spp)| Setting { samples, spp, ..setting }),
             Axis::Bounces => each(&self.bounces, |bounces| Setting { bounces, ..setting }),
             Axis::MinContribution => {
@@ -222,6 +231,11 @@ impl Axes {
             min_contribution: own.min_contribution.min(self.min_contributions[0]),
             filter: if lost(own.filter) < lost(self.filters[0]) { own.filter } else { self.filters[0] },
             spectral: is_spectral && transport.integrator == Integrator::Path,
+            caustics: if transport.integrator == Integrator::Path {
+                own.caustics.max(self.caustics[0].unwrap_or(0.0))
+            } else {
+                0.0
+            },
             transport,
             ..own
         }

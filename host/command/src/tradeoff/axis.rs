@@ -21,6 +21,8 @@ pub enum Axis {
     Filter,
     /// Whether light has wavelengths.
     Spectral,
+    /// How many photons tell of caustics.
+    Caustics,
     /// The number of samples.
     Samples,
     /// The limit of bounces.
@@ -35,7 +37,7 @@ pub enum Axis {
 
 impl Axis {
     /// All of them.
-    pub const ALL: [Axis; 13] = [
+    pub const ALL: [Axis; 14] = [
         Axis::Arithmetic,
         Axis::Method,
         Axis::Layout,
@@ -44,6 +46,7 @@ impl Axis {
         Axis::Sampler,
         Axis::Filter,
         Axis::Spectral,
+        Axis::Caustics,
         Axis::Samples,
         Axis::Bounces,
         Axis::MinContribution,
@@ -69,6 +72,7 @@ impl Axis {
             Axis::Sampler => Setting { sampler: other.sampler, ..setting },
             Axis::Filter => Setting { filter: other.filter, ..setting },
             Axis::Spectral => Setting { spectral: other.spectral, ..setting },
+            Axis::Caustics => Setting { caustics: other.caustics, ..setting },
             Axis::Samples => Setting { samples: other.samples, spp: other.spp, ..setting },
             Axis::Bounces => Setting { bounces: other.bounces, ..setting },
             Axis::MinContribution => Setting { min_contribution: other.min_contribution, ..setting },

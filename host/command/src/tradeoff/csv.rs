@@ -8,7 +8,7 @@ use crate::preset::name;
 type Column = (&'static str, fn(&Record) -> String);
 
 /// The fields of [`Record`].
-const COLUMNS: [Column; 27] = [
+const COLUMNS: [Column; 28] = [
     ("precision", |r| name(r.setting.precision)),
     ("triangle", |r| name(r.setting.triangle)),
     ("method", |r| name(r.setting.method)),
@@ -18,6 +18,7 @@ const COLUMNS: [Column; 27] = [
     ("sampler", |r| name(r.setting.sampler)),
     ("filter", |r| name(r.setting.filter)),
     ("spectral", |r| r.setting.spectral.map_or_else(String::new, |is| is.to_string())),
+    ("caustics", |r| r.setting.caustics.map_or_else(String::new, |photons| photons.to_string())),
     ("samples", |r| r.setting.samples.to_string()),
     ("spp", |r| r.setting.spp.to_string()),
     ("bounces", |r| r.setting.bounces.to_string()),

@@ -37,6 +37,8 @@ pub struct Setting {
     pub filter: Filter,
     /// Is light of single wavelengths followed, where the scene says so?
     pub spectral: Option<bool>,
+    /// Photons for each pixel that tell of caustics, where the scene has some.
+    pub caustics: Option<f32>,
     /// Samples along a pixel's edge, 1 where `spp` counts.
     pub samples: u32,
     /// Samples of a pixel; 0 for the square of `samples`.
@@ -64,6 +66,7 @@ impl Setting {
             sampler: own.sampler,
             filter: own.filter,
             spectral: own.spectral.then_some(true),
+            caustics: (own.caustics > 0.0).then_some(own.caustics),
             samples: if own.spp > 0 { 1 } else { own.samples },
             spp: own.spp,
             bounces: own.bounces,
@@ -85,6 +88,7 @@ impl Setting {
             sampler,
             filter,
             spectral,
+            caustics,
             samples,
             spp,
             bounces,
@@ -96,7 +100,8 @@ impl Setting {
         let transport = Transport { integrator, roulette, clamp, ..own.transport };
         // Paths alone carry wavelengths.
         let spectral = spectral.unwrap_or(own.spectral) && integrator == Integrator::Path;
-        Settings { samples, spp, sampler, filter, bounces, min_contribution, spectral, transport, ..own }
+        let caustics = if integrator == Integrator::Path { caustics.unwrap_or(own.caustics) } else { 0.0 };
+        Settings { samples, spp, sampler, filter, bounces, min_contribution, spectral, caustics, transport, ..own }
     }
 
     /// Can the sampler place so many samples?
@@ -110,6 +115,7 @@ impl Setting {
         let is = |matters: bool, own: f32, other: f32| if matters { own } else { other };
         Setting {
             spectral: if integrator == Integrator::Path { self.spectral } else { base.spectral },
+            caustics: if follows && integrator == Integrator::Path { self.caustics } else { base.caustics },
             bounces: if integrator == Integrator::Ao { base.bounces } else { self.bounces },
             min_contribution: is(follows && has_tree(integrator), self.min_contribution, base.min_contribution),
             roulette: if follows && integrator == Integrator::Path { self.roulette } else { base.roulette },
@@ -131,6 +137,7 @@ impl Setting {
             sampler: Some(self.sampler),
             filter: Some(self.filter),
             spectral: self.spectral.filter(|_| self.integrator == Integrator::Path),
+            caustics: self.caustics.filter(|_| self.integrator == Integrator::Path),
             // As the scene or the integrator says.
             pixel_filter: None,
             samples: (self.spp == 0).then_some(self.samples),
@@ -163,6 +170,7 @@ impl Setting {
             (self.sampler != other.sampler, name(self.sampler)),
             (self.filter != other.filter, name(self.filter)),
             (self.spectral != other.spectral, wavelengths(self.spectral).to_owned()),
+            (self.caustics != other.caustics, photons(self.caustics)),
             ((self.samples, self.spp) != (other.samples, other.spp), samples),
             (self.bounces != other.bounces, counted(self.bounces, "bounce")),
             (self.min_contribution != other.min_contribution, format!("contribution {}", share(self.min_contribution))),
@@ -200,6 +208,9 @@ impl Setting {
         if let Some(is_spectral) = self.spectral.filter(|_| self.integrator == Integrator::Path) {
             options.push(format!("--spectral={is_spectral}"));
         }
+        if let Some(caustics) = self.caustics.filter(|_| self.integrator == Integrator::Path) {
+            options.push(format!("--caustics={caustics}"));
+        }
         options.join(" ")
     }
 }
@@ -212,6 +223,14 @@ pub(super) fn has_tree(integrator: Integrator) -> bool {
 /// What light is followed.
 fn wavelengths(spectral: Option<bool>) -> &'static str {
     if spectral == Some(true) { "single wavelengths" } else { "red, green and blue" }
+}
+
+/// How many photons, in words.
+fn photons(caustics: Option<f32>) -> String {
+    match caustics {
+        Some(photons) if photons > 0.0 => format!("{photons} photons a pixel"),
+        _ => "caustics by chance".to_owned(),
+    }
 }
 
 /// A clamp in words.

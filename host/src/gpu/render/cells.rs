@@ -136,6 +136,7 @@ impl Renderer {
         let slots_of = |cells: u64| cells * u64::from(BLOCK) * least.region().pixels() / u64::from(least.cells());
         let wanted = slots_of((cells.len() as u64).next_multiple_of(least.cells().into()));
         let wanted = (wanted * samples.len() as u64 / u64::from(BLOCK)).min(self.most_slots.into()) as u32;
+        let wanted = u64::from(wanted).max(self.photon_slots(view, BLOCK)).min(u32::MAX.into()) as u32;
         if !self.has_slots(wanted) {
             while !under_way.is_empty() {
                 done(Ok(self.receive_first(under_way)?));
@@ -198,7 +199,7 @@ impl Renderer {
         let groups = self.groups(&cells.kernels, &buffers, Some(&table));
         let group = self.film_group(&cells.kernels, &film);
         self.gpu.check()?;
-        Ok(CellFilm { grid, memory: Memory { buffers, groups }, table, film, group })
+        Ok(CellFilm { grid, memory: Memory { buffers, groups, photons: None }, table, film, group })
     }
 
     /// The kernels that start paths and keep the film are others; all else is the same.
@@ -218,22 +219,26 @@ impl Renderer {
         cells: &[Region],
         samples: Range<u32>,
     ) -> Result<Arriving> {
-        let Cells { plan, kernels, .. } = self.cells.as_ref().expect("a lot is of them");
         let mut corners: Vec<u32> = cells.iter().map(|cell| cell.x | cell.y << 16).collect();
         // Outside of every image.
         corners.resize(film.grid.cells() as usize, u32::MAX);
         self.gpu.queue.write_buffer(&film.table, 0, bytemuck::cast_slice(&corners));
         let region = film.grid.region();
-        let batch = film.memory.buffers.slots / region.pixels() as u32 / BLOCK * BLOCK;
+        let slots = film.memory.buffers.slots;
+        let most = (slots / region.pixels() as u32).min(self.photon_samples(view, slots));
+        let batch = (most / BLOCK * BLOCK).max(BLOCK);
         for first in samples.clone().step_by(batch as usize) {
             let count = batch.min(samples.end - first);
+            self.land(view, first, count)?;
             let launch = view.launch(&self.job, region, first, count, self.order);
             let frame = Frame { anew: (first == samples.start).into(), ..launch };
+            let Cells { plan, kernels, .. } = self.cells.as_ref().expect("a lot is of them");
             let mut launch = Launch::new(plan, kernels, &film.memory, &film.group, &frame, &mut self.queue)?;
             plan::run(plan, &mut launch)?;
             launch.submit(0)?;
             self.queue.finished()?;
         }
+        let Cells { plan, .. } = self.cells.as_ref().expect("a lot is of them");
         let bytes = plan.film_bytes() * region.pixels();
         Ok(self.queue.request(film.memory.buffers.of(binding::COUNTERS), &[(&film.film, bytes)]))
     }

@@ -46,7 +46,9 @@ impl Renderer {
     pub(super) fn start_in(&mut self, view: &View, regions: &[Region]) -> Result<()> {
         let slots = |region: &Region| u64::from(camera::slots(region.width, region.height, self.order));
         let wanted = regions.iter().map(slots).max().unwrap_or(0) * u64::from(view.samples());
-        self.reserve(wanted.min(self.most_slots.into()) as u32)?;
+        let of_photons = self.photon_slots(view, view.samples()).min(self.most_slots.into());
+        let of_photons = of_photons.max(self.photon_slots(view, 1));
+        self.reserve(wanted.min(self.most_slots.into()).max(of_photons) as u32)?;
         let regions: Vec<_> = regions.iter().flat_map(|&region| bands(region, self.slots(), self.order)).collect();
         let mut bands = match self.growing.take() {
             Some(growing) if growing.bands.iter().map(|band| band.region).eq(regions.iter().copied()) => growing.bands,
@@ -88,10 +90,12 @@ impl Renderer {
 
     fn add_to(&mut self, band: &mut Band, view: &View, samples: Range<u32>, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
         let (width, height) = (band.region.width, band.region.height);
-        let batch = (self.slots() / camera::slots(width, height, self.order)).max(1);
+        let batch = self.slots() / camera::slots(width, height, self.order);
+        let batch = batch.min(self.photon_samples(view, self.slots())).max(1);
         let mut first = samples.start;
         while first < samples.end {
             let count = batch.min(samples.end - first);
+            self.land(view, first, count)?;
             let launch = view.launch(&self.job, band.region, first, count, self.order);
             let frame = Frame { anew: band.is_empty.into(), ..launch };
             let share = |samples| band.region.pixels() * u64::from(samples) / u64::from(view.samples());

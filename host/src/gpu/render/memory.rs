@@ -18,6 +18,8 @@ pub(in crate::gpu) struct Memory {
     pub buffers: LaunchBuffers,
     /// By the plan's steps; none for those that bind the film.
     pub groups: Vec<Groups>,
+    /// That of launches of photons, which lie in the same buffers.
+    pub photons: Option<Box<Memory>>,
 }
 
 /// For a wave and the next, unless they are of a step that binds the film.
@@ -66,8 +68,9 @@ impl Renderer {
         }
         self.gpu.queue.write_buffer(buffers.of(binding::ARGUMENTS), 0, bytemuck::cast_slice::<u32, u8>(&arguments));
         let groups = self.groups(&self.kernels, &buffers, None);
+        let photons = self.photon_memory(&buffers);
         self.gpu.check()?;
-        self.memory = Some(Memory { buffers, groups });
+        self.memory = Some(Memory { buffers, groups, photons });
         Ok(())
     }
 

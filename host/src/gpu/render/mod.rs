@@ -5,6 +5,7 @@ mod growing;
 mod grows;
 mod memory;
 mod moved;
+mod photons;
 mod read;
 mod show;
 
@@ -19,6 +20,7 @@ use eyerays_shader::resources::binding;
 use self::cells::Cells;
 use self::growing::{Band, Growing};
 pub(super) use self::memory::Memory;
+use self::photons::Photons;
 use super::device::Gpu;
 use super::kernel::{Kernel, Known};
 use super::launch::Queue;
@@ -56,6 +58,8 @@ pub struct Renderer {
     plan: Plan,
     /// By the plan's steps.
     kernels: Vec<Kernel>,
+    /// Where photons tell of caustics.
+    photons: Option<Photons>,
     /// All that were compiled.
     known: Known,
     scene: SceneBuffers,
@@ -82,7 +86,7 @@ impl Renderer {
     pub fn new(gpu: &Gpu, job: &Job, exact: bool, traversal: impl Into<Traversal>) -> Result<Self> {
         let traversal = traversal.into();
         let (mut known, mut scene) = (Known::default(), SceneBuffers::default());
-        let Ready { plan, most_slots, kernels } = ready(gpu, job, exact, traversal, &mut known, &mut scene)?;
+        let Ready { plan, most_slots, kernels, photons } = ready(gpu, job, exact, traversal, &mut known, &mut scene)?;
         Ok(Renderer {
             gpu: gpu.clone(),
             job: job.clone(),
@@ -91,6 +95,7 @@ impl Renderer {
             order: traversal.order.bits(),
             plan,
             kernels,
+            photons,
             known,
             scene,
             relit: None,
@@ -120,6 +125,7 @@ impl Renderer {
         let (known, scene) = (&mut self.known, &mut self.scene);
         let ready = ready(&self.gpu, job, self.exact, self.traversal, known, scene)?;
         (self.plan, self.most_slots, self.kernels) = (ready.plan, ready.most_slots, ready.kernels);
+        self.photons = ready.photons;
         self.job = job.clone();
         match self.relit.take() {
             Some(lights) => self.set_lights(&lights),
@@ -169,6 +175,7 @@ struct Ready {
     plan: Plan,
     most_slots: u32,
     kernels: Vec<Kernel>,
+    photons: Option<Photons>,
 }
 
 /// Compiles the kernels of a job that are not known yet, and uploads what is not there of its scene meanwhile.
@@ -182,13 +189,17 @@ fn ready(
 ) -> Result<Ready> {
     let plan = Plan::new(job, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
     let most_slots = most_slots(gpu, &plan, traversal.order.bits())?;
-    let recipes: Vec<Recipe> = plan.steps().map(|&step| Recipe::new(step, gpu.target(exact))).collect();
-    let (kernels, uploaded) = thread::scope(|scope| {
+    let of_photons = Plan::of_photons(job, &traversal, |coherence| gpu.resolved(traversal, coherence))?;
+    let steps = plan.steps().chain(of_photons.iter().flat_map(Plan::steps));
+    let recipes: Vec<Recipe> = steps.map(|&step| Recipe::new(step, gpu.target(exact))).collect();
+    let (mut kernels, uploaded) = thread::scope(|scope| {
         let kernels = scope.spawn(|| known.compile(gpu, recipes));
         let uploaded = scene.complete(gpu, job, traversal.layout, (&plan).into());
         (kernels.join().unwrap_or_else(|panic| resume_unwind(panic)), uploaded)
     });
     gpu.check()?;
     uploaded?;
-    Ok(Ready { plan, most_slots, kernels })
+    let own = kernels.split_off(plan.steps().count());
+    let photons = of_photons.map(|plan| Photons { plan, kernels: own });
+    Ok(Ready { plan, most_slots, kernels, photons })
 }

@@ -1,0 +1,198 @@
+//! Balls around what mirrors or refracts light, for photons to be sent there.
+
+use std::collections::BinaryHeap;
+
+use eyerays_shader::data::{Primitive, numbers, pack};
+use glam::{UVec4, Vec3};
+
+use super::shining::Places;
+use crate::scene::{Material, Scene};
+
+/// The most balls: a photon asks each of them how likely it was sent.
+const MOST: usize = 32;
+/// Balls are parted only where that leaves less than this share of their areas.
+const SAVES: f32 = 0.8;
+
+/// A ball.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Ball {
+    centre: Vec3,
+    radius: f32,
+}
+
+/// Some balls, and one around all of them.
+#[derive(Clone, PartialEq)]
+struct Group {
+    around: Ball,
+    members: Vec<Ball>,
+}
+
+impl Eq for Group {}
+
+impl Ord for Group {
+    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
+        self.around.radius.total_cmp(&other.around.radius)
+    }
+}
+
+impl PartialOrd for Group {
+    fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+/// The records of a scene, see [`Casters`](eyerays_shader::photon::Casters), whose `primitives` lie in leaf order, the first `own` of them
+/// where they stand; empty if nothing casts.
+pub(super) fn of(scene: &Scene, (primitives, own): (&[Primitive], usize), places: &Places) -> Vec<UVec4> {
+    let casts: Vec<bool> = scene.materials.iter().map(Material::casts).collect();
+    if !casts.contains(&true) {
+        return Vec::new();
+    }
+    let is_caster = |primitive: &Primitive| !primitive.is_instance() && casts[primitive.material() as usize];
+    let meshes: Vec<bool> = places.slots.iter().map(|slots| primitives[slots.clone()].iter().any(is_caster)).collect();
+    let copy_casts = |number: u32| {
+        let copy = places.firsts.partition_point(|&first| first as u32 <= number) - 1;
+        meshes[scene.instances[copy].mesh as usize]
+    };
+    let there = primitives[..own].iter().filter(|primitive| match primitive.is_instance() {
+        true => copy_casts(primitive.number()),
+        false => is_caster(primitive),
+    });
+    records(there.map(ball).collect())
+}
+
+/// Around a primitive. A copy of a mesh is as large as its box while the shutter is open.
+fn ball(primitive: &Primitive) -> Ball {
+    if primitive.is_sphere() || primitive.is_disk() {
+        return Ball { centre: primitive.centre(), radius: primitive.radius() };
+    }
+    let (least, greatest) = primitive.bounds();
+    let centre = (least + greatest) / 2.0;
+    if primitive.is_instance() {
+        return Ball { centre, radius: centre.distance(greatest) };
+    }
+    let radius = primitive.vertices().into_iter().map(|vertex| vertex.distance(centre)).fold(0.0, f32::max);
+    Ball { centre, radius }
+}
+
+/// The least box around balls.
+fn bounds(balls: &[Ball]) -> [Vec3; 2] {
+    let each = balls.iter().map(|ball| [ball.centre - ball.radius, ball.centre + ball.radius]);
+    each.reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]).unwrap_or_default()
+}
+
+impl Group {
+    fn new(members: Vec<Ball>) -> Self {
+        /// More than the rounding of places within the scene's cube.
+        const ROOM: f32 = 1.0 / (1 << 20) as f32;
+        let [least, greatest] = bounds(&members);
+        let centre = (least + greatest) / 2.0;
+        let reach = |ball: &Ball| ball.centre.distance(centre) + ball.radius;
+        let radius = members.iter().map(reach).fold(0.0, f32::max) + ROOM;
+        Group { around: Ball { centre, radius }, members }
+    }
+
+    /// Two halves, if they are together much smaller.
+    fn parted(&self) -> Option<[Group; 2]> {
+        if self.members.len() < 2 {
+            return None;
+        }
+        let [least, greatest] = bounds(&self.members);
+        let axis = (greatest - least).max_position();
+        let mut members = self.members.clone();
+        let middle = members.len() / 2;
+        members.select_nth_unstable_by(middle, |a, b| a.centre[axis].total_cmp(&b.centre[axis]));
+        let second = members.split_off(middle);
+        let halves = [Group::new(members), Group::new(second)];
+        let area = |group: &Group| group.around.radius * group.around.radius;
+        (halves.iter().map(area).sum::<f32>() < SAVES * area(self)).then_some(halves)
+    }
+}
+
+/// Few balls around many.
+fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
+    let (mut open, mut done) = (BinaryHeap::from([Group::new(balls)]), Vec::new());
+    while let Some(largest) = open.pop() {
+        match largest.parted().filter(|_| open.len() + done.len() + 2 <= MOST) {
+            Some(halves) => open.extend(halves),
+            None => done.push(largest.around),
+        }
+    }
+    done
+}
+
+fn records(balls: Vec<Ball>) -> Vec<UVec4> {
+    if balls.is_empty() {
+        return Vec::new();
+    }
+    let balls = gathered(balls);
+    let [least, greatest] = bounds(&balls);
+    let middle = (least + greatest) / 2.0;
+    let mut records = vec![pack(middle, balls.len() as u32)];
+    let area = |ball: &Ball| f64::from(ball.radius) * f64::from(ball.radius);
+    let all: f64 = balls.iter().map(area).sum();
+    let (mut sum, mut before) = (0.0, 0u64);
+    for (number, ball) in balls.iter().enumerate() {
+        /// All values of a draw.
+        const DRAWS: f64 = (1u64 << 32) as f64;
+        sum += area(ball);
+        let is_last = number + 1 == balls.len();
+        // Each ball is drawn by at least one value.
+        let end = if is_last { 1 << 32 } else { ((sum / all * DRAWS) as u64).clamp(before + 1, (1 << 32) - 1) };
+        let probability = ((end - before) as f64 / DRAWS) as f32;
+        records.push(pack(ball.centre, (end - 1) as u32));
+        records.push(pack(Vec3::new(ball.radius, probability, 0.0), 0));
+        before = end;
+    }
+    records
+}
+
+/// The middle of casters, and how far they reach around it.
+pub(crate) fn extent(records: &[UVec4]) -> Option<(Vec3, f32)> {
+    let (first, balls) = records.split_first()?;
+    let middle = numbers(*first);
+    let reach = |ball: &[UVec4]| numbers(ball[0]).distance(middle) + numbers(ball[1]).x;
+    Some((middle, balls.chunks_exact(2).map(reach).fold(0.0, f32::max)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn ball(x: f32, y: f32, radius: f32) -> Ball {
+        Ball { centre: Vec3::new(x, y, 0.0), radius }
+    }
+
+    /// Whatever casts is in some ball, and draws mean balls as often as their probabilities say.
+    #[test]
+    fn balls_hold_all_that_casts_and_draws_mean_each_as_often_as_it_is_large() {
+        let mut all: Vec<Ball> =
+            (0..500).map(|i| ball((i as f32 * 0.37).sin(), (i as f32 * 0.71).cos(), 0.002)).collect();
+        all.push(ball(0.2, 0.1, 0.05));
+        let records = records(all.clone());
+        let count = records[0].w as usize;
+        assert!(count > 1 && count <= MOST && records.len() == 1 + 2 * count, "{count}");
+        let balls: Vec<(Vec3, f32)> =
+            records[1..].chunks_exact(2).map(|ball| (numbers(ball[0]), numbers(ball[1]).x)).collect();
+        for own in &all {
+            let is_in = |&(centre, radius): &(Vec3, f32)| own.centre.distance(centre) + own.radius <= radius + 1e-6;
+            assert!(balls.iter().any(is_in), "{own:?}");
+        }
+        let mut before = -1i64;
+        for ball in records[1..].chunks_exact(2) {
+            let share = (i64::from(ball[0].w) - before) as f64 / (1u64 << 32) as f64;
+            assert!((share - f64::from(numbers(ball[1]).y)).abs() < 1e-7, "{share}");
+            before = ball[0].w.into();
+        }
+        assert_eq!(before, u32::MAX.into());
+    }
+
+    #[test]
+    fn a_ball_stays_one_and_what_is_far_apart_is_parted() {
+        assert_eq!(records(vec![ball(0.1, 0.0, 0.3)])[0].w, 1);
+        assert_eq!(records(vec![ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])[0].w, 2);
+        assert!(records(Vec::new()).is_empty() && extent(&[]).is_none());
+        let (middle, reach) = extent(&records(vec![ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])).unwrap();
+        assert!(middle.length() < 1e-6 && (reach - 0.91).abs() < 1e-4, "{middle}, {reach}");
+    }
+}

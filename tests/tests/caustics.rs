@@ -1,0 +1,261 @@
+//! Caustics by photons: against closed forms, against what chance finds, and with the same bits on all ways.
+
+use eyerays::cpu;
+use eyerays::film::Film;
+use eyerays::gpu::Renderer;
+use eyerays::method::Traversal;
+use eyerays::picture::Picture;
+use eyerays::scene::{
+    Background, Camera, Integrator, Light, Material, Physical, Projection, Sampler, Scene, Settings, Sphere, Transport,
+};
+use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, matt, mirror};
+use eyerays_tests::{Posed, assert_same_bits, assert_same_on_all_ways, mean, on_cpu, pack, quick_gpu};
+use glam::Vec3;
+
+/// Paths, and photons for each pixel, of a seed.
+fn paths(size: (u32, u32), spp: u32, caustics: f32, seed: u32) -> Settings {
+    Settings {
+        size,
+        spp,
+        bounces: 8,
+        caustics,
+        sampler: Sampler::Random,
+        transport: Transport { integrator: Integrator::Path, seed, ..Transport::default() },
+        ..Settings::default()
+    }
+}
+
+/// The same of light that is mirrored or refracted once and then seen, with many photons.
+fn once(size: (u32, u32), spp: u32) -> Settings {
+    Settings { bounces: 1, ..paths(size, spp, 16.0, 0) }
+}
+
+fn shining(radiance: f32) -> Material {
+    Material { emission: Vec3::splat(radiance), ..black() }
+}
+
+fn point(position: Vec3, power: f32) -> Light {
+    Light::Point { position, colour: Vec3::splat(power), group: String::new(), illuminant: None }
+}
+
+/// A floor at height 0, seen from above by parallel rays: a square of this edge around a place.
+fn from_above(place: Vec3, edge: f32) -> Camera {
+    let eye = place + Vec3::Y * 0.4;
+    Camera { up: Vec3::NEG_Z, ..Camera::new("above", eye, place, Projection::Orthographic { height: edge }) }
+}
+
+fn floor(scene: &mut Scene, half: f32) {
+    let corner = |x: f32, z: f32| Vec3::new(x * half, 0.0, z * half);
+    let corners = [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)];
+    add_quad(scene, matt(Vec3::splat(0.8)), corners);
+}
+
+/// Of a point lamp no chance finds the image in a mirror: a wall at x = -1 throws its light onto the floor as if another lamp stood behind it, as far away.
+#[test]
+fn a_mirror_throws_the_light_of_a_point_lamp_as_its_image_would() {
+    let mut scene = empty();
+    floor(&mut scene, 4.0);
+    let corner = |y: f32, z: f32| Vec3::new(-1.0, y, z);
+    let corners = [corner(0.0, 3.0), corner(0.0, -3.0), corner(4.0, -3.0), corner(4.0, 3.0)];
+    add_quad(&mut scene, mirror(Vec3::splat(0.9)), corners);
+    let lamp = Vec3::new(0.4, 1.5, 0.2);
+    scene.lights.push(point(lamp, 3.0));
+    let place = Vec3::new(0.3, 0.0, 0.1);
+    let camera = from_above(place, 0.02);
+    let (picture, rays) = on_cpu(&pack(&scene, &camera, once((8, 8), 4000)));
+    let (got, error) = mean(&picture);
+    let of = |lamp: Vec3| {
+        let away = (lamp - place).as_dvec3();
+        3.0 * away.y / away.length().powi(3)
+    };
+    let want = 0.8 / std::f64::consts::PI * (of(lamp) + 0.9 * of(Vec3::new(-2.4, 1.5, 0.2)));
+    println!("{got:.5}, standard error {error:.1e}, image {want:.5}");
+    assert_eq!(rays.non_finite, 0);
+    assert!((got / want - 1.0).abs() < 5e-3, "{got}, not {want}");
+}
+
+/// Below a plate of water of an area lamp, straight down: what Fresnel's equations let in twice, as if the water were not so deep.
+#[test]
+fn light_through_a_flat_surface_of_water_is_what_comes_straight() {
+    let mut scene = empty();
+    floor(&mut scene, 4.0);
+    let depth = 0.75f32;
+    let corner = |x: f32, z: f32| Vec3::new(x * 4.0, depth, z * 4.0);
+    let water = Material { ior: 1.5, ..glass(Vec3::ONE) };
+    add_quad(&mut scene, water, [corner(-1.0, 1.0), corner(1.0, 1.0), corner(1.0, -1.0), corner(-1.0, -1.0)]);
+    let height = 3.0f64;
+    scene.lights.push(point(Vec3::new(0.0, height as f32, 0.0), 2.0));
+    let (picture, _) = on_cpu(&pack(&scene, &from_above(Vec3::ZERO, 0.02), once((8, 8), 4000)));
+    // Seen from inside: the camera is below the surface. Near the normal the lamp's rays spread as from 1.5 times its height above the
+    // water.
+    let ((got, error), passed) = (mean(&picture), 0.96);
+    let apparent = f64::from(depth) + 1.5 * (height - f64::from(depth));
+    // Power through a small area of water is spread over (apparent / (1.5 (height - depth)))^2 of it.
+    let spread = (1.5 * (height - f64::from(depth)) / apparent).powi(2);
+    let irradiance = 2.0 / (height - f64::from(depth)).powi(2) * passed * spread;
+    let want = 0.8 / std::f64::consts::PI * irradiance;
+    println!("{got:.5}, standard error {error:.1e}, want {want:.5}");
+    assert!((got / want - 1.0).abs() < 6e-3, "{got}, not {want}");
+}
+
+/// Scenes in which chance finds caustics often enough: large lamps.
+fn found_by_chance() -> Vec<(&'static str, Scene, Camera)> {
+    let above = |height: f32| {
+        let eye = Vec3::new(0.0, height, height);
+        Camera::new("c", eye, Vec3::new(0.0, 0.2, 0.0), Projection::Perspective { fov: 40.0 })
+    };
+    let mut ball = empty();
+    floor(&mut ball, 3.0);
+    ball.materials.push(Material { ior: 1.5, ..glass(Vec3::new(0.9, 1.0, 0.8)) });
+    ball.spheres.push(Sphere { center: Vec3::new(0.0, 0.8, 0.0), radius: 0.5, material: 1 });
+    add_quad(&mut ball, shining(9.0), lamp());
+    let mut silver = empty();
+    floor(&mut silver, 3.0);
+    silver.materials.push(Material {
+        physical: Some(Physical {
+            metallic: 1.0,
+            roughness: 0.0,
+            base: Vec3::new(0.9, 0.8, 0.7),
+            ..Physical::default()
+        }),
+        ..matt(Vec3::splat(0.5))
+    });
+    silver.spheres.push(Sphere { center: Vec3::new(0.4, 0.5, 0.0), radius: 0.5, material: 1 });
+    // Lacquered, so that it is lit and lights others, too.
+    silver.materials.push(Material {
+        physical: Some(Physical { roughness: 0.0, base: Vec3::new(0.2, 0.5, 0.8), ..Physical::default() }),
+        ..matt(Vec3::splat(0.5))
+    });
+    silver.spheres.push(Sphere { center: Vec3::new(-0.7, 0.4, 0.2), radius: 0.4, material: 2 });
+    silver.spheres.push(Sphere { center: Vec3::new(0.0, 3.0, -0.5), radius: 0.6, material: 3 });
+    silver.materials.push(shining(12.0));
+    silver.background = Background::Colour(Vec3::splat(0.2));
+    vec![("ball", ball, above(3.0)), ("silver", silver, above(2.6))]
+}
+
+fn lamp() -> [Vec3; 4] {
+    let corner = |x: f32, z: f32| Vec3::new(x * 0.7 + 0.4, 3.0, z * 0.7);
+    [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)]
+}
+
+/// Means of blocks of 4x4 pixels.
+fn blocks(picture: &Picture) -> Vec<f64> {
+    let (width, height) = (picture.width as usize, picture.height as usize);
+    let at = |x: usize, y: usize| f64::from(picture.pixels[y * width + x].iter().sum::<f32>()) / 3.0;
+    let block = |bx: usize, by: usize| (0..16).map(|i| at(4 * bx + i % 4, 4 * by + i / 4)).sum::<f64>() / 16.0;
+    (0..height / 4).flat_map(|by| (0..width / 4).map(move |bx| (bx, by))).map(|(bx, by)| block(bx, by)).collect()
+}
+
+/// Mean and standard error of each block over seeds.
+fn over_seeds(scene: &Scene, camera: &Camera, spp: u32, caustics: f32) -> Vec<(f64, f64)> {
+    const SEEDS: u32 = 8;
+    let all: Vec<Vec<f64>> = (0..SEEDS)
+        .map(|seed| blocks(&on_cpu(&pack(scene, camera, paths((32, 24), spp, caustics, seed + 1))).0))
+        .collect();
+    let count = f64::from(SEEDS);
+    (0..all[0].len())
+        .map(|block| {
+            let mean = all.iter().map(|seed| seed[block]).sum::<f64>() / count;
+            let square = all.iter().map(|seed| (seed[block] - mean).powi(2)).sum::<f64>() / (count - 1.0);
+            (mean, (square / count).sqrt())
+        })
+        .collect()
+}
+
+/// What photons tell, chance does not count again, and nothing is left out: in the mean of a picture, and of its blocks but for the blur of a
+/// radius that is a fraction of a pixel.
+#[test]
+fn photons_tell_what_chance_finds() {
+    for (name, scene, camera) in found_by_chance() {
+        let chance = over_seeds(&scene, &camera, 2000, 0.0);
+        let photons = over_seeds(&scene, &camera, 500, 2.0);
+        let sum = |all: &[(f64, f64)]| all.iter().map(|(mean, _)| mean).sum::<f64>() / all.len() as f64;
+        let (a, b) = (sum(&chance), sum(&photons));
+        let z =
+            |(a, b): (&(f64, f64), &(f64, f64))| (a.0 - b.0) / (a.1 * a.1 + b.1 * b.1 + (0.01 * a.0).powi(2)).sqrt();
+        let all: Vec<f64> = chance.iter().zip(&photons).map(z).collect();
+        let worst = all.iter().fold(0f64, |worst, z| worst.max(z.abs()));
+        let root = (all.iter().map(|z| z * z).sum::<f64>() / all.len() as f64).sqrt();
+        println!("{name}: chance {a:.5}, photons {b:.5}, z root mean square {root:.2}, most {worst:.2}");
+        assert!((b / a - 1.0).abs() < 5e-3, "{name}: {a} by chance, {b} by photons");
+        assert!(root < 1.5 && worst < 6.0, "{name}: z {root}, at most {worst}");
+    }
+}
+
+/// A small ball of glass below a small lamp: at equal numbers of samples photons leave a hundredth of the noise of chance.
+#[test]
+fn photons_leave_little_of_the_noise() {
+    let mut scene = empty();
+    floor(&mut scene, 3.0);
+    scene.materials.push(Material { ior: 1.5, ..glass(Vec3::ONE) });
+    scene.spheres.push(Sphere { center: Vec3::new(0.0, 0.8, 0.0), radius: 0.5, material: 1 });
+    scene.spheres.push(Sphere { center: Vec3::new(0.3, 4.0, 0.0), radius: 0.05, material: 2 });
+    scene.materials.push(shining(900.0));
+    let eye = Vec3::new(0.0, 3.0, 3.0);
+    let camera = Camera::new("c", eye, Vec3::new(0.0, 0.2, 0.0), Projection::Perspective { fov: 40.0 });
+    let noise = |caustics| {
+        let all = over_seeds(&scene, &camera, 16, caustics);
+        all.iter().map(|(_, error)| error * error).sum::<f64>()
+    };
+    let (chance, photons) = (noise(0.0), noise(2.0));
+    println!("chance {chance:.2e}, photons {photons:.2e}");
+    assert!(photons < chance / 20.0, "{photons}, beside {chance} by chance");
+}
+
+/// All kinds of lamps, mirrors, glass and what is rough, as small as a test can be.
+fn all_of_it() -> (Scene, Camera) {
+    let (_, mut scene, camera) = found_by_chance().remove(1);
+    scene.lights.push(point(Vec3::new(1.5, 2.0, 0.5), 1.0));
+    scene.lights.push(Light::Directional {
+        direction: Vec3::new(0.3, -1.0, -0.2),
+        colour: Vec3::new(0.4, 0.3, 0.2),
+        group: String::new(),
+        illuminant: None,
+    });
+    add_wall(&mut scene, mirror(Vec3::splat(0.7)), Vec3::new(0.0, 1.0, -1.5), 0.8);
+    (scene, camera)
+}
+
+#[test]
+fn every_method_and_device_gives_the_same_bits() {
+    let (scene, camera) = all_of_it();
+    assert_same_on_all_ways(&pack(&scene, &camera, Settings { sampler: Sampler::Sobol, ..paths((24, 20), 5, 1.5, 3) }));
+}
+
+/// Samples and regions in any parts, one after the other, are those of all at once, on a CPU and on a GPU.
+#[test]
+fn parts_are_the_whole() {
+    let (scene, camera) = all_of_it();
+    let posed: Posed = pack(&scene, &camera, Settings { sampler: Sampler::Sobol, ..paths((40, 33), 6, 1.0, 0) });
+    let (whole, rays) = on_cpu(&posed);
+    let renderer = cpu::Renderer::new(&posed, Traversal::default(), 2).unwrap();
+    let mut film: Film = renderer.start(&posed.view);
+    for (samples, region) in [(0..2, 0), (2..6, 0), (0..5, 1), (5..6, 1)] {
+        let pieces: Vec<_> = posed.view.region().pieces(40, 17).collect();
+        let part = eyerays::film::Part { region: pieces[region], samples };
+        renderer.add::<f32>(&posed.view, &mut film, part, &|_| (), &()).unwrap();
+    }
+    assert_same_bits(&film.develop().unwrap(), &whole, "parts");
+    assert_eq!(film.rays(), rays);
+    let Some(gpu) = quick_gpu() else { return };
+    let mut renderer = Renderer::new(&gpu, &posed, true, Traversal::default()).unwrap();
+    renderer.start(&posed.view).unwrap();
+    for samples in [0..1, 1..4, 4..6] {
+        renderer.add(samples, &|_| ()).unwrap();
+    }
+    let film = renderer.film().unwrap();
+    assert_same_bits(&film.develop().unwrap(), &whole, "GPU in parts");
+    assert_eq!(film.rays(), rays);
+}
+
+/// Where nothing casts a caustic, pictures have the bits and the kernels that they have without.
+#[test]
+fn without_casters_there_are_no_photons() {
+    let mut scene = empty();
+    floor(&mut scene, 3.0);
+    add_quad(&mut scene, shining(5.0), lamp());
+    let camera = from_above(Vec3::ZERO, 1.0);
+    let of = |caustics| pack(&scene, &camera, paths((16, 16), 4, caustics, 0));
+    assert!(!of(1.0).packed.has_photons());
+    assert_same_bits(&on_cpu(&of(1.0)).0, &on_cpu(&of(0.0)).0, "no casters");
+}

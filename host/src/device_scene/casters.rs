@@ -184,7 +184,7 @@ mod tests {
             assert!((share - f64::from(numbers(ball[1]).y)).abs() < 1e-7, "{share}");
             before = ball[0].w.into();
         }
-        assert_eq!(before, u32::MAX.into());
+        assert_eq!(before, i64::from(u32::MAX));
     }
 
     #[test]

@@ -135,7 +135,7 @@ fn scattered<R: Scalar>(
     let ScatterContext { shading, lighting, media, .. } = context;
     let view = Viewpoint::on(&interaction, closure.normal(), passes).at(seen.time);
     let caustics = launch.spec.caustics;
-    let is_asked = is_lit(launch) && closure.is_rough() && !caustics.has(Caustics::PHOTONS);
+    let is_asked = !caustics.has(Caustics::PHOTONS) && is_lit(launch) && closure.is_rough();
     let unlit = unlit(launch, shading.materials, seen);
     let lamp = if is_asked {
         let lamp = EmitterSample::new(launch, lighting, &view, decisions.x, vertex.draws.pair(bounces));
@@ -148,6 +148,7 @@ fn scattered<R: Scalar>(
     let (arriving, sample) = closure.eval_and_sample(at, lamp.direction, draws, || vertex.draws.set(bounces + 1));
     if caustics.has(Caustics::PHOTONS) {
         let next = vertex.on((&interaction, sample.origin), sample.direction, sample.factor, sample.density);
+        let next = PathState { unlit, ..next };
         return photon::met(launch, vertex, (seen, closure), next, decisions);
     }
     if launch.spec.aovs.has(Aovs::LOBES) && bounces == 0 {
@@ -182,8 +183,8 @@ fn scattered<R: Scalar>(
     let goes_on = goes_on && (bounces < launch.frame.bounces || may_find_light(launch.frame, &next));
     let light = if catches { V3::zero() } else { light };
     let caustic = if is_told {
-        let path = PathState { unlit, ..vertex.path };
-        let light = photon::gathered(launch, &around.photons, (around.slot, &path), (seen, closure));
+        let path = vertex.path;
+        let light = photon::gathered(launch, &around.photons, (around.slot, path.bounces), (seen, closure));
         share(launch, &PathState { bounces: bounces + 1, ..path }, light)
     } else {
         V3::zero()
@@ -240,9 +241,12 @@ fn emitted<R: Scalar>(
 ) -> V3<R> {
     let effects = launch.spec.effects;
     let is_lit = vertex.path.is_lit_by(effects, group(launch, lighting, seen));
-    // Photons are not what they meet, and of light that they tell of, chance counts for nothing.
+    // Photons bring no light along, and of light that they tell of, chance counts for nothing.
+    if launch.spec.caustics.has(Caustics::PHOTONS) {
+        return V3::zero();
+    }
     let is_told = vertex.path.gathered && vertex.path.density.eq(R::splat(0.0));
-    if !effects.has(Effects::EMISSIVE) || !is_lit || is_told || launch.spec.caustics.has(Caustics::PHOTONS) {
+    if !effects.has(Effects::EMISSIVE) || !is_lit || is_told {
         return V3::zero();
     }
     let Seen { primitive, interaction, .. } = *seen;

@@ -71,10 +71,14 @@ pub(super) fn met<R: Scalar>(
 ) -> Scattered<R> {
     let (path, zero) = (vertex.path, R::splat(0.0));
     let interaction = seen.interaction;
+    // What a surface mirrors or lets through are no other lamps than those that light it.
+    if path.bounces == 0 && !next.is_lit_by(launch.spec.effects, path.pixel) {
+        return Scattered::once(V3::zero(), ShadowRay::none(), path, false);
+    }
     if closure.chooses_rough(decisions.y) {
         let lands = zero.lt(path.beside.1) && closure.is_wide();
         let power = (path.weight * closure.rough_share().reciprocal()).map(|c| c.flush(FAINT));
-        let landed = Landed::new(interaction.position, -path.direction, power, (path.bounces, path.pixel));
+        let landed = Landed::new(interaction.position, -path.direction, power, path.bounces);
         return Scattered { landed, lands, ..Scattered::once(V3::zero(), ShadowRay::none(), path, false) };
     }
     let factor = of_power(launch, closure, seen, next.direction);
@@ -130,7 +134,7 @@ pub(super) fn keep<R: Real>(scattered: &Scattered<R>, slot: u32, landed: &mut [U
 pub(super) fn gathered<R: Scalar>(
     launch: &LaunchContext<'_>,
     photons: &Photons<'_>,
-    (slot, path): (u32, &PathState<R>),
+    (slot, bounces): (u32, u32),
     (seen, closure): (&Seen<R>, &impl Closure<R>),
 ) -> V3<R> {
     /// Photons of other surfaces are further off the plane than this share of the radius.
@@ -160,8 +164,7 @@ pub(super) fn gathered<R: Scalar>(
             continue;
         }
         let landed = Landed::load(number, at, photons.records);
-        let reaches = landed.bounces() + path.bounces <= frame.bounces;
-        if !reaches || !path.is_lit_by(launch.spec.effects, landed.group()) {
+        if frame.bounces < landed.bounces + bounces {
             continue;
         }
         let towards = widened::<R>(landed.towards);

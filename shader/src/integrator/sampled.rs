@@ -173,7 +173,12 @@ pub fn scatter<R: Scalar>(
     let path = vertex.path;
     // The ray of a slot outside the image hits nothing.
     let mut scattered = if media.has(Media::PRESENT) && collides {
-        medium::at(launch, context, &vertex)
+        if is_photon {
+            // What is scattered between surfaces is found by chance.
+            Scattered::once(V3::zero(), ShadowRay::none(), path, false)
+        } else {
+            medium::at(launch, context, &vertex)
+        }
     } else if found.is_nothing() {
         let is_clear = bits.has(Launch::CLEAR) && path.bounces == 0;
         word = if is_clear { word | CLEARED } else { word };

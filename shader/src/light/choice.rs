@@ -1,9 +1,9 @@
 //! Which light of all a vertex samples, and how likely that was for one that a ray found.
 
-use super::tree::{Guide, STEPS, descend, probability};
+use super::tree::{Guide, STEPS, descend, descend_by, importance, intensity, probability};
 use super::{Lighting, Viewpoint};
 use crate::buffer::read;
-use crate::data::{Effects, Emission, Emitter, Primitive};
+use crate::data::{Effects, Emission, Emitter, LightNode, Primitive};
 use crate::real::{FAINT, Scalar};
 use crate::scene::LaunchContext;
 
@@ -14,6 +14,28 @@ pub(super) fn picked<R: Scalar>(
     launch: &LaunchContext<'_>,
     lighting: &Lighting<'_>,
     view: &Viewpoint<R>,
+    choice: u32,
+    place: (u32, u32),
+) -> (Emitter, R) {
+    picked_by(launch, lighting, |node: &LightNode| importance(node, view), choice, place)
+}
+
+/// The same wherever its light goes.
+#[inline(always)]
+pub(super) fn picked_from_anywhere<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    choice: u32,
+    place: (u32, u32),
+) -> (Emitter, R) {
+    picked_by(launch, lighting, |node: &LightNode| intensity(node), choice, place)
+}
+
+#[inline(always)]
+fn picked_by<R: Scalar>(
+    launch: &LaunchContext<'_>,
+    lighting: &Lighting<'_>,
+    importance: impl Fn(&LightNode) -> R,
     choice: u32,
     place: (u32, u32),
 ) -> (Emitter, R) {
@@ -30,7 +52,7 @@ pub(super) fn picked<R: Scalar>(
         let (emitter, own) = of_table(launch.frame.far, guide.word());
         return (emitter, (own * probability(steps)).flush(FAINT));
     }
-    let found = descend(lighting.nodes, view, probability(STEPS - steps), guide);
+    let found = descend_by(lighting.nodes, importance, probability(STEPS - steps), guide);
     (read(lighting.emitters, found.emitter), found.probability)
 }
 

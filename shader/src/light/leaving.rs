@@ -1,6 +1,6 @@
 //! Light as it leaves a lamp for what casts caustics: where photons start.
 
-use super::choice::{per_area, picked};
+use super::choice::{per_area, picked_from_anywhere};
 use super::emitter::{covered, drawn_on, group, illuminant};
 use super::moving::over_area_at;
 use super::{EmitterSample, LightSample, Lighting, Viewpoint, at_time, on_circle};
@@ -68,9 +68,7 @@ impl<R: Scalar> Leaving<R> {
         draws: LeavingDraws,
         time: f32,
     ) -> Self {
-        // Where lamps are many, those near to what casts are the likelier.
-        let view = Viewpoint::<R> { origin: casters.middle(), side: 0, time };
-        let (emitter, probability) = picked(launch, lighting, &view, draws.choices.0, draws.place);
+        let (emitter, probability) = picked_from_anywhere::<R>(launch, lighting, draws.choices.0, draws.place);
         if probability.eq(R::splat(0.0)) {
             return Self::none();
         }
@@ -82,6 +80,8 @@ impl<R: Scalar> Leaving<R> {
         let leaving = if is_primitive {
             Self::from_primitive(launch, lighting, (&emitter, probability), casters, draws, time)
         } else if is_around || is_parallel {
+            // Of light from far away it does not matter where it is seen from.
+            let view = Viewpoint { origin: casters.middle(), side: 0, time };
             let sample = EmitterSample::of(launch, lighting, (&emitter, probability), &view, draws.place);
             Self::from_afar(&sample, casters, draws)
         } else {

@@ -119,15 +119,20 @@ impl<R: Scalar> Angle<R> {
     }
 }
 
+/// How much light a node sends, in proportion to others, wherever it arrives.
+#[inline(always)]
+pub(super) fn intensity<R: Scalar>(node: &LightNode) -> R {
+    R::splat(f32::from_bits(node.middle.w))
+}
+
 /// How much of a node's light may arrive at a place, in proportion to that of others: zero only if nothing does.
 #[inline(always)]
-fn importance<R: Scalar>(node: &LightNode, view: &Viewpoint<R>) -> R {
+pub(super) fn importance<R: Scalar>(node: &LightNode, view: &Viewpoint<R>) -> R {
     let (zero, one) = (R::splat(0.0), R::splat(1.0));
     let away = (V3::<R>::splat(numbers(node.middle)) - view.origin).map(|c| c.flush(SMALL));
     let half = V3::<R>::splat(numbers(node.half));
     let (square, reach) = (away.dot(away), half.dot(half).flush(FAINT));
-    let intensity = R::splat(f32::from_bits(node.middle.w));
-    let arrives = intensity.over(square.max(reach).max(R::splat(NEAREST))).flush(FAINT);
+    let arrives = intensity::<R>(node).over(square.max(reach).max(R::splat(NEAREST))).flush(FAINT);
     if !reach.lt(square * R::splat(OUTSIDE)) {
         return arrives;
     }
@@ -171,15 +176,26 @@ pub(super) fn probability<R: Scalar>(steps: u32) -> R {
     R::splat(steps as f32) * R::splat(STEP)
 }
 
-/// The way to a leaf: by a draw or, for the same bits of its probability, by its trail. `start` is the probability of the root.
+/// The way to a leaf, as seen from a place: by a draw or, for the same bits of its probability, by its trail. `start` is the probability of the root.
 #[inline(always)]
 pub fn descend<R: Scalar>(nodes: &[LightNode], view: &Viewpoint<R>, start: R, guide: Guide) -> Chosen<R> {
+    descend_by(nodes, |node: &LightNode| importance(node, view), start, guide)
+}
+
+/// The same by what nodes have of something.
+#[inline(always)]
+pub(super) fn descend_by<R: Scalar>(
+    nodes: &[LightNode],
+    importance: impl Fn(&LightNode) -> R,
+    start: R,
+    guide: Guide,
+) -> Chosen<R> {
     let zero = R::splat(0.0);
     let (mut guide, mut at, mut likely) = (guide, 0, start);
     let mut node = read(nodes, 0);
     while !node.has(LightNode::LEAF) {
         let (first, second) = (read(nodes, at + 1), read(nodes, node.number()));
-        let (left, right) = (importance(&first, view), importance(&second, view));
+        let (left, right) = (importance(&first), importance(&second));
         if left.eq(zero) && right.eq(zero) {
             return Chosen { emitter: 0, probability: zero };
         }

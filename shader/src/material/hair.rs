@@ -245,7 +245,7 @@ fn steps<R: Scalar>(sent: &[V3<R>; LOBES as usize]) -> [i32; LOBES as usize] {
     let (a, b, c, d) = (of(sent[0]), of(sent[1]), of(sent[2]), of(sent[3]));
     let (first, second, third) = (a, a + b, a + b + c);
     let each = R::splat(STEPS as f32).over((third + d).max(R::splat(FAINT)));
-    let steps = |sum: R| (sum * each).floor_index().max(0).min(STEPS);
+    let steps = |sum: R| (sum * each).floor_index().min(STEPS);
     [steps(first), steps(second), steps(third), STEPS]
 }
 
@@ -269,7 +269,7 @@ const LEAST_LOG: f32 = 120.0;
 fn bessel<R: Scalar>(x: R) -> R {
     const NEAR: [f32; 7] = [1.0, 3.515_622_9, 3.089_942_4, 1.206_749_2, 0.265_973_2, 0.036_076_8, 0.004_581_3];
     const FAR: [f32; 9] = [
-        0.398_942_28,
+        0.398_942_3,
         0.013_285_92,
         0.002_253_19,
         -0.001_575_65,

@@ -14,41 +14,29 @@ pub struct Landed {
     pub towards: V3<f32>,
     /// Its power: radiance times area and solid angle, of linear RGB or of its sample's wavelengths.
     pub power: V3<f32>,
-    /// How often it was mirrored or refracted, and above the lowest 16 bits the group of its lamp.
-    pub trail: u32,
+    /// How often it was mirrored or refracted.
+    pub bounces: u32,
 }
 
 impl Landed {
     /// One at a place, which came from a direction.
     #[inline(always)]
-    pub fn new<R: Scalar>(place: V3<R>, towards: V3<R>, power: V3<R>, (bounces, group): (u32, u32)) -> Self {
+    pub fn new<R: Scalar>(place: V3<R>, towards: V3<R>, power: V3<R>, bounces: u32) -> Self {
         let power = single(power).map(|c| Real::flush(c, FAINT));
-        Landed { place: single(place), towards: single(towards), power, trail: bounces | (group << 16) }
+        Landed { place: single(place), towards: single(towards), power, bounces }
     }
 
     /// None.
     #[inline(always)]
     pub fn none() -> Self {
-        Landed { place: V3::zero(), towards: V3::zero(), power: V3::zero(), trail: 0 }
-    }
-
-    /// How often it was mirrored or refracted.
-    #[inline(always)]
-    pub fn bounces(&self) -> u32 {
-        self.trail & 0xffff
-    }
-
-    /// The group of its lamp.
-    #[inline(always)]
-    pub fn group(&self) -> u32 {
-        self.trail >> 16
+        Landed { place: V3::zero(), towards: V3::zero(), power: V3::zero(), bounces: 0 }
     }
 
     /// Keeps it at a slot. It is in no list yet.
     #[inline(always)]
     pub fn store(&self, slot: u32, records: &mut [UVec4]) {
         write(records, RECORDS * slot, f32::store(self.place, 0));
-        write(records, RECORDS * slot + 1, f32::store(self.towards, self.trail));
+        write(records, RECORDS * slot + 1, f32::store(self.towards, self.bounces));
         write(records, RECORDS * slot + 2, f32::store(self.power, IS_THERE));
     }
 
@@ -73,8 +61,8 @@ impl Landed {
     /// That of a slot, which is in the place of its list that `place` tells.
     #[inline(always)]
     pub fn load(slot: u32, place: V3<f32>, records: &[UVec4]) -> Self {
-        let (towards, trail) = f32::load(read(records, RECORDS * slot + 1));
-        Landed { place, towards, power: f32::load(read(records, RECORDS * slot + 2)).0, trail }
+        let (towards, bounces) = f32::load(read(records, RECORDS * slot + 1));
+        Landed { place, towards, power: f32::load(read(records, RECORDS * slot + 2)).0, bounces }
     }
 }
 

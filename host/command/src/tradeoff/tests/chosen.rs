@@ -265,6 +265,30 @@ fn red_green_and_blue_are_tried_where_a_scene_has_wavelengths_and_the_reference_
     assert!(!Setting { integrator: Integrator::Whitted, ..Setting::of(&own) }.settings(own).spectral);
 }
 
+#[test]
+fn caustics_by_chance_are_tried_where_a_scene_has_photons_and_the_reference_has_them() {
+    let plain = scene(0.0);
+    let by = |integrator, caustics| Settings {
+        caustics,
+        transport: eyerays::scene::Transport { integrator, ..plain.settings.transport },
+        ..plain.settings
+    };
+    assert_eq!(Axes::of(&plain, &by(Integrator::Path, 0.0), &[]).caustics, [None]);
+    let own = by(Integrator::Path, 0.5);
+    let axes = Axes::of(&plain, &own, &[]);
+    assert_eq!(axes.caustics, [Some(0.5), Some(0.0)]);
+    assert_eq!(axes.reference(own).caustics, 0.5);
+    let chance = Setting { caustics: Some(0.0), ..Setting::of(&own) };
+    assert_eq!(chance.beside(&Setting::of(&own)), "caustics by chance");
+    assert_eq!(Setting::of(&own).beside(&chance), "0.5 photons a pixel");
+    assert!(chance.settings(own).caustics == 0.0 && chance.options().ends_with("--caustics=0"));
+    assert_eq!(chance.preset(eyerays::render::DeviceWish::Cpu).caustics, Some(0.0));
+    // No other integrator asks for any.
+    let whitted = Axes::of(&plain, &own, &[Integrator::Whitted]);
+    assert_eq!(whitted.reference(own).caustics, 0.0);
+    assert_eq!(Setting { integrator: Integrator::Whitted, ..Setting::of(&own) }.settings(own).caustics, 0.0);
+}
+
 /// Nothing is tried that can not be or that makes no difference.
 #[test]
 fn a_search_leaves_out_what_makes_no_difference() {

@@ -60,7 +60,7 @@ fn a_line_of_csv_has_the_fields_of_a_record() {
     fields.insert("scene");
     assert_eq!(lines[0].split(',').collect::<BTreeSet<_>>(), fields);
     assert_eq!(lines.len(), 1 + report.records.len());
-    let start = "\"a|b, \"\"c\"\"\",fast,watertight,wide,gathered,medium,whitted,regular,mipmap,,1,0,8,0.0009765625,3,0,4.5,0.1,";
+    let start = "\"a|b, \"\"c\"\"\",fast,watertight,wide,gathered,medium,whitted,regular,mipmap,,,1,0,8,0.0009765625,3,0,4.5,0.1,";
     assert!(
         lines[3].starts_with(start) && lines[3].contains(",0.0213,33.432") && lines[3].ends_with(",0,1,true"),
         "{text}"

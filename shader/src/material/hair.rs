@@ -29,7 +29,7 @@ pub struct Hair<R: Real> {
     offsets: (R, R),
     /// What the lobes send to the viewer of light from everywhere, linear RGB.
     sent: [V3<R>; LOBES as usize],
-    /// How often less than so many steps of [`STEPS`] are drawn for the first lobes.
+    /// Draws below so many steps of [`STEPS`] mean this lobe or one before it.
     steps: [i32; LOBES as usize],
     /// The variance of the first lobe along the fibre.
     variance: R,
@@ -160,7 +160,7 @@ impl<R: Scalar> Hair<R> {
         Scattering { value, density, diffuse: V3::zero() }
     }
 
-    /// A unit direction of the frame by that density: a step of [`STEPS`] chooses the lobe, a number the angle around the fibre, and a
+    /// A unit direction of the frame by that density: a step of 2^23 chooses the lobe, a number the angle around the fibre, and a
     /// pair the one along it.
     // A function of its own, since few surfaces are hair.
     #[inline(never)]

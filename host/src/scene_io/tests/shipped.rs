@@ -30,6 +30,7 @@ fn every_scene_loads_without_a_warning_and_is_small_enough_for_slow_devices() {
         "spectrum.toml",
         "hills.toml",
         "strands.toml",
+        "caustics.toml",
         "chess.glb",
     ];
     for name in ["cornell_path.toml", "soft_shadows.toml", "bleeding.toml", "occlusion.toml"].into_iter().chain(gallery)

@@ -89,7 +89,7 @@ impl Job {
         }
         if settings.caustics > 0.0 && settings.transport.integrator != Integrator::Path {
             return Err(Error::new(
-                "photons tell of caustics to paths alone (caustics): set the integrator to \"path\" (--integrator path)",
+                "photons tell of caustics to paths alone: set the integrator to \"path\" (--integrator path), or leave caustics out (--caustics=0)",
             ));
         }
         if settings.spectral && settings.transport.integrator != Integrator::Path {

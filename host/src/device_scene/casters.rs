@@ -58,7 +58,7 @@ pub(super) fn of(scene: &Scene, (primitives, own): (&[Primitive], usize), places
         true => copy_casts(primitive.number()),
         false => is_caster(primitive),
     });
-    records(there.map(ball).collect())
+    records(&there.map(ball).collect::<Vec<_>>())
 }
 
 /// Around a primitive. A copy of a mesh is as large as its box while the shutter is open.
@@ -92,20 +92,26 @@ impl Group {
         Group { around: Ball { centre, radius }, members }
     }
 
-    /// Two halves, if they are together much smaller.
+    fn area(&self) -> f32 {
+        self.around.radius * self.around.radius
+    }
+
+    /// Two parts, if they are together much smaller.
     fn parted(&self) -> Option<[Group; 2]> {
-        if self.members.len() < 2 {
-            return None;
-        }
+        /// Places along the longest axis that are tried.
+        const PLACES: u32 = 8;
         let [least, greatest] = bounds(&self.members);
         let axis = (greatest - least).max_position();
-        let mut members = self.members.clone();
-        let middle = members.len() / 2;
-        members.select_nth_unstable_by(middle, |a, b| a.centre[axis].total_cmp(&b.centre[axis]));
-        let second = members.split_off(middle);
-        let halves = [Group::new(members), Group::new(second)];
-        let area = |group: &Group| group.around.radius * group.around.radius;
-        (halves.iter().map(area).sum::<f32>() < SAVES * area(self)).then_some(halves)
+        let at = |place: u32| least[axis] + (greatest - least)[axis] * place as f32 / PLACES as f32;
+        let parts = |place: u32| {
+            let (below, above): (Vec<Ball>, Vec<Ball>) =
+                self.members.iter().partition(|ball| ball.centre[axis] < at(place));
+            let are_two = !below.is_empty() && !above.is_empty();
+            are_two.then(|| [Group::new(below), Group::new(above)])
+        };
+        let both = |parts: &[Group; 2]| parts[0].area() + parts[1].area();
+        let best = (1..PLACES).filter_map(parts).min_by(|a, b| both(a).total_cmp(&both(b)))?;
+        (both(&best) < SAVES * self.area()).then_some(best)
     }
 }
 
@@ -121,11 +127,14 @@ fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
     done
 }
 
-fn records(balls: Vec<Ball>) -> Vec<UVec4> {
+fn records(balls: &[Ball]) -> Vec<UVec4> {
+    /// Of more, those that follow each other in leaf order, and so lie together, are taken as one.
+    const FEW: usize = 4096;
     if balls.is_empty() {
         return Vec::new();
     }
-    let balls = gathered(balls);
+    let some = balls.chunks(balls.len().div_ceil(FEW)).map(|some| Group::new(some.to_vec()).around);
+    let balls = gathered(some.collect());
     let [least, greatest] = bounds(&balls);
     let middle = (least + greatest) / 2.0;
     let mut records = vec![pack(middle, balls.len() as u32)];
@@ -163,17 +172,22 @@ mod tests {
         Ball { centre: Vec3::new(x, y, 0.0), radius }
     }
 
-    /// Whatever casts is in some ball, and draws mean balls as often as their probabilities say.
+    /// Whatever casts is in some ball, and draws mean balls as often as their probabilities say: of clusters of many and of few, far
+    /// apart, of more members than are looked at one by one.
     #[test]
     fn balls_hold_all_that_casts_and_draws_mean_each_as_often_as_it_is_large() {
-        let mut all: Vec<Ball> =
-            (0..500).map(|i| ball((i as f32 * 0.37).sin(), (i as f32 * 0.71).cos(), 0.002)).collect();
-        all.push(ball(0.2, 0.1, 0.05));
-        let records = records(all.clone());
+        let clusters = [(-0.8, -0.7, 9000), (0.6, -0.5, 20), (0.1, 0.8, 1)];
+        let member = |(x, y, count): (f32, f32, u32), i: u32| {
+            let turn = i as f32 * 0.37;
+            ball(x + 0.05 * turn.sin() * (i % 7) as f32, y + 0.03 * turn.cos(), 0.002 + 0.01 / count as f32)
+        };
+        let all: Vec<Ball> = clusters.into_iter().flat_map(|of| (0..of.2).map(move |i| member(of, i))).collect();
+        let records = records(&all);
         let count = records[0].w as usize;
-        assert!(count > 1 && count <= MOST && records.len() == 1 + 2 * count, "{count}");
+        assert!((3..=MOST).contains(&count) && records.len() == 1 + 2 * count, "{count}");
         let balls: Vec<(Vec3, f32)> =
             records[1..].chunks_exact(2).map(|ball| (numbers(ball[0]), numbers(ball[1]).x)).collect();
+        assert!(balls.iter().all(|ball| ball.1 < 0.5), "{balls:?}");
         for own in &all {
             let is_in = |&(centre, radius): &(Vec3, f32)| own.centre.distance(centre) + own.radius <= radius + 1e-6;
             assert!(balls.iter().any(is_in), "{own:?}");
@@ -189,10 +203,10 @@ mod tests {
 
     #[test]
     fn a_ball_stays_one_and_what_is_far_apart_is_parted() {
-        assert_eq!(records(vec![ball(0.1, 0.0, 0.3)])[0].w, 1);
-        assert_eq!(records(vec![ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])[0].w, 2);
-        assert!(records(Vec::new()).is_empty() && extent(&[]).is_none());
-        let (middle, reach) = extent(&records(vec![ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])).unwrap();
+        assert_eq!(records(&[ball(0.1, 0.0, 0.3)])[0].w, 1);
+        assert_eq!(records(&[ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])[0].w, 2);
+        assert!(records(&[]).is_empty() && extent(&[]).is_none());
+        let (middle, reach) = extent(&records(&[ball(-0.9, 0.0, 0.01), ball(0.9, 0.0, 0.01)])).unwrap();
         assert!(middle.length() < 1e-6 && (reach - 0.91).abs() < 1e-4, "{middle}, {reach}");
     }
 }

@@ -40,11 +40,12 @@ impl Casters<'_> {
         read(self.records, 0).w
     }
 
-    /// The ball that a draw means.
+    /// The ball of so many that a draw means. Who counts them in a loop and asks for that number behind it gets another one for those
+    /// lanes of lavapipe (Mesa 22.3) that left the loop before others.
     #[inline(always)]
-    fn drawn(&self, draw: u32) -> u32 {
+    fn drawn(&self, count: u32, draw: u32) -> u32 {
         let mut number = 0;
-        while number + 1 < self.count() && read(self.records, 1 + 2 * number).w < draw {
+        while number + 1 < count && read(self.records, 1 + 2 * number).w < draw {
             number += 1;
         }
         number
@@ -60,7 +61,8 @@ impl Casters<'_> {
     #[inline(always)]
     pub fn direction<R: Scalar>(&self, from: V3<R>, choice: u32, pair: (u32, u32)) -> (V3<R>, R) {
         let (zero, one) = (R::splat(0.0), R::splat(1.0));
-        let chosen = self.drawn(choice);
+        let count = self.count();
+        let chosen = self.drawn(count, choice);
         let (axis, height) = self.ball(chosen).cone(from);
         let drawn = (R::splat(unit(pair.0)) * height).flush(FAINT);
         let sine = (drawn * (one + one - drawn)).max(zero).sqrt();
@@ -69,7 +71,7 @@ impl Casters<'_> {
         let across = (right * x + up * y).map(|c| c.flush(TINY));
         let direction = (across * sine + axis * (one - drawn)).map(|c| c.flush(TINY));
         let (mut density, mut number) = (zero, 0);
-        while number < self.count() {
+        while number < count {
             let ball = self.ball::<R>(number);
             let (axis, height) = ball.cone(from);
             let is_in = number == chosen || (one - axis.dot(direction)).le(height);
@@ -86,7 +88,8 @@ impl Casters<'_> {
     #[inline(always)]
     pub fn place<R: Scalar>(&self, along: V3<R>, choice: u32, pair: (u32, u32)) -> (V3<R>, R) {
         let zero = R::splat(0.0);
-        let chosen = self.drawn(choice);
+        let count = self.count();
+        let chosen = self.drawn(count, choice);
         let Ball { centre, radius, .. } = self.ball::<R>(chosen);
         let (x, y) = on_circle::<R>(pair.1);
         let reach = R::splat(unit(pair.0)).sqrt() * radius;
@@ -94,7 +97,7 @@ impl Casters<'_> {
         let across = (right * x + up * y).map(|c| c.flush(SMALL)) * reach;
         let place = (centre + across).map(|c| c.flush(TINY));
         let (mut density, mut number) = (zero, 0);
-        while number < self.count() {
+        while number < count {
             let Ball { centre, radius, probability } = self.ball::<R>(number);
             let from = (place - centre).map(|c| c.flush(SMALL));
             let aside = (from - along * from.dot(along)).map(|c| c.flush(SMALL));

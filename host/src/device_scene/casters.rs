@@ -115,11 +115,11 @@ impl Group {
     }
 }
 
-/// Few balls around many.
-fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
-    let (mut open, mut done) = (BinaryHeap::from([Group::new(balls)]), Vec::new());
+/// Balls around groups, of which the largest are parted until there are `most`.
+fn gathered(groups: Vec<Group>, most: usize) -> Vec<Ball> {
+    let (mut open, mut done) = (BinaryHeap::from(groups), Vec::new());
     while let Some(largest) = open.pop() {
-        match largest.parted().filter(|_| open.len() + done.len() + 2 <= MOST) {
+        match largest.parted().filter(|_| open.len() + done.len() + 2 <= most) {
             Some(halves) => open.extend(halves),
             None => done.push(largest.around),
         }
@@ -128,13 +128,15 @@ fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
 }
 
 fn records(balls: &[Ball]) -> Vec<UVec4> {
-    /// Of more, those that follow each other in leaf order, and so lie together, are taken as one.
+    /// Of more, those that follow each other in leaf order, and so mostly lie together, are taken as one.
     const FEW: usize = 4096;
     if balls.is_empty() {
         return Vec::new();
     }
-    let some = balls.chunks(balls.len().div_ceil(FEW)).map(|some| Group::new(some.to_vec()).around);
-    let balls = gathered(some.collect());
+    let groups = balls.chunks(balls.len().div_ceil(FEW)).map(|some| Group::new(some.to_vec())).collect();
+    // Neighbours in leaf order that lie far apart are parted again.
+    let some = gathered(groups, 2 * FEW);
+    let balls = gathered(vec![Group::new(some)], MOST);
     let [least, greatest] = bounds(&balls);
     let middle = (least + greatest) / 2.0;
     let mut records = vec![pack(middle, balls.len() as u32)];

@@ -107,7 +107,8 @@ fn a_film_of_several_devices_has_the_bits_of_one() {
 #[test]
 fn what_a_lost_device_had_is_done_by_the_others() {
     for fails_after in [0, 1, 5] {
-        let (film, lost, want) = rendered(&[(1, fails_after), (3, NEVER), (0, NEVER)]);
+        // Those that stay are slow, so that on a busy machine, too, the other comes to its last part.
+        let (film, lost, want) = rendered(&[(0, fails_after), (20, NEVER), (10, NEVER)]);
         assert_same(&film.unwrap(), &want);
         assert!(matches!(&lost[..], [(name, Error::DeviceFailed { .. })] if name == "device 0"), "{lost:?}");
     }

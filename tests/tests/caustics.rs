@@ -10,8 +10,11 @@ use eyerays::scene::{
     Background, Camera, Environment, Integrator, Light, Material, Physical, PixelFilter, Projection, Sampler, Scene,
     Settings, Sphere, Texels, Texture, Transport,
 };
+use eyerays_bvh::Quality;
 use eyerays_tests::model::{add_quad, add_wall, black, empty, glass, matt, mirror};
-use eyerays_tests::{Posed, assert_same_bits, assert_same_on_all_ways, mean, on_cpu, pack, quick_gpu};
+use eyerays_tests::{
+    Posed, assert_same_bits, assert_same_on_all_ways, mean, on_cpu, pack, pack_in, quick_gpu, shipped,
+};
 use glam::{DVec3, Vec3};
 use std::f64::consts::PI;
 
@@ -347,6 +350,24 @@ fn parts_are_the_whole() {
     let film = renderer.film().unwrap();
     assert_same_bits(&film.develop().unwrap(), &whole, "GPU in parts");
     assert_eq!(film.rays(), rays);
+}
+
+/// Few rays are followed through a hierarchy that is soon built and many through a better one, and a film of few is continued.
+#[test]
+fn a_better_hierarchy_changes_nothing() {
+    let scene = shipped("caustics");
+    let of = |quality| {
+        let settings = Settings { size: (48, 32), spp: 2, ..scene.settings };
+        let posed = pack_in(&scene, &scene.cameras[0], settings, quality);
+        assert!(posed.packed.has_photons());
+        on_cpu(&posed)
+    };
+    let (want, rays) = of(Quality::Fast);
+    for quality in [Quality::Medium, Quality::High, Quality::Linear] {
+        let (picture, counted) = of(quality);
+        assert_same_bits(&want, &picture, &format!("{quality:?}"));
+        assert_eq!(rays, counted, "{quality:?}");
+    }
 }
 
 /// Where nothing casts a caustic, pictures have the bits and the kernels that they have without.

@@ -180,6 +180,12 @@ fn whatever_the_quality_of_the_hierarchies() {
     for quality in [Quality::Fast, Quality::Medium, Quality::High] {
         assert_same_bits(&want, &render(&scene, quality), &format!("{quality:?}"));
     }
+    let photons = Settings { caustics: 1.0, ..sampled(Integrator::Path) };
+    let render = |quality| on_cpu(&pack_in(&scene, &scene.cameras[0], photons, quality)).0;
+    let want = render(Quality::Fast);
+    for quality in [Quality::Medium, Quality::High] {
+        assert_same_bits(&want, &render(quality), &format!("photons, {quality:?}"));
+    }
 }
 
 /// What rays find, by the number of the primitive: t, coordinates and number.

@@ -1,12 +1,15 @@
 //! Balls around what mirrors or refracts light, for photons to be sent there.
 
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
-use eyerays_shader::data::{Primitive, numbers, pack};
-use glam::{UVec4, Vec3};
+use eyerays_shader::data::{Instance as Record, Primitive, numbers, pack};
+use glam::{UVec3, UVec4, Vec3};
 
+use super::copies;
+use super::normalisation::Normalisation;
 use super::shining::Places;
-use crate::scene::{Material, Scene};
+use crate::scene::{Instance, Material, Scene};
 
 /// The most balls: a photon asks each of them how likely it was sent.
 const MOST: usize = 32;
@@ -43,36 +46,61 @@ impl PartialOrd for Group {
 
 /// The records of a scene, see [`Casters`](eyerays_shader::photon::Casters), whose `primitives` lie in leaf order, the first `own` of them
 /// where they stand; empty if nothing casts.
-pub(super) fn of(scene: &Scene, (primitives, own): (&[Primitive], usize), places: &Places) -> Vec<UVec4> {
+pub(super) fn of(
+    scene: &Scene,
+    normalisation: &Normalisation,
+    (primitives, own): (&[Primitive], usize),
+    (instances, places): (&[Record], &Places),
+) -> Vec<UVec4> {
     let casts: Vec<bool> = scene.materials.iter().map(Material::casts).collect();
     if !casts.contains(&true) {
         return Vec::new();
     }
-    let is_caster = |primitive: &Primitive| !primitive.is_instance() && casts[primitive.material() as usize];
-    let meshes: Vec<bool> = places.slots.iter().map(|slots| primitives[slots.clone()].iter().any(is_caster)).collect();
-    let copy_casts = |number: u32| {
-        let copy = places.firsts.partition_point(|&first| first as u32 <= number) - 1;
-        meshes[scene.instances[copy].mesh as usize]
+    let casters = |slots: Range<usize>| {
+        let own = primitives[slots].iter().filter(|of| !of.is_instance() && casts[of.material() as usize]);
+        own.map(ball).collect::<Vec<_>>()
     };
-    let there = primitives[..own].iter().filter(|primitive| match primitive.is_instance() {
-        true => copy_casts(primitive.number()),
-        false => is_caster(primitive),
-    });
-    records(&there.map(ball).collect::<Vec<_>>())
+    let bends = |mesh: usize| scene.motion.as_ref().is_some_and(|motion| motion.is_bent(mesh as u32));
+    let box_of = |(mesh, slots): (usize, &Range<usize>)| match casters(slots.clone()) {
+        none if none.is_empty() => None,
+        // Each of its shapes lies in its cube.
+        _ if bends(mesh) => Some([Vec3::NEG_ONE, Vec3::ONE]),
+        all => Some(bounds(&all)),
+    };
+    let boxes: Vec<_> = places.slots.iter().enumerate().map(box_of).collect();
+    let keys = 1 + scene.motion.as_ref().map_or(0, |motion| motion.poses.len());
+    let origin = copies::origin(normalisation);
+    let copy = |(instance, &first): (&Instance, &usize)| {
+        let within = boxes[instance.mesh as usize]?;
+        let all = instances[first..].iter().take(if instances[first].moves() { keys } else { 1 });
+        Some(Group::new(all.map(|key| placed(key, origin, within)).collect()).around)
+    };
+    let mut all = casters(0..own);
+    all.extend(scene.instances.iter().zip(&places.firsts).filter_map(copy));
+    records(&all)
 }
 
-/// Around a primitive. A copy of a mesh is as large as its box while the shutter is open.
+/// Around a primitive.
 fn ball(primitive: &Primitive) -> Ball {
     if primitive.is_sphere() || primitive.is_disk() {
         return Ball { centre: primitive.centre(), radius: primitive.radius() };
     }
     let (least, greatest) = primitive.bounds();
     let centre = (least + greatest) / 2.0;
-    if primitive.is_instance() {
-        return Ball { centre, radius: centre.distance(greatest) };
-    }
     let radius = primitive.vertices().into_iter().map(|vertex| vertex.distance(centre)).fold(0.0, f32::max);
     Ball { centre, radius }
+}
+
+/// Around what lies in a box of its mesh, where a key of a copy has it.
+fn placed(key: &Record, origin: Vec3, [least, greatest]: [Vec3; 2]) -> Ball {
+    let transform = key.transform();
+    let moved = |at: Vec3| Vec3::new(transform.x.dot(at), transform.y.dot(at), transform.z.dot(at));
+    let (middle, half) = ((least + greatest) / 2.0, (greatest - least) / 2.0);
+    // The other four corners lie opposite these.
+    let corners = [Vec3::ONE, Vec3::new(-1.0, 1.0, 1.0), Vec3::new(1.0, -1.0, 1.0), Vec3::new(1.0, 1.0, -1.0)];
+    let radius = corners.into_iter().map(|corner| moved(corner * half).length()).fold(0.0, f32::max);
+    // The margin is more than what moving rounds.
+    Ball { centre: moved(middle) + (transform.translation - origin), radius: radius + key.margin() }
 }
 
 /// The least box around balls.
@@ -115,11 +143,11 @@ impl Group {
     }
 }
 
-/// Balls around groups, of which the largest are parted until there are `most`.
-fn gathered(groups: Vec<Group>, most: usize) -> Vec<Ball> {
-    let (mut open, mut done) = (BinaryHeap::from(groups), Vec::new());
+/// Few balls around many.
+fn gathered(balls: Vec<Ball>) -> Vec<Ball> {
+    let (mut open, mut done) = (BinaryHeap::from([Group::new(balls)]), Vec::new());
     while let Some(largest) = open.pop() {
-        match largest.parted().filter(|_| open.len() + done.len() + 2 <= most) {
+        match largest.parted().filter(|_| open.len() + done.len() + 2 <= MOST) {
             Some(halves) => open.extend(halves),
             None => done.push(largest.around),
         }
@@ -127,16 +155,26 @@ fn gathered(groups: Vec<Group>, most: usize) -> Vec<Ball> {
     done
 }
 
+/// One around those in each cell of a grid. They depend neither on the order of the balls nor on how often each is there, which
+/// hierarchies of different quality decide: photons go to the same places with all of them.
+fn in_cells(balls: &[Ball]) -> Vec<Ball> {
+    /// Cells along the longest edge.
+    const CELLS: u32 = 64;
+    let [least, greatest] = bounds(balls);
+    let over = CELLS as f32 / (greatest - least).max_element().max(f32::MIN_POSITIVE);
+    let mut cells = vec![Vec::new(); CELLS.pow(3) as usize];
+    for ball in balls {
+        let UVec3 { x, y, z } = ((ball.centre - least) * over).as_uvec3().min(UVec3::splat(CELLS - 1));
+        cells[((z * CELLS + y) * CELLS + x) as usize].push(*ball);
+    }
+    cells.into_iter().filter(|cell| !cell.is_empty()).map(|cell| Group::new(cell).around).collect()
+}
+
 fn records(balls: &[Ball]) -> Vec<UVec4> {
-    /// Of more, those that follow each other in leaf order, and so mostly lie together, are taken as one.
-    const FEW: usize = 4096;
     if balls.is_empty() {
         return Vec::new();
     }
-    let groups = balls.chunks(balls.len().div_ceil(FEW)).map(|some| Group::new(some.to_vec())).collect();
-    // Neighbours in leaf order that lie far apart are parted again.
-    let some = gathered(groups, 2 * FEW);
-    let balls = gathered(vec![Group::new(some)], MOST);
+    let balls = gathered(in_cells(balls));
     let [least, greatest] = bounds(&balls);
     let middle = (least + greatest) / 2.0;
     let mut records = vec![pack(middle, balls.len() as u32)];
@@ -175,7 +213,7 @@ mod tests {
     }
 
     /// Whatever casts is in some ball, and draws mean balls as often as their probabilities say: of clusters of many and of few, far
-    /// apart, of more members than are looked at one by one.
+    /// apart, whatever order they come in and though some come twice.
     #[test]
     fn balls_hold_all_that_casts_and_draws_mean_each_as_often_as_it_is_large() {
         let clusters = [(-0.8, -0.7, 9000), (0.6, -0.5, 20), (0.1, 0.8, 1)];
@@ -201,6 +239,35 @@ mod tests {
             before = ball[0].w.into();
         }
         assert_eq!(before, i64::from(u32::MAX));
+        let (forth, back) = (all.iter().step_by(2), all.iter().rev());
+        assert_eq!(super::records(&forth.chain(back).copied().collect::<Vec<_>>()), records);
+    }
+
+    /// However a copy is turned, stretched and moved: no corner of its mesh's box is outside, and the furthest is near the border.
+    #[test]
+    fn a_copy_lies_in_its_ball() {
+        let (origin, [least, greatest]) =
+            (Vec3::new(30.0, -2.0, 5.0), [Vec3::new(-0.7, -0.2, 0.1), Vec3::new(0.9, 0.3, 0.8)]);
+        for turn in (0..40).map(|turn| turn as f32 * 0.16) {
+            let (sin, cos) = turn.sin_cos();
+            let rows = [
+                Vec3::new(0.2 * cos, -0.02 * sin, 0.1),
+                Vec3::new(0.2 * sin, 0.02 * cos, 0.3),
+                Vec3::new(0.0, 0.4, -0.1),
+            ];
+            let at = origin + Vec3::new(0.1 * turn, 0.2, -0.3);
+            let row = |axis: usize| pack(rows[axis], at[axis].to_bits());
+            let key = Record { x: row(0), y: row(1), z: row(2), mesh: UVec4::new(0, 0, 0, 1e-6f32.to_bits()) };
+            let ball = placed(&key, origin, [least, greatest]);
+            let corner = |bits: u32| {
+                let corner =
+                    Vec3::from_array([0, 1, 2].map(|axis| if bits >> axis & 1 == 0 { least } else { greatest }[axis]));
+                let moved = Vec3::from_array(rows.map(|row| row.dot(corner))) + (at - origin);
+                moved.distance(ball.centre)
+            };
+            let furthest = (0..8).map(corner).fold(0.0, f32::max);
+            assert!(furthest <= ball.radius && ball.radius < furthest + 1e-5, "{turn}: {furthest}, {ball:?}");
+        }
     }
 
     #[test]

@@ -180,7 +180,7 @@ impl DeviceScene {
         let (environment, far_light) = far.map_or((Vec::new(), None), |(words, light)| (words, Some(light)));
         let background_group = groups.number(&scene.background_group);
         let shining = shining::of(scene, &normalisation, (&primitives, top.1), (&instances, &places))?;
-        let casters = casters::of(scene, (&primitives, top.1), &places);
+        let casters = casters::of(scene, &normalisation, (&primitives, top.1), (&instances, &places));
         let lamps = Lamps::new((&scene.materials, &groups, &spectra), &shining, (&textures, far_light));
         let dark = if lamps.is_empty() { Effects::EMISSIVE } else { 0 };
         let lighting = Lighting::new(

@@ -76,7 +76,8 @@ impl Devices {
             let renderer = Arc::new(cpu::Renderer::new(packed, traversal, threads)?);
             members.push(Member::new(cpu_name(threads), cpu::OnCpu::<f32>::new(renderer)));
         }
-        Ok(Team::new(members))
+        let team = Team::new(members);
+        Ok(if packed.has_photons() { team.of_whole_samples() } else { team })
     }
 }
 

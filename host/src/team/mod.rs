@@ -52,6 +52,8 @@ pub(crate) struct Team {
     members: Vec<Member>,
     view: Option<View>,
     coverage: Coverage,
+    /// Strips of the image that each device may take apart.
+    strips: u32,
     /// Of all renderings.
     lost: Vec<Lost>,
 }
@@ -59,7 +61,14 @@ pub(crate) struct Team {
 impl Team {
     /// Of devices that are ready.
     pub fn new(members: Vec<Member>) -> Self {
-        Team { members, view: None, coverage: Coverage::default(), lost: Vec::new() }
+        let strips = STRIPS * members.len() as u32;
+        Team { members, view: None, coverage: Coverage::default(), strips, lost: Vec::new() }
+    }
+
+    /// Shares samples of the whole image alone, since each part of a sample takes as long to get its photons ready as all of it.
+    #[must_use]
+    pub fn of_whole_samples(self) -> Self {
+        Team { strips: 1, ..self }
     }
 
     /// Fails with the last fault if every device is lost.
@@ -115,14 +124,14 @@ impl Grows for Team {
     }
 
     fn start(&mut self, view: &View, _: &[Region]) -> Result<()> {
-        let strips = strips(view.region(), STRIPS * self.members.len() as u32);
+        let strips = strips(view.region(), self.strips);
         self.begin(|device| device.start(view, &strips))?;
         (self.view, self.coverage) = (Some(*view), Coverage::default());
         Ok(())
     }
 
     fn add(&mut self, part: Part, done: &(dyn Fn(u64) + Sync)) -> Result<()> {
-        let todo = strips(part.region, STRIPS * self.members.len() as u32);
+        let todo = strips(part.region, self.strips);
         let todo = todo.into_iter().map(|region| Part { region, samples: part.samples.clone() }).collect();
         self.share(todo)?;
         let (pixels, samples) = (part.region.pixels(), part.samples.len() as u64);

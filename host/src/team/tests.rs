@@ -76,13 +76,18 @@ impl<G: Grows> Grows for Odd<G> {
 
 /// Devices, each with a pause in milliseconds and the parts after which it fails.
 fn rendered(devices: &[(u64, usize)]) -> (Result<Film>, Vec<Lost>, Film) {
+    rendered_by(devices, |team| team)
+}
+
+/// The same by the team that is made of theirs.
+fn rendered_by(devices: &[(u64, usize)], of: impl Fn(Team) -> Team) -> (Result<Film>, Vec<Lost>, Film) {
     let (packed, view) = posed();
     let renderer = Arc::new(Renderer::new(&packed, Traversal::default(), 1).unwrap());
     let member = |(number, &(pause, fails_after)): (usize, &(u64, usize))| {
         let (device, pause) = (OnCpu::<f32>::new(renderer.clone()), Duration::from_millis(pause));
         Member::new(format!("device {number}"), Odd { device, pause, fails_after })
     };
-    let mut team = Team::new(devices.iter().enumerate().map(member).collect());
+    let mut team = of(Team::new(devices.iter().enumerate().map(member).collect()));
     let film = team.expose(&view, &|_| ());
     let lost = team.lost();
     (film, lost, OnCpu::<f32>::new(renderer.clone()).expose(&view, &|_| ()).unwrap())
@@ -101,6 +106,15 @@ fn a_film_of_several_devices_has_the_bits_of_one() {
         let (film, lost, want) = rendered(devices);
         assert_same(&film.unwrap(), &want);
         assert!(lost.is_empty());
+    }
+}
+
+#[test]
+fn samples_of_whole_images_are_shared_too() {
+    for devices in [&[(0, NEVER)][..], &[(0, NEVER), (30, NEVER), (1, NEVER)], &[(0, 1), (5, NEVER), (5, NEVER)]] {
+        let (film, lost, want) = rendered_by(devices, Team::of_whole_samples);
+        assert_same(&film.unwrap(), &want);
+        assert_eq!(lost.len(), devices.iter().filter(|&&(_, fails_after)| fails_after != NEVER).count());
     }
 }
 

@@ -175,7 +175,7 @@ fn scattered<R: Scalar>(
     // What a lamp's density depends on that the path finds.
     let side = if launch.spec.effects.has(Effects::MANY_LIGHTS) { view.side } else { 0 };
     let is_told = caustics.has(Caustics::GATHERED) && closure.is_wide() && !catches;
-    let is_straight = sample.density.eq(R::splat(0.0));
+    let is_straight = caustics.has(Caustics::GATHERED) && sample.density.eq(R::splat(0.0));
     let gathered = if is_straight { vertex.path.gathered } else { is_told };
     let next = PathState { beside: (width, R::splat(side as f32)), unlit, gathered, ..next };
     let (next, goes_on) = survive(launch.frame, next, decisions.z);
@@ -245,8 +245,7 @@ fn emitted<R: Scalar>(
     if launch.spec.caustics.has(Caustics::PHOTONS) {
         return V3::zero();
     }
-    let is_told = vertex.path.gathered && vertex.path.density.eq(R::splat(0.0));
-    if !effects.has(Effects::EMISSIVE) || !is_lit || is_told {
+    if !effects.has(Effects::EMISSIVE) || !is_lit || vertex.path.is_told(launch.spec.caustics) {
         return V3::zero();
     }
     let Seen { primitive, interaction, .. } = *seen;

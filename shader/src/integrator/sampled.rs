@@ -145,7 +145,8 @@ pub fn scatter<R: Scalar>(
     let path = if media.has(Media::PRESENT) { path.with_medium(slots, slot, paths) } else { path };
     let is_photon = launch.spec.caustics.has(Caustics::PHOTONS);
     let outputs = AovSlot::new(launch.frame, launch.spec, slot);
-    let (sum, mut word, mut caught) = if starts || is_photon {
+    // What is compiled in comes first, so that without it nothing is left.
+    let (sum, mut word, mut caught) = if is_photon || starts {
         (V3::zero(), 0, Caught::nothing())
     } else {
         let (sum, word) = R::load(read(sums, slot));
@@ -159,8 +160,8 @@ pub fn scatter<R: Scalar>(
     };
     let after_catcher = bits.has(Launch::CATCHER) && caught.is_some() && path.bounces == 1;
     let found = Found::<R>::load(launch, slot, hits);
-    let draws = drawn(launch, slot, path.pixel);
     let sample = camera::sample(launch.frame, slot);
+    let draws = drawn(launch, (slot, sample), path.pixel);
     // Photons have the wavelengths of all paths of their sample.
     let is_common = launch.spec.caustics.has(Caustics::GATHERED | Caustics::PHOTONS);
     let waves = if is_common { camera::common_key(launch.frame) } else { draws.key };
@@ -239,9 +240,8 @@ pub fn scatter<R: Scalar>(
 
 /// What a slot draws, whose path is of a pixel, or a photon.
 #[inline(always)]
-fn drawn(launch: &LaunchContext<'_>, slot: u32, pixel: u32) -> Draws {
+fn drawn(launch: &LaunchContext<'_>, (slot, sample): (u32, u32), pixel: u32) -> Draws {
     let (frame, bits) = (launch.frame, launch.spec.launch);
-    let sample = camera::sample(frame, slot);
     if launch.spec.caustics.has(Caustics::PHOTONS) {
         let key = crate::photon::key(frame, sample);
         return Draws { launch: bits, key, sample: crate::photon::number(frame, slot), has_lens: false };
@@ -282,7 +282,7 @@ fn is_hole<R: Scalar>(launch: &LaunchContext<'_>, path: &PathState<R>, primitive
 #[inline(always)]
 fn surroundings<R: Scalar>(launch: &LaunchContext<'_>, lighting: &Lighting<'_>, path: &PathState<R>) -> V3<R> {
     let (effects, frame) = (launch.spec.effects, launch.frame);
-    let is_told = effects.has(Effects::ENVIRONMENT) && path.gathered && path.density.eq(R::splat(0.0));
+    let is_told = effects.has(Effects::ENVIRONMENT) && path.is_told(launch.spec.caustics);
     if launch.spec.launch.has(Launch::FEATURE) || !path.is_lit_by(effects, frame.group) || is_told {
         return V3::zero();
     }

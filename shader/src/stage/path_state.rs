@@ -158,6 +158,12 @@ impl<R: Scalar> PathState<R> {
         PathState { bounces, unlit, beside, gathered, ..self }
     }
 
+    /// Did photons tell the light that it finds, which has come by mirrors and lenses alone?
+    #[inline(always)]
+    pub fn is_told(&self, caustics: Caustics) -> bool {
+        caustics.has(Caustics::GATHERED) && self.gathered && self.density.eq(R::splat(0.0))
+    }
+
     /// Does a group of lamps light where it starts?
     #[inline(always)]
     pub fn is_lit_by(&self, effects: Effects, group: u32) -> bool {
